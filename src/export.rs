@@ -131,16 +131,25 @@ impl CheckedProgram {
     }
 
     /// The result, if the program is that of the plan within 0.01 mm and 0.01 deg, and none of its moves between segments hits what stands
-    /// around.
+    /// around, and the arm can follow all others.
     ///
     /// # Errors
     /// [`Error::Failed`] where it is not.
     pub fn sound(&self) -> Result<(), Error> {
-        let (file, hits) = (self.check.file.display(), self.check.hits.len());
+        let file = self.check.file.display();
+        let counted = |count: usize| if count == 1 { "1 move".to_owned() } else { format!("{count} moves") };
+        let (hits, unfollowed) = (self.check.hits.len(), self.check.unfollowed.len());
         if self.check.is_sound() && hits > 0 {
-            let moves = if hits == 1 { "1 move hits".to_owned() } else { format!("{hits} moves hit") };
+            let hit = if hits == 1 { "hits" } else { "hit" };
             return Err(Error::Failed(format!(
-                "{file}: {moves} what stands around; allowed: programs of plans with a free way between all segments"
+                "{file}: {} {hit} what stands around; allowed: programs of plans with a free way between all segments",
+                counted(hits)
+            )));
+        }
+        if self.check.is_sound() && unfollowed > 0 {
+            return Err(Error::Failed(format!(
+                "{file}: {} between path points cannot be followed by the arm; allowed: programs of plans without the warning unfollowed-move",
+                counted(unfollowed)
             )));
         }
         if self.check.is_sound() {

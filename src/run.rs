@@ -267,6 +267,7 @@ impl Run {
         let postures = feasibility::explain(self.problem(), placement, point, beta);
         let mut context = Context::new(&self.run, self.run.search);
         context.notes.extend(study::outside_cell(&self.run, placement));
+        context.notes.extend(feasibility::standing_axes(self.problem(), point));
         Ok(Explanations { placement: *placement, point, beta, postures, context })
     }
 }

@@ -178,3 +178,18 @@ fn bad_input_ends_with_2_and_leaves_everything_as_it_was() {
         ended.assert_says(&[part]);
     }
 }
+
+#[test]
+fn a_comparison_of_arms_with_borrowed_stiffness_says_what_its_order_is_not() {
+    let bench = bench();
+    let borrowed = "some arms have a borrowed stiffness: the order of the robots does not rank how stiff those are";
+    assert!(!run(&bench, STUDY, &["--out", "out"]).stderr.contains(borrowed));
+    let name = "configs/robots/kuka-kr500.toml";
+    let text = bench.read(name);
+    let (before, after) = text.split_once("\n[[joints]]").unwrap();
+    bench.write(name, &format!("{before}\nstiffness_like = 'KUKA KR360 L240'\n[[joints]]{after}"));
+    let ended = run(&bench, STUDY, &["--out", "again", "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: ", borrowed]);
+    assert!(ended.json()["notes"].as_array().unwrap().iter().any(|note| note == borrowed));
+}

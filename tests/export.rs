@@ -279,3 +279,49 @@ fn a_move_without_a_free_way_is_refused_or_a_warning_a_comment_and_found() {
     assert!(text.lines().next().unwrap().ends_with(",hits"), "{text}");
     assert_eq!(text.lines().filter(|line| line.ends_with(",,\"tool and lid\"")).count(), 2);
 }
+
+/// A plan whose joint 6 is a whole turn farther from a point on, which no line of the tool brings about.
+#[test]
+fn a_line_that_the_arm_cannot_follow_is_refused_or_a_warning_a_comment_and_found() {
+    let bench = bench();
+    let mut rows: Vec<Vec<String>> =
+        bench.read(PLAN).lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|column| column == name).unwrap();
+    let (angle, turn) = (column("theta6_deg"), column("turn_6"));
+    for row in &mut rows[11..22] {
+        row[angle] = format!("{:.4}", row[angle].parse::<f64>().unwrap() + 360.0);
+        row[turn] = "0".to_owned();
+    }
+    let text: Vec<String> = rows.iter().map(|row| row.join(",")).collect();
+    bench.write(PLAN, &(text.join("\n") + "\n"));
+    let reason = "joint 6 would go the other way round than planned, and end a whole turn off";
+    let told = format!("NOT FREE: the arm cannot follow the straight move of the tool to point 10 ({reason})");
+    let refused = export(&bench, &[]);
+    assert_eq!((refused.code, refused.stdout.as_str()), (Some(1), ""), "{}", refused.stderr);
+    refused.assert_says(&[&told, "--allow-blocked-moves"]);
+    assert!(!bench.path("p").exists());
+
+    let ended = export(&bench, &["--allow-blocked-moves"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let warnings: Vec<&str> = ended.stderr.lines().filter(|line| line.starts_with("warning: ")).collect();
+    assert_eq!(warnings, [format!("warning: {told}")]);
+    let part = bench.read("p/PART_01.src");
+    assert_eq!(part.matches(&format!("; NOT FREE: the arm cannot follow this move\n; - {reason}\nLIN ")).count(), 1);
+    let read = check(&bench, &[]);
+    assert_eq!(read.code, Some(1), "{}", read.stdout);
+    let marked = 1 + part.lines().position(|line| line == "; NOT FREE: the arm cannot follow this move").unwrap() + 2;
+    let line = format!("p/PART_01.src:{marked} the arm cannot follow: {reason} (segment 1)\n");
+    assert!(read.stdout.contains(&line), "{line} in {}", read.stdout);
+    read.assert_says(&["error: p/PART.src: 1 move between path points cannot be followed by the arm; allowed: "]);
+    let document = check(&bench, &["--json"]).json();
+    assert_eq!(
+        (&document["unfollowed"][0]["point"], &document["unfollowed"][0]["since"]),
+        (&10.into(), &reason.into())
+    );
+
+    let table = bench.stead(&["export", RUN, PLAN, "--format", "csv", "--out", "t/PART", "--allow-blocked-moves"]);
+    assert_eq!(table.code, Some(0), "{}", table.stderr);
+    let text = bench.read("t/PART.csv");
+    assert!(text.lines().next().unwrap().ends_with(",unfollowed"), "{text}");
+    assert_eq!(text.lines().filter(|line| line.ends_with(&format!(",\"{reason}\""))).count(), 1);
+}

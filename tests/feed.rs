@@ -111,3 +111,20 @@ fn a_low_feed_is_held_and_says_by_how_much() {
     assert!(text.stdout.contains("the best plan holds a feed of up to "), "{}", text.stdout);
     assert!(text.stdout.contains("  what decides: speed of joint "), "{}", text.stdout);
 }
+
+/// A rail that goes to and fro by all that its speed allows decides by itself.
+#[test]
+fn a_rail_that_is_slower_than_the_joints_decides() {
+    let bench = Bench::new();
+    let rail = "[[external_axis]]\nname = 'rail'\nkind = 'rail'\ncarries = 'robot'\ndirection = [1, 0, 0]\n\
+                range_mm = [-100, 100]\nspeed_mm_per_s = 500\nuse = 'continuous'\n";
+    bench.replace(RUN, "[constraints]", &format!("{rail}[constraints]"));
+    let (_, document) = scored(&bench);
+    for plan in ["best", "worst"] {
+        let decided = &document[plan]["feed"]["decided_by"];
+        assert_eq!((&decided["kind"], &decided["external_axis"]), (&"speed".into(), &"rail".into()), "{decided}");
+        assert_eq!(decided["joint"], Value::Null);
+    }
+    let text = bench.stead(&SCORE[..10]);
+    assert!(text.stdout.contains("  what decides: speed of external axis \"rail\" at point "), "{}", text.stdout);
+}

@@ -123,6 +123,20 @@ fn the_robot_file_is_one_that_can_be_read_again() {
     assert_eq!(bench.read("out/robot-identified.toml").matches("[joints.compensator]").count(), 1);
 }
 
+/// What is measured is the arm's own, where the loads show all joints.
+#[test]
+fn a_measured_stiffness_is_borrowed_no_longer() {
+    let bench = bench();
+    let text = bench.read(ROBOT);
+    let at = text.find("\nname = ").unwrap() + 1;
+    bench.write(ROBOT, &format!("{}stiffness_like = 'KUKA KR500'\n{}", &text[..at], &text[at..]));
+    let ended = fit(&bench, &[]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let parsed: toml::Table = bench.read("out/robot-identified.toml").parse().unwrap();
+    assert!(!parsed.contains_key("stiffness_like"), "{parsed:?}");
+    assert_eq!(parsed["name"], text.parse::<toml::Table>().unwrap()["name"]);
+}
+
 #[test]
 fn outliers_are_named_by_line() {
     let bench = bench();

@@ -246,3 +246,62 @@ fn a_tight_corner_needs_a_limit_in_space_and_score_says_so() {
     let ended = run(&bench, "score", &[&PLACE, &Q4]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
+
+/// Both points are in reach, and the straight line between them leads through the foot of the robot.
+#[test]
+fn a_line_that_the_arm_cannot_follow_is_warned_of() {
+    let bench = bench();
+    let header = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n";
+    let points = "1,0,-1700,0,0,1,0,0,0,1,-60,-40,-20\n1,0,1700,0,0,1,0,0,0,1,-60,-40,-20";
+    bench.write("tasks/five-segments.csv", &format!("{header}\n{points}\n"));
+    let at = ["--x-mm", "300", "--y-mm", "0", "--z-mm", "-400", "--yaw-deg", "0", "--json"];
+    let ended = run(&bench, "score", &[&at]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&[
+        "warning: between path points the arm cannot follow the straight line of the tool: best plan to point 1: ",
+    ]);
+    let document = ended.json();
+    assert_eq!(document["best"]["unfollowed_moves"][0]["to_point"], 1);
+    let fine = run(&self::bench(), "score", &[&PLACE, &Q4, &["--json"]]).json();
+    assert_eq!(fine["best"]["unfollowed_moves"], Value::Array(Vec::new()));
+}
+
+/// On a rail the shapes of the cell come nearer as the robot drives towards them: of two pairs that touch the deeper one is named.
+#[test]
+fn explain_names_the_deepest_pair_of_a_robot_on_a_rail() {
+    let bench = bench();
+    let bar = |name: &str, height: f64| {
+        format!(
+            "[[shape]]\nname = '{name}'\nattached = 'base'\nbox_mm = [8000, 8000, {height}]\nxyz_mm = [0, 0, {}]\n",
+            -1000.0 + height / 2.0
+        )
+    };
+    let rail = "[[external_axis]]\nname = 'rail'\nkind = 'rail'\ncarries = 'robot'\ndirection = [1, 0, 0]\n\
+                range_mm = [300, 900]\nuse = 'fixed'\n";
+    let arm = "[[shape]]\nname = 'spindle'\nattached = 'flange'\ncapsule_mm = { radius = 60, length = 100 }\n\
+               xyz_mm = [0, 0, 150]\n";
+    let text = bench.read(RUN);
+    for (deepest, heights) in [("high", [1300.0, 2500.0]), ("low", [2500.0, 1300.0])] {
+        let [low, high] = heights;
+        let bars = format!("{}{}", bar("low", low), bar("high", high));
+        bench.write(RUN, &format!("{text}\n{rail}{arm}{bars}"));
+        let ended = run(&bench, "explain", &[&PLACE, &Q4, &["--point", "30", "--beta-deg", "40", "--json"]]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.assert_says(&[
+            "note: the external axes are taken as near to zero as their ranges allow: rail at 300.0 mm",
+        ]);
+        let postures = ended.json()["postures"].clone();
+        let told: Vec<&str> = postures
+            .as_array()
+            .unwrap()
+            .iter()
+            .flat_map(|posture| posture["violations"].as_array().unwrap())
+            .filter_map(Value::as_str)
+            .filter(|violation| violation.contains(" touch, limit "))
+            .collect();
+        assert!(
+            !told.is_empty() && told.iter().all(|line| line.starts_with(&format!("spindle and {deepest} touch"))),
+            "{told:?}"
+        );
+    }
+}

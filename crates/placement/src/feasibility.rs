@@ -7,6 +7,7 @@ use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
 use std::fmt;
 use stead_cell::{PairKind, Proximity};
+use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::{Posture, turns::Range};
 use stead_numerics::monitor::Monitor;
 
@@ -45,6 +46,19 @@ pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64
             explanation.state.as_ref().and_then(|s| problem.clearance_constraint(point, placement, &s.joints));
         explanation.violations.extend(measured.filter(|measured| !measured.holds()));
         explanation
+    })
+}
+
+/// Where the external axes stand at a path point for [`explain`], in a sentence; `None` where there are none.
+pub fn standing_axes(problem: &Problem, point: usize) -> Option<String> {
+    let at = |(axis, position): (&ExternalAxis, &f64)| match axis.kind {
+        AxisKind::Rail => format!("{} at {:.1} mm", axis.name, position * 1e3),
+        AxisKind::Turntable => format!("{} at {:.2} deg", axis.name, position.to_degrees()),
+    };
+    let axes: Vec<String> = problem.external_axes.iter().zip(problem.axis_positions(point)).map(at).collect();
+    (!axes.is_empty()).then(|| {
+        let axes = axes.join(", ");
+        format!("the external axes are taken as near to zero as their ranges allow: {axes}; another range_mm or range_deg moves them")
     })
 }
 

@@ -1,7 +1,7 @@
 //! The feed that the arm holds along a plan: with which no joint is faster, or accelerated more, than the robot file allows.
 //!
 //! From path point to path point the tool moves as in a linear move of a robot controller: the tool centre point along the straight
-//! line, the tool about one fixed axis, both in proportion to the way s. So the joint angles are functions q(s) of the way, and at a
+//! line, the tool about one fixed axis, both in proportion to the way s, in the frame of the part; external axes move evenly. So the joint angles are functions q(s) of the way, and at a
 //! constant feed v
 //!
 //! ```text
@@ -26,25 +26,17 @@
 //! starts and stops, accelerations are not evaluated.
 
 mod external_axes;
+mod linear_motion;
 
 use crate::problem::Problem;
 use crate::redundancy::SegmentPlan;
-use crate::setup::AxisPositions;
 use external_axes::{axis_limit, smallest};
-use nalgebra::{Matrix3, Vector3};
+use linear_motion::{LinearMotion, Node, rates_between};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
-use stead_model::robot::{Joint, Pose, Posture, Robot, angles::nearest_turns};
-use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
-use stead_numerics::scalar::Dual;
+use stead_model::robot::Joint;
 
-/// The largest turn of a joint between poses at which its speed is evaluated. rad
-const MAX_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
-/// The largest change of the speed of a joint between these poses, by its limit, beside the largest speed of any joint by its own.
-const MAX_CHANGE: f64 = 0.2;
-/// A step is halved this often at the most.
-const MAX_HALVINGS: usize = 10;
 /// Poses of the blended path on each blending distance.
 const POSES_PER_BLEND: f64 = 4.0;
 /// Steps that one thread evaluates at least.
@@ -226,15 +218,12 @@ impl Limits {
     /// The step to a place (from 1) of a segment's plan.
     fn step(&self, problem: &Problem, segment: usize, plan: &SegmentPlan, place: usize) -> Step {
         let ends = [&plan.joints[place - 1], &plan.joints[place]];
+        let point = plan.points.start + place;
         let weights = self.speeds.map(|speed| speed.map_or(0.0, f64::recip));
-        let motion = LinearMotion::new(&problem.robot, &problem.spindle.flange_from_tool, plan.posture, weights, ends);
-        let length = match &problem.setup.positions {
-            AxisPositions::PerPoint(_) => problem.step_length(plan.points.start + place),
-            _ => motion.travel.norm(),
-        };
+        let motion = LinearMotion::new(problem, (point, plan.posture), weights, ends);
+        let length = motion.length();
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
         let nodes = motion.nodes(ends, spacing / length);
-        let point = plan.points.start + place;
         let is_in_place = problem.task.path().turns_in_place(point);
         let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
         let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));
@@ -278,125 +267,6 @@ impl Limits {
             limit = Some(limit.map_or(found, |known| known.smaller(found)));
         }
         limit
-    }
-}
-
-/// A pose of a step.
-#[derive(Clone, Copy)]
-struct Node {
-    /// The part of the step that is done.
-    part: f64,
-    /// Real joint angles. rad
-    joints: [f64; 6],
-    /// Their derivatives by the part, where the pose is reached. rad
-    rates: Option<[f64; 6]>,
-}
-
-/// The largest rates of the joints between two poses in a row: their averages, or at the vertex of the parabola that has the rates at both
-/// ends and the average between, where the vertex is between the two. rad
-fn rates_between(pair: &[Node]) -> [f64; 6] {
-    let (from, to) = (&pair[0], &pair[1]);
-    std::array::from_fn(|j| {
-        let average = (to.joints[j] - from.joints[j]) / (to.part - from.part);
-        let (Some(first), Some(last)) = (from.rates, to.rates) else { return average };
-        // first + linear t + square t^2 for t from 0 to 1.
-        let linear = 6.0 * average - 4.0 * first[j] - 2.0 * last[j];
-        let square = 3.0 * (first[j] + last[j] - 2.0 * average);
-        let vertex = -linear / (2.0 * square);
-        let at_vertex = first[j] + linear * vertex / 2.0;
-        if vertex > 0.0 && vertex < 1.0 && at_vertex.abs() > average.abs() { at_vertex } else { average }
-    })
-}
-
-/// A linear move of the tool: its point along a straight line, the tool about a fixed axis.
-struct LinearMotion<'a> {
-    robot: &'a Robot,
-    posture: Posture,
-    /// What the speed of each joint counts in comparisons: the inverse of its limit, zero where that is not known. s/rad
-    weights: [f64; 6],
-    /// Tool centre point in the flange frame. m
-    tool: Vector3<f64>,
-    /// Flange frame to base frame at the start.
-    rotation: Matrix3<f64>,
-    /// Tool centre point at the start. m
-    start: Vector3<f64>,
-    /// From there to the end. m
-    travel: Vector3<f64>,
-    /// Rotation vector of the whole turn in the flange frame. rad
-    turn: Vector3<f64>,
-}
-
-impl<'a> LinearMotion<'a> {
-    fn new(
-        robot: &'a Robot,
-        flange_from_tool: &Pose<f64>,
-        posture: Posture,
-        weights: [f64; 6],
-        ends: [&[f64; 6]; 2],
-    ) -> Self {
-        let tool = flange_from_tool.translation;
-        let [from, to] = ends.map(|joints| robot.forward(joints));
-        let start = from.point(&tool);
-        Self {
-            robot,
-            posture,
-            weights,
-            tool,
-            rotation: from.rotation,
-            start,
-            travel: to.point(&tool) - start,
-            turn: rotation_vector(&from.rotation.tr_mul(&to.rotation)),
-        }
-    }
-
-    /// The joint angles, turns left out, where this part of the way is done, and their derivatives by the part; `None` where the arm does
-    /// not reach. rad
-    fn at(&self, part: f64) -> Option<([f64; 6], [f64; 6])> {
-        let rotation = self.rotation * rotation_from_vector(&(self.turn * part));
-        let rotation_rate = rotation * self.turn.cross_matrix();
-        let flange = self.start + self.travel * part - rotation * self.tool;
-        let flange_rate = self.travel - rotation_rate * self.tool;
-        let dual = |value: f64, rate: f64| Dual::<1> { value, gradient: [rate] };
-        let pose =
-            Pose { rotation: rotation.zip_map(&rotation_rate, dual), translation: flange.zip_map(&flange_rate, dual) };
-        let joints = self.robot.inverse(&pose, self.posture).ok()?;
-        Some((joints.map(|joint| joint.value), joints.map(|joint| joint.gradient[0])))
-    }
-
-    /// Both ends, the middle, and as many poses between that from one to the next no joint turns by more than [`MAX_TURN`], speeds are much
-    /// the same, and no more than `max_part` of the way is done.
-    fn nodes(&self, ends: [&[f64; 6]; 2], max_part: f64) -> Vec<Node> {
-        let end =
-            |part: f64, joints: &[f64; 6]| Node { part, joints: *joints, rates: self.at(part).map(|(_, rates)| rates) };
-        let (from, to) = (end(0.0, ends[0]), end(1.0, ends[1]));
-        let mut nodes = vec![from];
-        self.halve(&from, &to, max_part, 0, &mut nodes);
-        nodes.push(to);
-        nodes
-    }
-
-    /// Whether the speeds of all joints are much the same at two poses.
-    fn is_even(&self, from: &Node, to: &Node) -> bool {
-        let (Some(first), Some(last)) = (from.rates, to.rates) else { return true };
-        let weighed = |rate: f64, j: usize| self.weights[j] * rate.abs();
-        let largest = (0..6).map(|j| weighed(first[j], j).max(weighed(last[j], j))).fold(0.0, f64::max);
-        (0..6).all(|j| weighed(last[j] - first[j], j) <= MAX_CHANGE * largest)
-    }
-
-    fn halve(&self, from: &Node, to: &Node, max_part: f64, halvings: usize, nodes: &mut Vec<Node>) {
-        let widest = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
-        let is_fine = halvings > 0 && widest <= MAX_TURN && to.part - from.part <= max_part && self.is_even(from, to);
-        if is_fine || halvings == MAX_HALVINGS {
-            return;
-        }
-        let part = (from.part + to.part) / 2.0;
-        let Some((wrapped, rates)) = self.at(part) else { return };
-        let middle = std::array::from_fn(|j| (from.joints[j] + to.joints[j]) / 2.0);
-        let joints = nearest_turns(&wrapped, &middle);
-        let node = Node { part, joints, rates: Some(rates) };
-        self.halve(from, &node, max_part, halvings + 1, nodes);
-        nodes.push(node);
-        self.halve(&node, to, max_part, halvings + 1, nodes);
     }
 }
 

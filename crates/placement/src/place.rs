@@ -37,7 +37,6 @@ mod setups;
 use infeasible::infeasible;
 pub use infeasible::{BlockingPair, Infeasible};
 pub use long_path::LongPath;
-pub use notes::unfollowed_warning;
 pub use score::{Score, score};
 pub use setups::setup_at;
 

@@ -150,7 +150,7 @@ impl<'a> StraightMove<'a> {
     }
 
     /// The flange in the base frame at a share of the move.
-    fn flange_at(&self, share: f64) -> Pose<f64> {
+    pub fn flange_at(&self, share: f64) -> Pose<f64> {
         let tool = Pose {
             rotation: rotation_from_vector(&(self.turn * share)) * self.start.rotation,
             translation: self.start.translation + self.way * share,
@@ -164,7 +164,7 @@ impl<'a> StraightMove<'a> {
     ///
     /// # Errors
     /// What keeps the arm from following it.
-    pub fn follow<H>(&self, visit: impl FnMut(f64, &[f64; 6]) -> Option<H>) -> Result<Option<H>, LineEnd> {
+    pub fn follow<H>(&self, mut visit: impl FnMut(f64, &[f64; 6]) -> Option<H>) -> Result<Option<H>, LineEnd> {
         let [from, to] = &self.joints;
         let [before, after] =
             [self.point - 1, self.point].map(|point| self.problem.base_from_part(point, self.placement).rotation);
@@ -172,22 +172,18 @@ impl<'a> StraightMove<'a> {
         let turned = (self.turn.norm() + of_part.norm()) / TURN_STEP;
         let steps = (0..6).map(|j| (to[j] - from[j]).abs() / STEPS[j / 3]).fold(turned, f64::max).ceil().max(1.0);
         let flange_at = |share: f64| self.flange_at(share);
-        let (end, found) = self.problem.follow((self.posture, from), steps as usize, flange_at, visit)?;
+        // The arm's own limits: the margin is for the points.
+        let (limits, margin) = (self.problem.robot.joints(), self.problem.constraints.joint_margin + BULGE);
+        let (end, found) = self.problem.follow((self.posture, from), steps as usize, flange_at, |share, joints| {
+            match (0..6).find(|j| limits[*j].is_beyond(joints[*j], margin)) {
+                Some(joint) => Some(Err(LineEnd::JointLimit(joint + 1))),
+                None => visit(share, joints).map(Ok),
+            }
+        })?;
         let is_off = |j: &usize| (end[*j] - to[*j]).abs() > PI;
-        match (0..6).find(is_off) {
-            Some(joint) if found.is_none() => Err(LineEnd::WholeTurn(joint + 1)),
-            _ => Ok(found),
-        }
-    }
-
-    /// What is wrong with it, a joint beyond its limit between the points too.
-    fn fault(&self) -> Option<LineEnd> {
-        let robot = &self.problem.robot;
-        let margin = self.problem.constraints.joint_margin + BULGE;
-        let beyond = |_, joints: &[f64; 6]| (0..6).find(|j| robot.joints()[*j].is_beyond(joints[*j], margin));
-        match self.follow(beyond) {
-            Ok(joint) => joint.map(|joint| LineEnd::JointLimit(joint + 1)),
-            Err(end) => Some(end),
+        match (found.transpose()?, (0..6).find(is_off)) {
+            (None, Some(joint)) => Err(LineEnd::WholeTurn(joint + 1)),
+            (found, _) => Ok(found),
         }
     }
 }
@@ -199,7 +195,10 @@ impl Problem {
         let fault = |place: usize| {
             let point = plan.points.start + place;
             let joints = [plan.joints[place - 1], plan.joints[place]];
-            Some((point, StraightMove::new(self, placement, (point, plan.posture), joints).fault()?))
+            Some((
+                point,
+                StraightMove::new(self, placement, (point, plan.posture), joints).follow(|_, _| None::<()>).err()?,
+            ))
         };
         moves.filter_map(fault).collect()
     }
@@ -214,6 +213,13 @@ mod tests {
     use std::sync::Arc;
     use stead_cell::testing::kr270_shapes;
     use stead_cell::{KeepOut, Proximity, Scene, Surroundings, TrackedPoint, Zone};
+
+    /// The published task on an arm whose joints turn without limits.
+    fn unlimited() -> Problem {
+        let mut problem = five_segments();
+        problem.constraints.joint_margin = 10.0;
+        problem
+    }
 
     /// Moves of up to 60 mm and a radian between states of a posture, near a stretched arm and singularities of the wrist: path point 1,
     /// posture, joint angles.
@@ -255,9 +261,9 @@ mod tests {
 
     #[test]
     fn moves_are_followed_as_in_many_even_steps() {
-        let problem = five_segments();
+        let (problem, limited) = (unlimited(), five_segments());
         let placement = Placement::from([0.0; 4]);
-        let mut counts = [0; 4];
+        let (mut counts, mut at_limits, mut within) = ([0; 3], 0, 0);
         for (posture, joints) in random_moves(&problem, 400) {
             let straight = StraightMove::new(&problem, &placement, (1, posture), joints);
             let states = in_even_steps(&straight);
@@ -273,20 +279,35 @@ mod tests {
                 // A hundredth of the move in which a joint turns by half a radian.
                 Err(end) => assert!(!arrives || largest > 0.5 / 200.0, "{joints:?}: {end}, {largest}"),
             }
+            // A limit counts at the point itself, where the move begins.
+            let starts_within = (0..6).all(|j| !limited.robot.joints()[j].is_beyond(joints[0][j], 0.0));
+            if followed.is_ok() && starts_within {
+                let found = StraightMove::new(&limited, &placement, (1, posture), joints).follow(|_, _| None::<()>);
+                let beyond = |j: usize, margin: f64| {
+                    states.iter().any(|state| limited.robot.joints()[j].is_beyond(state[j], margin))
+                };
+                match &found {
+                    Err(LineEnd::JointLimit(joint)) => assert!(beyond(*joint - 1, BULGE), "{joints:?}: {joint}"),
+                    other => assert!(other.is_ok() && (0..6).all(|j| !beyond(j, 1.5 * BULGE)), "{joints:?}: {other:?}"),
+                }
+                at_limits += usize::from(found.is_err());
+                within += usize::from(found.is_ok());
+            }
             counts[followed.map_or_else(|end| 1 + usize::from(end != LineEnd::OutOfReach), |_| 0)] += 1;
         }
         assert!(counts[0] > 200 && counts[1] > 10 && counts[2] > 5, "{counts:?}");
+        assert!(at_limits > 5 && within > 5, "{at_limits} at limits, {within} within them");
     }
 
     #[test]
     fn a_zone_that_the_wrist_brushes_between_two_points_is_found() {
-        let problem = five_segments();
+        let problem = unlimited();
         let placement = Placement::from([0.0; 4]);
         let mut found = 0;
         for (posture, joints) in random_moves(&problem, 200) {
             let straight = StraightMove::new(&problem, &placement, (1, posture), joints);
             let centre = |joints: &[f64; 6]| problem.robot.wrist_centre(&problem.robot.forward(joints));
-            if straight.fault().is_some() {
+            if straight.follow(|_, _| None::<()>).is_err() {
                 continue;
             }
             // The zone begins where the wrist centre is farthest out across the chord, but for 0.3 mm.

@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use serde_json::{Value, json};
-use stead_format::program::check::{ANGLE_DEG, Largest, MoveHit, MovePlace, POSITION_MM, ProgramCheck};
+use stead_format::program::check::{ANGLE_DEG, Largest, MoveHit, MovePlace, POSITION_MM, ProgramCheck, UnfollowedMove};
 use stead_format::program::{OperatorFrame, Program, Rotation};
 
 /// What `stead export --json` prints.
@@ -80,6 +80,7 @@ pub fn program_check_json(check: &ProgramCheck) -> Value {
         "angle_deg": largest(&check.angle),
         "mismatch": check.mismatch,
         "hits": check.hits.iter().map(hit_json).collect::<Value>(),
+        "unfollowed": check.unfollowed.iter().map(unfollowed_json).collect::<Value>(),
         "allowed_mm": POSITION_MM,
         "allowed_deg": ANGLE_DEG,
     }))
@@ -98,6 +99,12 @@ fn place_json(at: &MovePlace) -> Value {
 fn hit_json(hit: &MoveHit) -> Value {
     let mut entry = place_json(&hit.at);
     entry["pair"] = json!(hit.pair);
+    entry
+}
+
+fn unfollowed_json(unfollowed: &UnfollowedMove) -> Value {
+    let mut entry = place_json(&unfollowed.at);
+    entry["since"] = json!(unfollowed.end.to_string());
     entry
 }
 
@@ -124,6 +131,10 @@ pub fn program_check_text(check: &ProgramCheck) -> String {
     }
     for MoveHit { at, pair } in &check.hits {
         text.push_str(&format!("{}:{} hits: {pair} (segment {})\n", at.file.display(), at.line, at.segment));
+    }
+    for UnfollowedMove { at, end } in &check.unfollowed {
+        let (file, line) = (at.file.display(), at.line);
+        text.push_str(&format!("{file}:{line} the arm cannot follow: {end} (segment {})\n", at.segment));
     }
     if let Some(mismatch) = &check.mismatch {
         text.push_str(&format!("{mismatch}\n"));

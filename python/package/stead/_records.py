@@ -156,6 +156,7 @@ class PlanFigures(Record):
     feed: CutFeed
     cutting_s: float
     cycle_s: float | None
+    unfollowed_moves: list[Any]
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {"deflection_mm": Deflections, "feed": CutFeed}
 
     def __init__(self, entries: Mapping[str, Any], plan: Callable[[], Table] | None = None) -> None:

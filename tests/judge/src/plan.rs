@@ -165,8 +165,23 @@ impl Plan<'_> {
         self.axes(verdict);
         self.cell_bounds(verdict);
         self.figures(verdict, case, &criterion, (&scores, &slacks));
-        if !self.cell.pairs.is_empty() || !self.cell.zones.is_empty() {
-            (1..self.rows.len()).filter(|i| self.follows(*i)).for_each(|i| self.between(verdict, i));
+        let told: Vec<u64> = case
+            .get("unfollowed_moves")
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten()
+            .filter_map(|told| told.get("to_point").and_then(Value::as_u64))
+            .collect();
+        for i in (1..self.rows.len()).filter(|i| self.follows(*i)) {
+            let feed = self.between(verdict, i, told.contains(&(i as u64)));
+            let segment = self.point(i).segment;
+            let stated = case.pointer(&format!("/feed/segments_mm_per_s/{}", segment - 1)).and_then(Value::as_f64);
+            if let Some(stated) = stated {
+                let told = || format!("{} segment {segment}", self.at(i));
+                verdict.within("highest feed (m/s)", told, stated * 1e-3, feed * (1.0 + 1e-3) + 1e-6);
+            } else {
+                verdict.holds("highest feed", || format!("{} segment {segment}: none stated", self.at(i)), feed > 1e6);
+            }
         }
     }
 

@@ -69,9 +69,16 @@ impl Layout<'_> {
             _ if number == 0 => vec![format!("segment {segment} goes on")],
             _ => Vec::new(),
         };
-        if let Some(Heading::Hits(hit)) = &step.heading {
-            lines.push("NOT FREE: this move hits".to_owned());
-            lines.extend(hit.iter().map(|name| format!("- {}", names::comment(name, LONGEST_NAME))));
+        match &step.heading {
+            Some(Heading::Hits(hit)) => {
+                lines.push("NOT FREE: this move hits".to_owned());
+                lines.extend(hit.iter().map(|name| format!("- {}", names::comment(name, LONGEST_NAME))));
+            }
+            Some(Heading::Unfollowed(why)) => {
+                lines.push("NOT FREE: the arm cannot follow this move".to_owned());
+                lines.push(format!("- {}", names::comment(why, LONGEST_LINE)));
+            }
+            _ => {}
         }
         lines
     }

@@ -63,6 +63,8 @@ pub(super) enum Heading {
     FreeWay(Vec<String>),
     /// A move that is known to hit: the names of the two.
     Hits(Names),
+    /// A line that the arm cannot follow: why.
+    Unfollowed(String),
 }
 
 /// One move to a pose.
@@ -191,7 +193,8 @@ pub(super) fn moves(
             let at = maker.exact(point, &targets[point])?;
             let linear = maker.to(segment, point, MoveKind::Linear, &targets[point], &at);
             let is_blended = ends.has_blending && point != first && point != last;
-            moves.push(Move { is_blended, ..linear });
+            let heading = ways.unfollowed_to(point).map(|end| Heading::Unfollowed(end.to_string()));
+            moves.push(Move { is_blended, heading, ..linear });
         }
         if let Some(way) = ways.free_from(segment) {
             moves.extend(maker.way_out(segment, way, &targets[last]));

@@ -7,7 +7,7 @@ use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 
 /// The columns: poses of the tool in the workpiece frame, as `Rz(A) Ry(B) Rx(C)` and as a quaternion; angles of the controller, empty
 /// where it is not known how it counts; `point` is empty where the tool is retracted. Behind them `e1_mm` or `e1_deg` and so on, where there are
-/// external axes, and `hits` where shapes stand around: the pair that a move is known to hit.
+/// external axes, `hits` where shapes stand around: the pair that a move is known to hit, and `unfollowed` where the arm cannot follow a line: why.
 pub(super) const COLUMNS: &str = "\
     segment,point,move,x_mm,y_mm,z_mm,a_deg,b_deg,c_deg,q_w,q_x,q_y,q_z,a1_deg,a2_deg,a3_deg,a4_deg,a5_deg,a6_deg,feed_mm_per_s";
 
@@ -22,12 +22,14 @@ pub(super) fn files(name: &str, moves: &[Move], units: [&str; 6], has_scene: boo
     let there = external.iter().zip(units).zip(1..).filter(|((axis, _), _)| axis.is_some());
     let names: String = there.map(|((_, unit), axis)| format!(",e{axis}_{unit}")).collect();
     let hits = if has_scene { ",hits" } else { "" };
-    lines.line(format_args!("{COLUMNS}{names}{hits}"));
-    moves.iter().for_each(|step| lines.line(row(step, has_scene)));
+    let has_unfollowed = moves.iter().any(|step| matches!(step.heading, Some(Heading::Unfollowed(_))));
+    let unfollowed = if has_unfollowed { ",unfollowed" } else { "" };
+    lines.line(format_args!("{COLUMNS}{names}{hits}{unfollowed}"));
+    moves.iter().for_each(|step| lines.line(row(step, [has_scene, has_unfollowed])));
     vec![ProgramFile { name: format!("{name}.csv"), text: lines.0 }]
 }
 
-fn row(step: &Move, has_scene: bool) -> String {
+fn row(step: &Move, [has_scene, has_unfollowed]: [bool; 2]) -> String {
     let pose = &step.workpiece_from_tool;
     let kind = match step.kind {
         MoveKind::Joint => "joint",
@@ -48,6 +50,10 @@ fn row(step: &Move, has_scene: bool) -> String {
     cells.extend(has_scene.then(|| match &step.heading {
         // Names of shapes have no quotes in them.
         Some(Heading::Hits(names)) => format!("\"{} and {}\"", names[0], names[1]),
+        _ => String::new(),
+    }));
+    cells.extend(has_unfollowed.then(|| match &step.heading {
+        Some(Heading::Unfollowed(why)) => format!("\"{why}\""),
         _ => String::new(),
     }));
     cells.join(",")

@@ -5,7 +5,6 @@ use crate::plan::PlacedPlan;
 use std::sync::Arc;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
-use stead_placement::place::unfollowed_warning;
 use stead_placement::problem::Problem;
 use stead_placement::redundancy::SegmentPlan;
 use stead_placement::way::{AtPoint, LineEnd, ShortLine, Space, Way, way};
@@ -28,8 +27,6 @@ pub(super) struct Ways {
     pub ends_hit: [Option<Names>; 2],
     /// Path points to which the arm cannot follow the straight move of the tool, and why.
     unfollowed: Vec<(usize, LineEnd)>,
-    /// Those on the way to which a joint is beyond its limit.
-    beyond_limits: Vec<(usize, LineEnd)>,
 }
 
 /// The names of two shapes.
@@ -40,9 +37,8 @@ impl Ways {
     pub fn new(problem: &Problem, plan: &PlacedPlan, approach: f64) -> Self {
         let segments = problem.task.segments();
         let plans: Vec<SegmentPlan> = segments.iter().map(|points| segment_plan(plan, points.clone())).collect();
-        let faults = plans.iter().flat_map(|segment| problem.unfollowed_moves(&plan.placement, segment));
-        let (beyond_limits, unfollowed) = faults.partition(|(_, end)| matches!(end, LineEnd::JointLimit(_)));
-        let known = Self { unfollowed, beyond_limits, ..Self::default() };
+        let unfollowed = plans.iter().flat_map(|segment| problem.unfollowed_moves(&plan.placement, segment)).collect();
+        let known = Self { unfollowed, ..Self::default() };
         let Some(space) = Space::new(problem, &plan.placement) else { return known };
         let at = |point: usize| {
             let row = &plan.points[point];
@@ -77,6 +73,11 @@ impl Ways {
             None => self.ends_hit[0].as_ref(),
             Some(previous) => self.all.get(previous)?.blocked_by.as_ref(),
         }
+    }
+
+    /// Why the arm cannot follow the line to a path point.
+    pub fn unfollowed_to(&self, point: usize) -> Option<&LineEnd> {
+        self.unfollowed.iter().find(|(to, _)| *to == point).map(|(_, end)| end)
     }
 
     /// The moves that hit, and those between path points that the arm cannot follow, in sentences.
@@ -117,10 +118,7 @@ impl Ways {
     pub fn warnings(&self, ends: Ends) -> Vec<Warning> {
         let hits = self.blocked(ends).into_iter().map(|text| Warning::new("blocked-move", format!("NOT FREE: {text}")));
         let short = (0..=self.all.len()).flat_map(|segment| self.short_lines(segment));
-        let beyond: Vec<String> =
-            self.beyond_limits.iter().map(|(point, end)| format!("to point {point}: {end}")).collect();
-        let short = short.map(|text| Warning::new("short-line", text));
-        hits.chain(short).chain(unfollowed_warning(&beyond)).collect()
+        hits.chain(short.map(|text| Warning::new("short-line", text))).collect()
     }
 }
 

@@ -1,10 +1,15 @@
 //! The highest feed in closed form, and against the joint speeds of random plans sampled densely.
 
 use super::*;
+use crate::problem::Placement;
+use crate::setup::AxisPositions;
+use crate::straight_move::StraightMove;
 use crate::testing::five_segments;
-use nalgebra::Rotation3;
+use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis, robot_from_workpiece};
 use stead_model::robot::testing::{kr270, robot_from};
+use stead_model::robot::{Pose, Posture, Robot, angles::nearest_turns};
 
 const BLEND: f64 = 5e-3;
 
@@ -202,6 +207,48 @@ fn an_arm_with_offsets_and_a_tilted_base_is_followed_too() {
     let largest = largest_speeds(&problem, &plan).unwrap().into_iter().fold(0.0, f64::max);
     let limit = cut_feed(&problem, BLEND, &[plan]).highest().unwrap();
     assert!((limit.feed * largest / 1.5 - 1.0).abs() < 1e-3, "{limit:?}");
+}
+
+/// On a table that turns in the cut the line is straight in the frame of the part.
+#[test]
+fn speeds_are_those_of_a_line_on_a_turning_table() {
+    let mut problem = problem([(Some(1.5), None); 6], true);
+    problem.external_axes = vec![ExternalAxis {
+        name: "table".to_owned(),
+        kind: AxisKind::Turntable,
+        carries: Carried::Workpiece,
+        direction: Vector3::z(),
+        point: Vector3::new(1.8, 0.0, 0.0),
+        min: -1.0,
+        max: 1.0,
+        max_speed: None,
+        axis_use: AxisUse::Continuous,
+    }];
+    let turned = |point: usize| vec![if point == 0 { -0.4 } else { 0.4 }];
+    problem.setup.positions = AxisPositions::PerPoint((0..problem.task.points().len()).map(turned).collect());
+    let joints = [[0.0, 0.9, -1.8, 0.3, 0.7, -0.2], [0.1, 0.95, -1.7, 0.5, 0.6, -0.3]];
+    let plan = plan(&problem.robot, joints.to_vec());
+    let placement = Placement::from([0.0; 4]);
+    let straight = StraightMove::new(&problem, &placement, (1, plan.posture), joints);
+    let (mut last, mut largest) = (joints[0], 0.0_f64);
+    let count = 20_000;
+    for step in 1..=count {
+        let flange = straight.flange_at(f64::from(step) / f64::from(count));
+        let found = nearest_turns(&problem.robot.inverse(&flange, plan.posture).unwrap(), &last);
+        largest = (0..6).map(|j| (found[j] - last[j]).abs() * f64::from(count)).fold(largest, f64::max);
+        last = found;
+    }
+    let tool = |point: usize| {
+        let part = robot_from_workpiece(&problem.external_axes, problem.axis_positions(point));
+        part.inverse()
+            .point(&problem.robot.forward(&joints[point]).point(&problem.spindle.flange_from_tool.translation))
+    };
+    let expected = 1.5 * (tool(1) - tool(0)).norm() / largest;
+    let limit = cut_feed(&problem, BLEND, std::slice::from_ref(&plan)).highest().unwrap();
+    assert!((limit.feed / expected - 1.0).abs() < 1e-3, "{limit:?} and not {expected}");
+    problem.setup.positions = AxisPositions::Same(vec![0.0]);
+    let still = cut_feed(&problem, BLEND, &[plan]).highest().unwrap();
+    assert!((still.feed / expected - 1.0).abs() > 5e-3, "{still:?}: the table does not matter");
 }
 
 /// An external axis that is slower than all joints decides, and is told by its name.

@@ -106,7 +106,7 @@ pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
 }
 
 /// Warns of straight moves from one path point to the next that the arm cannot follow.
-pub fn unfollowed_warning(moves: &[String]) -> Option<Warning> {
+fn unfollowed_warning(moves: &[String]) -> Option<Warning> {
     (!moves.is_empty()).then(|| {
         let text = format!(
             "between path points the arm cannot follow the straight line of the tool: {}; points that are closer together, a lower rate of \

@@ -20,9 +20,6 @@ use stead_model::robot::Posture;
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 60;
 
-/// Plans made for one placement that may leave the grid without regard to their moves; later ones keep moves in which nothing is wrong.
-const FREE_ROUNDS: usize = 8;
-
 /// Plans made for one placement to get rid of moves that the arm cannot follow; then they are accepted, with a warning.
 const FOLLOW_ROUNDS: usize = 20;
 
@@ -123,7 +120,6 @@ impl Planner<'_> {
         // Whether states were forbidden for moves that the arm cannot follow, and whether such moves are let pass.
         let (mut are_moves_bound, mut are_moves_waived) = (false, false);
         for round in 0..MAX_ROUNDS {
-            workspace.keeps_moves = round >= FREE_ROUNDS;
             let found = plan(workspace, &asked);
             let lines = found.as_ref().err().map_or_else(Vec::new, |none| self.lines_of(none, &bound));
             let waives_moves = are_moves_bound && !are_moves_waived && (found.is_err() || round >= FOLLOW_ROUNDS);
@@ -213,22 +209,16 @@ impl Planner<'_> {
         self.objective(placement, sense, None, &mut workspace)
     }
 
-    /// Takes beta of a plan off the grid, where nothing hits on it: lines into and out of the cut that are whole stay so, and, if asked for,
-    /// moves in which nothing is wrong.
-    pub(super) fn refine_off_grid(
-        &self,
-        placement: &Placement,
-        sense: Sense,
-        keeps_moves: bool,
-        plan: &mut SegmentPlan,
-    ) {
+    /// Takes beta of a plan off the grid, where nothing hits on it: lines into and out of the cut that are whole stay so, and moves in which
+    /// nothing is wrong.
+    pub(super) fn refine_off_grid(&self, placement: &Placement, sense: Sense, plan: &mut SegmentPlan) {
         let (problem, spacing) = (self.problem, self.spacing);
         let faults = problem.plan_faults(placement, plan, self.checks_moves);
         if faults.iter().any(|fault| matches!(fault.fault, Fault::Hit(_))) {
             return;
         }
         let lines = if self.checks_moves { whole_lines(problem, placement, plan) } else { [false; 2] };
-        let kept = Kept { lines, moves: keeps_moves && self.checks_moves && faults.is_empty() };
+        let kept = Kept { lines, moves: self.checks_moves && faults.is_empty() };
         *plan = settled_among_free(problem, placement, sense, (spacing, kept), plan);
     }
 

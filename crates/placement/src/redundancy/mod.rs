@@ -102,8 +102,6 @@ pub struct Workspace {
     run_costs: between::RunCosts,
     /// States that hit, of the placement that is planned.
     forbidden: StateSet,
-    /// Whether plans off the grid keep moves in which nothing is wrong on it.
-    keeps_moves: bool,
 }
 
 impl<'a> Planner<'a> {
@@ -191,7 +189,6 @@ impl<'a> Planner<'a> {
             record: forward_pass::Record::new(longest, count),
             run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
             forbidden: StateSet::default(),
-            keeps_moves: false,
         }
     }
 
@@ -284,9 +281,8 @@ impl<'a> Planner<'a> {
             self.until_free(placement, sense, workspace, |workspace, asked| {
                 let choices = self.choices(placement, sense, scheme, workspace, (asked, margin))?;
                 let choices = self.without_hitting_ways(placement, choices);
-                let keeps_moves = workspace.keeps_moves;
                 let refined = |(segment, classes): (&usize, Vec<joint_turns::SegmentChoice>)| {
-                    self.refined(placement, sense, (scheme.map(|s| s[*segment]), keeps_moves), classes)
+                    self.refined(placement, sense, scheme.map(|s| s[*segment]), classes)
                 };
                 let refined = match self.is_parallel() {
                     true => asked.par_iter().zip(choices).map(refined).collect(),
@@ -303,13 +299,13 @@ impl<'a> Planner<'a> {
         &self,
         placement: &Placement,
         sense: Sense,
-        (only, keeps_moves): (Option<Posture>, bool),
+        only: Option<Posture>,
         classes: Vec<joint_turns::SegmentChoice>,
     ) -> Vec<joint_turns::SegmentChoice> {
         let (rules, sign) = (&self.problem.postures, sense.sign());
         let refined = classes.into_iter().filter_map(|choice| {
             let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
-            self.refine_off_grid(placement, sense, keeps_moves, &mut plan);
+            self.refine_off_grid(placement, sense, &mut plan);
             Some(plan)
         });
         let mut plans: Vec<SegmentPlan> = refined.collect();

@@ -1,7 +1,7 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
 use super::Context;
-use super::json::plan_clearance;
+use super::json::{plan_clearance, unfollowed_moves};
 use super::setup::{lines, put_setup};
 use super::text::least_room;
 use crate::columns::{aligned, line};
@@ -33,6 +33,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
             "feed": cut_feed(&cycle.feed),
             "cutting_s": Unit::TIME_S.number(cycle.cutting),
             "cycle_s": cycle.total().map(|time| Unit::TIME_S.number(time)),
+            "unfollowed_moves": unfollowed_moves(cycle),
         });
         if let Some(clearance) = &plan.clearance {
             value["clearance"] = plan_clearance(clearance);

@@ -17,8 +17,8 @@ use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
-    CANCELLATION, Case, ForceSensitivity, LookupSummary, Outcome, PathLevels, Plan, PlanPoint, Refinement, SetBasin,
-    SetOutcome, SubsetAccuracy,
+    CANCELLATION, Case, Cycle, ForceSensitivity, LookupSummary, Outcome, PathLevels, Plan, PlanPoint, Refinement,
+    SetBasin, SetOutcome, SubsetAccuracy,
 };
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Problem, Redundancy};
@@ -158,6 +158,7 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "feed": cut_feed(&case.cycle.feed),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
         "cycle_s": optional(Unit::TIME_S, case.cycle.total()),
+        "unfollowed_moves": unfollowed_moves(&case.cycle),
         "transfers": case.cycle.transfers.iter().map(transfer).collect::<Vec<_>>(),
     });
     if let Some(clearance) = &case.plan.clearance {
@@ -252,6 +253,11 @@ fn plan_point(point: &PlanPoint) -> Value {
     });
     put_deviation(&mut value, "std_mm", Unit::DEFLECTION_MM, point.deviation);
     value
+}
+
+/// Path points to which the arm cannot follow the straight move of the tool, or not within its joint limits.
+pub(super) fn unfollowed_moves(cycle: &Cycle) -> Value {
+    cycle.unfollowed.iter().map(|(point, end)| json!({ "to_point": point, "since": end.to_string() })).collect()
 }
 
 fn transfer(transfer: &Transfer) -> Value {

@@ -8,6 +8,12 @@ use nalgebra::Isometry3;
 /// Distances of round shapes by parry's plain method are within this. m
 pub(crate) const SHAPE_SLACK: f64 = 3e-5;
 
+/// By so much what a joint (rad) or an external axis (m or rad) moves in a step may be off, for the printed digits of both ends.
+const ROUNDED: f64 = 4e-6;
+
+/// So far a joint may be beyond its limit between two points without a word. rad
+const MOST_BEYOND: f64 = 2.1e-3;
+
 impl Plan<'_> {
     /// Distances at a point.
     pub(super) fn clear(&self, verdict: &mut Verdict, i: usize, stand: &Stand) {
@@ -44,8 +50,10 @@ impl Plan<'_> {
         }
     }
 
-    /// From point to point the tool moves straight and turns evenly in the frame of the part.
-    pub(super) fn between(&self, verdict: &mut Verdict, i: usize) {
+    /// From point to point the tool moves straight and turns evenly in the frame of the part. Where the results state that the arm cannot
+    /// follow the move, it is judged as far as the arm does. The feed that the speeds of the joints and external axes allow, by what they move in
+    /// each step at the least. m/s
+    pub(super) fn between(&self, verdict: &mut Verdict, i: usize, is_told: bool) -> f64 {
         let cell = self.cell;
         let [from, to] = [&self.rows[i - 1], &self.rows[i]];
         let [start, end] = [self.stand(i - 1), self.stand(i)].map(|stand| stand.part.inverse() * stand.tool);
@@ -54,6 +62,13 @@ impl Plan<'_> {
         let most = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
         let steps = (way / 0.01).max(most / 0.02).ceil().clamp(2.0, 60.0) as usize;
         let mut joints = from.joints;
+        let allowed = |speed: Option<f64>, moved: f64| match speed.filter(|_| !self.is_in_place(i)) {
+            Some(speed) => speed * way / steps as f64 / (moved.abs() - ROUNDED).max(1e-12),
+            None => f64::INFINITY,
+        };
+        let axes = cell.axes.iter().zip(from.positions.iter().zip(&to.positions));
+        let mut feed =
+            axes.map(|(axis, (a, b))| allowed(axis.speed, (a - b) / steps as f64)).fold(f64::INFINITY, f64::min);
         for step in 1..steps {
             let share = step as f64 / steps as f64;
             let positions: Vec<f64> =
@@ -63,12 +78,19 @@ impl Plan<'_> {
             let part = cell.at(&self.placement, &joints, &positions);
             let Some(found) = cell.arm.reach(&part.frames[0], &(part.part * target * cell.tool.inverse()), &joints)
             else {
-                verdict.holds("reach between points", || format!("{} at {share}", self.at(i)), false);
-                return;
+                verdict.holds("reach between points", || format!("{} at {share}", self.at(i)), is_told);
+                return feed;
             };
+            for (row, (a, b)) in cell.arm.rows.iter().zip(joints.iter().zip(found)) {
+                feed = feed.min(allowed(row.speed, a - b));
+            }
             joints = found;
             let stand = cell.at(&self.placement, &joints, &positions);
             let told = |which: &str| format!("{} at {share:.3} of the way: {which}", self.at(i));
+            for (row, angle) in cell.arm.rows.iter().zip(joints).filter(|_| !is_told) {
+                let beyond = (row.min - angle).max(angle - row.max);
+                verdict.within("joint limit between points (rad)", || told("joints"), beyond, MOST_BEYOND);
+            }
             if let Some((depth, which)) = cell.zone_depth(&stand) {
                 verdict.within("zone between points (m)", || told(&which), depth, 1e-4);
             }
@@ -84,6 +106,10 @@ impl Plan<'_> {
             );
         }
         let off = (0..6).map(|j| (joints[j] - to.joints[j]).abs()).fold(0.0, f64::max);
-        verdict.within("the way leads to the next point (rad)", || self.at(i), off, most / (steps as f64) * 8.0 + 0.3);
+        if !is_told {
+            let slack = most / (steps as f64) * 8.0 + 0.3;
+            verdict.within("the way leads to the next point (rad)", || self.at(i), off, slack);
+        }
+        feed
     }
 }

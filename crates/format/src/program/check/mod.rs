@@ -24,6 +24,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Controller, Pose, Robot};
+use stead_placement::way::LineEnd;
 use written::{Base, End, Goal, Source, Written};
 
 /// How far the tool may be off. mm
@@ -88,6 +89,15 @@ pub struct MoveHit {
     pub pair: String,
 }
 
+/// A line of the tool that the arm cannot follow.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnfollowedMove {
+    /// The move.
+    pub at: MovePlace,
+    /// Why.
+    pub end: LineEnd,
+}
+
 /// A deviation and where it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Largest {
@@ -116,6 +126,8 @@ pub struct ProgramCheck {
     pub mismatch: Option<String>,
     /// The moves between segments that hit what stands around.
     pub hits: Vec<MoveHit>,
+    /// The lines between path points that the arm cannot follow.
+    pub unfollowed: Vec<UnfollowedMove>,
     /// The files that it was compared with.
     pub inputs: Vec<InputFile>,
 }
@@ -179,6 +191,11 @@ pub fn check(
     };
     let mut result = arm.compared(&source, &written.all, &expected)?;
     result.hits = free::hits(&problem, &plan.placement, &ways, &written.all, &expected);
+    let unfollowed = written.all.iter().zip(&expected).filter(|(_, wanted)| !wanted.is_joint && !wanted.is_retracted);
+    let unfollowed = unfollowed.filter_map(|(one, wanted)| {
+        Some(UnfollowedMove { at: MovePlace::of(one, wanted), end: ways.unfollowed_to(wanted.point)?.clone() })
+    });
+    result.unfollowed = unfollowed.collect();
     result.inputs = inputs;
     Ok(result)
 }
@@ -225,6 +242,7 @@ impl Arm<'_> {
             angle: None,
             mismatch: None,
             hits: Vec::new(),
+            unfollowed: Vec::new(),
             inputs: Vec::new(),
         };
         for (number, (one, wanted)) in written.iter().zip(expected).enumerate() {
