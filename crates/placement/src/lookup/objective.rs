@@ -238,7 +238,8 @@ impl LookupTable<'_> {
                 }
                 let weight = self.problem.task.path().weight(point) as f32;
                 if weight != 1.0 {
-                    scores.iter_mut().for_each(|score| *score *= weight);
+                    // A point of no weight has forbidden states too.
+                    scores.iter_mut().filter(|score| score.is_finite()).for_each(|score| *score *= weight);
                 }
             }
             if has_scene {

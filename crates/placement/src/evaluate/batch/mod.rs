@@ -250,6 +250,7 @@ impl Evaluation<'_> {
     #[inline(always)]
     fn batches<S: Simd, const PLAIN: bool, const N: usize>(self, simd: S) {
         let Self { evaluator, geometry, classes, states } = self;
+        let infinity = Lanes::splat(simd, f64::INFINITY);
         let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
         for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
             let cosine = Lanes::load(simd, &evaluator.cosine, start);
@@ -269,7 +270,9 @@ impl Evaluation<'_> {
                     let found = evaluator.wrist::<S, PLAIN, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
                     if let Some((score, directions)) = found {
                         let cost = if is_squared { score * score } else { score };
-                        states.set_lanes(class, start, cost * geometry.weight, &directions);
+                        // A point of no weight has forbidden states too.
+                        let cost = score.less(infinity).select(cost * geometry.weight, infinity);
+                        states.set_lanes(class, start, cost, &directions);
                     }
                 }
             }

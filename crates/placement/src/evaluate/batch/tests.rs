@@ -30,6 +30,7 @@ fn compare_flips(problem: &Problem, placement: &Placement, points: impl Iterator
                 if margin.abs() < 1e-9 {
                     continue;
                 }
+                assert!(!found.is_nan(), "point {point} class {class:?} beta {k}");
                 assert_eq!(found.is_finite(), margin > 0.0, "point {point} class {class:?} beta {k} margin {margin}");
                 if found.is_finite() {
                     allowed += 1;
@@ -213,6 +214,18 @@ fn agrees_with_uncertain_compliances() {
             }
             assert!(allowed > 1000, "{allowed} {laws:?}");
         }
+    }
+}
+
+/// States of a point that counts nothing are forbidden like others: a cost of no number would hide the states beside it.
+#[test]
+fn agrees_where_a_segment_has_no_weight() {
+    for aggregate in [Aggregate::Mean, Aggregate::Rms, Aggregate::Max] {
+        let mut problem = with_surface();
+        let segment_weights = vec![0.0, 1.0, 0.0, 1.0, 0.0];
+        problem.criterion = Criterion { aggregate, segment_weights, ..Criterion::default() };
+        let placement = Placement::from([2.2e-3, -1.6435, -0.5564, 2.1]);
+        assert!(compare(&problem, &placement, (0..105).step_by(9)) > 300);
     }
 }
 
