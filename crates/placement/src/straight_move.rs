@@ -164,7 +164,7 @@ impl<'a> StraightMove<'a> {
     ///
     /// # Errors
     /// What keeps the arm from following it.
-    pub fn follow<H>(&self, mut visit: impl FnMut(f64, &[f64; 6]) -> Option<H>) -> Result<Option<H>, LineEnd> {
+    pub fn follow<H>(&self, visit: impl FnMut(f64, &[f64; 6]) -> Option<H>) -> Result<Option<H>, LineEnd> {
         let [from, to] = &self.joints;
         let [before, after] =
             [self.point - 1, self.point].map(|point| self.problem.base_from_part(point, self.placement).rotation);
@@ -172,19 +172,22 @@ impl<'a> StraightMove<'a> {
         let turned = (self.turn.norm() + of_part.norm()) / TURN_STEP;
         let steps = (0..6).map(|j| (to[j] - from[j]).abs() / STEPS[j / 3]).fold(turned, f64::max).ceil().max(1.0);
         let flange_at = |share: f64| self.flange_at(share);
-        // The arm's own limits: the margin is for the points.
-        let (limits, margin) = (self.problem.robot.joints(), self.problem.constraints.joint_margin + BULGE);
-        let (end, found) = self.problem.follow((self.posture, from), steps as usize, flange_at, |share, joints| {
-            match (0..6).find(|j| limits[*j].is_beyond(joints[*j], margin)) {
-                Some(joint) => Some(Err(LineEnd::JointLimit(joint + 1))),
-                None => visit(share, joints).map(Ok),
-            }
-        })?;
+        let (end, found) = self.problem.follow((self.posture, from), steps as usize, flange_at, visit)?;
         let is_off = |j: &usize| (end[*j] - to[*j]).abs() > PI;
-        match (found.transpose()?, (0..6).find(is_off)) {
-            (None, Some(joint)) => Err(LineEnd::WholeTurn(joint + 1)),
-            (found, _) => Ok(found),
+        match (0..6).find(is_off) {
+            Some(joint) if found.is_none() => Err(LineEnd::WholeTurn(joint + 1)),
+            _ => Ok(found),
         }
+    }
+
+    /// The same, where every joint is within its own limits: the margin is for the points.
+    ///
+    /// # Errors
+    /// What keeps the arm from following it.
+    fn follow_within_limits(&self) -> Result<(), LineEnd> {
+        let (limits, margin) = (self.problem.robot.joints(), self.problem.constraints.joint_margin + BULGE);
+        let beyond = |_, joints: &[f64; 6]| (0..6).find(|j| limits[*j].is_beyond(joints[*j], margin));
+        self.follow(beyond)?.map_or(Ok(()), |joint| Err(LineEnd::JointLimit(joint + 1)))
     }
 }
 
@@ -195,10 +198,8 @@ impl Problem {
         let fault = |place: usize| {
             let point = plan.points.start + place;
             let joints = [plan.joints[place - 1], plan.joints[place]];
-            Some((
-                point,
-                StraightMove::new(self, placement, (point, plan.posture), joints).follow(|_, _| None::<()>).err()?,
-            ))
+            let straight = StraightMove::new(self, placement, (point, plan.posture), joints);
+            Some((point, straight.follow_within_limits().err()?))
         };
         moves.filter_map(fault).collect()
     }
@@ -282,7 +283,7 @@ mod tests {
             // A limit counts at the point itself, where the move begins.
             let starts_within = (0..6).all(|j| !limited.robot.joints()[j].is_beyond(joints[0][j], 0.0));
             if followed.is_ok() && starts_within {
-                let found = StraightMove::new(&limited, &placement, (1, posture), joints).follow(|_, _| None::<()>);
+                let found = StraightMove::new(&limited, &placement, (1, posture), joints).follow_within_limits();
                 let beyond = |j: usize, margin: f64| {
                     states.iter().any(|state| limited.robot.joints()[j].is_beyond(state[j], margin))
                 };
