@@ -51,7 +51,12 @@ pub(super) struct Record {
     joint_paths: Vec<i16>,
     /// For the first point of each block and each class the costs over beta; nothing of segments of one block.
     costs: Vec<f64>,
+    /// For each knot of the segment last gone through and each class the costs over beta up to there; nothing of long segments.
+    reached: Vec<f64>,
 }
+
+/// Costs of all knots are kept of segments with no more numbers than this.
+const MAX_REACHED: usize = 1 << 21;
 
 /// Segments whose joint_paths take no more numbers than this are kept whole.
 const MAX_WAYS: usize = 1 << 25;
@@ -65,7 +70,7 @@ impl Record {
     /// The same with at most so many numbers kept, if a block may be that short.
     pub fn with_capacity_of(longest: usize, count: usize, max_numbers: usize) -> Self {
         let block = (max_numbers / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
-        Self { count, block, joint_paths: vec![0; block * 4 * count], costs: Vec::new() }
+        Self { count, block, joint_paths: vec![0; block * 4 * count], costs: Vec::new(), reached: Vec::new() }
     }
 
     /// The row for the way to the point at `place` of its segment.
@@ -79,15 +84,21 @@ impl Record {
         length > self.block + 1 && place.is_multiple_of(self.block)
     }
 
-    /// Keeps the costs at the beginning of a block.
-    fn keep(&mut self, states: &StateGrid) {
+    /// Adds the costs of all classes at a knot.
+    fn keep(costs: &mut Vec<f64>, states: &StateGrid) {
         for class in PostureClass::ALL {
             if states.is_alive(class) {
-                self.costs.extend_from_slice(states.inner_scores(class));
+                costs.extend_from_slice(states.inner_scores(class));
             } else {
-                self.costs.resize(self.costs.len() + self.count, f64::INFINITY);
+                costs.resize(costs.len() + states.count(), f64::INFINITY);
             }
         }
+    }
+
+    /// The costs over beta of a class up to a knot, without regard to flips and turns, where they are kept: signed, infinite where a state is
+    /// not reached.
+    pub fn reached(&self, knot: usize, class: PostureClass) -> Option<&[f64]> {
+        self.reached.get((knot * 4 + class.index()) * self.count..)?.get(..self.count)
     }
 
     /// The costs at the beginning of a block.
@@ -218,6 +229,8 @@ impl Planner<'_> {
         let asked = PostureClass::ALL
             .map(|class| only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
         workspace.record.costs.clear();
+        workspace.record.reached.clear();
+        let keeps_all = !count_only && self.knot_count(pass) * 4 * self.grid.beta_count <= MAX_REACHED;
         for point in pass.span.clone() {
             self.evaluate(pass, point, asked, workspace);
             if PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class)) {
@@ -234,8 +247,12 @@ impl Planner<'_> {
                 }
             }
             if let Place::Knot(knot) = place {
-                if workspace.record.begins(knot.number, self.knot_count(pass)) {
-                    workspace.record.keep(&workspace.now);
+                let Workspace { record, now, .. } = &mut *workspace;
+                if record.begins(knot.number, self.knot_count(pass)) {
+                    Record::keep(&mut record.costs, now);
+                }
+                if keeps_all {
+                    Record::keep(&mut record.reached, now);
                 }
                 std::mem::swap(&mut workspace.before, &mut workspace.now);
             }

@@ -130,7 +130,7 @@ impl Planner<'_> {
             let mut choice = drive(&relaxed, cost);
             if choice.is_none() {
                 let flips = [false, true].map(|flip| postures.iter().any(|posture| posture.is_flipped() == flip));
-                let with_turns = self.path_with_turns(pass, class, flips, workspace);
+                let with_turns = self.path_with_turns(pass, (class, flips), cost, workspace);
                 let with_turns = with_turns.map(|found| (path(&found.betas), found.cost));
                 choice = with_turns.as_ref().and_then(|(path, cost)| drive(path, *cost));
                 if choice.is_none() && is_by_knots {

@@ -83,24 +83,24 @@ impl Numbering {
     }
 }
 
-/// All nodes of one path point, states in one flip with their turns, in the order of beta.
+/// All nodes of one path point that are looked at, states in one flip with their turns, in the order of beta.
 #[derive(Debug, Clone, Default)]
 struct Layer {
     /// See [`Numbering`].
     numbers: Vec<u32>,
-    /// Smallest signed costs up to here, infinite where a node is not reached.
+    /// Smallest signed costs from here to the end, infinite where that is not reached.
     costs: Vec<f64>,
-    /// How each was reached.
+    /// How each goes on.
     ways: Ways,
     /// Joint angles over beta, modulo a turn, theta_5 not negative; meaningful where there are nodes. rad
     angles: Vec<[f64; 6]>,
 }
 
-/// How the nodes of a path point were reached.
+/// How the nodes of a path point go on.
 #[derive(Debug, Clone, Default)]
 struct Ways {
-    /// The predecessors in the layer before.
-    from: Vec<u32>,
+    /// The successors in the next layer.
+    to: Vec<u32>,
     /// Where the nodes of each beta begin, and their end.
     starts: Vec<u32>,
 }
@@ -117,15 +117,21 @@ impl Ways {
 }
 
 impl Layer {
-    /// Fills in what is allowed of a posture class, without costs.
-    fn fill(&mut self, states: &StateGrid, class: PostureClass, flips: [bool; 2], numbering: &Numbering) {
+    /// Fills in what is allowed of a posture class in the states asked for, without costs.
+    fn fill(
+        &mut self,
+        states: &StateGrid,
+        is_asked: impl Fn(usize) -> bool,
+        (class, flips): (PostureClass, [bool; 2]),
+        numbering: &Numbering,
+    ) {
         self.numbers.clear();
         self.ways.starts.clear();
         self.angles.resize(states.count(), [0.0; 6]);
         let (scores, pad) = (states.inner_scores(class), states.pad());
         for beta in 0..states.count() {
             self.ways.starts.push(self.numbers.len() as u32);
-            if !scores[beta].is_finite() {
+            if !scores[beta].is_finite() || !is_asked(beta) {
                 continue;
             }
             for j in 0..6 {
@@ -136,15 +142,15 @@ impl Layer {
         }
         let count = self.numbers.len();
         self.ways.starts.push(count as u32);
-        self.ways.from.clear();
-        self.ways.from.resize(count, 0);
+        self.ways.to.clear();
+        self.ways.to.resize(count, 0);
         self.costs.clear();
         self.costs.resize(count, f64::INFINITY);
     }
 
-    /// Whether any node is reached.
-    fn is_reached(&self) -> bool {
-        self.costs.iter().any(|cost| cost.is_finite())
+    /// The smallest cost of all nodes, infinite where none goes on.
+    fn least(&self) -> f64 {
+        self.costs.iter().copied().fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -157,7 +163,13 @@ pub(super) struct TurnsPath {
     pub betas: Vec<usize>,
 }
 
-/// What is planned.
+/// How much more than without regard to flips and turns a path may cost, relative to that, in the first search and the next ones: mostly it
+/// is little, and then few states are looked at.
+const MARGINS: [f64; 4] = [2e-4, 2e-2, 0.15, f64::INFINITY];
+/// Sums of costs are as exact as this, relative to them.
+const SUM_ROUNDING: f64 = 1e-9;
+
+/// What is planned: from the end of a segment to its start, by nodes from which the start may still be reached at no more than `most`.
 struct Search<'s> {
     planner: &'s Planner<'s>,
     pass: Pass<'s>,
@@ -165,65 +177,75 @@ struct Search<'s> {
     /// Whether the flip with theta_5 not negative, and the other, may be taken.
     flips: [bool; 2],
     numbering: Numbering,
+    most: f64,
 }
 
 impl Planner<'_> {
-    /// The cheapest path of a posture class in the flips asked for, with every joint inside its limits at the knots of a pass.
+    /// The cheapest path of a posture class in the flips asked for, with every joint inside its limits at the knots of a pass, which has just
+    /// been made and found one of this cost without regard to flips and turns.
     pub(super) fn path_with_turns(
         &self,
         pass: Pass<'_>,
-        class: PostureClass,
-        flips: [bool; 2],
+        (class, flips): (PostureClass, [bool; 2]),
+        cost: f64,
         workspace: &mut Workspace,
     ) -> Option<TurnsPath> {
         let numbering = Numbering::new(&self.problem.robot);
-        let most = self.grid.beta_count * numbering.most();
+        let nodes = self.grid.beta_count * numbering.most();
         let knots = self.knot_count(pass);
-        let block = (MAX_NODES / most).max(knots.isqrt()).max(1);
-        Search { planner: self, pass, class, flips, numbering }.path(block, workspace)
+        let block = (MAX_NODES / nodes).max(knots.isqrt()).max(1);
+        let mut search = Search { planner: self, pass, class, flips, numbering, most: f64::INFINITY };
+        let is_bounded = workspace.record.reached(0, class).is_some();
+        MARGINS.into_iter().filter(|margin| is_bounded || margin.is_infinite()).find_map(|margin| {
+            let above = if margin.is_finite() { margin * cost.abs() } else { f64::INFINITY };
+            search.most = cost + above;
+            search.path(block, workspace).filter(|found| found.cost <= search.most - SUM_ROUNDING * found.cost.abs())
+        })
     }
 }
 
 impl Search<'_> {
-    /// The path, with the layers of so many knots kept at a time, and the first ones of the others, from which theirs are found
+    /// The path, with the layers of so many knots kept at a time, and the last ones of the others, from which theirs are found
     /// again.
     fn path(&self, block: usize, workspace: &mut Workspace) -> Option<TurnsPath> {
         let (planner, pass) = (self.planner, self.pass);
         let knots = planner.knot_count(pass);
-        let mut firsts = vec![self.first(workspace)?];
+        let mut lasts = vec![self.last(workspace)?];
         let (mut kept, mut costs) = (Vec::new(), Vec::new());
-        for start in (0..knots).step_by(block) {
-            let mut layer = firsts.last()?.clone();
-            kept = self.block(&mut layer, start, (start + block).min(knots), workspace)?;
+        // Blocks end `done` knots before the end of the segment.
+        for done in (0..knots).step_by(block) {
+            let mut layer = lasts.last()?.clone();
+            kept = self.block(&mut layer, knots - done, block, workspace)?;
             costs.clone_from(&layer.costs);
-            if start + block < knots {
-                self.advance(&mut layer, &mut Layer::default(), start + block, workspace)?;
-                firsts.push(layer);
+            if done + block < knots {
+                self.go_back(&mut layer, &mut Layer::default(), knots - done - block - 1, workspace)?;
+                lasts.push(layer);
             }
         }
         let mut node = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
         let cost = costs[node];
         let mut betas = vec![0; pass.span.len()];
-        let mut number = knots;
-        for (place, first) in firsts.iter().enumerate().rev() {
-            if place + 1 < firsts.len() {
-                kept = self.block(&mut first.clone(), place * block, (place + 1) * block, workspace)?;
+        let mut number = 0;
+        for (place, last) in lasts.iter().enumerate().rev() {
+            if place + 1 < lasts.len() {
+                kept = self.block(&mut last.clone(), knots - place * block, block, workspace)?;
             }
             for ways in kept.iter().rev() {
-                number -= 1;
                 betas[planner.knot(pass, number) - pass.span.start] = ways.beta(node);
-                node = ways.from[node] as usize;
+                node = ways.to[node] as usize;
+                number += 1;
             }
         }
         Some(TurnsPath { cost, betas })
     }
 
-    /// The ways to the nodes of the knots at `from` up to `to`, the layer of the first given, which becomes that of the last.
-    fn block(&self, layer: &mut Layer, from: usize, to: usize, workspace: &mut Workspace) -> Option<Vec<Ways>> {
+    /// The ways from the nodes of up to `count` knots before the one numbered `end`, the last first; the layer of the last is given, and
+    /// becomes that of the first.
+    fn block(&self, layer: &mut Layer, end: usize, count: usize, workspace: &mut Workspace) -> Option<Vec<Ways>> {
         let mut kept = vec![layer.ways.clone()];
-        let mut next = Layer::default();
-        for number in from + 1..to {
-            self.advance(layer, &mut next, number, workspace)?;
+        let mut before = Layer::default();
+        for number in (end.saturating_sub(count)..end - 1).rev() {
+            self.go_back(layer, &mut before, number, workspace)?;
             kept.push(layer.ways.clone());
         }
         Some(kept)
@@ -235,46 +257,67 @@ impl Search<'_> {
         self.planner.evaluate(self.pass, point, asked, workspace);
     }
 
-    /// The layer of the first point, where it has states.
-    fn first(&self, workspace: &mut Workspace) -> Option<Layer> {
-        self.evaluate(self.pass.span.start, workspace);
+    fn join(&self, a: f64, b: f64) -> f64 {
+        self.planner.problem.criterion.aggregate.join_signed(self.pass.sense, a, b)
+    }
+
+    /// Fills the layer of a knot that has just been evaluated with the nodes from which the start may be reached, where what follows costs
+    /// `rest` at the least.
+    fn fill(&self, layer: &mut Layer, knot: usize, rest: Option<f64>, workspace: &Workspace) {
+        let reached = workspace.record.reached(knot, self.class);
+        let is_asked = |beta: usize| {
+            reached.is_none_or(|costs| rest.map_or(costs[beta], |rest| self.join(costs[beta], rest)) <= self.most)
+        };
+        layer.fill(&workspace.now, is_asked, (self.class, self.flips), &self.numbering);
+    }
+
+    /// The layer of the last point, where it has states.
+    fn last(&self, workspace: &mut Workspace) -> Option<Layer> {
+        let knot = self.planner.knot_count(self.pass) - 1;
+        self.evaluate(self.planner.knot(self.pass, knot), workspace);
         let mut layer = Layer::default();
-        layer.fill(&workspace.now, self.class, self.flips, &self.numbering);
+        self.fill(&mut layer, knot, None, workspace);
         let scores = workspace.now.inner_scores(self.class);
         for (beta, score) in scores.iter().enumerate() {
             layer.costs[layer.ways.of(beta)].fill(score * self.pass.sense.sign());
         }
-        Some(layer).filter(Layer::is_reached)
+        Some(layer).filter(|layer| layer.least().is_finite())
     }
 
-    /// Goes on to a knot from the one before, where some of its states can be reached; `next` is room for its layer.
-    fn advance(&self, layer: &mut Layer, next: &mut Layer, number: usize, workspace: &mut Workspace) -> Option<()> {
+    /// Goes back to a knot from the next one, where some of its states go on; `before` is room for its layer.
+    fn go_back(&self, layer: &mut Layer, before: &mut Layer, number: usize, workspace: &mut Workspace) -> Option<()> {
         let (planner, pass) = (self.planner, self.pass);
-        let point = planner.knot(pass, number);
-        for between in planner.knot(pass, number - 1) + 1..point {
+        let [point, next] = [number, number + 1].map(|number| planner.knot(pass, number));
+        for between in point + 1..next {
             self.evaluate(between, workspace);
             if !planner.add_between(pass, between, self.class, workspace) {
                 return None;
             }
         }
         self.evaluate(point, workspace);
-        let Place::Knot(knot) = planner.place(pass, point) else { return None };
-        next.fill(&workspace.now, self.class, self.flips, &self.numbering);
-        self.connect(layer, next, point, knot, workspace);
-        std::mem::swap(layer, next);
-        layer.is_reached().then_some(())
+        let Place::Knot(knot) = planner.place(pass, next) else { return None };
+        self.fill(before, number, Some(layer.least()), workspace);
+        self.connect(before, layer, (number, next, knot), workspace);
+        std::mem::swap(layer, before);
+        layer.least().is_finite().then_some(())
     }
 
-    /// Gives each node its cheapest predecessor. Of equal ones the nearest in beta is taken.
-    fn connect(&self, before: &Layer, layer: &mut Layer, point: usize, knot: Knot, workspace: &Workspace) {
-        let (planner, sense) = (self.planner, self.pass.sense);
+    /// Gives each node its cheapest successor. Of equal ones the nearest in beta is taken.
+    fn connect(
+        &self,
+        layer: &mut Layer,
+        after: &Layer,
+        (number, next, knot): (usize, usize, Knot),
+        workspace: &Workspace,
+    ) {
+        let (planner, sign) = (self.planner, self.pass.sense.sign());
         let count = planner.grid.beta_count;
-        let limits = planner.joint_limits(point, knot.points).map(|limit| limit + STEP_ROUNDING);
-        let aggregate = planner.problem.criterion.aggregate;
+        let limits = planner.joint_limits(next, knot.points).map(|limit| limit + STEP_ROUNDING);
         let (scores, pad) = (workspace.now.inner_scores(self.class), workspace.now.pad());
+        let reached = workspace.record.reached(number, self.class);
         let joining = planner.joining(self.pass);
         let between = (knot.points > 1).then(|| workspace.run_costs.of(self.class, knot.change.min, joining));
-        let cheapest = |beta| before.costs[before.ways.of(beta)].iter().copied().fold(f64::INFINITY, f64::min);
+        let cheapest = |beta| after.costs[after.ways.of(beta)].iter().copied().fold(f64::INFINITY, f64::min);
         let cheapest: Vec<f64> = (0..count).map(cheapest).collect();
         for beta in 0..count {
             let own = layer.ways.of(beta);
@@ -282,42 +325,44 @@ impl Search<'_> {
                 continue;
             }
             let numbers = &layer.numbers[own.clone()];
-            let (costs, from) = (&mut layer.costs[own.clone()], &mut layer.ways.from[own]);
+            let (costs, to) = (&mut layer.costs[own.clone()], &mut layer.ways.to[own]);
             // The largest of its nodes' costs so far: what costs as much or more is not looked at.
             let mut most = f64::INFINITY;
             for shift in knot.change.shifts() {
-                let earlier = (beta as isize + shift).rem_euclid(count as isize) as usize;
-                let cost_between = between.map(|between| between.row(shift)[pad + beta]);
-                let join = |old: f64| cost_between.map_or(old, |between| aggregate.join_signed(sense, old, between));
-                let is_open = cheapest[earlier].is_finite() && cost_between.is_none_or(f64::is_finite);
-                if !is_open || join(cheapest[earlier]) >= most {
+                let later = (beta as isize - shift).rem_euclid(count as isize) as usize;
+                let cost_between = between.map(|between| between.row(shift)[pad + later]);
+                let join = |rest: f64| cost_between.map_or(rest, |between| self.join(between, rest));
+                let is_open = cheapest[later].is_finite() && cost_between.is_none_or(f64::is_finite);
+                if !is_open || join(cheapest[later]) >= most {
                     continue;
                 }
-                let Some(turns) = crossings(&before.angles[earlier], &layer.angles[beta], &limits) else { continue };
-                let known = before.ways.of(earlier);
-                let (known_costs, known_numbers) = (&before.costs[known.clone()], &before.numbers[known.clone()]);
-                let mut take = |node: usize, old: usize| {
-                    let cost = join(known_costs[old]);
+                if reached.is_some_and(|reached| self.join(reached[beta], join(cheapest[later])) > self.most) {
+                    continue;
+                }
+                let Some(turns) = crossings(&layer.angles[beta], &after.angles[later], &limits) else { continue };
+                let known = after.ways.of(later);
+                let (known_costs, known_numbers) = (&after.costs[known.clone()], &after.numbers[known.clone()]);
+                let mut take = |node: usize, next: usize| {
+                    let cost = join(known_costs[next]);
                     if cost < costs[node] {
-                        (costs[node], from[node]) = (cost, (known.start + old) as u32);
+                        (costs[node], to[node]) = (cost, (known.start + next) as u32);
                     }
                 };
                 let is_same_turn = turns == [0; 6];
                 if is_same_turn && known_numbers == numbers {
                     (0..numbers.len()).for_each(|node| take(node, node));
                 } else {
-                    let back = turns.map(|turn| -turn);
                     for (node, number) in numbers.iter().enumerate() {
-                        let number = if is_same_turn { Some(*number) } else { self.numbering.shifted(*number, &back) };
-                        let old = number.and_then(|number| known_numbers.iter().position(|known| *known == number));
-                        old.into_iter().for_each(|old| take(node, old));
+                        let number = if is_same_turn { Some(*number) } else { self.numbering.shifted(*number, &turns) };
+                        let next = number.and_then(|number| known_numbers.iter().position(|known| *known == number));
+                        next.into_iter().for_each(|next| take(node, next));
                     }
                 }
                 most = costs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             }
-            let score = scores[beta] * sense.sign();
+            let score = scores[beta] * sign;
             for cost in costs.iter_mut().filter(|cost| cost.is_finite()) {
-                *cost = aggregate.join_signed(sense, *cost, score);
+                *cost = self.join(score, *cost);
             }
         }
     }

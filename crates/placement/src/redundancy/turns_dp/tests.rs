@@ -42,19 +42,20 @@ fn winding_paths_cost_what_plain_dynamic_programming_finds() {
             let relaxed = planner.forward_pass(pass, None, &mut workspace, false);
             for class in PostureClass::ALL {
                 let judge = reference_dp::plan(&planner, span, &placement, sense, &class.postures(), &mut workspace);
-                let path = planner.path_with_turns(pass, class, [true; 2], &mut workspace);
+                let end = relaxed.ends[class.index()].map(|(cost, _)| cost);
+                let path = end.and_then(|cost| planner.path_with_turns(pass, (class, [true; 2]), cost, &mut workspace));
                 assert_eq!(path.is_some(), judge.is_some(), "{turns} {class:?} {placement:?} {sense:?}");
                 let Some((path, judge)) = path.zip(judge) else { continue };
                 let cost = judge.cost * sense.sign();
                 assert!((path.cost - cost).abs() < 1e-12 * judge.cost, "{} {cost} {turns} {class:?}", path.cost);
                 found += 1;
-                let end = relaxed.ends[class.index()].unwrap().0;
+                let end = end.unwrap();
                 wound += usize::from(path.cost > end + 1e-9 * end.abs());
                 // Blocks of any length, and each flip by itself.
                 for posture in class.postures() {
                     let flips = [!posture.is_flipped(), posture.is_flipped()];
-                    let search =
-                        Search { planner: &planner, pass, class, flips, numbering: Numbering::new(&problem.robot) };
+                    let numbering = Numbering::new(&problem.robot);
+                    let search = Search { planner: &planner, pass, class, flips, numbering, most: f64::INFINITY };
                     let whole = search.path(60, &mut workspace);
                     let of_one = reference_dp::plan(&planner, span, &placement, sense, &[posture], &mut workspace);
                     assert_eq!(whole.is_some(), of_one.is_some());
