@@ -268,6 +268,7 @@ impl Run {
         let mut context = Context::new(&self.run, self.run.search);
         context.notes.extend(study::outside_cell(&self.run, placement));
         context.notes.extend(feasibility::standing_axes(self.problem(), point));
+        context.notes.extend(feasibility::unscored(self.problem(), point));
         Ok(Explanations { placement: *placement, point, beta, postures, context })
     }
 }

@@ -346,3 +346,38 @@ fn a_cell_out_of_reach_is_told_with_the_reason_and_the_points() {
         assert_eq!(bench.tree(""), before);
     }
 }
+
+#[test]
+fn the_wrong_kind_of_file_names_the_right_command() {
+    let bench = Bench::new();
+    let write = |name: &str, text: &str| bench.write(&format!("configs/{name}"), text);
+    write("arm.urdf", "<?xml version='1.0'?>\n<robot name='arm'></robot>\n");
+    write("arm.xacro", "<robot name='arm' xmlns:xacro='http://ros.org/wiki/xacro'></robot>\n");
+    write("part.cls", "TOOL PATH/POCKET,TOOL,MILL\nGOTO/1.,2.,3.\n");
+    write("part.nc", "%\nN10 G90 G54\nN20 G0 X0. Y0.\n");
+    write("part.step", "ISO-10303-21;\nHEADER;\n");
+    write("long.csv", &format!("{}\n1\n", "x".repeat(300)));
+    let good = bench.read(RUN);
+    let shape = "[[shape]]\nname = 'part'\nattached = 'workpiece'\nmesh = 'part.step'\n";
+    for (from, to, parts) in [
+        ("robots/kuka-kr270-2.toml", "arm.urdf", ["is a URDF", "stead import robot"]),
+        ("robots/kuka-kr270-2.toml", "arm.xacro", ["is a xacro file", "pip install xacro"]),
+        ("robots/kuka-kr270-2.toml", "kuka-kr270-2", ["configs/run.toml:", "allowed: \"name:kuka-kr270-2\""]),
+        ("robots/kuka-kr270-2.toml", "robots\\kuka.toml", ["configs/run.toml:", "allowed: forward slashes"]),
+        ("../tasks/five-segments.csv", "part.cls", ["is CLDATA", "stead import path"]),
+        ("../tasks/five-segments.csv", "part.nc", ["is G-code", "stead import path"]),
+        ("../tasks/five-segments.csv", "long.csv", ["unknown column", "xxxxx..."]),
+        ("beta_step_deg = 7.2", "beta_step_deg = 7,2", ["configs/run.toml:", "allowed: a decimal point"]),
+        ("[reference]", &format!("{shape}[reference]"), ["part.step: is a STEP file", "saved as STL or OBJ"]),
+    ] {
+        bench.write(RUN, &good);
+        bench.replace(RUN, from, to);
+        let refused = bench.stead(&["check", RUN]);
+        assert_eq!((refused.code, refused.stdout.as_str()), (Some(2), ""), "{to}: {}", refused.stderr);
+        refused.assert_says(&parts);
+        assert!(refused.stderr.lines().all(|line| line.len() < 600), "{}", refused.stderr);
+    }
+    let robot = bench.stead(&["place", "configs/robots/kuka-kr270-2.toml"]);
+    assert_eq!(robot.code, Some(2));
+    robot.assert_says(&["kuka-kr270-2.toml: is a robot file", "stead init place --robot"]);
+}

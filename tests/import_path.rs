@@ -133,7 +133,8 @@ fn an_imported_path_is_placed_with_stated_forces() {
     assert_eq!(refused.code, Some(2));
     refused.assert_says(&["task: has no force columns", "[tool] and [cut]", "[forces] with feed_n"]);
     let forces = "[forces]\nfeed_n = -90.0\nnormal_n = -25.0\naxis_n = 10.0\n";
-    let run = bench.read("new/run.toml").replace("max_beta_rate_deg_per_mm = 0.9", "max_beta_rate_deg_per_mm = 9.0");
+    let run =
+        bench.read("new/run.toml").replace("max_spindle_turn_deg_per_mm = 0.5", "max_spindle_turn_deg_per_mm = 9.0");
     let run =
         run.replace("population = 32\ngenerations = 8\nbasins = 2", "population = 12\ngenerations = 2\nbasins = 1");
     bench.write("new/run.toml", &format!("{run}\n{forces}"));

@@ -305,3 +305,19 @@ fn explain_names_the_deepest_pair_of_a_robot_on_a_rail() {
         );
     }
 }
+
+#[test]
+fn explain_says_that_a_point_is_not_scored() {
+    let bench = bench();
+    let text = bench.read("tasks/five-segments.csv");
+    let scored = |(number, line): (usize, &str)| match number {
+        0 => format!("{line},scored"),
+        31 => format!("{line},0"),
+        _ => format!("{line},1"),
+    };
+    let lines: Vec<String> = text.lines().enumerate().map(scored).collect();
+    bench.write("tasks/five-segments.csv", &(lines.join("\n") + "\n"));
+    let at = |point: &str| run(&bench, "explain", &[&PLACE, &Q4, &["--point", point, "--beta-deg", "40", "--json"]]);
+    at("30").assert_says(&["note: point 30 is not scored: it is followed"]);
+    assert!(!at("31").stderr.contains("is not scored"));
+}

@@ -27,6 +27,7 @@
 
 use crate::deserialize::Node;
 use crate::field::{FieldOverride, FieldOverrides, put, shifted};
+use crate::file_kind::FileKind;
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
 use crate::place::Place;
@@ -79,12 +80,16 @@ impl TomlFile {
     /// [`InputError`] at the line where the text stops being TOML.
     pub fn parse(&self) -> Result<Document<'_>, InputError> {
         let tree = DeTable::parse(self.text()).map_err(|e| {
+            if let Some(kind) = FileKind::foreign(self.text().as_bytes()) {
+                return kind.refused(self.file());
+            }
             let span = e.span().unwrap_or(0..0);
             let line = self.line(span.start);
+            let written = self.text().lines().nth(line - 1).unwrap_or_default();
             InputError::new(self.file(), format!("is not readable as TOML: {}", e.message().trim()))
                 .at_line(line)
-                .found(format!("'{}'", shorten(self.text().lines().nth(line - 1).unwrap_or_default())))
-                .allowed("a TOML file")
+                .found(format!("'{}'", shorten(written)))
+                .allowed(toml_like(written))
         })?;
         let span = tree.span();
         let mut root = Spanned::new(span, DeValue::Table(tree.into_inner()));
@@ -96,6 +101,21 @@ impl TomlFile {
                 .map_err(|misfit| fail(&misfit.problem).in_field(misfit.field).allowed(misfit.allowed))?;
         }
         Ok(Document { file: self, root })
+    }
+}
+
+/// What a line that is no TOML should be, by what people write.
+fn toml_like(line: &str) -> &'static str {
+    let code = line.split('#').next().unwrap_or_default();
+    let value = code.split_once('=').map_or("", |(_, value)| value.trim());
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let is_decimal_comma = value.trim_start_matches('-').split_once(',').is_some_and(|(a, b)| digits(a) && digits(b));
+    if code.contains('"') && code.contains('\\') {
+        "forward slashes in names of files, as \"parts/arm.toml\""
+    } else if is_decimal_comma {
+        "a decimal point, as 3.5"
+    } else {
+        "a TOML file"
     }
 }
 
@@ -165,6 +185,9 @@ impl Place<'_> {
         };
         let bytes = sources.read(&file).map_err(|e| {
             let problem = format!("names a file that cannot be read, {}: {e}", file.display());
+            if shipped::by_name(&name).is_some() {
+                return self.error(problem, format!("\"name:{name}\" for the shipped arm of this name"));
+            }
             self.error(problem, "a readable file, its path relative to the folder of the file that names it")
         })?;
         manifest::check(&file, &bytes, Unlisted::Accepted)?;

@@ -24,6 +24,7 @@ pub mod compensate;
 mod deserialize;
 pub mod document;
 pub mod field;
+mod file_kind;
 #[cfg(any(test, feature = "fuzzing"))]
 pub mod fuzzing;
 pub mod identify;

@@ -1,8 +1,10 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
+use crate::file_kind::FileKind;
 use crate::input::InputError;
 use crate::input::csv_table::{CsvTable, Row, try_each};
 use crate::manifest::{self, Unlisted};
+use crate::quote::shorten;
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
@@ -47,8 +49,9 @@ pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
 /// # Errors
 /// As [`read_csv`].
 pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
-    let mut table = CsvTable::new(file, bytes)?;
-    let columns = Columns::find(&table)?;
+    let other_kind = |error: InputError| FileKind::foreign(bytes).map_or(error, |kind| kind.refused(file));
+    let mut table = CsvTable::new(file, bytes).map_err(other_kind)?;
+    let columns = Columns::find(&table).map_err(other_kind)?;
     let mut points = Vec::new();
     let mut wrenches = columns.force.map(|_| Vec::new());
     let mut normals = columns.normal.map(|_| Vec::new());
@@ -103,7 +106,7 @@ impl Columns {
             if !all().any(|known| *known == name) {
                 let nearest = all().max_by(|a, b| strsim::jaro(a, name).total_cmp(&strsim::jaro(b, name)));
                 let hint = nearest.map(|n| format!(" (nearest known one: {n})")).unwrap_or_default();
-                return Err(fail(name, &format!("unknown column{hint}")));
+                return Err(fail(&shorten(name), &format!("unknown column{hint}")));
             }
             if table.is_doubled(name) {
                 return Err(fail(name, "this column is there twice"));

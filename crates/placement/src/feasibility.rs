@@ -62,6 +62,14 @@ pub fn standing_axes(problem: &Problem, point: usize) -> Option<String> {
     })
 }
 
+/// That a path point counts for nothing, in a sentence; `None` where it is scored.
+pub fn unscored(problem: &Problem, point: usize) -> Option<String> {
+    let is_scored = problem.task.path().is_scored(point);
+    (!is_scored).then(|| {
+        format!("point {point} is not scored: it is followed, and its deflection, without a force, counts for nothing")
+    })
+}
+
 /// The same without the shapes of the scene.
 pub(super) fn without_clearance(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
     Posture::ALL.map(|posture| match state(problem, point, placement, beta, posture) {

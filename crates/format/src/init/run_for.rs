@@ -96,17 +96,40 @@ x_mm = {}                # the middle of the path is at {x:?}, {y:?}, {z:?} mm o
 y_mm = {}
 z_mm = {}
 # q4 = [-1.0, 1.0]                     # sin(yaw / 2): how the workpiece may be turned about the vertical
-# A robot on a pedestal or a wall, a part on its side, a rail or a turntable: the page cell_setup has the tables.
+# A robot on a pedestal or a wall, a part on its side: the page cell_setup has the tables.
+
+# [[external_axis]]                    # a rail under the robot
+# name = \"rail\"
+# kind = \"rail\"
+# carries = \"robot\"
+# direction = [0.0, 1.0, 0.0]          # in the cell frame: that of the base while all axes are at zero
+# range_mm = [-1000.0, 1000.0]
+# speed_mm_per_s = 500.0
+# use = \"fixed\"                      # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
+
+# [[external_axis]]                    # a table that turns the workpiece
+# name = \"table\"
+# kind = \"turntable\"
+# carries = \"workpiece\"
+# axis = [0.0, 0.0, 1.0]
+# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
+# range_deg = [-180.0, 180.0]
+# speed_deg_per_s = 60.0
+# use = \"indexed\"
 
 [constraints]
 min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
 characteristic_length_mm = {:?}       # by which the translational part of the Jacobian is scaled: a quarter of the reach
 joint_margin_deg = 2.0                 # kept from every joint limit
 
+[criterion]                            # what is minimised
+direction = \"total\"                  # the whole deflection counts: one part alone can be balanced while the tool is off
+force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
+
 [redundancy]                           # the spindle may turn about the tool axis, by the angle beta
 beta_step_deg = 5.0                    # grid of beta; a fraction of 360
 feed_mm_per_s = 50.0                   # guess, where the task has no feeds of its own
-max_beta_rate_deg_per_mm = 1.0
+max_spindle_turn_deg_per_mm = 0.5      # how fast the spindle turns in space: a plan that turns faster is driven more slowly
 {}",
         quoted(robot_name),
         if has_stiffness { "" } else { "   # states no joint stiffness yet, without which nothing can be placed" },
@@ -114,6 +137,7 @@ max_beta_rate_deg_per_mm = 1.0
         range(0.45 * reach, 0.8 * reach),
         range(-0.3 * reach, 0.3 * reach),
         range(floor + 0.15 * reach, floor + 0.4 * reach),
+        rounded(0.6 * reach),
         rounded(reach / 4.0),
         if has_forces { "" } else { FORCES },
     )

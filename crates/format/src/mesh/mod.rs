@@ -9,6 +9,7 @@ mod stl;
 #[cfg(test)]
 mod tests;
 
+use crate::file_kind::FileKind;
 use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
@@ -53,6 +54,9 @@ const THINNER: &str = "at most 1000000 triangles: a mesh for collision checks ne
 /// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL or OBJ, a file that is cut off, a number that is
 /// not finite, coordinates beyond 1000 m, no triangles, or none with an area.
 pub fn read_mesh(file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<TriangleMesh, InputError> {
+    if FileKind::of(bytes) == Some(FileKind::Step) {
+        return Err(FileKind::Step.refused(file));
+    }
     let is_obj = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"));
     let read = if is_obj { obj::read(file, bytes)? } else { stl::read(file, bytes)? };
     let vertices: Vec<Vector3<f64>> = read.vertices.iter().map(|vertex| vertex * unit.metres()).collect();

@@ -26,6 +26,7 @@ pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, 
 
 use crate::document::Document;
 use crate::field::FieldOverrides;
+use crate::file_kind::FileKind;
 use crate::input::{InputError, InputFile, input_file};
 use crate::mount::MountTable;
 use crate::robot::{moving_robot_from, robot_from, with_stiffness_like};
@@ -168,7 +169,10 @@ pub(crate) fn read_from(source: &TomlFile, gap: Option<f64>) -> Result<Run, Inpu
 /// The run that a parsed file asks for.
 pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64>) -> Result<Run, InputError> {
     let at = document.root();
-    let run: RunFile = document.read()?;
+    let run: RunFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
+        Some(FileKind::RobotFile) => FileKind::RobotFile.refused(source.file()),
+        _ => error,
+    })?;
     let spindle = match run.stability {
         Some(_) => run.spindle.moving_spindle(&at.key("spindle"))?,
         None => run.spindle.spindle(&at.key("spindle"))?,

@@ -302,6 +302,10 @@ fn origin_of(element: Element<'_>) -> Result<Pose<f64>, InputError> {
 fn axis_of(element: Element<'_>) -> Result<Vector3<f64>, InputError> {
     let Some(axis) = element.child("axis") else { return Ok(Vector3::x()) };
     let xyz = Vector3::from(axis.vector("xyz", LARGEST_LENGTH)?.unwrap_or([1.0, 0.0, 0.0]));
+    if xyz.norm() < SHORTEST_AXIS && element.require("type")? == "fixed" {
+        // It does not turn about anything.
+        return Ok(Vector3::x());
+    }
     if xyz.norm() < SHORTEST_AXIS {
         return Err(axis.error(Some("xyz"), "is an axis of length zero", "the direction of an axis"));
     }

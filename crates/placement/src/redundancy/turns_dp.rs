@@ -3,6 +3,12 @@
 //! [`super::transition`] takes joint angles modulo a turn. Where the path that it finds winds a joint beyond its limits, as rounds of
 //! a contour do, states are told apart by their flip and their turns too. A joint steps by less than half a turn, so that the turns
 //! after a step follow from those before it: a step is checked once, for all flips and turns together.
+//!
+//! The search goes from the end of a segment to its start. What the way to a state costs without regard to flips and turns is known from
+//! [`super::forward_pass`], and is the least that it can cost; where that and what follows are above a bound together, the state is left
+//! out. The bound is first a little above the cost of the whole segment without regard to flips and turns, and is raised until a path is
+//! found: no other is cheaper. Where these costs are not kept, as of long segments, there is no bound.
+//!
 //! [`super::reference_dp`] does the same node by node, and is the judge of this in the tests.
 
 use super::forward_pass::Pass;

@@ -1,0 +1,109 @@
+//! What a file is that was given in place of another: told by how it begins, so that the message can name the command that takes it.
+
+use crate::input::InputError;
+use std::path::Path;
+
+/// Lines of a file that are looked at.
+const LINES: usize = 200;
+
+/// Files that people give in place of others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FileKind {
+    /// A robot description.
+    Urdf,
+    /// One with macros, to be expanded first.
+    Xacro,
+    /// A tool path of a CAM system.
+    Cldata,
+    /// A program for a machine tool.
+    GCode,
+    /// A solid of a CAD system.
+    Step,
+    /// A robot file of this program.
+    RobotFile,
+}
+
+impl FileKind {
+    /// What the beginning of a file shows it to be.
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
+        let lines = || text.lines().map(str::trim).filter(|line| !line.is_empty()).take(LINES);
+        let any = |test: fn(&str) -> bool| lines().any(test);
+        if lines().next()?.starts_with("ISO-10303") {
+            Some(Self::Step)
+        } else if lines().next()?.starts_with('<') && text.contains("<robot") {
+            Some(if text.contains("xacro") { Self::Xacro } else { Self::Urdf })
+        } else if any(|line| line == "[[joints]]") {
+            Some(Self::RobotFile)
+        } else if any(is_cldata) {
+            Some(Self::Cldata)
+        } else {
+            any(is_gcode).then_some(Self::GCode)
+        }
+    }
+
+    /// What the beginning of a file shows it to be, where that is no file of this program.
+    pub fn foreign(bytes: &[u8]) -> Option<Self> {
+        Self::of(bytes).filter(|kind| *kind != Self::RobotFile)
+    }
+
+    /// That a file is of this kind and not what was asked for, and what to do with it.
+    pub fn refused(self, file: &Path) -> InputError {
+        let (is, allowed) = match self {
+            Self::Urdf => ("is a URDF", "the robot file that `stead import robot` makes of it"),
+            Self::Xacro => (
+                "is a xacro file",
+                "the robot file that `stead import robot` makes of its URDF: `pip install xacro`, `xacro FILE > arm.urdf`",
+            ),
+            Self::Cldata => ("is CLDATA of a CAM system", "the task that `stead import path` makes of it"),
+            Self::GCode => ("is G-code", "the task that `stead import path` makes of it"),
+            Self::Step => ("is a STEP file", "the same solid saved as STL or OBJ"),
+            Self::RobotFile => {
+                ("is a robot file", "a run file that names it: `stead init place --robot FILE --task TASK` writes one")
+            }
+        };
+        InputError::new(file, is).allowed(allowed)
+    }
+}
+
+fn is_cldata(line: &str) -> bool {
+    const BEGINNINGS: [&str; 7] = ["GOTO/", "GOTO /", "TOOL PATH/", "PARTNO", "LOADTL/", "FEDRAT/", "CUTTER/"];
+    let line = line.to_ascii_uppercase();
+    BEGINNINGS.iter().any(|beginning| line.starts_with(beginning))
+}
+
+/// A block with a preparatory function, with or without its number.
+fn is_gcode(line: &str) -> bool {
+    let is_word = |text: &str, letter: char| {
+        let mut rest = text.chars();
+        rest.next().is_some_and(|first| first.eq_ignore_ascii_case(&letter))
+            && rest.next().is_some_and(|c| c.is_ascii_digit())
+    };
+    let numbered = is_word(line, 'N').then(|| line[1..].trim_start_matches(|c: char| c.is_ascii_digit()).trim_start());
+    is_word(numbered.unwrap_or(line), 'G')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_told_by_how_they_begin() {
+        for (text, kind) in [
+            ("<?xml version='1.0'?>\n<robot name='arm'>", Some(FileKind::Urdf)),
+            ("<robot xmlns:xacro='http://ros.org/wiki/xacro'>", Some(FileKind::Xacro)),
+            ("$$ made by hand\nTOOL PATH/CONTOUR,TOOL,MILL\n", Some(FileKind::Cldata)),
+            ("  goto/ 1, 2, 3\n", Some(FileKind::Cldata)),
+            ("%\nO1000\nN10 G90 G54\n", Some(FileKind::GCode)),
+            ("(PART)\nG0X0Y0\n", Some(FileKind::GCode)),
+            ("ISO-10303-21;\nHEADER;\n", Some(FileKind::Step)),
+            ("name = 'arm'\n[[joints]]\n", Some(FileKind::RobotFile)),
+            ("segment,x_mm\n1,0\n", None),
+            ("robot = 'name:kuka-kr500'\n[spindle]\n", None),
+            ("gain = 3\nN\nG\n", None),
+            ("", None),
+        ] {
+            assert_eq!(FileKind::of(text.as_bytes()), kind, "{text}");
+        }
+    }
+}
