@@ -7,7 +7,9 @@
 mod force_error;
 
 pub use force_error::worst_force_error;
+#[cfg(test)]
 pub(crate) use force_error::worst_gain;
+pub(crate) use force_error::worst_gains;
 
 use super::sense::Sense;
 use nalgebra::{Matrix3, Vector3};

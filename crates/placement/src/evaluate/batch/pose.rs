@@ -1,10 +1,9 @@
 //! Configurations of the arm in lanes: their conditioning and their score. Everything is in the frame turned with joint 1: x
 //! along the arm, y to its left, z along axis 1.
 
-use crate::criterion::worst_gain;
-use nalgebra::{Matrix3, Vector3};
+use crate::criterion::worst_gains;
 use pulp::Simd;
-use stead_numerics::simd::{Lanes, MAX_LANES};
+use stead_numerics::simd::Lanes;
 
 /// Vectors in the frame of joint 1.
 #[derive(Clone, Copy)]
@@ -282,7 +281,7 @@ fn response<S: Simd>(
 }
 
 /// The norm of the parts of a deflection under the worst error of the force of this size (N), from how the parts grow with the
-/// force: [`worst_gain`], one state after the other.
+/// force.
 #[inline(always)]
 fn worst<S: Simd, const N: usize>(
     simd: S,
@@ -298,14 +297,5 @@ fn worst<S: Simd, const N: usize>(
         (xy, xz, yz) = (xy + gain.x * gain.y, xz + gain.x * gain.z, yz + gain.y * gain.z);
         (x, y, z) = (x + gain.x * *part, y + gain.y * *part, z + gain.z * *part);
     }
-    let [xx, yy, zz] = [xx.to_array(), yy.to_array(), zz.to_array()];
-    let [xy, xz, yz] = [xy.to_array(), xz.to_array(), yz.to_array()];
-    let [x, y, z] = [x.to_array(), y.to_array(), z.to_array()];
-    let mut gained = [0.0; MAX_LANES];
-    for lane in 0..Lanes::<S>::COUNT {
-        let [xy, xz, yz] = [xy[lane], xz[lane], yz[lane]];
-        let curvature = Matrix3::new(xx[lane], xy, xz, xy, yy[lane], yz, xz, yz, zz[lane]);
-        gained[lane] = worst_gain(curvature, Vector3::new(x[lane], y[lane], z[lane]), size);
-    }
-    (square + Lanes::load(simd, &gained, 0)).sqrt()
+    (square + worst_gains(simd, [xx, yy, zz, xy, xz, yz], [x, y, z], size)).sqrt()
 }
