@@ -1,39 +1,90 @@
 //! A run file for a robot and a task that are there.
 
+use super::ground::{Ground, ground};
+use crate::cam::file_beside;
+use crate::document::Document;
 use crate::input::InputError;
-use crate::new_file::write_new;
+use crate::new_file::{Existing, write_new};
 use crate::robot::{read_geometry, says_stiffness};
 use crate::shipped;
 use crate::task::read_csv;
+use crate::toml_file::TomlFile;
+use crate::tool::{CutTable, ToolTable};
+use serde::Deserialize;
+use std::fmt::Write;
 use std::path::{Component, Path, PathBuf, absolute};
 use stead_model::robot::Robot;
-use stead_model::task::PathPoint;
+use stead_model::task::ToolPath;
 
 /// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What neither says is
 /// filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task without forces, the forces. Shapes of the
-/// links beside the robot file (`NAME-cell.toml`) are its surroundings.
+/// links beside the robot file (`NAME-cell.toml`) are its surroundings, and a table or a floor among them tells the height of the cell;
+/// the cutter beside the task file (`NAME-tool.toml`) is its tool.
 ///
 /// # Errors
-/// [`InputError`]: robot or task are wrong, or the run file is there already or cannot be written.
-pub fn init_run(robot: &Path, task: &Path, out: &Path) -> Result<(), InputError> {
+/// [`InputError`]: robot or task are wrong, or what is beside them, or the run file is there already and to be kept, or cannot be written.
+pub fn init_run(robot: &Path, task: &Path, out: &Path, existing: Existing) -> Result<(), InputError> {
     let arm = read_geometry(robot)?;
     let imported = read_csv(task)?;
     let folder = out.parent().unwrap_or(Path::new(""));
-    let robot_name = match shipped::text(robot) {
-        Some(_) => robot.display().to_string(),
-        None => relative(folder, robot),
+    let quoted = |name: String| toml::Value::from(name).to_string();
+    let is_shipped = shipped::text(robot).is_some();
+    let reach = arm.geometry().reach();
+    let area = [[0.45 * reach, 0.8 * reach], [-0.3 * reach, 0.3 * reach]];
+    let cell = shapes_beside(robot);
+    let known = Known {
+        robot: quoted(if is_shipped { robot.display().to_string() } else { relative(folder, robot) }),
+        has_stiffness: says_stiffness(robot)?.unwrap_or(true),
+        task: quoted(relative(folder, task)),
+        has_forces: imported.wrenches.is_some(),
+        surroundings: cell.as_ref().map(|cell| quoted(relative(folder, cell))),
+        ground: cell.map(|cell| ground(&cell, area, reach)).transpose()?.flatten(),
+        cutter: cutter_beside(task)?,
     };
-    let has_stiffness = says_stiffness(robot)?.unwrap_or(true);
-    let names = [robot_name, relative(folder, task)];
-    let mut text = text(&arm, imported.path.points(), imported.wrenches.is_some(), &names, has_stiffness);
-    if let Some(cell) = shapes_beside(robot) {
-        let name = toml::Value::from(relative(folder, &cell)).to_string();
-        let keys = format!(
-            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them"
-        );
-        text = text.replacen("\n\n[spindle]", &format!("\n{keys}\n\n[spindle]"), 1);
+    write_new(out, &text(&arm, &imported.path, area, &known), existing)
+}
+
+/// What is known of a run.
+struct Known {
+    /// Names of the files as the run file has them, in quotes.
+    robot: String,
+    task: String,
+    surroundings: Option<String>,
+    has_stiffness: bool,
+    has_forces: bool,
+    ground: Option<Ground>,
+    cutter: Option<Cutter>,
+}
+
+/// The tables of a cutter for a run file.
+struct Cutter {
+    text: String,
+    has_cut: bool,
+}
+
+/// What a file of a cutter declares.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CutterFile {
+    tool: Option<ToolTable>,
+    cut: Option<CutTable>,
+}
+
+/// The cutter that `stead import path` has written beside a task file, without the comment at the head of the file.
+fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
+    let file = file_beside(task);
+    if !file.is_file() {
+        return Ok(None);
     }
-    write_new(out, &text)
+    let source = TomlFile::read(&file)?;
+    let read: CutterFile = source.parse().and_then(|document: Document<'_>| document.read())?;
+    if let (None, Some(_)) = (&read.tool, &read.cut) {
+        return Err(InputError::new(&file, "has [cut] without [tool]").allowed("a table [tool] beside [cut]"));
+    }
+    let is_comment = |line: &&str| line.starts_with('#');
+    let head = source.text().lines().take_while(is_comment).count();
+    let lines: Vec<&str> = source.text().lines().skip(head).collect();
+    Ok(Some(Cutter { text: lines.join("\n").trim().to_owned(), has_cut: read.cut.is_some() }))
 }
 
 /// The shapes of the links that `stead import robot --collision` has written beside a robot file.
@@ -65,39 +116,117 @@ fn rounded(metres: f64) -> f64 {
     (metres * 100.0).round() * 10.0
 }
 
-fn text(
-    robot: &Robot,
-    points: &[PathPoint],
-    has_forces: bool,
-    [robot_name, task]: &[String; 2],
-    has_stiffness: bool,
-) -> String {
+/// The text of the run file; `area` are the ranges of x and y of its cell. m
+fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 2], known: &Known) -> String {
     let reach = robot.geometry().reach();
-    // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
-    let root = robot.controller().and_then(|controller| controller.root_from_base);
-    let floor = root.map_or(0.0, |root| -root.translation.z.max(0.0));
-    let [x, y, z] = [0, 1, 2].map(|axis| middle(points, axis));
-    let range = |from: f64, to: f64| format!("[{:?}, {:?}]", rounded(from), rounded(to));
-    let quoted = |name: &str| toml::Value::from(name).to_string();
-    format!(
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let [low, high] = ends(path, axis);
+        rounded((low + high) / 2.0)
+    });
+    let range = |[from, to]: [f64; 2]| format!("[{:?}, {:?}]", rounded(from), rounded(to));
+    let (heights, about_heights) = heights(robot, path, known.ground.as_ref());
+    let (feed, about_feed) = feed(path);
+    let mut text = format!(
         "\
 # A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. What says \"guess\"
 # is to be replaced by the figures of your cell; `stead check` shows what was understood.
 
 robot = {}{}
 task = {}
-
+{}
 [spindle]                              # guess: a spindle across the flange. The tool frame in the flange frame, as the controller
 xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
 abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
 
 [cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in the base frame
-x_mm = {}                # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
+x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
 y_mm = {}
-z_mm = {}
+z_mm = {:<31} # {about_heights}
 # q4 = [-1.0, 1.0]                     # sin(yaw / 2): how the workpiece may be turned about the vertical
 # A robot on a pedestal or a wall, a part on its side: the page cell_setup has the tables.
 
+{AXES}# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
+# range_deg = [-180.0, 180.0]
+# speed_deg_per_s = 60.0
+# use = \"indexed\"
+
+[constraints]
+min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
+characteristic_length_mm = {:<11} # by which the translational part of the Jacobian is scaled: a quarter of the reach
+joint_margin_deg = 2.0                 # kept from every joint limit
+
+[criterion]                            # what is minimised
+direction = \"total\"                  # the whole deflection counts: one part alone can be balanced while the tool is off
+force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
+
+[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
+beta_step_deg = 5.0                    # grid of beta; a fraction of 360
+feed_mm_per_s = {feed:<22} # {about_feed}
+max_spindle_turn_deg_per_mm = 0.5      # how fast the spindle turns in space: a plan that turns faster is driven more slowly
+",
+        known.robot,
+        if known.has_stiffness { "" } else { LIKE },
+        known.task,
+        known.surroundings.as_ref().map_or(String::new(), |name| format!(
+            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them\n"
+        )),
+        range(area[0]),
+        range(area[1]),
+        range(heights),
+        rounded(0.6 * reach),
+        format!("{:?}", rounded(reach / 4.0)),
+    );
+    if let Some(cutter) = &known.cutter {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{}", cutter.text);
+    }
+    if !known.has_forces && !known.cutter.as_ref().is_some_and(|cutter| cutter.has_cut) {
+        text.push_str(FORCES);
+    }
+    text
+}
+
+/// Where the origin of the workpiece may be above a ground (m), and where that comes from.
+fn heights(robot: &Robot, path: &ToolPath, ground: Option<&Ground>) -> ([f64; 2], String) {
+    let reach = robot.geometry().reach();
+    if let Some(Ground { name, height, is_floor: false }) = ground {
+        // No point of the path is below the table.
+        let from = height - ends(path, 2)[0];
+        let about = format!(
+            "from where the lowest point of the path is on {name:?} of the surroundings, {} mm high",
+            rounded(*height)
+        );
+        return ([from, from + 0.25 * reach], about);
+    }
+    // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
+    let root = robot.controller().and_then(|controller| controller.root_from_base);
+    let (floor, about) = match ground {
+        Some(floor) => (floor.height, format!("{:?} of the surroundings", floor.name)),
+        None => (root.map_or(0.0, |root| -root.translation.z.max(0.0)), "the foot of the robot".to_owned()),
+    };
+    let about = format!("guess: above the floor, which is taken at {} mm, {about}", rounded(floor));
+    ([floor + 0.15 * reach, floor + 0.4 * reach], about)
+}
+
+/// The programmed feed as the file has it, and where it comes from.
+fn feed(path: &ToolPath) -> (String, String) {
+    let feeds = (0..path.points().len()).filter_map(|point| path.feed(point)).map(|feed| (feed * 1e9).round() / 1e6);
+    let ends = feeds.map(|feed| [feed; 2]).reduce(|[low, high], [feed, _]| [low.min(feed), high.max(feed)]);
+    match ends {
+        Some([low, high]) => {
+            (format!("{high:?}"), format!("the highest of the task, whose own feeds count: {low:?} to {high:?} mm/s"))
+        }
+        None => ("50.0".to_owned(), "guess: the task has no feeds of its own".to_owned()),
+    }
+}
+
+/// For an arm that states no joint stiffness.
+const LIKE: &str = "
+# stiffness_like = \"kuka-kr270-r2700\" # the robot states no joint stiffness, without which nothing can be placed: that of a shipped arm
+#                                        of the class compares placements, and does not predict millimetres";
+
+/// Tables of external axes, to be taken in; the second is not at its end.
+const AXES: &str = "\
 # [[external_axis]]                    # a rail under the robot
 # name = \"rail\"
 # kind = \"rail\"
@@ -112,36 +241,7 @@ z_mm = {}
 # kind = \"turntable\"
 # carries = \"workpiece\"
 # axis = [0.0, 0.0, 1.0]
-# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
-# range_deg = [-180.0, 180.0]
-# speed_deg_per_s = 60.0
-# use = \"indexed\"
-
-[constraints]
-min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
-characteristic_length_mm = {:?}       # by which the translational part of the Jacobian is scaled: a quarter of the reach
-joint_margin_deg = 2.0                 # kept from every joint limit
-
-[criterion]                            # what is minimised
-direction = \"total\"                  # the whole deflection counts: one part alone can be balanced while the tool is off
-force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
-
-[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
-beta_step_deg = 5.0                    # grid of beta; a fraction of 360
-feed_mm_per_s = 50.0                   # guess, where the task has no feeds of its own
-max_spindle_turn_deg_per_mm = 0.5      # how fast the spindle turns in space: a plan that turns faster is driven more slowly
-{}",
-        quoted(robot_name),
-        if has_stiffness { "" } else { "   # states no joint stiffness yet, without which nothing can be placed" },
-        quoted(task),
-        range(0.45 * reach, 0.8 * reach),
-        range(-0.3 * reach, 0.3 * reach),
-        range(floor + 0.15 * reach, floor + 0.4 * reach),
-        rounded(0.6 * reach),
-        rounded(reach / 4.0),
-        if has_forces { "" } else { FORCES },
-    )
-}
+";
 
 /// Forces for a task that has none.
 const FORCES: &str = "
@@ -152,11 +252,10 @@ axis_n = 40.0                          # along the tool axis, from the work into
 # In place of [forces]: the cutter and its cut, tables [tool] and [cut]
 ";
 
-/// The middle of a path along an axis of the workpiece frame. mm
-fn middle(points: &[PathPoint], axis: usize) -> f64 {
-    let values = points.iter().map(|point| point.position[axis]);
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
-    rounded((low + high) / 2.0)
+/// The ends of a path along an axis of the workpiece frame. m
+fn ends(path: &ToolPath, axis: usize) -> [f64; 2] {
+    let values = path.points().iter().map(|point| point.position[axis]);
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 #[cfg(test)]
@@ -172,7 +271,7 @@ mod tests {
         let task = folder.join("tasks/part.csv");
         std::fs::write(&task, include_str!("task.csv")).unwrap();
         let out = folder.join("runs/run.toml");
-        init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap();
+        init_run(Path::new("name:kuka-kr500"), &task, &out, Existing::Kept).unwrap();
         let text = std::fs::read_to_string(&out).unwrap();
         assert!(text.contains("robot = \"name:kuka-kr500\"\ntask = \"../tasks/part.csv\"\n"), "{text}");
         assert!(!text.contains("[forces]"));
@@ -180,7 +279,7 @@ mod tests {
         // The cell is in front of the arm, above the floor, within reach.
         let [x, _, z] = run.problem.cell.position;
         assert!(x.min > 1.0 && x.max < run.problem.robot.geometry().reach() && z.min > 0.0);
-        let message = init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap_err().to_string();
+        let message = init_run(Path::new("name:kuka-kr500"), &task, &out, Existing::Kept).unwrap_err().to_string();
         assert!(message.contains("run.toml: is there already"), "{message}");
     }
 
@@ -192,7 +291,7 @@ mod tests {
         std::fs::write(at("arm.toml"), shipped::by_name("kuka-kr500").unwrap()).unwrap();
         let made = |out: &str| {
             std::fs::create_dir_all(at("runs")).unwrap();
-            init_run(&at("arm.toml"), &at("part.csv"), &at(out)).unwrap();
+            init_run(&at("arm.toml"), &at("part.csv"), &at(out), Existing::Kept).unwrap();
             (std::fs::read_to_string(at(out)).unwrap(), read_run(&at(out)).unwrap())
         };
         let (text, run) = made("runs/without.toml");
@@ -227,11 +326,84 @@ mod tests {
         std::fs::write(&task, include_str!("task.csv")).unwrap();
         let made = |robot: &str, name: &str| {
             let out = folder.path().join(name);
-            init_run(Path::new(robot), &task, &out).unwrap();
+            init_run(Path::new(robot), &task, &out, Existing::Kept).unwrap();
             std::fs::read_to_string(out).unwrap()
         };
-        assert!(made("name:abb-irb6640-235", "a.toml").contains("states no joint stiffness yet"));
+        let abb = made("name:abb-irb6640-235", "a.toml");
+        assert!(abb.contains("states no joint stiffness"), "{abb}");
+        let out = folder.path().join("a.toml");
+        assert!(read_run(&out).unwrap_err().to_string().contains("stiffness_like in the run file"));
+        std::fs::write(&out, abb.replace("# stiffness_like", "stiffness_like")).unwrap();
+        let run = read_run(&out).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(run.problem.robot.stiffness_like(), Some("KUKA KR 270 R2700"));
         // The rows of this arm begin 750 mm above the floor.
         assert!(made("name:kuka-kr270-2", "b.toml").contains("z_mm = [-340.0, 330.0]"));
+    }
+
+    #[test]
+    fn the_height_of_the_cell_is_that_of_a_table_or_a_floor_among_the_shapes() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        // The lowest point of the path is 30 mm below the origin.
+        std::fs::write(at("part.csv"), include_str!("task.csv").replace("1,0,0,0,1,0,0", "1,0,0,-30,1,0,0")).unwrap();
+        std::fs::write(at("arm.toml"), shipped::by_name("kuka-kr500").unwrap()).unwrap();
+        let heights = |cell: &str| {
+            std::fs::write(at("arm-cell.toml"), cell).unwrap();
+            init_run(&at("arm.toml"), &at("part.csv"), &at("run.toml"), Existing::Replaced).unwrap();
+            let text = std::fs::read_to_string(at("run.toml")).unwrap();
+            read_run(&at("run.toml")).unwrap_or_else(|error| panic!("{error}"));
+            text.lines().find(|line| line.starts_with("z_mm")).unwrap().to_owned()
+        };
+        let link = "[[shape]]\nname = 'forearm'\nattached = 'link_3'\ncapsule_mm = { radius = 80, length = 300 }\n";
+        let shape = |name: &str, size: &str, place: &str| {
+            format!("[[shape]]\nname = '{name}'\nattached = 'base'\nbox_mm = {size}\nxyz_mm = {place}\n")
+        };
+        let base = shape("base link", "[800, 800, 400]", "[0, 0, 200]");
+        let wall = shape("wall", "[20, 4000, 3000]", "[2000, 0, 0]");
+        let floor = shape("slab", "[9000, 9000, 100]", "[0, 0, -250]");
+        let table = shape("table", "[1000, 1200, 60]", "[1900, 0, 470]");
+        // A foot, a link and a wall tell nothing.
+        assert!(heights(&format!("{link}{base}{wall}")).contains("the foot of the robot"));
+        let above = heights(&format!("{link}{base}{floor}"));
+        assert!(above.contains("# guess: above the floor, which is taken at -200.0 mm, \"slab\""), "{above}");
+        let zone = "[[keep_out]]\nname = 'below'\npoints = ['tool']\nhalf_space = { xyz_mm = [0, 0, -600], normal = [0, 0, -1] }\n";
+        assert!(heights(&format!("{link}{zone}")).contains("taken at -600.0 mm, \"below\""));
+        let on = heights(&format!("{link}{base}{wall}{floor}{table}"));
+        assert!(on.starts_with("z_mm = [530.0, ") && on.contains("on \"table\" of the surroundings, 500.0 mm"), "{on}");
+    }
+
+    #[test]
+    fn the_cutter_beside_the_task_is_taken_and_with_its_cut_gives_the_forces() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let program = "UNITS/MM\nTLDATA/MILL,16.,0.,60.,0.,0.\nSPINDL/RPM,9000,CLW\nFEDRAT/MMPM,1800\nGOTO/0,0,0\nGOTO/60,0,0\nFINI\n";
+        std::fs::write(at("part.cls"), program).unwrap();
+        let path = crate::cam::import_path(&at("part.cls"), &crate::cam::ReadSettings::default()).unwrap();
+        path.write(&at("part.csv"), Existing::Kept).unwrap();
+        let made = || {
+            init_run(Path::new("name:kuka-kr500"), &at("part.csv"), &at("run.toml"), Existing::Replaced).unwrap();
+            let run = read_run(&at("run.toml")).unwrap_or_else(|error| panic!("{error}"));
+            (std::fs::read_to_string(at("run.toml")).unwrap(), run)
+        };
+        let (text, guessed) = made();
+        assert!(text.contains("\ncutter_diameter_mm = 16.0 ") && text.contains("\n[forces]"), "{text}");
+        assert!(
+            text.contains("\nfeed_mm_per_s = 30.0 ") && text.contains("whose own feeds count: 30.0 to 30.0"),
+            "{text}"
+        );
+        assert!(!text.contains("The cutter of part.cls"), "{text}");
+        // All of it taken in, as the user would.
+        let tool = std::fs::read_to_string(at("part-tool.toml")).unwrap();
+        let keys =
+            ["[cut]", "teeth", "kt_mpa", "kr ", "kte", "kre", "milling", "radial", "axial", "feed_per", "spindle_rpm"];
+        let tool = keys.iter().fold(tool, |text, key| text.replace(&format!("# {key}"), key));
+        std::fs::write(at("part-tool.toml"), tool).unwrap();
+        let (text, cut) = made();
+        assert!(!text.contains("[forces]\n"), "{text}");
+        assert!(cut.problem.task.wrenches()[1].force.norm() > 1.0 && cut.problem.task != guessed.problem.task);
+        std::fs::write(at("part-tool.toml"), "[tool]\ncutter_diameter_mm = 0\n").unwrap();
+        let refused = init_run(Path::new("name:kuka-kr500"), &at("part.csv"), &at("run.toml"), Existing::Replaced);
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("part-tool.toml:2: tool.cutter_diameter_mm: "), "{message}");
     }
 }

@@ -150,7 +150,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
     assert!(!shapes.ignored.is_empty());
     let run = crate::testing::folder();
     let out = run.path().join("arms/imported.toml");
-    imported.write(&out).unwrap();
+    imported.write(&out, Existing::Kept).unwrap();
     let cell = run.path().join("arms/imported-cell.toml");
     assert!(cell.is_file());
     let robot =
@@ -168,7 +168,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
         assert!((read.pose.rotation - written.pose.rotation).norm() < 1e-12);
     }
     // There already.
-    let message = imported.write(&run.path().join("arms/imported.toml")).unwrap_err().to_string();
+    let message = imported.write(&run.path().join("arms/imported.toml"), Existing::Kept).unwrap_err().to_string();
     assert!(message.contains("is there already"), "{message}");
 }
 
