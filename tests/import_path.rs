@@ -227,7 +227,7 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
         "# kind = \"rail\"",
         "# kind = \"turntable\"",
         "z_mm = [500.0, ",
-        "on \"table\" of the surroundings, 500.0 mm",
+        "on \"table\" of the surroundings, 500 mm",
         "\ncutter_diameter_mm = 16.0 ",
         "\n# corner radius 2.0 mm ",
         "\n# spindle_rpm = 9000.0 ",

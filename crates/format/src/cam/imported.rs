@@ -5,7 +5,6 @@ use super::tool::{self, Use};
 use super::{Program, counted, rounded};
 use crate::input::InputError;
 use crate::new_file::{Existing, write_all_new};
-use crate::quote::shorten;
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};
@@ -28,6 +27,8 @@ pub struct ImportedPath {
 /// More points than this are a step that is meant for another unit.
 const LARGEST_COUNT: f64 = 2e7;
 
+/// Tools that a note names at the most.
+const NAMED_TOOLS: usize = 8;
 /// Feeds of cutting moves. m/s
 const FEEDS: std::ops::RangeInclusive<f64> = 1e-7..=1e2;
 /// What can be scored of a program, where nothing is.
@@ -101,11 +102,11 @@ impl ImportedPath {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let cutter = tool::text(&uses, &name);
         if cutter.is_some() && uses.len() > 1 {
-            let words: Vec<String> = uses.iter().map(Use::words).collect();
+            let words: Vec<String> = uses.iter().take(NAMED_TOOLS).map(Use::words).collect();
             notes.push(format!(
                 "{} tools cut, and a run has one: of those that are described, that with the longest way is taken; {}",
                 uses.len(),
-                shorten(&words.join("; "))
+                words.join("; ")
             ));
         }
         Ok(Self { segments, counts, resampling, has_feeds, tools: program.tools, cutter, notes })

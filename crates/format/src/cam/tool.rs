@@ -108,7 +108,7 @@ impl Use {
         let tool = &self.tool;
         let length = |name: &str, value: Option<f64>| value.map(|value| format!("{name} {} mm", mm(value)));
         let words = [
-            Some(tool.description.clone()).filter(|text| !text.is_empty()),
+            Some(shorten(&tool.description)).filter(|text| !text.is_empty()),
             length("D", tool.diameter),
             length("corner radius", tool.corner_radius),
             tool.spindle_speed.map(|speed| format!("{} rpm", rounded(speed * 60.0))),
@@ -180,7 +180,7 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
         lines.row(&format!("# spindle_rpm = {:?}", rounded(speed * 60.0)), "of the CAM file");
     }
     for other in uses.iter().filter(|other| *other != first) {
-        let words = shorten(&other.words());
+        let words = other.words();
         let words = if words.is_empty() { "not described".to_owned() } else { words };
         let _ = writeln!(lines.0, "# Another tool of the program, with less to cut or less said of it: {words}");
     }

@@ -156,7 +156,7 @@ characteristic_length_mm = {:<11} # by which the translational part of the Jacob
 joint_margin_deg = 2.0                 # kept from every joint limit
 
 [criterion]                            # what is minimised
-direction = \"total\"                  # the whole deflection counts: one part alone can be balanced while the tool is off
+direction = \"total\"                    # the whole deflection counts: one part alone can be balanced while the tool is off
 force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
 
 [redundancy]                           # the spindle may turn about the tool axis, by the angle beta
@@ -234,7 +234,7 @@ const AXES: &str = "\
 # direction = [0.0, 1.0, 0.0]          # in the cell frame: that of the base while all axes are at zero
 # range_mm = [-1000.0, 1000.0]
 # speed_mm_per_s = 500.0
-# use = \"fixed\"                      # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
+# use = \"fixed\"                        # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
 
 # [[external_axis]]                    # a table that turns the workpiece
 # name = \"table\"
@@ -365,11 +365,11 @@ mod tests {
         // A foot, a link and a wall tell nothing.
         assert!(heights(&format!("{link}{base}{wall}")).contains("the foot of the robot"));
         let above = heights(&format!("{link}{base}{floor}"));
-        assert!(above.contains("# guess: above the floor, which is taken at -200.0 mm, \"slab\""), "{above}");
+        assert!(above.contains("# guess: above the floor, which is taken at -200 mm, \"slab\""), "{above}");
         let zone = "[[keep_out]]\nname = 'below'\npoints = ['tool']\nhalf_space = { xyz_mm = [0, 0, -600], normal = [0, 0, -1] }\n";
-        assert!(heights(&format!("{link}{zone}")).contains("taken at -600.0 mm, \"below\""));
+        assert!(heights(&format!("{link}{zone}")).contains("taken at -600 mm, \"below\""));
         let on = heights(&format!("{link}{base}{wall}{floor}{table}"));
-        assert!(on.starts_with("z_mm = [530.0, ") && on.contains("on \"table\" of the surroundings, 500.0 mm"), "{on}");
+        assert!(on.starts_with("z_mm = [530.0, ") && on.contains("on \"table\" of the surroundings, 500 mm"), "{on}");
     }
 
     #[test]
@@ -399,7 +399,7 @@ mod tests {
         let tool = keys.iter().fold(tool, |text, key| text.replace(&format!("# {key}"), key));
         std::fs::write(at("part-tool.toml"), tool).unwrap();
         let (text, cut) = made();
-        assert!(!text.contains("[forces]\n"), "{text}");
+        assert!(!text.contains("\n[forces]"), "{text}");
         assert!(cut.problem.task.wrenches()[1].force.norm() > 1.0 && cut.problem.task != guessed.problem.task);
         std::fs::write(at("part-tool.toml"), "[tool]\ncutter_diameter_mm = 0\n").unwrap();
         let refused = init_run(Path::new("name:kuka-kr500"), &at("part.csv"), &at("run.toml"), Existing::Replaced);

@@ -145,7 +145,8 @@ fn an_arm_without_stiffness_gets_that_of_the_arm_that_the_run_names() {
         let read = run(&format!("stiffness_like = '{name}'\n")).unwrap_or_else(|e| panic!("{e}"));
         let lender = crate::read_robot(Path::new("name:kuka-kr270-r2700")).unwrap();
         let robot = &read.problem.robot;
-        assert_eq!((robot.name(), robot.stiffness_like()), ("ABB IRB 6640-185/2.8", Some("KUKA KR 270 R2700")));
+        assert_eq!(robot.stiffness_like(), Some("KUKA KR 270 R2700"));
+        assert!(robot.name().starts_with("ABB IRB 6640-185/2.8"), "{}", robot.name());
         // Joint 2 of the lender has a range, whose middle is taken; the others are as they are.
         let (ours, theirs) = (robot.compliances_at(&robot.mid_range()), lender.compliances_at(&lender.mid_range()));
         assert!(ours.iter().zip(theirs).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{ours:?} {theirs:?}");
