@@ -281,8 +281,8 @@ Examples:
   stead import path part.cls --units mm --out my/part.csv --report
   stead import path part.nc --machine table-ac --step-mm 5 --out my/part.csv
 
-Files written: the task file, and beside it NAME-tool.toml with the cutter, where the program describes one. The task has no forces:
-a run takes them from [tool] and [cut], or from [forces]. `stead init place --robot .. --task ..` takes both files.
+Files written: the task file, and beside it NAME-tool.toml with the cutter, where the program describes one. The task has no
+forces: a run takes them from [tool] and [cut], or from [forces]. `stead init place --robot .. --task ..` takes both files.
 
 Exit codes:
   0  done

@@ -27,7 +27,7 @@ pub(in super::super) struct RobotOptions {
     /// Whose controller the arm has
     #[arg(long, value_name = "KIND", value_parser = controller, requires = "home_deg")]
     pub controller: Option<ControllerKind>,
-    /// A flange pose read at the controller (ABB: also X,Y,Z,QW,QX,QY,QZ), to check or find how it counts: fills in [controller] and [root]
+    /// A flange pose read at the controller, ABB also as X,Y,Z,QW,QX,QY,QZ: tells how it counts, for [controller] and [root]
     #[arg(long, value_name = "A1,..,A6=X,Y,Z,A,B,C", value_parser = home, allow_hyphen_values = true, requires = "controller")]
     pub home_deg: Option<Home>,
     /// Look for the mesh files that the URDF names, and note those that are missing

@@ -170,9 +170,10 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     lines.row("# axial_depth_mm = 2.0", "guess");
     match (tool.spindle_speed, first.feed) {
         (Some(speed), Some(feed)) => {
-            let (turn, speed, feed) = (mm(feed / speed), rounded(speed * 60.0), rounded(feed * 6e4));
+            let fine = |mm: f64| (mm * 1e4).round() / 1e4;
+            let (turn, speed, feed) = (fine(feed / speed * 1e3), rounded(speed * 60.0), rounded(feed * 6e4));
             let comment = format!("{turn} mm a turn at {feed} mm/min and {speed} rpm, over 2 teeth");
-            lines.row(&format!("# feed_per_tooth_mm = {:?}", rounded(turn / 2.0)), &comment);
+            lines.row(&format!("# feed_per_tooth_mm = {:?}", fine(turn / 2.0)), &comment);
         }
         _ => lines.row("# feed_per_tooth_mm = 0.05", "guess"),
     }
