@@ -127,7 +127,7 @@ fn each_bad_program_is_refused_in_one_line_and_nothing_is_written() {
 fn an_imported_path_is_placed_with_stated_forces() {
     let bench = bench();
     assert_eq!(bench.stead(&["init", "place", "new"]).code, Some(0));
-    std::fs::remove_dir_all(bench.path("new")).unwrap();
+    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
     assert_eq!(bench.stead(&IMPORT).code, Some(0));
     let refused = bench.stead(&["place", "new/run.toml"]);
     assert_eq!(refused.code, Some(2));
@@ -257,6 +257,11 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     run(&[&robot[..], &["--force"]].concat());
     assert!(!bench.read("my/arm-cell.toml").contains("name = \"table\""));
     let export = ["export", "my/run.toml", "out/best.csv", "--format", "csv", "--approach-mm", "0", "--out", "my/PART"];
-    // The table is gone, so that the plan is not one of this run any more.
-    assert_eq!(bench.stead(&export).code, Some(2));
+    run(&export);
+    let again = bench.stead(&export);
+    assert_eq!(again.code, Some(2));
+    again.assert_says(&["PART.csv: is there already", "--force replaces it"]);
+    bench.write("my/PART.csv", "mine");
+    run(&[&export[..], &["--force"]].concat());
+    assert!(bench.read("my/PART.csv").lines().count() > 10);
 }
