@@ -1,6 +1,6 @@
 //! Robot programs from plans, and programs read back.
 
-use crate::{Error, Run, Warning};
+use crate::{Error, Existing, Run, Warning};
 use serde_json::Value;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -82,12 +82,12 @@ impl ExportedProgram {
         &self.program.frames
     }
 
-    /// Writes the files into a folder, which is made where it is missing: all, or none where one of them is there already.
+    /// Writes the files into a folder, which is made where it is missing: all, or none where one of them is there already and to be kept.
     ///
     /// # Errors
     /// [`Error::Input`] that names the file that is there already, or that cannot be written.
-    pub fn write(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
-        Ok(self.program.write(folder.as_ref())?)
+    pub fn write(&self, folder: impl AsRef<Path>, existing: Existing) -> Result<Vec<PathBuf>, Error> {
+        Ok(self.program.write(folder.as_ref(), existing)?)
     }
 
     /// What the user should know, in sentences.

@@ -76,7 +76,6 @@ pub use run::{Placements, Run};
 pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun, overrides};
 pub use stead_assessment::roundness::Sector;
-pub use stead_format::Overrides;
 pub use stead_format::cam::gcode::Machine;
 pub use stead_format::cam::{
     CamFormat, ImportedPath, LengthUnit, ReadSettings as PathSettings, Resampling, import_path,
@@ -92,6 +91,7 @@ pub use stead_format::program::{
 pub use stead_format::schema::schema;
 pub use stead_format::study::{AxisValue, StudyCase};
 pub use stead_format::urdf::{Deviation, HomePose, ImportOptions, ImportedRobot, ImportedRow, import_robot};
+pub use stead_format::{Existing, Overrides};
 pub use stead_numerics::message::Warning;
 pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 pub use stead_placement::problem::Placement;

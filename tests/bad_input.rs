@@ -364,6 +364,7 @@ fn the_wrong_kind_of_file_names_the_right_command() {
         ("robots/kuka-kr270-2.toml", "arm.xacro", ["is a xacro file", "pip install xacro"]),
         ("robots/kuka-kr270-2.toml", "kuka-kr270-2", ["configs/run.toml:", "allowed: \"name:kuka-kr270-2\""]),
         ("robots/kuka-kr270-2.toml", "robots\\kuka.toml", ["configs/run.toml:", "allowed: forward slashes"]),
+        ("robots/kuka-kr270-2.toml", "robots\\table.toml", ["configs/run.toml:", "allowed: forward slashes"]),
         ("../tasks/five-segments.csv", "part.cls", ["is CLDATA", "stead import path"]),
         ("../tasks/five-segments.csv", "part.nc", ["is G-code", "stead import path"]),
         ("../tasks/five-segments.csv", "long.csv", ["unknown column", "xxxxx..."]),
@@ -377,6 +378,22 @@ fn the_wrong_kind_of_file_names_the_right_command() {
         refused.assert_says(&parts);
         assert!(refused.stderr.lines().all(|line| line.len() < 600), "{}", refused.stderr);
     }
+    let task = bench.read("tasks/five-segments.csv");
+    bench.write("tasks/five-segments.csv", &task.replacen(",0,", &format!(",{},", "x".repeat(300)), 1));
+    bench.write(RUN, &good);
+    let long = bench.stead(&["check", RUN]);
+    assert_eq!(long.code, Some(2));
+    assert!(long.stderr.contains("xxx...'") && long.stderr.len() < 400, "{}", long.stderr);
+    for command in [&["check", "kuka-kr500"][..], &["pose", "kuka-kr500", "--joints-deg=0,0,0,0,0,0"]] {
+        let bare = bench.stead(command);
+        assert_eq!(bare.code, Some(2));
+        bare.assert_says(&["kuka-kr500: cannot be read", "allowed: name:kuka-kr500 for the shipped arm of this name"]);
+    }
+    let init = |robot: &str, task: &str| {
+        bench.stead(&["init", "place", "--robot", robot, "--task", task, "--out", "configs/new.toml"])
+    };
+    init("configs/arm.urdf", "tasks/five-segments.csv").assert_says(&["arm.urdf: is a URDF", "stead import robot"]);
+    init("name:kuka-kr500", "configs/part.cls").assert_says(&["part.cls: is CLDATA", "stead import path"]);
     let robot = bench.stead(&["place", "configs/robots/kuka-kr270-2.toml"]);
     assert_eq!(robot.code, Some(2));
     robot.assert_says(&["kuka-kr270-2.toml: is a robot file", "stead init place --robot"]);

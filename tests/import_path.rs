@@ -51,7 +51,7 @@ fn writes_a_task_and_says_what_was_changed() {
         "- 2 points of plunges",
         "- 2 points of turns of the tool in place",
         "- words passed over: COOLNT 1",
-        "written: new/task.csv: 2 segments, 14 points, 10 of them scored",
+        "written: new/task.csv, new/task-tool.toml: 2 segments, 14 points, 10 of them scored",
     ] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
@@ -166,18 +166,18 @@ fn holes_are_drilled_or_left_out_and_tool_axes_from_below_are_noted() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     ended.assert_says(&["holes of drilling cycles taken as a plunge"]);
     assert!(ended.stdout.contains(": 4 segments, "), "{}", ended.stdout);
-    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+    std::fs::remove_dir_all(bench.path("new")).unwrap();
     let ended = bench.stead(&[&IMPORT[..], &["--skip-cycles"]].concat());
     ended.assert_says(&["2 holes left out (--skip-cycles): 10, 10, 0 mm (line 22); 20, 10, 0 mm (line 23)"]);
     assert!(ended.stdout.contains(": 2 segments, "), "{}", ended.stdout);
-    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+    std::fs::remove_dir_all(bench.path("new")).unwrap();
 
     bench.write("slot.cls", &PROGRAM.replace("0.,0.,1.", "0.,0.,-1."));
     let ended = bench.stead(&IMPORT);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     ended.assert_says(&["tool axes point downwards in the frame of the part", "is their sign right?"]);
 
-    std::fs::remove_file(bench.path("new/task.csv")).unwrap();
+    std::fs::remove_dir_all(bench.path("new")).unwrap();
     for (words, parts) in [
         ("MODE/INCR", ["slot.cls:21: MODE: may move the tool", "straight moves"]),
         ("CALSUB/5", ["slot.cls:21: CALSUB: may move the tool", "straight moves"]),
@@ -189,4 +189,79 @@ fn holes_are_drilled_or_left_out_and_tool_axes_from_below_are_noted() {
         refused.assert_says(&parts);
         assert!(!bench.path("new/task.csv").exists());
     }
+}
+
+/// From a CAM file and a URDF with a table in its cell to a plan: nothing is typed in between.
+#[test]
+fn what_is_imported_is_taken_into_the_run_and_placed() {
+    let bench = Bench::new();
+    let program = PROGRAM.replace("SPINDL/", "TLDATA/MILL,16.0000,2.0000,75.0000,0.0000,0.0000\nSPINDL/");
+    bench.write("slot.cls", &program);
+    bench.copy("crates/format/src/urdf/fixtures/kuka.urdf", "arm.urdf");
+    let link = "<link name=\"link_2\">";
+    let collision = "<collision><geometry><box size=\"0.3 0.3 1.0\"/></geometry></collision>";
+    bench.replace("arm.urdf", link, &format!("{link}{collision}"));
+    let run = |arguments: &[&str]| {
+        let ended = bench.stead(arguments);
+        assert_eq!(ended.code, Some(0), "{arguments:?}: {}", ended.stderr);
+        ended
+    };
+    let robot =
+        ["import", "robot", "arm.urdf", "--stiffness-like", "kuka-kr270-r2700", "--collision", "--out", "my/arm.toml"];
+    run(&robot);
+    let path = ["import", "path", "slot.cls", "--step-mm", "30", "--out", "my/part.csv"];
+    let written = run(&path).stdout;
+    assert!(written.starts_with("written: my/part.csv, my/part-tool.toml: 2 segments"), "{written}");
+    let table =
+        "\n[[shape]]\nname = \"table\"\nattached = \"base\"\nbox_mm = [1000, 2000, 100]\nxyz_mm = [1700, 0, 450]\n";
+    let cell = bench.read("my/arm-cell.toml");
+    assert!(!cell.contains("[collision]"));
+    bench.write("my/arm-cell.toml", &(cell + table));
+    let init = ["init", "place", "--robot", "my/arm.toml", "--task", "my/part.csv", "--out", "my/run.toml"];
+    run(&init);
+    let text = bench.read("my/run.toml");
+    for part in [
+        "surroundings = \"arm-cell.toml\"",
+        "direction = \"total\"",
+        "force_uncertainty = 0.1",
+        "max_spindle_turn_deg_per_mm = 0.5",
+        "# kind = \"rail\"",
+        "# kind = \"turntable\"",
+        "z_mm = [500.0, ",
+        "on \"table\" of the surroundings, 500 mm",
+        "\ncutter_diameter_mm = 16.0 ",
+        "\n# corner radius 2.0 mm ",
+        "\n# spindle_rpm = 9000.0 ",
+        "feed_mm_per_s = 30.0 ",
+        "whose own feeds count: 5.0 to 30.0 mm/s",
+        "\n[forces] ",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    assert!(!text.contains("max_beta_rate"), "{text}");
+    let small = ["--set", "search.population=12", "--set", "search.generations=1", "--set", "search.basins=1"];
+    run(&[&["place", "my/run.toml", "--out", "out"][..], &small].concat());
+    assert!(bench.path("out/best.csv").is_file());
+    // Nothing is written over, unless that is asked for.
+    let kept = bench.tree("my");
+    for command in [&robot[..], &path, &init] {
+        let ended = bench.stead(command);
+        assert_eq!(ended.code, Some(2), "{command:?}");
+        ended.assert_says(&["is there already, and is left as it is", "--force replaces it"]);
+        assert_eq!(bench.tree("my"), kept);
+    }
+    bench.write("slot.cls", &program.replace("MILL,16.", "MILL,12."));
+    run(&[&path[..], &["--force"]].concat());
+    run(&[&init[..], &["--force"]].concat());
+    assert!(bench.read("my/run.toml").contains("\ncutter_diameter_mm = 12.0 "));
+    run(&[&robot[..], &["--force"]].concat());
+    assert!(!bench.read("my/arm-cell.toml").contains("name = \"table\""));
+    let export = ["export", "my/run.toml", "out/best.csv", "--format", "csv", "--approach-mm", "0", "--out", "my/PART"];
+    run(&export);
+    let again = bench.stead(&export);
+    assert_eq!(again.code, Some(2));
+    again.assert_says(&["PART.csv: is there already", "--force replaces it"]);
+    bench.write("my/PART.csv", "mine");
+    run(&[&export[..], &["--force"]].concat());
+    assert!(bench.read("my/PART.csv").lines().count() > 10);
 }

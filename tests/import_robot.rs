@@ -129,6 +129,7 @@ fn a_pose_of_the_controller_settles_how_it_counts() {
     for (home, words) in [
         (format!("{angles}=1500,900,1700,10,20,30"), "--home-deg: agrees with no way of counting"),
         (format!("0,{angles}={flange}"), "allowed: A1,..,A6=X,Y,Z,A,B,C"),
+        (format!("{angles}=1500,900,1700,1,0,0,0"), "--home-deg: has a quaternion, and kuka shows angles"),
         (format!("{}={flange}", angles.replace("52.6", "12.6")), "leaves axes 4 and 6 open"),
     ] {
         let ended = import(&home, "wrong.toml");

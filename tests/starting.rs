@@ -29,11 +29,22 @@ fn every_starter_set_runs() {
             &["robot.toml", "simulate.toml"],
             &[&["simulate", "new/simulate.toml"], &["stability", "new/simulate.toml"]],
         ),
+        (
+            "study",
+            &["cell.toml", "robot.toml", "run.toml", "study.toml", "task.csv"],
+            &[&["study", "run", "new/study.toml"]],
+        ),
+        (
+            "compensate",
+            &["cell.toml", "compensate.toml", "robot.toml", "run.toml", "task.csv"],
+            &[&["place", "new/run.toml", "--out", "new/results"], &["compensate", "new/compensate.toml"]],
+        ),
     ] {
         let bench = starter(kind);
         assert!(bench.tree("new").keys().map(String::as_str).eq(files.iter().copied()), "{kind}");
         for command in commands {
-            let ended = bench.stead(&[command, &["--out", "out"][..]].concat());
+            let out = if command.contains(&"--out") { &[][..] } else { &["--out", "out"] };
+            let ended = bench.stead(&[command, out].concat());
             assert_eq!(ended.code, Some(0), "{command:?}: {}", ended.stderr);
         }
     }
@@ -44,13 +55,34 @@ fn a_file_that_is_there_is_neither_replaced_nor_joined() {
     let bench = Bench::new();
     bench.write("new/robot.toml", "mine\n");
     let before = bench.tree("");
-    for kind in ["place", "assess", "identify", "simulate"] {
+    for kind in ["place", "assess", "identify", "simulate", "study", "compensate"] {
         let ended = bench.stead(&["init", kind, "new"]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
         ended.assert_says(&["error: new/robot.toml: is there already", "; allowed: "]);
         assert_eq!(bench.tree(""), before);
     }
     assert_eq!(bench.stead(&["init", "cook", "new"]).code, Some(2));
+    let replaced = bench.stead(&["init", "assess", "new", "--force"]);
+    assert_eq!((replaced.code, bench.tree("new").len()), (Some(0), 2), "{}", replaced.stderr);
+    assert!(bench.read("new/robot.toml").contains("[[joints]]"));
+}
+
+#[test]
+fn a_study_and_a_compensation_begin_from_the_run_that_is_there() {
+    let bench = starter("place");
+    bench
+        .write("new/run.toml", &bench.read("new/run.toml").replace("joint_margin_deg = 2.0", "joint_margin_deg = 3.0"));
+    for (kind, file) in [("study", "study.toml"), ("compensate", "compensate.toml")] {
+        let before = bench.tree("new");
+        let ended = bench.stead(&["init", kind, "new"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert!(ended.stdout.starts_with(&format!("written: new/{file}\n")), "{}", ended.stdout);
+        let after = bench.tree("new");
+        assert_eq!(after.len(), before.len() + 1);
+        assert!(before.iter().all(|(name, bytes)| after.get(name) == Some(bytes)));
+    }
+    let status = bench.stead(&["study", "status", "new/study.toml"]);
+    assert_eq!(status.code, Some(0), "{}", status.stderr);
 }
 
 #[test]

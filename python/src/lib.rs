@@ -15,18 +15,21 @@ use std::path::PathBuf;
 
 /// Writes a commented starter set of files for a command and returns their paths, the one to begin with first.
 #[pyfunction]
-fn init(py: Python<'_>, kind: &str, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
+fn init(py: Python<'_>, kind: &str, folder: PathBuf, force: bool) -> PyResult<Vec<PathBuf>> {
     let set = match kind {
         "place" => stead::StarterSet::Place,
         "assess" => stead::StarterSet::Assess,
         "identify" => stead::StarterSet::Identify,
         "simulate" => stead::StarterSet::Simulate,
+        "study" => stead::StarterSet::Study,
+        "compensate" => stead::StarterSet::Compensate,
         _ => {
-            let problem = format!("no such starter set, found {kind}; allowed: place, assess, identify, simulate");
+            let problem = format!("no such starter set, found {kind}; allowed: place, assess, identify, simulate, study, compensate");
             return Err(raised(py, stead::Error::Argument(problem)));
         }
     };
-    stead::init(set, &folder).map_err(|error| raised(py, error.into()))
+    let existing = if force { stead::Existing::Replaced } else { stead::Existing::Kept };
+    stead::init(set, &folder, existing).map_err(|error| raised(py, error.into()))
 }
 
 /// The JSON Schema of a kind of file.

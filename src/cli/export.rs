@@ -1,5 +1,6 @@
 //! `stead export`: a robot program from a plan, or a program read back.
 
+use super::given::Force;
 use super::values::finite;
 use super::{Failure, print, print_json, say_notes, say_warnings};
 use clap::Args;
@@ -16,7 +17,7 @@ pub(super) struct ExportCommand {
     /// Form of the program: krl (KUKA), rapid (ABB), fanuc, or csv for any post
     #[arg(long, value_name = "F", value_parser = formats(), required_unless_present = "check")]
     pub format: Option<ProgramFormat>,
-    /// Folder and name of the program, without ending; its files must not be there yet
+    /// Folder and name of the program, without ending
     #[arg(long, value_name = "DIR/NAME", required_unless_present = "check")]
     pub out: Option<PathBuf>,
     /// Follow the path of `stead compensate` (corrected-path.csv) instead of the plan's
@@ -49,8 +50,10 @@ pub(super) struct ExportCommand {
     /// Statement that stops the spindle, instead of a comment
     #[arg(long, value_name = "TEXT")]
     pub spindle_off: Option<String>,
+    #[command(flatten)]
+    pub force: Force,
     /// Read this program back (its main file) and compare every pose, feed and blending with the plan, instead of writing one
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "allow_blocked_moves", "max_moves", "mechanism", "unit", "spindle_on", "spindle_off"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "allow_blocked_moves", "max_moves", "mechanism", "unit", "spindle_on", "spindle_off", "force"])]
     pub check: Option<PathBuf>,
     /// Print one JSON document instead of a text
     #[arg(long)]
@@ -66,7 +69,7 @@ Examples:
   stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
   stead export my/run.toml results/run/best.csv --check my/program/PART.src
 
-Files written, none of which may be there yet:
+Files written, none of which may be there yet without --force:
   NAME.src, NAME_01.src, ..          krl: a main program that calls the parts
   NAME.mod, NAME_01.mod, ..          rapid, likewise
   NAME.ls, NAME_01.ls, ..            fanuc, likewise
@@ -82,7 +85,8 @@ Exit codes:
      segments hits
   1  a move hits, the arm does not reach a retracted point, a file could not be written; with --check: not the program of the
      plan, or it hits
-  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already: nothing is written";
+  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already (--force replaces it): nothing is
+     written";
 
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
     PossibleValuesParser::new(ProgramFormat::ALL.map(ProgramFormat::word)).try_map(|word| {
@@ -123,7 +127,7 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
         ..ExportOptions::new(format, &name)
     };
     let program = run.export(&options.plan, &asked)?;
-    let written = program.write(out.parent().unwrap_or(Path::new("")))?;
+    let written = program.write(out.parent().unwrap_or(Path::new("")), options.force.existing())?;
     say_notes(program.notes());
     say_warnings(program.warnings());
     if options.json {

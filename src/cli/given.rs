@@ -3,7 +3,7 @@
 use super::values::{case, damping_scale, finite, quaternion, rpm, variant};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stead_format::Overrides;
+use stead_format::{Existing, Overrides};
 use stead_placement::problem::Placement;
 use stead_simulation::arm::Variant;
 
@@ -116,5 +116,20 @@ impl From<&ModelArguments> for Overrides {
     fn from(model: &ModelArguments) -> Self {
         let spindle_speed = model.spindle_rpm.map(|rpm| rpm / 60.0 * std::f64::consts::TAU);
         Self { variant: model.variant, damping_scale: model.damping_scale, spindle_speed }
+    }
+}
+
+/// Whether files that are there are replaced.
+#[derive(Debug, Clone, Copy, Args)]
+#[group(skip)]
+pub(super) struct Force {
+    /// Replace files that are there already
+    #[arg(long)]
+    force: bool,
+}
+
+impl Force {
+    pub fn existing(self) -> Existing {
+        if self.force { Existing::Replaced } else { Existing::Kept }
     }
 }

@@ -281,11 +281,13 @@ Examples:
   stead import path part.cls --units mm --out my/part.csv --report
   stead import path part.nc --machine table-ac --step-mm 5 --out my/part.csv
 
-Files written: the task file. It has no forces: a run takes them from [tool] and [cut], or from [forces].
+Files written: the task file, and beside it NAME-tool.toml with the cutter, where the program describes one. The task has no
+forces: a run takes them from [tool] and [cut], or from [forces]. `stead init place --robot .. --task ..` takes both files.
 
 Exit codes:
   0  done
-  2  wrong usage, a program that is refused, with line and word, or a file that is there already: nothing is written";
+  2  wrong usage, a program that is refused, with line and word, or a file that is there already (--force replaces it):
+     nothing is written";
 
 pub(super) const CHECK: &str = "\
 Examples:
@@ -343,7 +345,8 @@ Joint stiffness is not in a URDF: its six lines are written commented out, or wi
 
 Exit codes:
   0  done
-  2  wrong usage, a URDF that is refused, with line and element, or a file that is there already: nothing is written";
+  2  wrong usage, a URDF that is refused, with line and element, or a file that is there already (--force replaces it):
+     nothing is written";
 
 pub(super) const INIT: &str = "\
 Examples:
@@ -352,15 +355,18 @@ Examples:
   stead init place --robot my/kr210.toml --task my/part.csv --out my/run.toml
 
 Files written to the folder:
-  place     run.toml, robot.toml, task.csv, cell.toml
-  assess    assess.toml, robot.toml
-  identify  identify.toml, robot.toml, sheet.csv
-  simulate  simulate.toml, robot.toml (for stead stability too)
-With --robot, --task and --out: one run file for files that are there; what they do not say is a guess, marked as one.
+  place       run.toml, robot.toml, task.csv, cell.toml
+  assess      assess.toml, robot.toml
+  identify    identify.toml, robot.toml, sheet.csv
+  simulate    simulate.toml, robot.toml (for stead stability too)
+  study       study.toml and the files of place; beside a run.toml that is there, study.toml alone
+  compensate  compensate.toml, likewise
+With --robot, --task and --out: one run file for files that are there, with the shapes (ROBOT-cell.toml) and the cutter
+(TASK-tool.toml) that stead import has left beside them; what they do not say is a guess, marked as one.
 
 Exit codes:
   0  done
-  2  wrong usage, or one of the files exists already: nothing is written and nothing is changed";
+  2  wrong usage, or one of the files exists already (--force replaces it): nothing is written and nothing is changed";
 
 pub(super) const SCHEMA: &str = "\
 Examples:

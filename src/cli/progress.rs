@@ -67,6 +67,11 @@ impl Terminal {
         *locked(&self.bar) = bar.clone();
         let (monitor, lines) = if std::io::stderr().is_terminal() {
             let drawn = bar.clone();
+            if let Ok(style) = ProgressStyle::with_template(STARTING) {
+                bar.set_style(style);
+            }
+            // Between two reports, and before the first, the time that has passed shows that the job goes on.
+            bar.enable_steady_tick(TICK);
             (Monitor::new(move |progress| draw(&drawn, progress)), None)
         } else {
             let lines = Lines::start(LINE_EVERY, super::say);
@@ -169,6 +174,10 @@ impl Described {
     }
 }
 
+/// Between two drawings of a bar.
+const TICK: Duration = Duration::from_millis(200);
+/// Before a job has said anything.
+const STARTING: &str = "        starting {spinner} {elapsed}";
 /// For jobs whose number of steps is known, and for those that end when a gap is closed.
 const STEPS: &str = "{prefix:>16} [{bar:36}] {pos}/{len}  {msg}  {elapsed}";
 const BOUND: &str = "{prefix:>16} {spinner} {msg}  {elapsed}";
@@ -181,9 +190,6 @@ fn draw(bar: &ProgressBar, progress: &Progress) {
             bar.set_style(style.progress_chars("=> "));
         }
         bar.set_prefix(stage);
-        if steps.is_none() {
-            bar.enable_steady_tick(Duration::from_millis(200));
-        }
     }
     if let Some((done, total)) = steps {
         bar.set_length(total as u64);

@@ -46,11 +46,19 @@ pub(super) fn six(text: &str) -> Result<[f64; 6], String> {
     numbers.ok().and_then(|numbers| numbers.try_into().ok()).ok_or_else(allowed)
 }
 
+/// Joint angles and what is shown of the flange there.
+pub(super) type Home = ([f64; 6], Vec<f64>);
+
 /// Joint angles and the flange pose there, with `=` between them.
-pub(super) fn home(text: &str) -> Result<([f64; 6], [f64; 6]), String> {
-    let allowed = || "allowed: A1,..,A6=X,Y,Z,A,B,C, six angles in deg, then mm and deg".to_owned();
+pub(super) fn home(text: &str) -> Result<Home, String> {
+    let allowed = || {
+        "allowed: A1,..,A6=X,Y,Z,A,B,C, six angles in deg, then mm and deg; for an ABB also A1,..,A6=X,Y,Z,QW,QX,QY,QZ"
+            .to_owned()
+    };
     let (angles, flange) = text.split_once('=').ok_or_else(allowed)?;
-    Ok((six(angles).map_err(|_| allowed())?, six(flange).map_err(|_| allowed())?))
+    let numbers: Result<Vec<f64>, String> = flange.split(',').map(|number| finite(number.trim())).collect();
+    let flange = numbers.ok().filter(|numbers| [6, 7].contains(&numbers.len())).ok_or_else(allowed)?;
+    Ok((six(angles).map_err(|_| allowed())?, flange))
 }
 
 pub(super) fn controller(text: &str) -> Result<ControllerKind, String> {

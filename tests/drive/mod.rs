@@ -1,7 +1,7 @@
 //! Runs drawn over all options, placed and exported in this process, and held against the judge.
 
 use std::path::Path;
-use stead::{ExportOptions, Monitor, ProgramFormat, Run};
+use stead::{Existing, ExportOptions, Monitor, ProgramFormat, Run};
 use stead_judge::Verdict;
 use stead_judge::cover::{Choice, words};
 
@@ -52,7 +52,7 @@ fn run(choice: &Choice, seed: u64, folder: &Path) -> Result<Outcome, String> {
         });
         match export {
             Ok(program) => {
-                let written = program.write(&results).map_err(told)?;
+                let written = program.write(&results, Existing::Kept).map_err(told)?;
                 verdict.join(stead_judge::judge_program(&files.run, &results, &written[0])?);
             }
             // A move that hits is refused by name.

@@ -104,6 +104,9 @@ impl TomlFile {
     }
 }
 
+/// How a file in another folder is named.
+const FORWARD_SLASHES: &str = "forward slashes in names of files, as \"parts/arm.toml\"";
+
 /// What a line that is no TOML should be, by what people write.
 fn toml_like(line: &str) -> &'static str {
     let code = line.split('#').next().unwrap_or_default();
@@ -111,7 +114,7 @@ fn toml_like(line: &str) -> &'static str {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let is_decimal_comma = value.trim_start_matches('-').split_once(',').is_some_and(|(a, b)| digits(a) && digits(b));
     if code.contains('"') && code.contains('\\') {
-        "forward slashes in names of files, as \"parts/arm.toml\""
+        FORWARD_SLASHES
     } else if is_decimal_comma {
         "a decimal point, as 3.5"
     } else {
@@ -187,6 +190,10 @@ impl Place<'_> {
             let problem = format!("names a file that cannot be read, {}: {e}", file.display());
             if shipped::by_name(&name).is_some() {
                 return self.error(problem, format!("\"name:{name}\" for the shipped arm of this name"));
+            }
+            if name.contains(|c: char| c == '\\' || c.is_control()) {
+                // Behind a backslash TOML reads "parts\table.toml" with a tab.
+                return self.error("names a file that cannot be read".to_owned(), FORWARD_SLASHES);
             }
             self.error(problem, "a readable file, its path relative to the folder of the file that names it")
         })?;

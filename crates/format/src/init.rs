@@ -1,13 +1,13 @@
 //! Starter sets: small commented files of each kind that run as they are.
 
+mod ground;
 mod run_for;
 
 pub use run_for::init_run;
 
 use crate::input::InputError;
+use crate::new_file::{Existing, write_all_new};
 use crate::toml_file::without_schema;
-use std::fs::{File, OpenOptions};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What a starter set is for.
@@ -21,20 +21,26 @@ pub enum StarterSet {
     Identify,
     /// `simulate.toml` and `robot.toml`, for `stead simulate` and `stead stability`.
     Simulate,
+    /// `study.toml` and the set for `stead place`, for `stead study`.
+    Study,
+    /// `compensate.toml` and the set for `stead place`, for `stead compensate`.
+    Compensate,
 }
 
 const ROBOT: (&str, &str) = ("robot.toml", include_str!("init/robot.toml"));
+/// The set for `stead place`, which others begin from.
+const PLACE: [(&str, &str); 4] = [
+    ("run.toml", include_str!("init/run.toml")),
+    ROBOT,
+    ("task.csv", include_str!("init/task.csv")),
+    ("cell.toml", include_str!("init/cell.toml")),
+];
 
 impl StarterSet {
     /// The files of the set with their names, the one to start with first.
     pub fn files(self) -> Vec<(&'static str, &'static str)> {
         match self {
-            Self::Place => vec![
-                ("run.toml", include_str!("init/run.toml")),
-                ROBOT,
-                ("task.csv", include_str!("init/task.csv")),
-                ("cell.toml", include_str!("init/cell.toml")),
-            ],
+            Self::Place => PLACE.to_vec(),
             Self::Assess => vec![("assess.toml", include_str!("init/assess.toml")), ROBOT],
             Self::Identify => vec![
                 ("identify.toml", include_str!("init/identify.toml")),
@@ -45,51 +51,32 @@ impl StarterSet {
                 ("simulate.toml", include_str!("init/simulate.toml")),
                 ("robot.toml", without_schema(include_str!("../../../configs/robots/staubli-tx200.toml"))),
             ],
+            Self::Study => [&[("study.toml", include_str!("init/study.toml"))][..], &PLACE].concat(),
+            Self::Compensate => [&[("compensate.toml", include_str!("init/compensate.toml"))][..], &PLACE].concat(),
         }
+    }
+
+    /// The files to write into a folder: where a run file is there already, what begins from one begins from that.
+    fn files_in(self, folder: &Path) -> Vec<(&'static str, &'static str)> {
+        let mut files = self.files();
+        if matches!(self, Self::Study | Self::Compensate) && folder.join(PLACE[0].0).is_file() {
+            files.truncate(1);
+        }
+        files
     }
 }
 
 /// Writes a starter set to a folder, which is made where there is none. All files or none: where one of them is there
-/// already, or one cannot be written, nothing is left behind and nothing is changed.
+/// already and to be kept, or one cannot be written, no file is left behind and none is changed. Beside a `run.toml` that is there,
+/// [`StarterSet::Study`] and [`StarterSet::Compensate`] are one file for that run.
 ///
 /// # Errors
 /// [`InputError`] that names the file that is there already, or that cannot be written.
-pub fn init(set: StarterSet, folder: &Path) -> Result<Vec<PathBuf>, InputError> {
-    let files: Vec<(PathBuf, &str)> = set.files().into_iter().map(|(name, text)| (folder.join(name), text)).collect();
-    if let Some((path, _)) = files.iter().find(|(path, _)| path.symlink_metadata().is_ok()) {
-        return Err(InputError::new(path, "is there already, and is left as it is").allowed(EMPTY));
-    }
-    let is_new = !folder.exists();
-    std::fs::create_dir_all(folder).map_err(|e| cannot(folder, &e))?;
-    let mut written = Vec::with_capacity(files.len());
-    for (path, text) in &files {
-        // Fails rather than replacing a file that has come in the meantime.
-        let created = OpenOptions::new().write(true).create_new(true).open(path);
-        let result = created.and_then(|file| {
-            written.push(path.clone());
-            write(file, text)
-        });
-        if let Err(error) = result {
-            // What is removed here is what was made here.
-            written.iter().for_each(|path| drop(std::fs::remove_file(path)));
-            if is_new {
-                let _ = std::fs::remove_dir(folder);
-            }
-            return Err(cannot(path, &error));
-        }
-    }
-    Ok(written)
-}
-
-const EMPTY: &str = "a folder without files of these names, or one that can be made";
-
-fn write(mut file: File, text: &str) -> std::io::Result<()> {
-    file.write_all(text.as_bytes())?;
-    file.sync_all()
-}
-
-fn cannot(path: &Path, error: &std::io::Error) -> InputError {
-    InputError::new(path, format!("cannot be written: {error}")).allowed(EMPTY)
+pub fn init(set: StarterSet, folder: &Path, existing: Existing) -> Result<Vec<PathBuf>, InputError> {
+    let files: Vec<(PathBuf, &str)> =
+        set.files_in(folder).into_iter().map(|(name, text)| (folder.join(name), text)).collect();
+    write_all_new(&files, existing)?;
+    Ok(files.into_iter().map(|(path, _)| path).collect())
 }
 
 #[cfg(test)]
@@ -97,11 +84,12 @@ mod tests {
     use super::*;
     use crate::{
         Overrides, read_assessment, read_identification, read_plan, read_run, read_simulation, read_stability,
+        read_study,
     };
 
     fn written(set: StarterSet) -> tempfile::TempDir {
         let folder = tempfile::tempdir().unwrap();
-        let files = init(set, folder.path()).unwrap();
+        let files = init(set, folder.path(), Existing::Kept).unwrap();
         assert_eq!(files.len(), set.files().len());
         folder
     }
@@ -126,6 +114,18 @@ mod tests {
         let file = simulate.path().join("simulate.toml");
         read_simulation(&file, &Overrides::default()).unwrap_or_else(|e| panic!("{e}"));
         read_stability(&file, &Overrides::default()).unwrap_or_else(|e| panic!("{e}"));
+        let study = written(StarterSet::Study);
+        read_study(&study.path().join("study.toml")).unwrap_or_else(|e| panic!("{e}"));
+    }
+
+    #[test]
+    fn a_run_that_is_there_is_what_a_study_and_a_compensation_begin_from() {
+        let folder = written(StarterSet::Place);
+        for (set, name) in [(StarterSet::Study, "study.toml"), (StarterSet::Compensate, "compensate.toml")] {
+            let files = init(set, folder.path(), Existing::Kept).unwrap();
+            assert_eq!(files, [folder.path().join(name)]);
+            assert!(init(set, folder.path(), Existing::Kept).unwrap_err().to_string().contains("is there already"));
+        }
     }
 
     #[test]
@@ -134,7 +134,7 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let mine = folder.path().join(name);
             std::fs::write(&mine, "mine").unwrap();
-            let message = init(StarterSet::Place, folder.path()).unwrap_err().to_string();
+            let message = init(StarterSet::Place, folder.path(), Existing::Kept).unwrap_err().to_string();
             assert!(
                 message.contains(&format!("{name}: is there already")) && message.contains("; allowed: "),
                 "{message}"
@@ -149,7 +149,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         std::fs::write(&file, "mine").unwrap();
-        let message = init(StarterSet::Assess, &file.join("below")).unwrap_err().to_string();
-        assert!(message.contains("below: cannot be written: "), "{message}");
+        let message = init(StarterSet::Assess, &file.join("below"), Existing::Kept).unwrap_err().to_string();
+        assert!(message.contains("below/assess.toml: cannot be written: "), "{message}");
     }
 }

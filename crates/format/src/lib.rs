@@ -67,6 +67,7 @@ pub mod urdf;
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};
 pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
+pub use new_file::Existing;
 pub use placed::{read_placement_of, read_setup_of};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_geometry, read_robot};

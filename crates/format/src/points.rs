@@ -4,6 +4,7 @@ use crate::input::csv_table::CsvTable;
 use crate::input::input_file;
 use crate::input::{InputError, InputFile};
 use crate::manifest::{self, Unlisted};
+use crate::quote::shorten;
 use std::path::{Path, PathBuf};
 use stead_assessment::circle::CircleError;
 use stead_assessment::roundness::{Measured, RoundnessError};
@@ -40,7 +41,7 @@ pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
         }
     }
     let missing = |name: &str| {
-        let found = table.header().collect::<Vec<_>>().join(",");
+        let found = shorten(&table.header().collect::<Vec<_>>().join(","));
         fail(name, "missing column").found(format!("'{found}'"))
     };
     let x = table.column("x_mm").ok_or_else(|| missing("x_mm"))?;

@@ -4,7 +4,7 @@ use crate::field::{FieldOverride, FieldOverrides};
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
 use crate::quote::shorten;
-use crate::shipped;
+use crate::shipped::{self, PREFIX};
 use crate::sources::Sources;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,12 @@ impl TomlFile {
             return Self::new(file, text?.as_bytes().to_vec());
         }
         let bytes = std::fs::read(file).map_err(|e| {
-            InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable TOML file")
+            let name = file.to_string_lossy();
+            let allowed = match shipped::by_name(&name) {
+                Some(_) => format!("{PREFIX}{name} for the shipped arm of this name"),
+                None => "the name of a readable TOML file".to_owned(),
+            };
+            InputError::new(file, format!("cannot be read: {e}")).allowed(allowed)
         })?;
         manifest::check(file, &bytes, Unlisted::Accepted)?;
         Self::new(file, bytes)

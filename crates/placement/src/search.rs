@@ -112,13 +112,18 @@ pub fn generations(
     monitor: &Monitor,
 ) -> SearchResult {
     let problem = evaluator.planner().problem();
+    let first = *generations.start();
+    let report = |done: usize, best: Option<f64>| {
+        monitor.report(Progress::Search { stage: stage(sense), done, total: settings.generations, best });
+    };
+    // The first population can take as long as all others.
+    report(first, None);
     evaluate(evaluator, &mut population, (0, Look::ALL.within), monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
     let mut archive = Vec::new();
     let mut interrupted = false;
-    let first = *generations.start();
     for generation in generations {
         if generation > first {
             let elite = ((population.len() as f64 * ELITE).ceil() as usize).min(population.len() - 1);
@@ -141,12 +146,7 @@ pub fn generations(
         let figures = figures(sense, generation, &population, evaluations);
         history.push(figures);
         best.push(population[0].clone());
-        monitor.report(Progress::Search {
-            stage: stage(sense),
-            done: generation,
-            total: settings.generations,
-            best: figures.best,
-        });
+        report(generation, figures.best);
         if monitor.should_stop() {
             interrupted = true;
             break;

@@ -56,13 +56,20 @@ from ._tables import Picture, Table
 __version__ = _stead.__version__
 
 
-def init(kind: Literal["place", "assess", "identify", "simulate"], folder: str | PathLike[str]) -> list[Path]:
+def init(
+    kind: Literal["place", "assess", "identify", "simulate", "study", "compensate"],
+    folder: str | PathLike[str],
+    *,
+    force: bool = False,
+) -> list[Path]:
     """Writes a commented starter set of files that runs. Returns their paths, the one to begin with first.
+
+    With `force` files that are there are replaced.
 
     Raises:
         InputError: A file of that name is there already, or cannot be written; nothing is changed then.
     """
-    return _stead.init(kind, Path(folder))
+    return _stead.init(kind, Path(folder), force)
 
 
 def schema(kind: str) -> dict[str, Any]:

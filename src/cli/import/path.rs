@@ -1,5 +1,6 @@
 //! `stead import path`: a task file from a tool path of a CAM system.
 
+use super::super::given::Force;
 use super::super::values::{finite, positive};
 use super::super::{Failure, print, say_notes};
 use clap::Args;
@@ -11,7 +12,7 @@ use stead::{CamFormat, LengthUnit, Machine, PathSettings, Resampling, import_pat
 pub(in super::super) struct PathOptions {
     /// Tool path (CLDATA or G-code)
     pub program: PathBuf,
-    /// Task file (CSV) to write; it must not be there yet
+    /// Task file (CSV) to write; the cutter goes into NAME-tool.toml beside it, where the program describes one
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Largest distance between path points in mm
@@ -41,6 +42,8 @@ pub(in super::super) struct PathOptions {
     /// Print segments, points, length, extents, tilt, feeds, and what was changed and why
     #[arg(long)]
     pub report: bool,
+    #[command(flatten)]
+    pub force: Force,
 }
 
 pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
@@ -54,7 +57,7 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
         resampling: Resampling { chord: options.chord_mm / 1e3, step: options.step_mm / 1e3 },
     };
     let path = import_path(&options.program, &settings).map_err(stead::Error::from)?;
-    path.write(&options.out).map_err(stead::Error::from)?;
+    let files = path.write(&options.out, options.force.existing()).map_err(stead::Error::from)?;
     let report = if options.report {
         format!("{path}\n")
     } else {
@@ -63,7 +66,8 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
     };
     let [points, scored] = path.point_counts();
     let segments = path.segment_count();
-    let out = options.out.display();
+    let out: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    let out = out.join(", ");
     print(format!("{report}written: {out}: {segments} segments, {points} points, {scored} of them scored\n").as_bytes())
 }
 

@@ -1,6 +1,7 @@
 //! `stead import robot`: a robot file from a URDF.
 
-use super::super::values::{controller, home};
+use super::super::given::Force;
+use super::super::values::{Home, controller, home};
 use super::super::{Failure, print, say_notes};
 use clap::Args;
 use std::path::PathBuf;
@@ -11,7 +12,7 @@ use stead_model::robot::ControllerKind;
 pub(in super::super) struct RobotOptions {
     /// Robot description (URDF; a xacro file is expanded first)
     pub urdf: PathBuf,
-    /// Robot file (TOML) to write; it must not be there yet
+    /// Robot file (TOML) to write
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Link that the arm starts from [default: base_link, or the root]
@@ -26,32 +27,33 @@ pub(in super::super) struct RobotOptions {
     /// Whose controller the arm has
     #[arg(long, value_name = "KIND", value_parser = controller, requires = "home_deg")]
     pub controller: Option<ControllerKind>,
-    /// A flange pose read at the controller, to check or find how it counts: fills in [controller] and [root]
+    /// A flange pose read at the controller, ABB also as X,Y,Z,QW,QX,QY,QZ: tells how it counts, for [controller] and [root]
     #[arg(long, value_name = "A1,..,A6=X,Y,Z,A,B,C", value_parser = home, allow_hyphen_values = true, requires = "controller")]
-    pub home_deg: Option<([f64; 6], [f64; 6])>,
+    pub home_deg: Option<Home>,
     /// Look for the mesh files that the URDF names, and note those that are missing
     #[arg(long)]
     pub check_meshes: bool,
     /// Write the <collision> shapes of the links too, to NAME-cell.toml beside the robot file
     #[arg(long)]
     pub collision: bool,
+    #[command(flatten)]
+    pub force: Force,
 }
 
 pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
+    let home = options.controller.zip(options.home_deg.as_ref());
+    let home = home.map(|(kind, (angles, flange))| HomePose::new(kind, *angles, flange)).transpose();
+    let home = home.map_err(stead::Error::from)?;
     let asked = ImportOptions {
         base_link: options.base_link.as_deref(),
         tip_link: options.tip_link.as_deref(),
         stiffness_like: options.stiffness_like.as_deref(),
-        home: options.controller.zip(options.home_deg).map(|(kind, (angles_deg, flange))| HomePose {
-            kind,
-            angles_deg,
-            flange,
-        }),
+        home,
         check_meshes: options.check_meshes,
         collision: options.collision,
     };
     let robot = import_robot(&options.urdf, &asked).map_err(stead::Error::from)?;
-    robot.write(&options.out).map_err(stead::Error::from)?;
+    robot.write(&options.out, options.force.existing()).map_err(stead::Error::from)?;
     say_notes(&robot.notes);
     let files: Vec<String> = robot.files(&options.out).iter().map(|(file, _)| file.display().to_string()).collect();
     print(format!("{robot}\nwritten: {}\n", files.join(", ")).as_bytes())

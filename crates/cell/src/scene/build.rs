@@ -98,6 +98,17 @@ impl Scene {
 
     /// Pairs that depend on the joints alone and touch in every posture tried.
     fn always_touching(&self) -> Vec<[String; 2]> {
+        self.in_every_posture(|number, poses| !self.keeps_apart(number, poses))
+    }
+
+    /// Pairs that depend on the joints alone and are nearer to each other than a distance (m) in every posture tried: parts that move
+    /// along with each other, as a link and the one after next.
+    pub fn always_near(&self, distance: f64) -> Vec<[String; 2]> {
+        self.in_every_posture(|number, poses| self.distance(number, poses, distance) < distance)
+    }
+
+    /// The names of the pairs that depend on the joints alone of which something holds in every posture tried.
+    fn in_every_posture(&self, holds: impl Fn(usize, &Poses) -> bool) -> Vec<[String; 2]> {
         let mut random = ChaCha8Rng::seed_from_u64(0);
         let mut suspects: Vec<usize> = (0..self.pairs.len())
             .filter(|number| matches!(self.pairs[*number].kind, PairKind::ArmArm | PairKind::ArmCell))
@@ -109,7 +120,7 @@ impl Scene {
                 joint.min + (joint.max - joint.min) * random.random::<f64>()
             });
             let poses = Poses::new(&self.robot, &joints, &Pose::identity());
-            suspects.retain(|number| !self.keeps_apart(*number, &poses));
+            suspects.retain(|number| holds(*number, &poses));
             if suspects.is_empty() {
                 break;
             }

@@ -1,13 +1,14 @@
 //! An imported tool path: its points as a task file, and what was found and changed.
 
 use super::segments::{Counts, Point, Resampling, expected_points, segments};
-use super::{Program, counted};
+use super::tool::{self, Use};
+use super::{Program, counted, rounded};
 use crate::input::InputError;
-use crate::new_file::write_new;
+use crate::new_file::{Existing, write_all_new};
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stead_model::plausibility;
 
 /// The points of a program, ready to be written as a task file.
@@ -18,12 +19,16 @@ pub struct ImportedPath {
     resampling: Resampling,
     has_feeds: bool,
     tools: Vec<String>,
+    /// Tables of a run file for its cutter, where it is described.
+    cutter: Option<String>,
     notes: Vec<String>,
 }
 
 /// More points than this are a step that is meant for another unit.
 const LARGEST_COUNT: f64 = 2e7;
 
+/// Tools that a note names at the most.
+const NAMED_TOOLS: usize = 8;
 /// Feeds of cutting moves. m/s
 const FEEDS: std::ops::RangeInclusive<f64> = 1e-7..=1e2;
 /// What can be scored of a program, where nothing is.
@@ -93,7 +98,18 @@ impl ImportedPath {
         if !has_feeds {
             notes.push("no feed in the program: no column feed_mm_per_s".to_owned());
         }
-        Ok(Self { segments, counts, resampling, has_feeds, tools: program.tools, notes })
+        let uses = program.uses();
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let cutter = tool::text(&uses, &name);
+        if cutter.is_some() && uses.len() > 1 {
+            let words: Vec<String> = uses.iter().take(NAMED_TOOLS).map(Use::words).collect();
+            notes.push(format!(
+                "{} tools cut, and a run has one: of those that are described, that with the longest way is taken; {}",
+                uses.len(),
+                words.join("; ")
+            ));
+        }
+        Ok(Self { segments, counts, resampling, has_feeds, tools: program.tools, cutter, notes })
     }
 
     /// The task file, checked as it will be read; `file` is its name in messages.
@@ -122,13 +138,27 @@ impl ImportedPath {
         Ok(text)
     }
 
-    /// Writes the task file, which must not be there yet; its folder is made where there is none.
+    /// The files of the path with their texts: the task file, and beside it, where the program describes its cutter, tables of a run
+    /// file for that, `NAME-tool.toml`.
     ///
     /// # Errors
-    /// Those of [`ImportedPath::csv`], and [`InputError`] for a file that is there already or cannot be written: nothing is left behind
-    /// then.
-    pub fn write(&self, out: &Path) -> Result<(), InputError> {
-        write_new(out, &self.csv(out)?)
+    /// Those of [`ImportedPath::csv`].
+    pub fn files(&self, out: &Path) -> Result<Vec<(PathBuf, String)>, InputError> {
+        let task = (out.to_owned(), self.csv(out)?);
+        let cutter = self.cutter.as_ref().map(|text| (tool::file_beside(out), text.clone()));
+        Ok(std::iter::once(task).chain(cutter).collect())
+    }
+
+    /// Writes these files, and returns their paths; their folder is made where there is none.
+    ///
+    /// # Errors
+    /// Those of [`ImportedPath::csv`], and [`InputError`] for a file that is there already and to be kept, or that cannot be written:
+    /// nothing is left behind then.
+    pub fn write(&self, out: &Path, existing: Existing) -> Result<Vec<PathBuf>, InputError> {
+        let files = self.files(out)?;
+        let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
+        write_all_new(&texts, existing)?;
+        Ok(files.into_iter().map(|(file, _)| file).collect())
     }
 
     /// Number of segments.
@@ -200,9 +230,4 @@ impl fmt::Display for ImportedPath {
         }
         self.notes.iter().try_for_each(|note| writeln!(f, "- {note}"))
     }
-}
-
-/// A setting without the digits that its unit has brought in.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
 }

@@ -11,9 +11,12 @@ mod imported;
 mod segments;
 #[cfg(test)]
 mod tests;
+mod tool;
 
 pub use imported::ImportedPath;
 pub use segments::Resampling;
+pub use tool::ProgramTool;
+pub(crate) use tool::file_beside;
 
 use crate::input::InputError;
 use gcode::Machine;
@@ -105,6 +108,8 @@ pub struct Program {
     pub moves: Vec<Move>,
     /// Tools and tool paths that the program names, in their order.
     pub tools: Vec<String>,
+    /// What is known of the tool, each with the move that it is made from on.
+    pub tools_from: Vec<(usize, ProgramTool)>,
     /// What was made of the program that is not plain, with how often.
     pub notes: BTreeMap<String, usize>,
     /// Holes of drilling cycles that were left out: places in the workpiece frame (m), with the line.
@@ -178,6 +183,11 @@ fn format_of(text: &str) -> Option<CamFormat> {
             None
         }
     })
+}
+
+/// A number without the digits that its unit has brought in.
+fn rounded(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
 }
 
 /// What was counted, as `NAME 3, OTHER 1`.

@@ -12,7 +12,7 @@ use stead_model::task::MIN_FEED_TO_AXIS_DEG;
 pub struct Resampling {
     /// How far a left-out point may be from the line that stands for it. m
     pub chord: f64,
-    /// The largest distance between points. m
+    /// The largest distance between points, which a hundredth more is not divided for. m
     pub step: f64,
 }
 
@@ -32,6 +32,8 @@ const CORNER: f64 = 20.0 * std::f64::consts::PI / 180.0;
 const AXIS_ERROR: f64 = 0.5 * std::f64::consts::PI / 180.0;
 /// The largest turn of the tool axis between points. rad
 const AXIS_STEP: f64 = 5.0 * std::f64::consts::PI / 180.0;
+/// Points may be farther apart than the step by this share, so that a line of 10.05 mm is not divided at 10.
+const LONGER: f64 = 0.01;
 /// A line stands for no more points than this, so that the work grows with their number alone.
 const MAX_RUN: usize = 256;
 /// A feed nearer to the tool axis than this gives no wall normal: what a task accepts, and room for rounding. rad
@@ -192,7 +194,7 @@ fn divided(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<K
     for pair in knots.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
         let turn = angle(&from.axis, &to.axis);
-        let by_length = ((to.position - from.position).norm() / resampling.step - 1e-6).ceil();
+        let by_length = ((to.position - from.position).norm() / (resampling.step * (1.0 + LONGER)) - 1e-6).ceil();
         let parts = by_length.max((turn / AXIS_STEP - 1e-6).ceil()).max(1.0) as u32;
         let about = nalgebra::Unit::try_new(from.axis.cross(&to.axis), 1e-12);
         all.extend((1..parts).map(|part| {

@@ -122,3 +122,80 @@ fn feeds_that_no_machine_has_are_refused() {
     refused(&program("1e300"), &settings(), ":3: FEDRAT", &["usual size"]);
     refused(&program("-5"), &settings(), ":3: FEDRAT", &["not a feed", "above 0"]);
 }
+
+/// The tables of a run file for the cutter of a program.
+fn cutter(text: &str) -> Option<String> {
+    let path = import_bytes(Path::new("part.nc"), text.as_bytes(), &settings()).unwrap_or_else(|e| panic!("{e}"));
+    let files = path.files(Path::new("my/part.csv")).unwrap();
+    assert!(files.iter().skip(1).all(|(file, _)| file == Path::new("my/part-tool.toml")));
+    files.get(1).map(|(_, text)| text.clone())
+}
+
+#[test]
+fn the_cutter_of_a_program_is_written_with_its_speed_and_feed() {
+    let cut = "UNITS/MM\nFEDRAT/MMPM,600\nGOTO/0,0,0\nGOTO/20,0,0\nFEDRAT/MMPM,1200\nGOTO/90,0,0\nFINI\n";
+    let tools = [
+        ("TLDATA/MILL,12.0000,1.5000,75.0000,0.0000,0.0000\nSPINDL/RPM,6000,CLW\n", "12.0", Some("1.5"), "6000.0"),
+        ("SPINDL/6000,RPM,CCLW\nCUTTER/ 12., 1.5, 4.5, 1.5, 0., 0., 75.\n", "12.0", Some("1.5"), "6000.0"),
+        ("CUTTER/8\nLOADTL/1\nSPINDL/ON\nSPINDL/RPM,6000.0,CLW\n", "8.0", None, "6000.0"),
+    ];
+    for (tool, diameter, corner, speed) in tools {
+        let text = cutter(&format!("{tool}{cut}")).unwrap();
+        let has = |part: &str| assert!(text.contains(part), "{part} in {text}");
+        has(&format!("\ncutter_diameter_mm = {diameter} "));
+        has(&format!("\n# spindle_rpm = {speed} "));
+        // The feed of the longest way: 1200 mm/min at 6000 rpm.
+        has("\n# feed_per_tooth_mm = 0.1 ");
+        assert_eq!(text.contains("corner radius"), corner.is_some());
+        assert!(corner.is_none_or(|corner| text.contains(&format!("\n# corner radius {corner} mm "))), "{text}");
+        assert_eq!(text.contains("\nrotation = \"counterclockwise\""), tool.contains("CCLW"), "{text}");
+    }
+    // A cutter that is not described has no file; a speed alone is kept in comments.
+    assert_eq!(cutter(cut), None);
+    assert!(cutter(&format!("SPINDL/RPM,6000,CLW\n{cut}")).unwrap().contains("\n# [tool]"));
+}
+
+#[test]
+fn the_tool_with_the_longest_way_is_taken_and_the_others_are_named() {
+    let text = "\
+(T1 D=20. CR=0. - FLAT END MILL)
+(T2 D=6. CR=3. - BALL END MILL)
+G21 G90
+T1 M6
+S3000 M3
+G0 X0 Y0 Z5
+G1 Z0 F300
+G1 X10 F600
+T2 M6
+S12000 M3
+G0 X0 Y0 Z5
+G1 Z0 F300
+G1 X200 F2400
+M30
+";
+    let path = import_bytes(Path::new("part.nc"), text.as_bytes(), &settings()).unwrap();
+    let note = path.notes().iter().find(|note| note.starts_with("2 tools cut")).unwrap();
+    assert!(note.contains("D 6 mm, corner radius 3 mm, 12000 rpm") && note.contains("D 20 mm"), "{note}");
+    let written = cutter(text).unwrap();
+    for part in
+        ["\ncutter_diameter_mm = 6.0 ", "# spindle_rpm = 12000.0", "= 0.1 ", "Another tool", "D 20 mm, 3000 rpm"]
+    {
+        assert!(written.contains(part), "{part} in {written}");
+    }
+    // In inches, and turning left.
+    let inches = "G20 G90 (MILL DIA .5)\nS1000 M4\nG0 X0 Y0 Z1\nG1 X4 F10\nM30\n";
+    let written = cutter(inches).unwrap();
+    assert!(
+        written.contains("\ncutter_diameter_mm = 12.7 ") && written.contains("\nrotation = \"counter"),
+        "{written}"
+    );
+}
+
+#[test]
+fn lines_hardly_longer_than_the_step_are_not_divided() {
+    let points = |length: &str| {
+        let text = format!("UNITS/MM\nFEDRAT/MMPM,600\nGOTO/0,0,0\nGOTO/{length},0,0\nFINI\n");
+        task(&text, &settings()).0.path.points().len()
+    };
+    assert_eq!(["10", "10.05", "10.1", "10.2", "20.1", "20.3"].map(points), [2, 2, 2, 3, 3, 4]);
+}

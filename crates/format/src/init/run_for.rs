@@ -1,39 +1,90 @@
 //! A run file for a robot and a task that are there.
 
+use super::ground::{Ground, ground};
+use crate::cam::file_beside;
+use crate::document::Document;
 use crate::input::InputError;
-use crate::new_file::write_new;
+use crate::new_file::{Existing, write_new};
 use crate::robot::{read_geometry, says_stiffness};
 use crate::shipped;
 use crate::task::read_csv;
+use crate::toml_file::TomlFile;
+use crate::tool::{CutTable, ToolTable};
+use serde::Deserialize;
+use std::fmt::Write;
 use std::path::{Component, Path, PathBuf, absolute};
 use stead_model::robot::Robot;
-use stead_model::task::PathPoint;
+use stead_model::task::ToolPath;
 
 /// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What neither says is
 /// filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task without forces, the forces. Shapes of the
-/// links beside the robot file (`NAME-cell.toml`) are its surroundings.
+/// links beside the robot file (`NAME-cell.toml`) are its surroundings, and a table or a floor among them tells the height of the cell;
+/// the cutter beside the task file (`NAME-tool.toml`) is its tool.
 ///
 /// # Errors
-/// [`InputError`]: robot or task are wrong, or the run file is there already or cannot be written.
-pub fn init_run(robot: &Path, task: &Path, out: &Path) -> Result<(), InputError> {
+/// [`InputError`]: robot or task are wrong, or what is beside them, or the run file is there already and to be kept, or cannot be written.
+pub fn init_run(robot: &Path, task: &Path, out: &Path, existing: Existing) -> Result<(), InputError> {
     let arm = read_geometry(robot)?;
     let imported = read_csv(task)?;
     let folder = out.parent().unwrap_or(Path::new(""));
-    let robot_name = match shipped::text(robot) {
-        Some(_) => robot.display().to_string(),
-        None => relative(folder, robot),
+    let quoted = |name: String| toml::Value::from(name).to_string();
+    let is_shipped = shipped::text(robot).is_some();
+    let reach = arm.geometry().reach();
+    let area = [[0.45 * reach, 0.8 * reach], [-0.3 * reach, 0.3 * reach]];
+    let cell = shapes_beside(robot);
+    let known = Known {
+        robot: quoted(if is_shipped { robot.display().to_string() } else { relative(folder, robot) }),
+        has_stiffness: says_stiffness(robot)?.unwrap_or(true),
+        task: quoted(relative(folder, task)),
+        has_forces: imported.wrenches.is_some(),
+        surroundings: cell.as_ref().map(|cell| quoted(relative(folder, cell))),
+        ground: cell.map(|cell| ground(&cell, area, reach)).transpose()?.flatten(),
+        cutter: cutter_beside(task)?,
     };
-    let has_stiffness = says_stiffness(robot)?.unwrap_or(true);
-    let names = [robot_name, relative(folder, task)];
-    let mut text = text(&arm, imported.path.points(), imported.wrenches.is_some(), &names, has_stiffness);
-    if let Some(cell) = shapes_beside(robot) {
-        let name = toml::Value::from(relative(folder, &cell)).to_string();
-        let keys = format!(
-            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them"
-        );
-        text = text.replacen("\n\n[spindle]", &format!("\n{keys}\n\n[spindle]"), 1);
+    write_new(out, &text(&arm, &imported.path, area, &known), existing)
+}
+
+/// What is known of a run.
+struct Known {
+    /// Names of the files as the run file has them, in quotes.
+    robot: String,
+    task: String,
+    surroundings: Option<String>,
+    has_stiffness: bool,
+    has_forces: bool,
+    ground: Option<Ground>,
+    cutter: Option<Cutter>,
+}
+
+/// The tables of a cutter for a run file.
+struct Cutter {
+    text: String,
+    has_cut: bool,
+}
+
+/// What a file of a cutter declares.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CutterFile {
+    tool: Option<ToolTable>,
+    cut: Option<CutTable>,
+}
+
+/// The cutter that `stead import path` has written beside a task file, without the comment at the head of the file.
+fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
+    let file = file_beside(task);
+    if !file.is_file() {
+        return Ok(None);
     }
-    write_new(out, &text)
+    let source = TomlFile::read(&file)?;
+    let read: CutterFile = source.parse().and_then(|document: Document<'_>| document.read())?;
+    if let (None, Some(_)) = (&read.tool, &read.cut) {
+        return Err(InputError::new(&file, "has [cut] without [tool]").allowed("a table [tool] beside [cut]"));
+    }
+    let is_comment = |line: &&str| line.starts_with('#');
+    let head = source.text().lines().take_while(is_comment).count();
+    let lines: Vec<&str> = source.text().lines().skip(head).collect();
+    Ok(Some(Cutter { text: lines.join("\n").trim().to_owned(), has_cut: read.cut.is_some() }))
 }
 
 /// The shapes of the links that `stead import robot --collision` has written beside a robot file.
@@ -65,39 +116,117 @@ fn rounded(metres: f64) -> f64 {
     (metres * 100.0).round() * 10.0
 }
 
-fn text(
-    robot: &Robot,
-    points: &[PathPoint],
-    has_forces: bool,
-    [robot_name, task]: &[String; 2],
-    has_stiffness: bool,
-) -> String {
+/// The text of the run file; `area` are the ranges of x and y of its cell. m
+fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 2], known: &Known) -> String {
     let reach = robot.geometry().reach();
-    // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
-    let root = robot.controller().and_then(|controller| controller.root_from_base);
-    let floor = root.map_or(0.0, |root| -root.translation.z.max(0.0));
-    let [x, y, z] = [0, 1, 2].map(|axis| middle(points, axis));
-    let range = |from: f64, to: f64| format!("[{:?}, {:?}]", rounded(from), rounded(to));
-    let quoted = |name: &str| toml::Value::from(name).to_string();
-    format!(
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let [low, high] = ends(path, axis);
+        rounded((low + high) / 2.0)
+    });
+    let range = |[from, to]: [f64; 2]| format!("[{:?}, {:?}]", rounded(from), rounded(to));
+    let (heights, about_heights) = heights(robot, path, known.ground.as_ref());
+    let (feed, about_feed) = feed(path);
+    let mut text = format!(
         "\
 # A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. What says \"guess\"
 # is to be replaced by the figures of your cell; `stead check` shows what was understood.
 
 robot = {}{}
 task = {}
-
+{}
 [spindle]                              # guess: a spindle across the flange. The tool frame in the flange frame, as the controller
 xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
 abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
 
 [cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in the base frame
-x_mm = {}                # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
+x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
 y_mm = {}
-z_mm = {}
+z_mm = {:<31} # {about_heights}
 # q4 = [-1.0, 1.0]                     # sin(yaw / 2): how the workpiece may be turned about the vertical
 # A robot on a pedestal or a wall, a part on its side: the page cell_setup has the tables.
 
+{AXES}# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
+# range_deg = [-180.0, 180.0]
+# speed_deg_per_s = 60.0
+# use = \"indexed\"
+
+[constraints]
+min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
+characteristic_length_mm = {:<11} # by which the translational part of the Jacobian is scaled: a quarter of the reach
+joint_margin_deg = 2.0                 # kept from every joint limit
+
+[criterion]                            # what is minimised
+direction = \"total\"                    # the whole deflection counts: one part alone can be balanced while the tool is off
+force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
+
+[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
+beta_step_deg = 5.0                    # grid of beta; a fraction of 360
+feed_mm_per_s = {feed:<22} # {about_feed}
+max_spindle_turn_deg_per_mm = 0.5      # how fast the spindle turns in space: a plan that turns faster is driven more slowly
+",
+        known.robot,
+        if known.has_stiffness { "" } else { LIKE },
+        known.task,
+        known.surroundings.as_ref().map_or(String::new(), |name| format!(
+            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them\n"
+        )),
+        range(area[0]),
+        range(area[1]),
+        range(heights),
+        rounded(0.6 * reach),
+        format!("{:?}", rounded(reach / 4.0)),
+    );
+    if let Some(cutter) = &known.cutter {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{}", cutter.text);
+    }
+    if !known.has_forces && !known.cutter.as_ref().is_some_and(|cutter| cutter.has_cut) {
+        text.push_str(FORCES);
+    }
+    text
+}
+
+/// Where the origin of the workpiece may be above a ground (m), and where that comes from.
+fn heights(robot: &Robot, path: &ToolPath, ground: Option<&Ground>) -> ([f64; 2], String) {
+    let reach = robot.geometry().reach();
+    if let Some(Ground { name, height, is_floor: false }) = ground {
+        // No point of the path is below the table.
+        let from = height - ends(path, 2)[0];
+        let about = format!(
+            "from where the lowest point of the path is on {name:?} of the surroundings, {} mm high",
+            rounded(*height)
+        );
+        return ([from, from + 0.25 * reach], about);
+    }
+    // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
+    let root = robot.controller().and_then(|controller| controller.root_from_base);
+    let (floor, about) = match ground {
+        Some(floor) => (floor.height, format!("{:?} of the surroundings", floor.name)),
+        None => (root.map_or(0.0, |root| -root.translation.z.max(0.0)), "the foot of the robot".to_owned()),
+    };
+    let about = format!("guess: above the floor, which is taken at {} mm, {about}", rounded(floor));
+    ([floor + 0.15 * reach, floor + 0.4 * reach], about)
+}
+
+/// The programmed feed as the file has it, and where it comes from.
+fn feed(path: &ToolPath) -> (String, String) {
+    let feeds = (0..path.points().len()).filter_map(|point| path.feed(point)).map(|feed| (feed * 1e9).round() / 1e6);
+    let ends = feeds.map(|feed| [feed; 2]).reduce(|[low, high], [feed, _]| [low.min(feed), high.max(feed)]);
+    match ends {
+        Some([low, high]) => {
+            (format!("{high:?}"), format!("the highest of the task, whose own feeds count: {low:?} to {high:?} mm/s"))
+        }
+        None => ("50.0".to_owned(), "guess: the task has no feeds of its own".to_owned()),
+    }
+}
+
+/// For an arm that states no joint stiffness.
+const LIKE: &str = "
+# stiffness_like = \"kuka-kr270-r2700\" # the robot states no joint stiffness, without which nothing can be placed: that of a shipped arm
+#                                        of the class compares placements, and does not predict millimetres";
+
+/// Tables of external axes, to be taken in; the second is not at its end.
+const AXES: &str = "\
 # [[external_axis]]                    # a rail under the robot
 # name = \"rail\"
 # kind = \"rail\"
@@ -105,43 +234,14 @@ z_mm = {}
 # direction = [0.0, 1.0, 0.0]          # in the cell frame: that of the base while all axes are at zero
 # range_mm = [-1000.0, 1000.0]
 # speed_mm_per_s = 500.0
-# use = \"fixed\"                      # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
+# use = \"fixed\"                        # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
 
 # [[external_axis]]                    # a table that turns the workpiece
 # name = \"table\"
 # kind = \"turntable\"
 # carries = \"workpiece\"
 # axis = [0.0, 0.0, 1.0]
-# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
-# range_deg = [-180.0, 180.0]
-# speed_deg_per_s = 60.0
-# use = \"indexed\"
-
-[constraints]
-min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
-characteristic_length_mm = {:?}       # by which the translational part of the Jacobian is scaled: a quarter of the reach
-joint_margin_deg = 2.0                 # kept from every joint limit
-
-[criterion]                            # what is minimised
-direction = \"total\"                  # the whole deflection counts: one part alone can be balanced while the tool is off
-force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
-
-[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
-beta_step_deg = 5.0                    # grid of beta; a fraction of 360
-feed_mm_per_s = 50.0                   # guess, where the task has no feeds of its own
-max_spindle_turn_deg_per_mm = 0.5      # how fast the spindle turns in space: a plan that turns faster is driven more slowly
-{}",
-        quoted(robot_name),
-        if has_stiffness { "" } else { "   # states no joint stiffness yet, without which nothing can be placed" },
-        quoted(task),
-        range(0.45 * reach, 0.8 * reach),
-        range(-0.3 * reach, 0.3 * reach),
-        range(floor + 0.15 * reach, floor + 0.4 * reach),
-        rounded(0.6 * reach),
-        rounded(reach / 4.0),
-        if has_forces { "" } else { FORCES },
-    )
-}
+";
 
 /// Forces for a task that has none.
 const FORCES: &str = "
@@ -152,86 +252,11 @@ axis_n = 40.0                          # along the tool axis, from the work into
 # In place of [forces]: the cutter and its cut, tables [tool] and [cut]
 ";
 
-/// The middle of a path along an axis of the workpiece frame. mm
-fn middle(points: &[PathPoint], axis: usize) -> f64 {
-    let values = points.iter().map(|point| point.position[axis]);
-    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
-    rounded((low + high) / 2.0)
+/// The ends of a path along an axis of the workpiece frame. m
+fn ends(path: &ToolPath, axis: usize) -> [f64; 2] {
+    let values = path.points().iter().map(|point| point.position[axis]);
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::run::read_run;
-
-    #[test]
-    fn the_run_is_read_and_names_its_files_from_its_own_folder() {
-        let folder = tempfile::tempdir().unwrap();
-        let folder = folder.path();
-        std::fs::create_dir(folder.join("tasks")).unwrap();
-        let task = folder.join("tasks/part.csv");
-        std::fs::write(&task, include_str!("task.csv")).unwrap();
-        let out = folder.join("runs/run.toml");
-        init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap();
-        let text = std::fs::read_to_string(&out).unwrap();
-        assert!(text.contains("robot = \"name:kuka-kr500\"\ntask = \"../tasks/part.csv\"\n"), "{text}");
-        assert!(!text.contains("[forces]"));
-        let run = read_run(&out).unwrap();
-        // The cell is in front of the arm, above the floor, within reach.
-        let [x, _, z] = run.problem.cell.position;
-        assert!(x.min > 1.0 && x.max < run.problem.robot.geometry().reach() && z.min > 0.0);
-        let message = init_run(Path::new("name:kuka-kr500"), &task, &out).unwrap_err().to_string();
-        assert!(message.contains("run.toml: is there already"), "{message}");
-    }
-
-    #[test]
-    fn shapes_beside_the_robot_are_taken() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        std::fs::write(at("part.csv"), include_str!("task.csv")).unwrap();
-        std::fs::write(at("arm.toml"), shipped::by_name("kuka-kr500").unwrap()).unwrap();
-        let made = |out: &str| {
-            std::fs::create_dir_all(at("runs")).unwrap();
-            init_run(&at("arm.toml"), &at("part.csv"), &at(out)).unwrap();
-            (std::fs::read_to_string(at(out)).unwrap(), read_run(&at(out)).unwrap())
-        };
-        let (text, run) = made("runs/without.toml");
-        assert!(!text.contains("\nsurroundings"));
-        assert!(run.notes.iter().any(|note| note.starts_with("collisions were not checked: nothing stands around")));
-        let shape = "[[shape]]\nname = 'forearm'\nattached = 'link_3'\ncapsule_mm = { radius = 80, length = 300 }\n";
-        std::fs::write(at("arm-cell.toml"), shape).unwrap();
-        let (text, run) = made("runs/with.toml");
-        assert!(text.contains("\nsurroundings = \"../arm-cell.toml\""), "{text}");
-        assert_eq!(run.problem.scene.as_ref().map(|scene| scene.surroundings().shapes().len()), Some(1));
-        // Nothing but the arm itself is among the shapes.
-        assert!(
-            run.notes.iter().any(|note| note.starts_with("collisions were not checked but between parts of the arm"))
-        );
-        // With a table in the cell it is not said.
-        let table =
-            "[[shape]]\nname = 'table'\nattached = 'base'\nbox_mm = [1000, 1000, 100]\nxyz_mm = [2000, 0, -500]\n";
-        std::fs::write(at("arm-cell.toml"), format!("{shape}{table}")).unwrap();
-        assert!(
-            !read_run(&at("runs/with.toml"))
-                .unwrap()
-                .notes
-                .iter()
-                .any(|note| note.contains("collisions were not checked"))
-        );
-    }
-
-    #[test]
-    fn a_robot_without_stiffness_and_one_with_its_base_above_the_floor_are_minded() {
-        let folder = tempfile::tempdir().unwrap();
-        let task = folder.path().join("part.csv");
-        std::fs::write(&task, include_str!("task.csv")).unwrap();
-        let made = |robot: &str, name: &str| {
-            let out = folder.path().join(name);
-            init_run(Path::new(robot), &task, &out).unwrap();
-            std::fs::read_to_string(out).unwrap()
-        };
-        assert!(made("name:abb-irb6640-235", "a.toml").contains("states no joint stiffness yet"));
-        // The rows of this arm begin 750 mm above the floor.
-        assert!(made("name:kuka-kr270-2", "b.toml").contains("z_mm = [-340.0, 330.0]"));
-    }
-}
+mod tests;

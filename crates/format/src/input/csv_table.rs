@@ -1,6 +1,7 @@
 //! CSV files: a header of named columns, rows with their lines, numbers that must be finite.
 
 use super::InputError;
+use crate::quote::shorten;
 use nalgebra::Vector3;
 use std::path::Path;
 
@@ -96,7 +97,7 @@ impl Row<'_> {
         InputError::new(self.file, problem)
             .at_line(self.line)
             .in_field(&self.header[column])
-            .found(format!("'{}'", &self.record[column]))
+            .found(format!("'{}'", shorten(&self.record[column])))
             .allowed(allowed)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::input::InputError;
 use crate::input::csv_table::{CsvTable, Row, try_each};
+use crate::quote::shorten;
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
@@ -90,20 +91,22 @@ pub(crate) fn axis_column(number: usize, kind: AxisKind) -> String {
 }
 
 fn columns(table: &CsvTable<'_>, axes: &[ExternalAxis]) -> Result<Columns, InputError> {
-    let column = |name: &str| {
-        let allowed = format!(
-            "a header with point, segment, beta_deg, posture, {}, {} and {}, each once, as stead place writes it",
-            POSITION.join(", "),
-            JOINTS.join(", "),
-            FORCE.join(", ")
-        );
-        let fail = |problem: &str| table.fail(name, problem, &allowed);
-        match table.column(name) {
-            None => Err(fail("missing column").found(format!("'{}'", table.header().collect::<Vec<_>>().join(",")))),
-            Some(_) if table.is_doubled(name) => Err(fail("this column is there twice")),
-            Some(column) => Ok(column),
-        }
-    };
+    let column =
+        |name: &str| {
+            let allowed = format!(
+                "a header with point, segment, beta_deg, posture, {}, {} and {}, each once, as stead place writes it",
+                POSITION.join(", "),
+                JOINTS.join(", "),
+                FORCE.join(", ")
+            );
+            let fail = |problem: &str| table.fail(name, problem, &allowed);
+            match table.column(name) {
+                None => Err(fail("missing column")
+                    .found(format!("'{}'", shorten(&table.header().collect::<Vec<_>>().join(","))))),
+                Some(_) if table.is_doubled(name) => Err(fail("this column is there twice")),
+                Some(column) => Ok(column),
+            }
+        };
     let three = |names: [&str; 3]| try_each(names, column);
     let joints = try_each(JOINTS, column)?;
     let axes = axes.iter().zip(1..);

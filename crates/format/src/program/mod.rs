@@ -28,7 +28,7 @@ pub use layout::ProgramFile;
 
 use crate::input::{InputError, InputFile};
 use crate::manifest::interruption_note;
-use crate::new_file::write_all_new;
+use crate::new_file::{Existing, write_all_new};
 use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
 use carrier::Carrier;
@@ -181,15 +181,15 @@ pub struct Program {
 }
 
 impl Program {
-    /// Writes the files into a folder, which is made where there is none. All files or none: where one of them is there already
-    /// nothing is changed. Returns their paths.
+    /// Writes the files into a folder, which is made where there is none. All files or none: where one of them is there already and to be
+    /// kept, nothing is changed. Returns their paths.
     ///
     /// # Errors
     /// [`InputError`] that names the file that is there already, or that cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, InputError> {
+    pub fn write(&self, folder: &Path, existing: Existing) -> Result<Vec<PathBuf>, InputError> {
         let files: Vec<(PathBuf, &str)> =
             self.files.iter().map(|file| (folder.join(&file.name), file.text.as_str())).collect();
-        write_all_new(&files)?;
+        write_all_new(&files, existing)?;
         Ok(files.into_iter().map(|(path, _)| path).collect())
     }
 }

@@ -1,4 +1,7 @@
-//! Status and turn: the two numbers by which KUKA's controllers tell the postures of a pose apart.
+//! Status and turn: the two numbers by which KUKA's controllers tell the postures of a pose apart, and Fanuc's CONFIG.
+//!
+//! S and T are those that Beckhoff describes for its CNC (TF5200, "Status & Turn"), CONFIG that of poses published by ONE Robotics (2013):
+//! the guide's page `export` has both sources.
 
 use stead_model::robot::Posture;
 

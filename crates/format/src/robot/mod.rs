@@ -5,12 +5,14 @@ mod controller;
 pub mod covariance;
 mod dynamics;
 mod file;
+mod lender;
 mod one_or_range;
 
 pub use file::{CompensatorTable, ControllerTable, CovarianceTable, JointRow, RobotFile, RootTable};
+pub(crate) use lender::{NoLender, lender, lent_urad_per_nm};
 pub use one_or_range::OneOrRange;
 
-use crate::input::InputError;
+use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::toml_file::TomlFile;
@@ -91,11 +93,36 @@ pub(super) fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     made(&document.read()?, &document.root(), compliance_from)
 }
 
+/// The robot of a file whose rows state no stiffness, with that of a shipped arm, and the entry of that arm among the inputs; nothing of
+/// a file with a row that states one. `at` is the key that names the other arm.
+///
+/// # Errors
+/// As [`read_robot`], and [`InputError`] at the key where no shipped arm of this name has a stiffness.
+pub(super) fn robot_like(
+    source: &TomlFile,
+    other: &str,
+    at: &Place<'_>,
+) -> Result<Option<(Robot, InputFile)>, InputError> {
+    let document = source.parse()?;
+    let mut file: RobotFile = document.read()?;
+    if file.joints.iter().any(has_stiffness) {
+        return Ok(None);
+    }
+    let refused = |no: NoLender| {
+        let problem = format!("{}, and {} states no joint stiffness of its own", no.problem, file.name);
+        at.error(problem, no.allowed)
+    };
+    let (other, input) = lender(other).map_err(refused)?;
+    file.stiffness_like = Some(other.name);
+    let mut lent = other.joints.iter().map(|row| lent_urad_per_nm(row).unwrap_or_default() * 1e-6);
+    made(&file, &document.root(), |_, _| Ok(lent.next().unwrap_or_default().into())).map(|robot| Some((robot, input)))
+}
+
 /// The robot of a file, with a compliance of each row by a function.
 fn made(
     file: &RobotFile,
     at: &Place<'_>,
-    compliance: impl Fn(&JointRow, &Place<'_>) -> Result<Compliance, InputError>,
+    mut compliance: impl FnMut(&JointRow, &Place<'_>) -> Result<Compliance, InputError>,
 ) -> Result<Robot, InputError> {
     if file.name.chars().any(char::is_control) {
         let rule = "a text in quotes on one line";

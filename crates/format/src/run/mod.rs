@@ -29,7 +29,7 @@ use crate::field::FieldOverrides;
 use crate::file_kind::FileKind;
 use crate::input::{InputError, InputFile, input_file};
 use crate::mount::MountTable;
-use crate::robot::{moving_robot_from, robot_from, with_stiffness_like};
+use crate::robot::{moving_robot_from, robot_from, robot_like, with_stiffness_like};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
 use crate::surroundings::{CollisionTable, KeepOutTable, ShapeTable, SurroundingsFile, read_scene};
@@ -95,6 +95,7 @@ pub struct RunFile {
     /// What stands around the robot and on it, to be kept apart: a file of the tables below, relative to the folder of this one.
     pub surroundings: Option<String>,
     /// The arm whose joint stiffness the robot file states, where it is not its own and the file does not say so; every result says so.
+    /// Of a robot file that states none, the shipped arm whose joint stiffness it gets.
     pub stiffness_like: Option<String>,
     /// Shapes that keep apart, beside those of `surroundings`.
     pub shape: Option<Vec<ShapeTable>>,
@@ -198,11 +199,19 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
         None => None,
     };
     let moving = path_stability.as_ref().map(|analysis| analysis.variant >= Variant::Orthogonal);
-    let robot = source.sources.robot((robot_source.file(), robot_source.is_overridden()), moving, || match moving {
-        Some(is_orthogonal) => moving_robot_from(&robot_source, is_orthogonal),
-        None => robot_from(&robot_source),
-    })?;
-    let robot = with_stiffness_like(robot, run.stiffness_like.as_deref(), &at)?;
+    let like = run.stiffness_like.as_deref().filter(|_| moving.is_none());
+    let borrowed = like.map(|other| robot_like(&robot_source, other, &at.key("stiffness_like"))).transpose()?.flatten();
+    let (robot, lender) = match borrowed {
+        Some((robot, lender)) => (robot, Some(lender)),
+        None => {
+            let file = (robot_source.file(), robot_source.is_overridden());
+            let robot = source.sources.robot(file, moving, || match moving {
+                Some(is_orthogonal) => moving_robot_from(&robot_source, is_orthogonal),
+                None => robot_from(&robot_source),
+            })?;
+            (with_stiffness_like(robot, run.stiffness_like.as_deref(), &at)?, None)
+        }
+    };
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
     let robot = match &run.mount {
         Some(table) => robot.mounted(&table.cell_from_base(&at.key("mount"))?),
@@ -225,6 +234,7 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
     let (sets, files) = criterion.sets(&robot, narrowed, &at)?;
     inputs.extend(files);
+    inputs.extend(lender);
     let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();

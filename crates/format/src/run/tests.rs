@@ -129,3 +129,38 @@ fn notes_say_what_the_result_rests_on() {
     assert!(notes[1].contains("no max_speed_deg_per_s for joints 2: "), "{}", notes[1]);
     assert!(notes.len() == 3 && notes[2].starts_with("collisions were not checked: "), "{notes:?}");
 }
+
+#[test]
+fn an_arm_without_stiffness_gets_that_of_the_arm_that_the_run_names() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let run = |like: &str| {
+        let text = RUN.replacen("'arm.toml'", "'name:abb-irb6640-185'", 1);
+        std::fs::write(at("run.toml"), format!("{like}{text}")).unwrap();
+        read_run(&at("run.toml"))
+    };
+    let without = run("").unwrap_err().to_string();
+    assert!(without.contains("stiffness_like in the run file"), "{without}");
+    for name in ["kuka-kr270-r2700", "name:kuka-kr270-r2700"] {
+        let read = run(&format!("stiffness_like = '{name}'\n")).unwrap_or_else(|e| panic!("{e}"));
+        let lender = crate::read_robot(Path::new("name:kuka-kr270-r2700")).unwrap();
+        let robot = &read.problem.robot;
+        assert_eq!(robot.stiffness_like(), Some("KUKA KR 270 R2700"));
+        assert!(robot.name().starts_with("ABB IRB 6640-185/2.8"), "{}", robot.name());
+        // Joint 2 of the lender has a range, whose middle is taken; the others are as they are.
+        let (ours, theirs) = (robot.compliances_at(&robot.mid_range()), lender.compliances_at(&lender.mid_range()));
+        assert!(ours.iter().zip(theirs).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{ours:?} {theirs:?}");
+        let borrowed = "stiffness is borrowed from KUKA KR 270 R2700";
+        assert!(read.notes.iter().any(|note| note.contains(borrowed)), "{:?}", read.notes);
+        let is_lender = |input: &InputFile| (input.role, &input.name[..]) == ("stiffness", "name:kuka-kr270-r2700");
+        assert!(read.inputs.iter().any(is_lender));
+    }
+    for (name, part) in [("kr270", "is no shipped arm"), ("abb-irb120", "is an arm without stiffness")] {
+        let message = run(&format!("stiffness_like = '{name}'\n")).unwrap_err().to_string();
+        assert!(message.contains(":1: stiffness_like: ") && message.contains(part), "{message}");
+        assert!(message.contains("states no joint stiffness of its own"), "{message}");
+    }
+    // Where the robot file states its own, the key only says whose it is.
+    std::fs::write(at("run.toml"), format!("stiffness_like = 'made up'\n{RUN}")).unwrap();
+    assert_eq!(read_run(&at("run.toml")).unwrap().problem.robot.stiffness_like(), Some("made up"));
+}

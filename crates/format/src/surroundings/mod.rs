@@ -12,6 +12,8 @@ pub use tables::{
 
 use crate::input::{InputError, InputFile};
 use crate::place::Place;
+use crate::toml_file::TomlFile;
+use std::path::Path;
 use std::sync::Arc;
 use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
 use stead_model::external_axis::ExternalAxis;
@@ -64,6 +66,17 @@ pub(crate) fn read_scene(
     read.notes = notes::notes(&scene, robot, spindle);
     read.scene = Some(Arc::new(scene));
     Ok(read)
+}
+
+/// The shapes and zones of a file of its own, without external axes.
+///
+/// # Errors
+/// As [`read_scene`], but for what an arm has to do with.
+pub(crate) fn read_surroundings(file: &Path) -> Result<Option<Surroundings>, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    let part = Part { tables: document.read()?, at: document.root() };
+    surroundings(&[part], &[], &mut Vec::new())
 }
 
 /// All shapes and zones; the mesh files read are added to the inputs. Nothing where there are none.

@@ -21,7 +21,8 @@ pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
     links.shapes.iter().for_each(|link| shape(&mut text, link, file));
     if !links.ignored.is_empty() {
         text.push_str(
-            "\n# These touch in every posture tried, or at joint values zero of the URDF.\n[collision]\nignore = [\n",
+            "\n# These touch in every posture tried, or at joint values zero of the URDF, or are near each other in every posture.\n\
+             [collision]\nignore = [\n",
         );
         for [a, b] in &links.ignored {
             let _ = writeln!(text, "    [{}, {}],", Value::from(a.as_str()), Value::from(b.as_str()));

@@ -31,7 +31,7 @@ pub struct LinkShape {
 pub struct LinkShapes {
     /// The shapes, base first.
     pub shapes: Vec<LinkShape>,
-    /// Pairs that touch in every posture, or at joint values zero.
+    /// Pairs that touch in every posture or at joint values zero, or that are near in every posture.
     pub ignored: Vec<[String; 2]>,
     /// What the user should know, in sentences.
     pub notes: Vec<String>,
@@ -171,7 +171,7 @@ fn is_convex(mesh: &TriangleMesh) -> bool {
 /// Twice the area of a triangle that is too small to have a plane. m^2
 const SLIVER: f64 = 1e-8;
 
-/// Pairs of shapes that touch in every posture or at joint values zero, noted.
+/// Pairs of shapes that touch in every posture or at joint values zero, or that are near in every posture, noted.
 fn touching(robot: &Robot, zero: &[f64; 6], shapes: &[LinkShape], notes: &mut Vec<String>) -> Vec<[String; 2]> {
     let mut ignored: Vec<[String; 2]> = Vec::new();
     let scene = loop {
@@ -201,5 +201,17 @@ fn touching(robot: &Robot, zero: &[f64; 6], shapes: &[LinkShape], notes: &mut Ve
             ignored.push(pair.names.as_ref().clone());
         }
     }
+    let near = scene.always_near(ALWAYS_NEAR).into_iter().filter(|pair| !ignored.contains(pair)).collect::<Vec<_>>();
+    notes.extend(near.iter().map(|[a, b]| {
+        let mm = ALWAYS_NEAR * 1e3;
+        format!(
+            "{a:?} and {b:?} are within {mm} mm of each other in every posture tried, as parts next to each other are: ignored; take the \
+             pair out of ignore if they can touch"
+        )
+    }));
+    ignored.extend(near);
     ignored
 }
+
+/// Shapes nearer than this in every posture are parts that move along with each other. m
+const ALWAYS_NEAR: f64 = 0.05;

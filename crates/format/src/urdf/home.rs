@@ -5,7 +5,8 @@ use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_model::robot::{Controller, ControllerKind, Pose, Robot};
-use stead_numerics::rotation::{rotation_from_zyx, rotation_vector};
+use stead_numerics::digits::figures;
+use stead_numerics::rotation::{rotation_from_quaternion, rotation_from_zyx, rotation_vector, zyx_from_rotation};
 
 /// A flange pose read at a controller, with no tool and no base frame set, and its joint angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +19,35 @@ pub struct HomePose {
     pub flange: [f64; 6],
 }
 
+impl HomePose {
+    /// A pose from what the controller shows of the flange: X, Y, Z (mm) and A, B, C (deg), or for an ABB X, Y, Z and its quaternion.
+    ///
+    /// # Errors
+    /// [`InputError`]: neither six numbers nor seven, a quaternion of another controller, or one whose length is not 1.
+    pub fn new(kind: ControllerKind, angles_deg: [f64; 6], shown: &[f64]) -> Result<Self, InputError> {
+        let flange = match *shown {
+            [x, y, z, a, b, c] => [x, y, z, a, b, c],
+            [x, y, z, w, i, j, k] if kind == ControllerKind::Abb => {
+                let length = (w * w + i * i + j * j + k * k).sqrt();
+                let is_one = (length - 1.0).abs() <= QUATERNION_ROUNDING;
+                let Some(rotation) = rotation_from_quaternion([w, i, j, k]).filter(|_| is_one) else {
+                    return Err(refused(format!("has a quaternion of length {}, which is not 1", figures(length))));
+                };
+                let [a, b, c] = zyx_from_rotation(&rotation).map(f64::to_degrees);
+                [x, y, z, a, b, c]
+            }
+            [_, _, _, _, _, _, _] => {
+                return Err(refused(format!("has a quaternion, and {} shows angles", kind.word())));
+            }
+            _ => return Err(refused(format!("has {} numbers for the flange", shown.len()))),
+        };
+        Ok(Self { kind, angles_deg, flange })
+    }
+}
+
+/// How far a quaternion may be from length 1: four digits as printed.
+const QUATERNION_ROUNDING: f64 = 1e-3;
+
 /// How far a pose may be off: angles are shown to 0.01 deg, which at 3 m is half a millimetre for each joint. m
 const POSITION: f64 = 1.5e-3;
 /// Likewise its directions. rad
@@ -29,8 +59,8 @@ const OFFSETS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
 
 const OPTION: &str = "--home-deg";
 /// What a pose has to be.
-const WANTED: &str = "A1,..,A6=X,Y,Z,A,B,C in deg and mm as the controller shows them for the flange in its robot root, no tool, no base; \
-     |A5| at least 20 deg, no angle at a multiple of 45 deg";
+const WANTED: &str = "A1,..,A6=X,Y,Z,A,B,C in deg and mm as the controller shows them for the flange in its robot root, no tool, no base; ABB also \
+     X,Y,Z,QW,QX,QY,QZ; |A5| at least 20 deg, no angle at a multiple of 45 deg";
 
 fn refused(problem: String) -> InputError {
     InputError::new(Path::new(OPTION), problem).allowed(WANTED)
@@ -174,7 +204,7 @@ fn search(
 mod tests {
     use super::*;
     use crate::robot::read_geometry;
-    use stead_numerics::rotation::zyx_from_rotation;
+    use stead_numerics::rotation::quaternion_from_rotation;
 
     const ANGLES: [f64; 6] = [-31.2, -71.4, 63.7, 17.9, 52.6, -117.3];
 
@@ -212,6 +242,23 @@ mod tests {
             }
             assert_eq!(found.root_from_base, expected.root_from_base, "{name}");
         }
+    }
+
+    #[test]
+    fn the_quaternion_of_an_abb_is_its_pose() {
+        let (robot, own, home) = shown("name:abb-irb6640-235");
+        let [x, y, z, ..] = home.flange;
+        let shown = quaternion_from_rotation(&flange(&home).rotation).map(|part| (part * 1e5).round() / 1e5);
+        let numbers = [&[x, y, z][..], &shown].concat();
+        let read = HomePose::new(ControllerKind::Abb, ANGLES, &numbers).unwrap();
+        assert!(read.flange.iter().zip(home.flange).all(|(a, b)| (a - b).abs() < 2e-3), "{:?}", read.flange);
+        assert!(controller_at(&robot, &own, &read).unwrap().1);
+        let message = |kind, numbers: &[f64]| HomePose::new(kind, ANGLES, numbers).unwrap_err().to_string();
+        let kuka = message(ControllerKind::Kuka, &numbers);
+        assert!(kuka.contains("has a quaternion, and kuka shows angles") && kuka.contains("QW,QX,QY,QZ"), "{kuka}");
+        let long = message(ControllerKind::Abb, &[x, y, z, 1.0, 0.1, 0.0, 0.0]);
+        assert!(long.contains("a quaternion of length 1.00") && long.contains("which is not 1"), "{long}");
+        assert!(message(ControllerKind::Abb, &[x, y]).contains("has 2 numbers"));
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub use home::HomePose;
 pub use rows::ImportedRow;
 
 use crate::input::{InputError, sha256};
-use crate::new_file::write_all_new;
+use crate::new_file::{Existing, write_all_new};
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};
@@ -204,14 +204,14 @@ impl ImportedRobot {
         files
     }
 
-    /// Writes these files, which must not exist yet; folders to them are made.
+    /// Writes these files; folders to them are made.
     ///
     /// # Errors
-    /// [`InputError`] where a file exists or cannot be written: nothing is changed then.
-    pub fn write(&self, file: &Path) -> Result<(), InputError> {
+    /// [`InputError`] where a file exists and is to be kept, or cannot be written: nothing is changed then.
+    pub fn write(&self, file: &Path, existing: Existing) -> Result<(), InputError> {
         let files = self.files(file);
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
-        write_all_new(&texts)
+        write_all_new(&texts, existing)
     }
 }
 

@@ -141,7 +141,7 @@ impl Urdf {
     }
 }
 
-const EXPAND: &str = "a URDF: expand a xacro file first, `xacro robot.xacro > robot.urdf`";
+const EXPAND: &str = "a URDF: expand a xacro file first, `pip install xacro`, `xacro robot.xacro > robot.urdf`";
 
 /// Text that is no XML, at its line.
 fn not_xml(file: &Path, text: &str, error: &XmlError) -> InputError {

@@ -1,9 +1,7 @@
 //! Joint stiffness for an arm whose URDF has none: the values of a shipped arm, with their source.
 
 use crate::input::InputError;
-use crate::robot::{JointRow, OneOrRange, RobotFile, has_stiffness};
-use crate::shipped::{PREFIX, by_name, names_near};
-use crate::toml_file::TomlFile;
+use crate::robot::{JointRow, OneOrRange, lender, lent_urad_per_nm};
 use std::path::Path;
 
 /// The stiffness of another arm.
@@ -23,17 +21,10 @@ impl Borrowed {
     /// # Errors
     /// [`InputError`] where there is no arm of this name.
     pub fn of(name: &str) -> Result<Self, InputError> {
-        let wrong = |problem: &str, allowed: String| {
-            InputError::new(Path::new("--stiffness-like"), problem).found(super::xml::quoted(name)).allowed(allowed)
-        };
-        let bare = name.strip_prefix(PREFIX).unwrap_or(name);
-        let text = by_name(bare).ok_or_else(|| wrong("is no shipped arm", names_near(bare)))?;
-        let source = TomlFile::new(Path::new(name), text.as_bytes().to_vec())?;
-        let document = source.parse()?;
-        let file: RobotFile = document.read()?;
-        if !file.joints.iter().all(has_stiffness) {
-            return Err(wrong("is an arm without stiffness", "an arm with a stiffness in `stead robots`".to_owned()));
-        }
+        let (file, _) = lender(name).map_err(|no| {
+            let error = InputError::new(Path::new("--stiffness-like"), no.problem).found(super::xml::quoted(name));
+            error.allowed(no.allowed)
+        })?;
         let lines = std::array::from_fn(|k| file.joints.get(k).map(line).unwrap_or_default());
         Ok(Self { arm: file.name, source: file.source, lines })
     }
@@ -46,7 +37,7 @@ fn line(row: &JointRow) -> String {
         (None, Some(OneOrRange::One(compliance))) => format!("compliance_urad_per_nm = {:?}", compliance.written()),
         (None, Some(OneOrRange::Range(range))) => {
             let [from, to] = range.0.map(|end| end.written());
-            let middle = ((from + to) / 2.0 * 1e9).round() / 1e9;
+            let middle = lent_urad_per_nm(row).unwrap_or_default();
             format!("compliance_urad_per_nm = {middle:?}   # the middle of {from:?} to {to:?}")
         }
         (None, None) => String::new(),

@@ -81,6 +81,7 @@ pub(super) fn refine_basins(
         let done = done.fetch_add(steps, Ordering::Relaxed) + steps;
         monitor.report(Progress::Steps { stage: "refining", done, total: 2 * jobs });
     };
+    report_done(0);
     let refined = |sense: Sense, candidate: &Candidate| {
         let refined = refine_one(evaluator, sense, candidate, monitor);
         report_done(if refined.is_some() { 1 } else { 2 });

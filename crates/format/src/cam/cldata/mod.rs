@@ -4,6 +4,7 @@
 //! makes it an arc. With 11 numbers, as NX writes them, it turns as a left-handed screw along its axis; with 6 (SolidWorks CAM) and 7
 //! (Creo), as a right-handed one.
 
+mod cutter;
 mod cycle;
 mod reader;
 mod statement;

@@ -3,6 +3,7 @@
 mod arcs;
 
 use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings, Resampling};
+use super::cutter::cutter;
 use super::cycle::{Cycle, FORMS};
 use super::statement::Statement;
 use super::words::is_harmless;
@@ -129,6 +130,8 @@ impl<'a> Reader<'a> {
             "TLDATA" | "CUTTER" => {
                 self.numbers(statement, |count| count > 0, "numbers of the tool")?;
                 self.tool(statement);
+                let tool = cutter(statement, self.unit.metres());
+                self.program.change_tool(|last| *last = tool.turning_as(last));
             }
             "END-OF-PATH" => self.is_ended = true,
             "FINI" => {
@@ -293,6 +296,11 @@ impl<'a> Reader<'a> {
         if let Some(speed) = statement.numbers().next() {
             self.spindle = (speed > 0.0 && speed.is_finite() && !is_surface_speed).then_some(speed / 60.0);
         }
+        let speed = self.spindle;
+        self.program.change_tool(|tool| {
+            tool.spindle_speed = speed;
+            tool.is_counterclockwise = statement.has("CCLW") || (tool.is_counterclockwise && !statement.has("CLW"));
+        });
     }
 
     fn msys(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {

@@ -5,6 +5,7 @@
 
 mod arc;
 mod block;
+mod comment;
 mod machine;
 mod reader;
 mod state;
@@ -41,6 +42,9 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
         }
         if line.trim_start().starts_with('/') && !words.is_empty() {
             reader.note_block_delete();
+        }
+        if let Some(tool) = comment::tool_in(line) {
+            reader.described.push(tool);
         }
         if !reader.take(number, &words)? {
             break;

@@ -1,7 +1,9 @@
 //! The modal state of G-code, block by block.
 
 mod position;
+mod tools;
 
+use super::super::tool::ProgramTool;
 use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings};
 use super::arc::arc_of;
 use super::block::{Block, Motion, Word, failed};
@@ -42,6 +44,10 @@ pub(super) struct Reader<'a> {
     /// As programmed, without its unit.
     feed: Option<f64>,
     is_after_change: bool,
+    /// Tools that comments describe, their lengths in the unit of the program.
+    pub described: Vec<ProgramTool>,
+    /// The tool that is called, in the spindle from the next change on.
+    called: Option<u32>,
     /// Whether the tool was turned without and with tool centre point control.
     has_turned: [bool; 2],
 }
@@ -66,6 +72,8 @@ impl<'a> Reader<'a> {
             state,
             feed: None,
             is_after_change: false,
+            described: Vec::new(),
+            called: None,
             has_turned: [false; 2],
         }
     }
@@ -126,7 +134,9 @@ impl<'a> Reader<'a> {
             if !self.program.tools.contains(&name) {
                 self.program.tools.push(name);
             }
+            self.called = Some(tool.clamp(0.0, 1e9) as u32);
         }
+        self.change_tool(&block);
         if is_home {
             self.state.position = [None; 3];
             self.program.note("G28, G30 or G53: where the tool is then is not known here");
@@ -138,6 +148,7 @@ impl<'a> Reader<'a> {
 
     /// The program, when the file is at its end.
     pub fn finish(mut self) -> Program {
+        self.describe_tools();
         if let Some(machine) = self.settings.machine {
             for (has_turned, control) in self.has_turned.into_iter().zip(["without", "with"]) {
                 if has_turned {
@@ -301,21 +312,6 @@ impl<'a> Reader<'a> {
     /// Notes a block that the operator can have left out.
     pub fn note_block_delete(&mut self) {
         self.program.note("blocks behind / (block delete): taken");
-    }
-
-    /// Takes a move with the tool turned whose tip cannot be told: a rapid one leaves the tool at a place that is not known.
-    fn turn_without_control(&mut self, block: &Block<'_>, motion: Motion, end: State) -> Result<(), InputError> {
-        if motion != Motion::Rapid {
-            let word = block.words.iter().find(|(letter, _)| "ABC".contains(*letter));
-            let word = word.or_else(|| block.words.iter().find(|(letter, _)| "XYZ".contains(*letter)));
-            let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
-            let problem = "a rotary axis without tool centre point control";
-            return Err(self.fail(block.line, word.copied().unwrap_or(('G', 1.0)), problem, allowed));
-        }
-        self.program
-            .note("rapid moves of a turned tool without tool centre point control: where it is then is not known here");
-        self.state = State { position: [None; 3], ..end };
-        Ok(())
     }
 
     /// Adds the move to a state.

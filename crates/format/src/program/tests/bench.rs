@@ -4,7 +4,7 @@ use crate::plan::axis_column;
 use crate::program::check::{ProgramCheck, ReadBackOptions, check};
 use crate::program::{ExportError, ExportOptions, Program, ProgramFormat, export};
 use crate::urdf::{ImportOptions, ImportedRobot, import_robot_text};
-use crate::{Run, read_run};
+use crate::{Existing, Run, read_run};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use stead_model::external_axis::AxisKind;
@@ -109,7 +109,7 @@ impl Bench {
 
     /// Writes a program to a folder of its own, and its main file.
     pub fn written(&self, program: &Program, folder: &str) -> PathBuf {
-        program.write(&self.path(folder)).unwrap().remove(0)
+        program.write(&self.path(folder), Existing::Kept).unwrap().remove(0)
     }
 
     pub fn check(&self, main: &Path) -> Result<ProgramCheck, crate::input::InputError> {

@@ -3,6 +3,7 @@
 use super::super::check::{ReadBackOptions, check};
 use super::super::{ExportOptions, ProgramFormat};
 use super::bench::{ARMS, Bench};
+use crate::Existing;
 use proptest::prelude::*;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -92,7 +93,7 @@ fn all() -> Vec<(Bench, std::path::PathBuf, Vec<std::path::PathBuf>)> {
             }
             let bench = Bench::new(arm);
             let program = bench.export(&ExportOptions::new(format, "PART")).unwrap();
-            let paths = program.write(&bench.path("p")).unwrap();
+            let paths = program.write(&bench.path("p"), Existing::Kept).unwrap();
             all.push((bench, paths[0].clone(), paths));
         }
     }

@@ -4,6 +4,7 @@ use super::super::names::{comment, number};
 use super::super::split::parts;
 use super::super::{CorrectedPath, ExportError, ExportOptions, Program, ProgramError, ProgramFormat};
 use super::bench::{ARMS, Bench};
+use crate::Existing;
 use std::path::Path;
 
 fn text<'a>(program: &'a Program, name: &str) -> &'a str {
@@ -244,7 +245,7 @@ fn files_that_are_there_are_left_as_they_are() {
     let program = bench.export(&bench.options()).unwrap();
     std::fs::create_dir(bench.path("p")).unwrap();
     std::fs::write(bench.path("p/PART_01.src"), "mine").unwrap();
-    let message = program.write(&bench.path("p")).unwrap_err().to_string();
+    let message = program.write(&bench.path("p"), Existing::Kept).unwrap_err().to_string();
     assert!(message.contains("PART_01.src: is there already"), "{message}");
     assert!(!bench.path("p/PART.src").exists());
     assert_eq!(std::fs::read_to_string(bench.path("p/PART_01.src")).unwrap(), "mine");

@@ -150,7 +150,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
     assert!(!shapes.ignored.is_empty());
     let run = crate::testing::folder();
     let out = run.path().join("arms/imported.toml");
-    imported.write(&out).unwrap();
+    imported.write(&out, Existing::Kept).unwrap();
     let cell = run.path().join("arms/imported-cell.toml");
     assert!(cell.is_file());
     let robot =
@@ -168,7 +168,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
         assert!((read.pose.rotation - written.pose.rotation).norm() < 1e-12);
     }
     // There already.
-    let message = imported.write(&run.path().join("arms/imported.toml")).unwrap_err().to_string();
+    let message = imported.write(&run.path().join("arms/imported.toml"), Existing::Kept).unwrap_err().to_string();
     assert!(message.contains("is there already"), "{message}");
 }
 
@@ -191,4 +191,28 @@ fn a_collision_shape_that_cannot_be_is_refused_where_it_is_asked_for() {
     }
     let message = import_in(folder.path(), &fixture("kuka")).unwrap_err().to_string();
     assert!(message.contains("has no <collision> shape"), "{message}");
+}
+
+#[test]
+fn parts_that_are_near_in_every_posture_are_ignored_and_noted() {
+    let folder = folder();
+    let sphere = |text: &str, link: &str, x: f64| {
+        let tag = format!("<link name=\"{link}\">");
+        let geometry = "<geometry><sphere radius=\"0.028\"/></geometry>";
+        let collision = format!("<collision><origin xyz=\"{x} 0 0\" rpy=\"0 0 0\"/>{geometry}</collision>");
+        text.replacen(&tag, &format!("{tag}{collision}"), 1)
+    };
+    // Around the wrist, 7 to 29 mm apart; and one on the upper arm that comes and goes.
+    let text = sphere(&sphere(&sphere(&fixture("kuka"), "link_4", -0.07), "link_6", 0.015), "link_2", 0.3);
+    let imported = import_in(folder.path(), &text).unwrap();
+    let shapes = imported.link_shapes.as_ref().unwrap();
+    let wrist = ["link_6 shape", "link_4 shape"].map(str::to_owned);
+    assert_eq!(shapes.ignored, [wrist]);
+    let note = "\"link_6 shape\" and \"link_4 shape\" are within 50 mm of each other in every posture tried";
+    assert!(shapes.notes.iter().any(|text| text.starts_with(note)), "{:?}", shapes.notes);
+    let cell = imported.files(&folder.path().join("arm.toml")).remove(1).1;
+    assert!(
+        cell.contains("are near each other in every posture") && cell.contains("[\"link_6 shape\", \"link_4"),
+        "{cell}"
+    );
 }

@@ -68,6 +68,14 @@ fn numbers_and_names_are_refused_at_their_attribute() {
 }
 
 #[test]
+fn a_fixed_joint_turns_about_nothing_and_may_say_so() {
+    let own = fixture("kuka");
+    let fixed = own.replace("type=\"fixed\">", "type=\"fixed\">\n<axis xyz=\"0 0 0\"/>");
+    assert!(fixed.len() > own.len());
+    assert_eq!(import(&fixed).unwrap().rows, import(&own).unwrap().rows);
+}
+
+#[test]
 fn links_that_are_no_tree_are_refused() {
     refused(
         "<link name=\"flange\"/>",

@@ -1,7 +1,7 @@
 //! Positions of G-code: where a block leads to, and holes that are left out.
 
 use super::super::super::LARGEST;
-use super::super::block::{Block, Word};
+use super::super::block::{Block, Motion, Word};
 use super::super::state::State;
 use super::{CYCLES, LARGEST_ANGLE, Reader};
 use crate::input::InputError;
@@ -19,6 +19,26 @@ impl Reader<'_> {
         }
         at.position[2] = None;
         self.state = at;
+        Ok(())
+    }
+
+    /// Takes a move with the tool turned whose tip cannot be told: a rapid one leaves the tool at a place that is not known.
+    pub(super) fn turn_without_control(
+        &mut self,
+        block: &Block<'_>,
+        motion: Motion,
+        end: State,
+    ) -> Result<(), InputError> {
+        if motion != Motion::Rapid {
+            let word = block.words.iter().find(|(letter, _)| "ABC".contains(*letter));
+            let word = word.or_else(|| block.words.iter().find(|(letter, _)| "XYZ".contains(*letter)));
+            let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
+            let problem = "a rotary axis without tool centre point control";
+            return Err(self.fail(block.line, word.copied().unwrap_or(('G', 1.0)), problem, allowed));
+        }
+        self.program
+            .note("rapid moves of a turned tool without tool centre point control: where it is then is not known here");
+        self.state = State { position: [None; 3], ..end };
         Ok(())
     }
 
