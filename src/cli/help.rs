@@ -92,8 +92,9 @@ Exit codes:
 130  ended early by Ctrl-C: both plans are there, critical depths and the map of a long path may be left out";
 
 pub(super) const EXPLAIN: &str = "\
-Example:
+Examples:
   stead explain configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258 --point 30 --beta-deg 40
+  stead explain configs/caro-2013.toml --placement-of results/caro-2013 --point 30 --beta-deg 40
 
 Files written: none.
 

@@ -80,6 +80,7 @@ pub fn context() -> Context {
     Context {
         notes: Vec::new(),
         warnings: Vec::new(),
+        stated: serde_json::json!({ "robot": "kuka-kr270-2.toml" }),
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),

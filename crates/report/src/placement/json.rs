@@ -52,6 +52,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("redundancy", redundancy(problem)),
         ("task", task(problem)),
         ("cases", cases(outcome, false)),
+        ("run_file", context.stated.clone()),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
     entries.extend(tried(problem, outcome).map(|tried| ("setups".to_owned(), tried)));

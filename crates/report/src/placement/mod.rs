@@ -17,6 +17,7 @@ use crate::output::{Folder, ReportError};
 use crate::page;
 use crate::page::data::{MapOf, Placed, page_data};
 use crate::{Files, named, picture};
+use serde_json::Value;
 use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::InputFile;
@@ -34,6 +35,8 @@ use stead_study::PathStability;
 pub struct Context {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// What the run file states, key by key.
+    pub stated: Value,
     /// What the result rests on: assumptions made and values left at their defaults.
     pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
@@ -55,6 +58,7 @@ impl Context {
     pub fn new(run: &Run, search: SearchSettings) -> Self {
         Self {
             inputs: run.inputs.clone(),
+            stated: run.stated.clone(),
             notes: run.notes.clone(),
             warnings: Vec::new(),
             search,

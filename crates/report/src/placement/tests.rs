@@ -49,7 +49,7 @@ fn placements_state_ratios_references_and_times() {
     let table = rows(&tables::placements(&outcome().cases, context().reference.as_ref()).unwrap());
     assert_eq!(
         table[0].join(","),
-        "case,x_mm,y_mm,z_mm,q4,yaw_deg,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm,max_feed_mm_per_s"
+        "case,x_mm,y_mm,z_mm,yaw_deg,q4,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm,max_feed_mm_per_s"
     );
     assert_eq!(column(&table, "reference_mm"), ["0.083", "0.35", "0.82", "1.2"]);
     assert_eq!(column(&table, "ratio_to_case_1")[0], "1.000000");

@@ -186,15 +186,15 @@ fn sensitivity(found: &ForceSensitivity) -> Vec<String> {
 }
 
 fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
-    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures"];
+    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "yaw deg", "Q4", "postures"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for case in outcome.cases.all() {
         let [placement_word, plan_word] = [case.placement_sense, case.plan_sense].map(names::sense);
         let placement = &case.placement;
         let mut row = vec![case.number().to_string(), placement_word.to_owned(), plan_word.to_owned()];
         row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
-        row.push(fixed(placement.q4(), 4));
         row.push(fixed(placement.yaw.to_degrees(), 1));
+        row.push(fixed(placement.q4(), 4));
         row.push(names::postures_within(&case.plan.postures, POSTURES_WIDTH));
         rows.push(row);
     }
