@@ -129,6 +129,9 @@ pub(super) struct PlaceOptions {
     /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
     #[arg(long)]
     pub sensitivity: bool,
+    /// Look for the best placement alone, in half of the time, whatever the run file says
+    #[arg(long)]
+    pub no_worst: bool,
     /// Leave no page for the browser, whatever the run file says
     #[arg(long)]
     pub no_page: bool,

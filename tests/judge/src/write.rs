@@ -388,6 +388,7 @@ impl Writer<'_> {
             "never" => text.push_str("tables = \"never\"\n"),
             "genetic" => text.push_str("postures = \"genetic\"\n"),
             "subset" => text.push_str("path_points = 6\n"),
+            "best alone" => text.push_str("worst = false\n"),
             _ => {}
         }
         if self.of("transfer") == "stated" {

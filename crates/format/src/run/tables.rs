@@ -158,6 +158,8 @@ pub struct SearchTable {
     pub basins: Option<Whole<1, 64>>,
     /// Whether candidates are scored by a precomputed lookup table: where there can be one, `always` or `never`.
     pub tables: Option<Word<LookupUse>>,
+    /// Whether the worst placement is looked for, too, to show what is at stake; `true` where left out. It takes half of the time.
+    pub worst: Option<bool>,
     /// Points of the path by which candidates are compared, at least one of every segment: chosen where left out, and all of them
     /// where the path is short. What can win is planned on the whole path in any case.
     pub path_points: Option<Whole<1, 1000000000>>,
@@ -176,6 +178,7 @@ impl SearchTable {
             basins: self.basins.map_or(default.basins, Whole::count),
             tables: self.tables.map_or(default.tables, |word| word.0),
             path_points: self.path_points.map(Whole::count),
+            worst: self.worst.unwrap_or(default.worst),
             sensitivity: default.sensitivity,
         }
     }

@@ -322,13 +322,17 @@ fn search(context: &Context) -> Value {
         LookupUse::Always => "always",
         LookupUse::Never => "never",
     };
-    json!({
+    let mut value = json!({
         "population": context.search.population,
         "generations": context.search.generations,
         "postures": postures,
         "basins": context.search.basins,
         "tables": tables,
-    })
+    });
+    if !context.search.worst {
+        value["worst"] = json!(false);
+    }
+    value
 }
 
 fn transfer_settings(context: &Context) -> Value {

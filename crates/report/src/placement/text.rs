@@ -15,7 +15,7 @@ use stead_placement::symmetry::Unsupported;
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
 
-/// The four cases: first placements and posture schemes, then mean and largest score and total deflection, the ratio to case 1 beside the
+/// The four cases, or the first two of them where the worst placement was not looked for: first placements and posture schemes, then mean and largest score and total deflection, the ratio to case 1 beside the
 /// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
 /// uncertainty is known; last the size of the search. Lines are at most 110 characters wide and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
@@ -31,7 +31,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         line(&mut text, &format!("ref: {}", reference.source));
     }
     text.push('\n');
-    for case in [&outcome.cases.best, &outcome.cases.worst] {
+    for case in outcome.cases.optima() {
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     line(&mut text, &stiffest(&outcome.cases.best.plan));

@@ -26,8 +26,8 @@ fn tables_have_what_was_found() {
     ];
     assert_eq!(lines(front_table(front, &analysis.layouts).unwrap()), expected);
     let effects = lines(effects_table(&analysis.effects).unwrap());
-    assert_eq!(effects[0], "axis,method,share_percent,range,rank_correlation,value,layouts,mean_of_objective_mm");
-    assert!(effects[1].starts_with("robot,adjusted means,") && effects[1].contains(",3,,a.toml,2,"), "{}", effects[1]);
+    assert_eq!(effects[0], "axis,method,share_percent,range,rank_correlation,slope,value,layouts,mean_of_objective_mm");
+    assert!(effects[1].starts_with("robot,adjusted means,") && effects[1].contains(",3,,,a.toml,2,"), "{}", effects[1]);
 }
 
 #[test]

@@ -98,6 +98,8 @@ pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Ce
                 .flat_map(|figures| [figures.mean, figures.max].map(|value| number(Unit::DEFLECTION_MM, Some(value)))),
         );
     }
+    // Where the worst placement was not looked for there are no figures of it.
+    row.resize(result_columns().len() - FIGURES.len(), Cell::None);
     row.extend(figures(problem, &cases.best));
     row.extend(bound(certificate.map(|certificate| certificate.best.as_ref().map_err(ToString::to_string))));
     row.extend(bound(certificate.map(|certificate| certificate.worst.as_ref().map_err(ToString::to_string))));
