@@ -190,8 +190,9 @@ impl Run {
 }
 
 impl Run {
-    /// Searches for the best and the worst placement ([`Run::without_worst`]: the best alone), each with its best and its worst redundancy plan; with the certificate, where
-    /// the run file asks for one. A stop that the monitor asks for leaves the best found so far.
+    /// Searches for the best and the worst placement ([`Run::without_worst`]: the best alone), each with its best and its worst
+    /// redundancy plan; with the certificate, where the run file asks for one. A stop that the monitor asks for leaves the best found
+    /// so far.
     ///
     /// # Errors
     /// [`Error::Infeasible`] when no placement met satisfies the constraints.
