@@ -26,7 +26,7 @@ pub enum Unsupported {
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
     Orientations,
     /// A tool axis that is not vertical.
-    #[error("the tool leans: its axis is {:.3} deg from the vertical at point {point}", angle.to_degrees())]
+    #[error("the tool is not upright: its axis is {:.3} deg from the vertical at point {point}", angle.to_degrees())]
     TiltedTool {
         /// The first such path point, from 0.
         point: usize,

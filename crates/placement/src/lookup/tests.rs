@@ -303,7 +303,7 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     }
     assert_eq!(
         with_axes(&|_| tilted).to_string(),
-        "the tool leans: its axis is 0.573 deg from the vertical at point 0"
+        "the tool is not upright: its axis is 0.573 deg from the vertical at point 0"
     );
     assert_eq!(with_axes(&|k| if k < 40 { upright } else { -upright }), Unsupported::UpsideDown { point: 40 });
 
