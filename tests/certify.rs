@@ -227,7 +227,7 @@ fn a_time_limit_ends_long_stages() {
     assert_eq!(certificate["best"]["status"], "time_limit");
     // Well below the many seconds that a stage takes, and with room for a machine that does other work.
     let wall = certificate["wall_s"].as_f64().unwrap();
-    assert!((0.5..2.0).contains(&wall), "{wall} s");
+    assert!((0.5..6.0).contains(&wall), "{wall} s");
 }
 
 /// A gap finer than the tables can tell apart.
