@@ -166,7 +166,7 @@ fn placed(problem: &Problem, settings: &SearchSettings, run: &Run, what: &str) -
         println!("  {what}: nothing feasible, {seconds:.1} s");
         return None;
     };
-    let figures = [&outcome.cases.best, &outcome.cases.worst].map(|case| case.plan.objective * 1e3);
+    let figures = [0, 1].map(|k| outcome.cases.optima()[k].plan.objective * 1e3);
     let levels = outcome.path_levels.map_or(String::new(), |levels| {
         let [search, refinement] = levels.subsets;
         format!(", on {} and {} points, {} decide", search.points, refinement.points, levels.deciding)

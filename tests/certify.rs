@@ -203,6 +203,33 @@ fn a_time_limit_leaves_what_is_reached_and_says_so() {
     assert!(bench.read("out/open-region.svg").contains("<polygon"));
 }
 
+/// A path three times as long whose forces are all different: its coarse tables alone take several times the limit.
+#[test]
+fn a_time_limit_ends_long_stages() {
+    let bench = Bench::new();
+    let task = bench.read("tasks/five-segments.csv");
+    let mut lines = task.lines();
+    let mut long = format!("{}\n", lines.next().unwrap());
+    for (number, line) in (0..3).flat_map(|_| task.lines().skip(1)).enumerate() {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        cells[0] = (5 * (number / 105) + cells[0].parse::<usize>().unwrap()).to_string();
+        for force in &mut cells[10..13] {
+            let factor = 1.0 + 0.1 * libm::sin(0.37 * number as f64);
+            *force = format!("{:.4}", force.parse::<f64>().unwrap() * factor);
+        }
+        long += &(cells.join(",") + "\n");
+    }
+    bench.write("tasks/five-segments.csv", &long);
+    bench.replace(RUN, "[constraints]", "[certificate]\ngap_percent = 0.0001\ntime_limit_s = 0.5\n[constraints]");
+    let ended = place(&bench, &["--no-worst", "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let certificate = &ended.json()["certificate"];
+    assert_eq!(certificate["best"]["status"], "time_limit");
+    // Well below the many seconds that a stage takes, and with room for a machine that does other work.
+    let wall = certificate["wall_s"].as_f64().unwrap();
+    assert!((0.5..6.0).contains(&wall), "{wall} s");
+}
+
 /// A gap finer than the tables can tell apart.
 #[test]
 fn a_gap_too_fine_leaves_what_is_reached_and_says_so() {

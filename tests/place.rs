@@ -80,6 +80,51 @@ fn all_files_are_there_and_nothing_else() {
     }
 }
 
+/// The worst placement is neither searched nor planned nor written, and whoever reads the results is told; the best is the same.
+#[test]
+fn the_worst_placement_can_be_left_out() {
+    let (with_both, _) = placed();
+    let bench = Bench::new();
+    // Files of an earlier run that had both are removed.
+    assert_eq!(bench.stead(&["place", RUN, "--out", "out"]).code, Some(0));
+    assert_eq!(bench.names("out"), FILES);
+    let certified = ["--set", "certificate.gap_percent=90", "--set", "certificate.time_limit_s=0.5"];
+    let ended = bench.stead(&[&["place", RUN, "--no-worst", "--out", "out"], &certified[..]].concat());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: the worst placement was not looked for"]);
+    assert!(!ended.stdout.contains("worst placement is held by"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("No certificate for the worst placement: it was not looked for."));
+    let of_worst = ["deflection-map-worst.csv", "deflection-map-worst.svg", "worst-worst-plan.csv", "worst.csv"];
+    let mut left: Vec<&str> = FILES.into_iter().filter(|file| !of_worst.contains(file)).collect();
+    left.extend(["certificate.json", "open-region.csv", "open-region.svg"]);
+    left.sort_unstable();
+    assert_eq!(bench.names("out"), left);
+    for same in ["best.csv", "best-worst-plan.csv", "deflection-map-best.csv"] {
+        assert_eq!(bench.read(&format!("out/{same}")), with_both.read(&format!("out/{same}")), "{same}");
+    }
+    let rows = |bench: &Bench| Rows::of(&bench.read("out/placements.csv")).0;
+    let (alone, both) = (rows(&bench), rows(with_both));
+    assert_eq!(alone[..], both[..2]);
+    let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!(summary["cases"].as_array().unwrap().len(), 2);
+    assert_eq!(summary["search"]["worst"], false);
+    let warnings = bench.read("out/certificate.json");
+    assert!(!warnings.contains("no-bound") && warnings.contains("\"worst_reason\": \"it was not looked for\""));
+    assert!(bench.read("out/report.html").contains("the worst was not looked for"));
+    // The page is made again from these files, and its placement can be scored.
+    let page = bench.read("out/report.html");
+    assert_eq!(bench.stead(&["page", "out"]).code, Some(0));
+    assert_eq!(bench.read("out/report.html"), page);
+    let third = bench.stead(&["score", RUN, "--placement-of", "out", "--case", "3"]);
+    assert_eq!(third.code, Some(2));
+    third.assert_says(&["out/summary.json: cases: there is no case 3"]);
+    // The key of the run file does the same.
+    bench.replace(RUN, "[search]", "[search]\nworst = false");
+    let json = bench.stead(&["place", RUN, "--out", "key", "--json"]).json();
+    assert_eq!(json["cases"].as_array().unwrap().len(), 2);
+    assert_eq!(bench.read("key/best.csv"), bench.read("out/best.csv"));
+}
+
 #[test]
 fn json_is_one_document_with_four_cases() {
     let (bench, ended) = placed();

@@ -94,6 +94,62 @@ fn a_run_for_what_is_there_is_checked_and_placed() {
     );
 }
 
+/// Values are put into a shipped arm by its name as into a robot file.
+#[test]
+fn a_shipped_arm_in_a_run_takes_other_values() {
+    let bench = Bench::new();
+    bench.replace(RUN, "robots/kuka-kr270-2.toml", "name:kuka-kr270-2");
+    let at = ["score", RUN, "--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4", "--q4", "0.9258", "--json"];
+    let mean = |set: &str| {
+        let ended = bench.stead(&[&at[..], &["--set", set]].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.assert_says(&[&format!("note: {} in place of what the files say", set.replacen('=', " is ", 1))]);
+        ended.json()["best"]["mean_mm"].as_f64().unwrap()
+    };
+    let [as_printed, softer] = ["2.0", "0.8"].map(|k1| mean(&format!("robot.joints[1].stiffness_mnm_per_rad={k1}")));
+    assert!(softer > 1.05 * as_printed, "{softer} {as_printed}");
+    let wrong = [&at[..], &["--set", "robot.joints[7].stiffness_mnm_per_rad=1"]].concat();
+    refused(&bench, &wrong, &["--set robot.joints[7].stiffness_mnm_per_rad=1", "has no entry [7]"]);
+}
+
+/// Every shape with its extents where it stands, the pairs that hit there, and the feeds of the task.
+#[test]
+fn shapes_hits_and_the_feeds_of_the_task_are_checked() {
+    let bench = Bench::new();
+    let plain = bench.stead(&["check", RUN]);
+    assert!(plain.stdout.contains("feed      66.7 mm/s") && !plain.stdout.contains("shapes"), "{}", plain.stdout);
+    let task = bench.read(TASK);
+    let feeds = task.lines().enumerate().map(|(k, line)| match k {
+        0 => format!("{line},feed_mm_per_s"),
+        _ => format!("{line},{}", if k < 50 { "20" } else { "35.5" }),
+    });
+    bench.write(TASK, &(feeds.collect::<Vec<_>>().join("\n") + "\n"));
+    let shapes = "[[shape]]\nname = 'wall'\nattached = 'base'\nbox_mm = [100, 200, 300]\nxyz_mm = [0, 3000, 150]\n\
+                  rpy_deg = [0, 0, 90]\n[[shape]]\nname = 'table'\nattached = 'workpiece'\n\
+                  box_mm = [800, 1000, 100]\nxyz_mm = [0, 0, 0]\n[[shape]]\nname = 'spindle'\nattached = 'flange'\n\
+                  capsule_mm = { radius = 60, length = 600 }\nxyz_mm = [0, 0, 400]\n";
+    bench.write(RUN, &format!("{}\n{shapes}", bench.read(RUN)));
+    let checked = bench.stead(&["check", RUN, "--out", "check"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
+    for part in [
+        "feed      20.0 to 35.5 mm/s, as the task states; the 66.7 mm/s of redundancy.feed_mm_per_s stand for none",
+        "wall (moves with base): x -100.0 to 100.0, y 2950.0 to 3050.0, z 0.0 to 300.0",
+        "table (moves with workpiece): x -",
+        "spindle (moves with flange): x -",
+    ] {
+        assert!(checked.stdout.contains(part), "{part} in {}", checked.stdout);
+    }
+    checked.assert_says(&["shapes hit: ", "spindle and table (touching)"]);
+    let document = bench.stead(&["check", RUN, "--json"]).json();
+    assert_eq!(document["feeds_mm_per_s"], serde_json::json!([20.0, 35.5]));
+    assert_eq!(document["shapes"][0]["extents_mm"][1], serde_json::json!([2950.0, 3050.0]));
+    let hit = &document["hits"][0];
+    assert!(hit["pair"].as_array().unwrap().contains(&"table".into()), "{hit}");
+    assert!(hit["distance_mm"].as_f64().unwrap() <= 0.0, "{hit}");
+    let picture = bench.read("check/check.svg");
+    assert!(picture.contains("red where they hit another"), "{picture}");
+}
+
 #[test]
 fn an_arm_is_checked_alone_and_what_is_not_verified_is_noted() {
     let bench = Bench::new();

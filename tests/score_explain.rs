@@ -321,3 +321,55 @@ fn explain_says_that_a_point_is_not_scored() {
     at("30").assert_says(&["note: point 30 is not scored: it is followed"]);
     assert!(!at("31").stderr.contains("is not scored"));
 }
+
+/// The published case with a small search and its results in the folder `out`.
+fn placed() -> Bench {
+    let bench = Bench::new();
+    let ended = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    bench
+}
+
+#[test]
+fn explain_takes_the_placement_of_results() {
+    let bench = placed();
+    let ended = bench.stead(&["explain", RUN, "--placement-of", "out", "--point", "30", "--beta-deg", "40", "--json"]);
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
+    let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!(ended.json()["placement"], summary["cases"][0]["placement"]);
+    let worst = ["explain", RUN, "--placement-of", "out", "--case", "3", "--point", "30", "--beta-deg", "40", "--json"];
+    assert_eq!(bench.stead(&worst).json()["placement"], summary["cases"][2]["placement"]);
+    let both = ["explain", RUN, "--placement-of", "out", "--x-mm", "1", "--point", "30", "--beta-deg", "40"];
+    assert_eq!(bench.stead(&both).code, Some(2));
+}
+
+/// Comments, names, the search and the output may change, with a note; what a score depends on may not.
+#[test]
+fn the_placement_of_results_may_be_scored_by_a_run_file_that_says_the_same() {
+    let bench = placed();
+    let score = |bench: &Bench| bench.stead(&["score", RUN, "--placement-of", "out", "--json"]);
+    let before = score(&bench);
+    assert_eq!((before.code, before.said().as_str()), (Some(0), ""));
+    let text = bench.read(RUN);
+    bench.write(RUN, &format!("# A comment.\n{text}"));
+    let ended = score(&bench);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: run.toml is not as it was for these results: its comments and layout changed"]);
+    assert_eq!(ended.json()["best"], before.json()["best"]);
+    bench.copy("configs/robots/kuka-kr270-2.toml", "configs/robots/same.toml");
+    bench.replace(RUN, "robots/kuka-kr270-2.toml", "robots/same.toml");
+    bench.replace(RUN, "seed = 1 ", "seed = 2 ");
+    bench.write(RUN, &format!("{}\n[output]\nmaps = false\n", bench.read(RUN)));
+    let ended = score(&bench);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["these results: output.maps, robot, search.seed changed"]);
+    let noted = ended.json()["notes"].to_string();
+    assert!(noted.contains("output.maps, robot, search.seed changed"), "{noted}");
+    bench.replace(RUN, "min_inverse_condition = 0.2", "min_inverse_condition = 0.25");
+    let ended = score(&bench);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+    ended.assert_says(&[
+        "out/summary.json: run_file.constraints.min_inverse_condition: comes from a run file with another \
+         constraints.min_inverse_condition: run.toml has 0.25, found 0.2; allowed: ",
+    ]);
+}

@@ -71,6 +71,10 @@ impl Run {
         Self(self.0.clone().with_sensitivity(force_error))
     }
 
+    fn without_worst(&self) -> Self {
+        Self(self.0.clone().without_worst())
+    }
+
     fn notes(&self) -> Vec<String> {
         self.0.notes().to_vec()
     }
@@ -121,6 +125,13 @@ impl Run {
 
     fn explain(&self, py: Python<'_>, place: PlaceMm, point: usize, beta_deg: f64) -> PyResult<Outcome> {
         let explained = py.detach(|| self.0.explain(&placement(place), point, beta_deg.to_radians()));
+        explained.map(|result| Outcome(Kind::Explanations(result))).map_err(|error| raised(py, error))
+    }
+
+    /// As `explain`, at the exact placement of a case in a results folder.
+    fn explain_of(&self, py: Python<'_>, results: PathBuf, case: u8, point: usize, beta_deg: f64) -> PyResult<Outcome> {
+        let (run, place) = self.0.clone().set_up_as_in(results, case).map_err(|error| raised(py, error))?;
+        let explained = py.detach(|| run.explain(&place, point, beta_deg.to_radians()));
         explained.map(|result| Outcome(Kind::Explanations(result))).map_err(|error| raised(py, error))
     }
 }

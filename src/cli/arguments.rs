@@ -2,7 +2,7 @@
 
 use super::check::CheckOptions;
 use super::export::ExportCommand;
-use super::given::{GivenPlacement, ModelArguments, PlaceArguments};
+use super::given::{GivenPlacement, ModelArguments};
 use super::help;
 use super::import::ImportCommand;
 use super::init::InitOptions;
@@ -129,6 +129,9 @@ pub(super) struct PlaceOptions {
     /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
     #[arg(long)]
     pub sensitivity: bool,
+    /// Look for the best placement alone, in half of the time, whatever the run file says
+    #[arg(long)]
+    pub no_worst: bool,
     /// Leave no page for the browser, whatever the run file says
     #[arg(long)]
     pub no_page: bool,
@@ -317,9 +320,9 @@ pub(super) struct ExplainOptions {
     #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
     pub set: Vec<FieldOverride>,
     #[command(flatten)]
-    pub place: PlaceArguments,
+    pub place: GivenPlacement,
     /// Orientation of the part by its name, where the run file has several
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", conflicts_with = "placement_of")]
     pub orientation: Option<String>,
     /// Path point, counted from 0 in the order of the task file
     #[arg(long, value_name = "I", value_parser = point, allow_negative_numbers = true)]

@@ -1,13 +1,12 @@
 //! `stead explain`: one placement, one path point, one beta, eight postures.
 
 use super::arguments::ExplainOptions;
-use super::score::in_orientation;
 use super::{Failure, print, print_json, say_notes};
 use stead::Run;
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
-    let run = in_orientation(Run::read_with(&options.config, options.set.clone())?, options.orientation.as_deref())?;
-    let placement = options.place.placement();
+    let run = Run::read_with(&options.config, options.set.clone())?;
+    let (run, placement) = options.place.of(run, options.orientation.as_deref())?;
     let beta = options.beta_deg.to_radians();
     let explanations = run.explain(&placement, options.point, beta).map_err(|error| Failure::at("--point", error))?;
     say_notes(explanations.notes());

@@ -1,54 +1,13 @@
 //! The arguments that several commands share: those that give a placement, and those of a simulation's model.
 
+use super::Failure;
 use super::values::{case, damping_scale, finite, quaternion, rpm, variant};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use stead::{Error, Run};
 use stead_format::{Existing, Overrides};
 use stead_placement::problem::Placement;
 use stead_simulation::arm::Variant;
-
-/// A placement: the workpiece origin in the robot base frame, and its yaw.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub(super) struct PlaceArguments {
-    /// x of the workpiece origin in mm
-    #[arg(long, value_name = "X", value_parser = finite, allow_hyphen_values = true)]
-    x_mm: f64,
-    /// y of the workpiece origin in mm
-    #[arg(long, value_name = "Y", value_parser = finite, allow_hyphen_values = true)]
-    y_mm: f64,
-    /// z of the workpiece origin in mm
-    #[arg(long, value_name = "Z", value_parser = finite, allow_hyphen_values = true)]
-    z_mm: f64,
-    #[command(flatten)]
-    turn: Turn,
-}
-
-/// The yaw, in one of two ways.
-#[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
-struct Turn {
-    /// Yaw of the workpiece as quaternion component Q4 = sin(yaw / 2), -1 to 1
-    #[arg(long, value_name = "Q", value_parser = quaternion, allow_hyphen_values = true)]
-    q4: Option<f64>,
-    /// Yaw of the workpiece in degrees
-    #[arg(long, value_name = "A", value_parser = finite, allow_hyphen_values = true)]
-    yaw_deg: Option<f64>,
-}
-
-impl PlaceArguments {
-    pub fn placement(&self) -> Placement {
-        placement([self.x_mm, self.y_mm, self.z_mm], self.turn.q4, self.turn.yaw_deg)
-    }
-}
-
-/// A placement from mm, and from Q4 or else degrees.
-fn placement(xyz_mm: [f64; 3], q4: Option<f64>, yaw_deg: Option<f64>) -> Placement {
-    match q4 {
-        Some(q4) => Placement::from_mm_q4(xyz_mm, q4),
-        None => Placement::from_mm_deg(xyz_mm, yaw_deg.unwrap_or(0.0)),
-    }
-}
 
 /// A placement in numbers, or that of a result.
 #[derive(Debug, Args)]
@@ -67,7 +26,7 @@ pub(super) struct GivenPlacement {
     turn: GivenTurn,
     /// Case of the results: 1, the best placement, or 3, the worst [default: 1]
     #[arg(long, value_name = "N", value_parser = case, allow_hyphen_values = true, requires = "placement_of")]
-    pub case: Option<u8>,
+    case: Option<u8>,
 }
 
 /// The yaw, in one of two ways, or all of a placement.
@@ -87,13 +46,34 @@ struct GivenTurn {
 
 impl GivenPlacement {
     /// The placement in numbers.
-    pub fn placement(&self) -> Placement {
-        placement([self.x_mm, self.y_mm, self.z_mm].map(|mm| mm.unwrap_or(0.0)), self.turn.q4, self.turn.yaw_deg)
+    fn placement(&self) -> Placement {
+        let xyz_mm = [self.x_mm, self.y_mm, self.z_mm].map(|mm| mm.unwrap_or(0.0));
+        match self.turn.q4 {
+            Some(q4) => Placement::from_mm_q4(xyz_mm, q4),
+            None => Placement::from_mm_deg(xyz_mm, self.turn.yaw_deg.unwrap_or(0.0)),
+        }
     }
 
-    /// The results folder whose placement is taken.
-    pub fn placement_of(&self) -> Option<&Path> {
-        self.turn.placement_of.as_deref()
+    /// A run with its placement: as in the results folder, or in numbers and with the part in an orientation that has to be named where
+    /// there are several.
+    pub fn of(&self, run: Run, orientation: Option<&str>) -> Result<(Run, Placement), Failure> {
+        match &self.turn.placement_of {
+            Some(results) => Ok(run.set_up_as_in(results, self.case.unwrap_or(1))?),
+            None => Ok((in_orientation(run, orientation)?, self.placement())),
+        }
+    }
+}
+
+/// The run with the part in an orientation, which has to be named where there are several.
+fn in_orientation(run: Run, name: Option<&str>) -> Result<Run, Failure> {
+    let names: Vec<&str> = run.problem().orientations.iter().map(|known| known.name.as_str()).collect();
+    match name {
+        Some(name) => run.in_orientation(name).map_err(|error| Failure::at("--orientation", error)),
+        None if names.len() > 1 => {
+            let problem = format!("--orientation: is missing; allowed: {}", names.join(", "));
+            Err(Error::Argument(problem).into())
+        }
+        None => Ok(run),
     }
 }
 

@@ -43,7 +43,7 @@ pub(super) const PLACE: &str = "\
 Examples:
   stead place configs/caro-2013.toml
   stead place configs/caro-2013.toml --seed 7 --out results/seed-7
-  stead place configs/caro-2013.toml --certify 0.5
+  stead place configs/caro-2013.toml --certify 0.5 --no-worst
   stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8
 
 Files written to the results folder:
@@ -57,6 +57,7 @@ Files written to the results folder:
   summary.json                       all of it for programs
   report.html, cell.glb, page-data.json
                                      page for the browser, moving 3-D scene, what `stead page` makes both of; not with --no-page
+  with --no-worst no file of the worst placement
   stability-{best,worst}.csv, stability.svg
                                      with a table [stability]: critical depth along the path
   certificate.json, open-region.{csv,svg}, open-region-worst.svg
@@ -92,8 +93,9 @@ Exit codes:
 130  ended early by Ctrl-C: both plans are there, critical depths and the map of a long path may be left out";
 
 pub(super) const EXPLAIN: &str = "\
-Example:
+Examples:
   stead explain configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258 --point 30 --beta-deg 40
+  stead explain configs/caro-2013.toml --placement-of results/caro-2013 --point 30 --beta-deg 40
 
 Files written: none.
 

@@ -16,6 +16,9 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.sensitivity {
         run = run.with_sensitivity(Run::FORCE_ERROR);
     }
+    if options.no_worst {
+        run = run.without_worst();
+    }
     if options.no_page {
         run = run.without_page();
     }

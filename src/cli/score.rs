@@ -8,10 +8,7 @@ use stead_report::Folder;
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = Run::read_with(&options.config, options.set.clone())?;
-    let (run, placement) = match options.place.placement_of() {
-        Some(results) => run.set_up_as_in(results, options.place.case.unwrap_or(1))?,
-        None => (in_orientation(run, options.orientation.as_deref())?, options.place.placement()),
-    };
+    let (run, placement) = options.place.of(run, options.orientation.as_deref())?;
     // Taken before the work is done.
     let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
@@ -46,17 +43,4 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     }
     written?;
     if score.score().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
-}
-
-/// The run with the part in an orientation, which has to be named where there are several.
-pub(super) fn in_orientation(run: Run, name: Option<&str>) -> Result<Run, Failure> {
-    let names: Vec<&str> = run.problem().orientations.iter().map(|known| known.name.as_str()).collect();
-    match name {
-        Some(name) => run.in_orientation(name).map_err(|error| Failure::at("--orientation", error)),
-        None if names.len() > 1 => {
-            let problem = format!("--orientation: is missing; allowed: {}", names.join(", "));
-            Err(Error::Argument(problem).into())
-        }
-        None => Ok(run),
-    }
 }

@@ -5,6 +5,7 @@ mod solids;
 use nalgebra::Vector3;
 use solids::{merged, solids_of};
 use std::sync::Arc;
+use stead_model::robot::Pose;
 
 /// Triangles, as a mesh file holds them, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,14 +125,28 @@ pub enum Solid {
 impl Solid {
     /// The ends along x, y and z of all that it fills, in its own frame: lower and upper. m
     pub fn extent(&self) -> [Vector3<f64>; 2] {
-        let about = |half: Vector3<f64>| [-half, half];
+        self.extent_at(&Pose::identity())
+    }
+
+    /// The same in another frame, in which its own has a pose. m
+    pub fn extent_at(&self, pose: &Pose<f64>) -> [Vector3<f64>; 2] {
+        // How far it reaches from its origin along each axis of the frame, by the direction of that in its own.
+        let about = |half: &dyn Fn(Vector3<f64>) -> f64| {
+            let half = Vector3::from_fn(|axis, _| half(pose.rotation.row(axis).transpose()));
+            [pose.translation - half, pose.translation + half]
+        };
         match self {
-            Self::Box(edges) => about(edges / 2.0),
-            Self::Cylinder { radius, length } => about(Vector3::new(*radius, *radius, length / 2.0)),
-            Self::Capsule { radius, length } => about(Vector3::new(*radius, *radius, length / 2.0 + radius)),
+            Self::Box(edges) => about(&|along| along.abs().dot(edges) / 2.0),
+            Self::Cylinder { radius, length } => {
+                about(&|along| along.z.abs() * length / 2.0 + radius * libm::hypot(along.x, along.y))
+            }
+            Self::Capsule { radius, length } => about(&|along| along.z.abs() * length / 2.0 + radius),
             Self::Hull(mesh) | Self::Mesh(mesh) => {
-                let first = mesh.vertices[0];
-                mesh.vertices.iter().fold([first, first], |[low, high], v| [low.inf(v), high.sup(v)])
+                let first = pose.point(&mesh.vertices[0]);
+                mesh.vertices
+                    .iter()
+                    .map(|v| pose.point(v))
+                    .fold([first, first], |[low, high], v| [low.inf(&v), high.sup(&v)])
             }
         }
     }
@@ -169,6 +184,37 @@ pub(crate) mod tests {
         assert!(!open.is_closed());
         let [low, high] = Solid::Mesh(Arc::new(whole)).extent();
         assert_eq!((low, high), (Vector3::new(-0.5, -1.0, -1.5), Vector3::new(0.5, 1.0, 1.5)));
+    }
+
+    #[test]
+    fn extents_in_a_turned_frame_are_those_of_all_points() {
+        let (sine, cosine) = libm::sincos(0.5);
+        let rotation = nalgebra::Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
+            * nalgebra::Matrix3::new(1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine);
+        let pose = Pose { rotation, translation: Vector3::new(1.0, -2.0, 0.5) };
+        let edges = Vector3::new(0.3, 0.2, 0.7);
+        let of_box = Solid::Box(edges).extent_at(&pose);
+        let of_mesh = Solid::Mesh(Arc::new(box_mesh(edges))).extent_at(&pose);
+        // Points on the rims of a cylinder, and on the spheres of a capsule.
+        let (radius, length) = (0.2, 0.7);
+        let mut rims = [pose.translation; 2];
+        for k in 0..3600 {
+            let (sine, cosine) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 3600.0);
+            for z in [-length / 2.0, length / 2.0] {
+                let point = pose.point(&Vector3::new(radius * cosine, radius * sine, z));
+                rims = [rims[0].inf(&point), rims[1].sup(&point)];
+            }
+        }
+        let of_cylinder = Solid::Cylinder { radius, length }.extent_at(&pose);
+        let ends = [-length / 2.0, length / 2.0].map(|z| pose.point(&Vector3::new(0.0, 0.0, z)));
+        let ball = Vector3::from_element(radius);
+        let balls = [ends[0].inf(&ends[1]) - ball, ends[0].sup(&ends[1]) + ball];
+        let of_capsule = Solid::Capsule { radius, length }.extent_at(&pose);
+        for (found, expected) in [(of_box, of_mesh), (of_cylinder, rims), (of_capsule, balls)] {
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).amax() < 1e-6, "{found} {expected}");
+            }
+        }
     }
 
     /// Boxes side by side in one file, each with corners of its own that rounding has moved by some nanometres.

@@ -54,6 +54,7 @@ mod shipped;
 pub mod simulation;
 mod sources;
 pub mod spindle;
+mod stated;
 pub mod study;
 pub mod surroundings;
 pub mod task;

@@ -2,11 +2,14 @@
 
 use crate::input::{InputError, InputFile};
 use crate::manifest::{self, Unlisted, interruption_note};
+use crate::run::Run;
+use crate::stated::{Change, changes};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::angles::wrap;
-use stead_placement::problem::{Placement, Problem};
+use stead_placement::problem::Placement;
 use stead_placement::setup::{AxisPositions, Setup};
 
 /// The file with the cases.
@@ -14,28 +17,23 @@ const SUMMARY: &str = "summary.json";
 /// What is asked for, where something else is found.
 const ALLOWED: &str = "a folder that `stead place` has written from the same run file, robot and task";
 
-/// Reads the exact placement of a case (1 the best, 3 the worst) from a results folder of `stead place`; `inputs` are the files of the
-/// run that it is for.
+/// Reads the exact placement of a case (1 the best, 3 the worst) from a results folder of `stead place`, for a run.
 ///
 /// # Errors
 /// [`InputError`] for a folder that is no result of `stead place`, one that its manifest does not vouch for, one of other input files,
-/// or one without that case.
-pub fn read_placement_of(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<Placement, InputError> {
-    read_case(folder, case, inputs).map(|(placement, _)| placement)
+/// or one without that case. A run file that has changed since in keys on which a score does not depend is no other file.
+pub fn read_placement_of(folder: &Path, case: u8, run: &Run) -> Result<Placement, InputError> {
+    read_case(folder, case, &run.inputs, &run.stated).map(|(placement, ..)| placement)
 }
 
-/// As [`read_placement_of`], with how part and external axes of the run's problem are set up for the case, and a note where the search was
-/// interrupted.
+/// As [`read_placement_of`], with how part and external axes of the run's problem are set up for the case, and notes where the search was
+/// interrupted or the run file has changed.
 ///
 /// # Errors
 /// As [`read_placement_of`], and for a setup that is none of the problem.
-pub fn read_setup_of(
-    folder: &Path,
-    case: u8,
-    inputs: &[InputFile],
-    problem: &Problem,
-) -> Result<(Placement, Setup, Option<String>), InputError> {
-    let (placement, entry) = read_case(folder, case, inputs)?;
+pub fn read_setup_of(folder: &Path, case: u8, run: &Run) -> Result<(Placement, Setup, Vec<String>), InputError> {
+    let (placement, entry, changed) = read_case(folder, case, &run.inputs, &run.stated)?;
+    let problem = &run.problem;
     let error = |field: &str| {
         let problem = "is none of the run's".to_owned();
         InputError::new(&folder.join(SUMMARY), problem).in_field(format!("cases.{field}")).allowed(ALLOWED)
@@ -65,12 +63,17 @@ pub fn read_setup_of(
         });
         setup.positions = positions.ok_or_else(|| error("external_axes"))?;
     }
-    let note = interruption_note(&folder.join(SUMMARY));
-    Ok((placement, setup, note))
+    let notes = interruption_note(&folder.join(SUMMARY)).into_iter().chain(changed);
+    Ok((placement, setup, notes.collect()))
 }
 
-/// The exact placement of a case, and its entry.
-fn read_case(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<(Placement, Value), InputError> {
+/// The exact placement of a case, its entry, and a note where the run file has changed since.
+fn read_case(
+    folder: &Path,
+    case: u8,
+    inputs: &[InputFile],
+    stated: &Value,
+) -> Result<(Placement, Value, Option<String>), InputError> {
     let file = folder.join(SUMMARY);
     let error = |problem: String| InputError::new(&file, problem).allowed(ALLOWED);
     let text = std::fs::read_to_string(&file).map_err(|cause| error(format!("cannot be read: {cause}")))?;
@@ -82,7 +85,7 @@ fn read_case(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<(Placement
     let Some(cases) = summary["cases"].as_array() else {
         return Err(error("is missing".to_owned()).in_field("cases"));
     };
-    check_inputs(&summary, inputs, &error)?;
+    let changed = check_inputs(&summary, inputs, stated, &error)?;
     let found = cases.iter().position(|entry| entry["case"].as_u64() == Some(u64::from(case)));
     let Some(index) = found else {
         return Err(error(format!("there is no case {case}")).in_field("cases"));
@@ -94,26 +97,61 @@ fn read_case(folder: &Path, case: u8, inputs: &[InputFile]) -> Result<(Placement
         })
     };
     let [x, y, z] = [number("x_mm")?, number("y_mm")?, number("z_mm")?].map(|mm| mm / 1e3);
-    Ok((Placement { x, y, z, yaw: wrap(number("yaw_deg")?.to_radians()) }, cases[index].clone()))
+    Ok((Placement { x, y, z, yaw: wrap(number("yaw_deg")?.to_radians()) }, cases[index].clone(), changed))
 }
 
-/// Refuses results that were computed from other files.
+/// Refuses results that were computed from other files, or from a run file with another value of a key on which a score depends; a note
+/// where the run file has changed in nothing of that kind.
 fn check_inputs(
     summary: &Value,
     inputs: &[InputFile],
+    stated: &Value,
     error: &impl Fn(String) -> InputError,
-) -> Result<(), InputError> {
-    let stated = summary["inputs"].as_array().map_or(&[][..], Vec::as_slice);
-    for input in inputs {
-        let found = stated.iter().find(|entry| entry["role"] == input.role).and_then(|entry| entry["sha256"].as_str());
-        if found != Some(input.sha256.as_str()) {
-            let role = if input.role == "config" { "run" } else { input.role };
-            return Err(error(format!("comes from another {role} file than {}", input.name))
-                .in_field("inputs")
-                .found(found.map_or_else(|| "none".to_owned(), |digest| format!("sha256 {digest}"))));
+) -> Result<Option<String>, InputError> {
+    let digests = summary["inputs"].as_array().map_or(&[][..], Vec::as_slice);
+    let roles: BTreeSet<&str> = digests
+        .iter()
+        .filter_map(|entry| entry["role"].as_str())
+        .chain(inputs.iter().map(|input| input.role))
+        .collect();
+    let mut note = None;
+    for role in roles {
+        // Files of one role are told apart by their order.
+        let before: Vec<&str> =
+            digests.iter().filter(|entry| entry["role"] == role).filter_map(|entry| entry["sha256"].as_str()).collect();
+        let now: Vec<&InputFile> = inputs.iter().filter(|input| input.role == role).collect();
+        let differs = |number: &usize| before.get(*number).copied() != now.get(*number).map(|input| &*input.sha256);
+        let Some(number) = (0..before.len().max(now.len())).find(differs) else { continue };
+        let (found, input) = (before.get(number), now.get(number));
+        let name = input.map_or("none", |input| &input.name);
+        if role == "config" && summary["run_file"].is_object() {
+            note = Some(check_run_file(&summary["run_file"], stated, name, error)?);
+            continue;
         }
+        let what = if role == "config" { "run" } else { role };
+        return Err(error(format!("comes from another {what} file than {name}"))
+            .in_field("inputs")
+            .found(found.map_or_else(|| "none".to_owned(), |digest| format!("sha256 {digest}"))));
     }
-    Ok(())
+    Ok(note)
+}
+
+/// As [`check_inputs`], of two run files by their keys.
+fn check_run_file(
+    before: &Value,
+    now: &Value,
+    name: &str,
+    error: &impl Fn(String) -> InputError,
+) -> Result<String, InputError> {
+    let changes = changes(before, now);
+    let written = |value: &Option<Value>| value.as_ref().map_or_else(|| "none".to_owned(), Value::to_string);
+    if let Some(change) = changes.iter().find(|change| change.matters()) {
+        let problem = format!("comes from a run file with another {}: {name} has {}", change.key, written(&change.now));
+        return Err(error(problem).in_field(format!("run_file.{}", change.key)).found(written(&change.before)));
+    }
+    let keys: Vec<&str> = changes.iter().map(|change: &Change| &*change.key).collect();
+    let what = if keys.is_empty() { "its comments and layout".to_owned() } else { keys.join(", ") };
+    Ok(format!("{name} is not as it was for these results: {what} changed, which no score of a placement depends on"))
 }
 
 #[cfg(test)]
@@ -143,7 +181,9 @@ mod tests {
     fn read(text: &str, case: u8) -> Result<Placement, String> {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(SUMMARY), text).unwrap();
-        read_placement_of(folder.path(), case, &inputs()).map_err(|error| error.to_string())
+        read_case(folder.path(), case, &inputs(), &json!({}))
+            .map(|(placement, ..)| placement)
+            .map_err(|e| e.to_string())
     }
 
     #[test]
@@ -168,7 +208,7 @@ mod tests {
         assert_refused(&other, 1, &["inputs: comes from another robot file than arm.toml, found sha256 ccc"]);
         let old = document().to_string().replace("placement_exact", "placement");
         assert_refused(&old, 1, &["cases[0].placement_exact.x_mm: is missing"]);
-        let nothing = read_placement_of(Path::new("nowhere"), 1, &inputs()).unwrap_err().to_string();
+        let nothing = read_case(Path::new("nowhere"), 1, &inputs(), &json!({})).unwrap_err().to_string();
         assert!(nothing.contains("cannot be read"), "{nothing}");
     }
 }

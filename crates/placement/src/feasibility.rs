@@ -49,8 +49,9 @@ pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64
     })
 }
 
-/// Where the external axes stand at a path point for [`explain`], in a sentence; `None` where there are none.
-pub fn standing_axes(problem: &Problem, point: usize) -> Option<String> {
+/// Where the external axes stand at a path point for [`explain`], in a sentence; `None` where there are none. They are those of a result, or
+/// as they are at rest.
+pub fn standing_axes(problem: &Problem, point: usize, is_set_up: bool) -> Option<String> {
     let at = |(axis, position): (&ExternalAxis, &f64)| match axis.kind {
         AxisKind::Rail => format!("{} at {:.1} mm", axis.name, position * 1e3),
         AxisKind::Turntable => format!("{} at {:.2} deg", axis.name, position.to_degrees()),
@@ -58,7 +59,10 @@ pub fn standing_axes(problem: &Problem, point: usize) -> Option<String> {
     let axes: Vec<String> = problem.external_axes.iter().zip(problem.axis_positions(point)).map(at).collect();
     (!axes.is_empty()).then(|| {
         let axes = axes.join(", ");
-        format!("the external axes are taken as near to zero as their ranges allow: {axes}; another range_mm or range_deg moves them")
+        match is_set_up {
+            true => format!("the external axes are where the results have them: {axes}"),
+            false => format!("the external axes are taken as near to zero as their ranges allow: {axes}; another range_mm or range_deg moves them"),
+        }
     })
 }
 

@@ -146,23 +146,32 @@ impl Case {
     }
 }
 
-/// The four cases of Caro 2013, Table III.
+/// The four cases of Caro 2013, Table III, or the first two of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cases {
     /// Best placement, best plan.
     pub best: Case,
     /// Best placement, worst plan.
     pub best_worst_plan: Case,
-    /// Worst placement, best plan.
-    pub worst: Case,
-    /// Worst placement, worst plan.
-    pub worst_worst_plan: Case,
+    /// Worst placement with its best and its worst plan; `None` where it was not looked for
+    /// ([`SearchSettings::worst`](super::settings::SearchSettings::worst)).
+    pub worst: Option<[Case; 2]>,
 }
 
 impl Cases {
-    /// All four, in the order of their numbers.
-    pub fn all(&self) -> [&Case; 4] {
-        [&self.best, &self.best_worst_plan, &self.worst, &self.worst_worst_plan]
+    /// All there are, in the order of their numbers.
+    pub fn all(&self) -> Vec<&Case> {
+        [&self.best, &self.best_worst_plan].into_iter().chain(self.worst.iter().flatten()).collect()
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Case> {
+        [&mut self.best, &mut self.best_worst_plan].into_iter().chain(self.worst.iter_mut().flatten())
+    }
+
+    /// The placements, each with its best plan: the best one, and the worst where it was looked for.
+    pub fn optima(&self) -> Vec<&Case> {
+        self.all().into_iter().step_by(2).collect()
     }
 
     /// Mean score of a case over that of the first; `None` where the first is a cancellation.
@@ -329,8 +338,8 @@ pub struct Outcome {
     pub convergence: Vec<Generation>,
     /// Refinements from the best distinct basins of both searches.
     pub refinements: Vec<Refinement>,
-    /// Deflection maps at the best and at the worst placement, where they were made ([`Outcome::map`]).
-    pub maps: Option<[DeflectionMap; 2]>,
+    /// Deflection maps at the placements ([`Cases::optima`]), where they were made ([`Outcome::map`]).
+    pub maps: Option<Vec<DeflectionMap>>,
     /// Placements evaluated.
     pub evaluations: usize,
     /// States (path point, beta, all postures) evaluated.
@@ -350,11 +359,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Makes the deflection maps at the best and at the worst placement. A stop may leave them out, which is then among the warnings.
+    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement. A stop may leave them out, which is
+    /// then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
-        let Cases { best, worst, .. } = &self.cases;
         let map = |case: &Case| deflection_map(&problem.in_setup(&case.setup), &case.placement, monitor);
-        self.maps = map(best).zip(map(worst)).map(<[DeflectionMap; 2]>::from);
+        self.maps = self.cases.optima().into_iter().map(map).collect();
         if self.maps.is_none() {
             self.warnings.push(left_out("the deflection maps are"));
         }

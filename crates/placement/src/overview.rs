@@ -5,8 +5,11 @@ use super::symmetry::is_axis_1_vertical;
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::f64::consts::TAU;
+use stead_cell::scene::FAR;
+use stead_cell::{Attachment, Shape};
 use stead_model::robot::Robot;
 use stead_model::robot::turns::Range;
+use stead_numerics::digits::figures;
 use stead_numerics::mean_max::MeanAndMax;
 
 /// What a run states of its spindle, tool path, forces and cell.
@@ -20,6 +23,8 @@ pub struct Overview {
     pub segment_lengths: Vec<f64>,
     /// Smallest and largest angle between the tool axis and z of the workpiece. rad
     pub tilts: [f64; 2],
+    /// Smallest and largest feed of the task, where it states its own. m/s
+    pub feeds: Option<[f64; 2]>,
     /// Size of the forces. N
     pub force: MeanAndMax,
     /// Size of the moments about the tool centre point. N m
@@ -30,6 +35,32 @@ pub struct Overview {
     pub cell_distances: [f64; 2],
     /// The workpiece in the middle of its cell.
     pub middle: Stance,
+    /// The shapes with the arm and the workpiece there.
+    pub shapes: Vec<Stand>,
+    /// Pairs of shapes that are nearer to each other there than they may be.
+    pub hits: Vec<Hit>,
+}
+
+/// Where a shape is in one pose of the arm.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Stand {
+    /// Its name.
+    pub name: String,
+    /// What it moves with.
+    pub attached: String,
+    /// Smallest and largest x, y and z of it in the frame of the cell. m
+    pub extents: [[f64; 2]; 3],
+}
+
+/// Two shapes that are nearer to each other than they may be.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Hit {
+    /// Their names.
+    pub pair: [String; 2],
+    /// Their distance; zero or less where they touch. m
+    pub distance: f64,
+    /// The distance that they have to keep. m
+    pub required: f64,
 }
 
 /// What the arm reaches of the path at one placement, each point by itself: within the joint limits, at some free angle and in some
@@ -42,8 +73,15 @@ pub struct Stance {
     pub tried: usize,
     /// How many of them are reached.
     pub reached: usize,
-    /// Joint angles at the first point that is reached. rad
-    pub joints: Option<[f64; 6]>,
+    /// The first point that is reached, and the joint angles there. rad
+    pub first: Option<(usize, [f64; 6])>,
+}
+
+impl Stance {
+    /// The path point and the joint angles (rad) that stand for it: the first that is reached, or the middle of the joint ranges.
+    pub fn shown(&self, robot: &Robot) -> (usize, [f64; 6]) {
+        self.first.unwrap_or_else(|| (0, robot.mid_range()))
+    }
 }
 
 /// Most points of a path that are tried.
@@ -59,16 +97,23 @@ impl Overview {
         let path = problem.task.path();
         let sizes = |of: fn(&stead_model::task::Wrench) -> f64| MeanAndMax::of(problem.task.wrenches().iter().map(of));
         let tool = &problem.spindle.flange_from_tool.rotation;
+        let moves = || path.segments().iter().flat_map(|segment| segment.clone().skip(1));
+        let has_feeds = moves().next().is_some_and(|point| path.feed(point).is_some());
+        let middle = stance(problem, middle(problem));
+        let (shapes, hits) = shapes(problem, &middle);
         Self {
             tool_tilt: libm::acos(tool.m33.clamp(-1.0, 1.0)),
             extents,
             segment_lengths: (0..path.segments().len()).map(|segment| path.segment_length(segment)).collect(),
             tilts: range(points.iter().map(|point| libm::acos(point.axis.z.clamp(-1.0, 1.0)))),
+            feeds: has_feeds.then(|| range(moves().filter_map(|point| path.feed(point)))),
             force: sizes(|wrench| wrench.force.norm()),
             moment: sizes(|wrench| wrench.moment.norm()),
             reach: problem.robot.geometry().reach(),
             cell_distances: cell_distances(problem),
-            middle: stance(problem, middle(problem)),
+            middle,
+            shapes,
+            hits,
         }
     }
 
@@ -81,8 +126,62 @@ impl Overview {
                  limits, at any angle about the tool: `stead explain` says why at a placement"
             )
         });
-        unreached.into_iter().collect()
+        let hit = |hit: &Hit| {
+            let [a, b] = &hit.pair;
+            match hit.distance > 0.0 {
+                true => {
+                    let [distance, required] = [hit.distance, hit.required].map(|length| figures(length * 1e3));
+                    format!("{a} and {b} ({distance} mm apart, {required} mm asked for)")
+                }
+                false => format!("{a} and {b} (touching)"),
+            }
+        };
+        let more = self.hits.len().saturating_sub(NAMED);
+        let hits = (!self.hits.is_empty()).then(|| {
+            let named: Vec<String> = self.hits.iter().take(NAMED).map(hit).collect();
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            let at = self.middle.first.map_or_else(
+                || "with the arm in the middle of its joint ranges".to_owned(),
+                |(point, _)| format!("with the arm at point {point}"),
+            );
+            format!(
+                "{at} and the workpiece in the middle of its cell, shapes hit: {}{more}; pairs that always touch can be left out with \
+                 collision.ignore",
+                named.join(", ")
+            )
+        });
+        unreached.into_iter().chain(hits).collect()
     }
+}
+
+/// Pairs that are named in a note at the most.
+const NAMED: usize = 8;
+
+/// Where the shapes of a run are with the arm and the workpiece as they are shown, and which are too near to each other.
+fn shapes(problem: &Problem, middle: &Stance) -> (Vec<Stand>, Vec<Hit>) {
+    let Some(scene) = problem.scene.as_deref() else { return (Vec::new(), Vec::new()) };
+    let (point, joints) = middle.shown(&problem.robot);
+    let poses = problem.poses(scene, point, &middle.placement, &joints);
+    let cell_from_base = poses.of(Attachment::Base).inverse();
+    let stand = |shape: &Shape| {
+        let [low, high] = shape.solid.extent_at(&cell_from_base.then(poses.of(shape.attached)).then(&shape.pose));
+        let attached = match shape.attached {
+            Attachment::Axis(number) => problem.external_axes.get(usize::from(number)).map(|axis| axis.name.clone()),
+            _ => None,
+        };
+        Stand {
+            name: shape.name.clone(),
+            attached: attached.unwrap_or_else(|| shape.attached.to_string()),
+            extents: std::array::from_fn(|axis| [low[axis], high[axis]]),
+        }
+    };
+    let hits = scene.pairs().iter().enumerate().filter(|(number, _)| !scene.keeps_apart(*number, &poses));
+    let hits = hits.map(|(number, pair)| Hit {
+        pair: (*pair.names).clone(),
+        distance: scene.distance(number, &poses, FAR),
+        required: pair.required,
+    });
+    (scene.surroundings().shapes().iter().map(stand).collect(), hits.collect())
 }
 
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
@@ -123,11 +222,12 @@ fn cell_distances(problem: &Problem) -> [f64; 2] {
 fn stance(problem: &Problem, placement: Placement) -> Stance {
     let count = problem.task.points().len();
     let tried = count.min(TRIED);
-    let found = (0..tried).map(|k| reached(problem, &placement, k * count / tried));
-    let mut stance = Stance { placement, tried, reached: 0, joints: None };
-    for joints in found.flatten() {
+    let points = (0..tried).map(|k| k * count / tried);
+    let found = points.map(|point| reached(problem, &placement, point).map(|joints| (point, joints)));
+    let mut stance = Stance { placement, tried, reached: 0, first: None };
+    for found in found.flatten() {
         stance.reached += 1;
-        stance.joints = stance.joints.or(Some(joints));
+        stance.first = stance.first.or(Some(found));
     }
     stance
 }
@@ -172,7 +272,8 @@ mod tests {
         assert!(overview.reach > 2.6 && overview.cell_distances[0] < overview.cell_distances[1]);
         assert_eq!(overview.middle.tried, 105);
         // What is said to be reached is: the flange is where the first point wants it.
-        let joints = overview.middle.joints.unwrap();
+        let (point, joints) = overview.middle.first.unwrap();
+        assert_eq!((point, overview.feeds, overview.shapes.len()), (0, None, 0));
         let tool = problem.robot.forward(&joints).then(&problem.spindle.flange_from_tool);
         let place = overview.middle.placement.base_from_workpiece().point(&problem.task.points()[0].position);
         assert!((tool.translation - place).norm() < 1e-9);
@@ -183,7 +284,7 @@ mod tests {
         let mut problem = five_segments();
         problem.cell.position[0] = crate::problem::Interval { min: 9.0, max: 9.5 };
         let overview = Overview::of(&problem);
-        assert_eq!((overview.middle.reached, overview.middle.joints), (0, None));
+        assert_eq!((overview.middle.reached, overview.middle.first), (0, None));
         assert!(overview.notes()[0].contains("reaches 0 of 105 path points"));
     }
 }

@@ -48,7 +48,8 @@ pub fn planning_memory(problem: &Problem) -> u64 {
     MEMORY_PER_POINT * problem.task.points().len() as u64
 }
 
-/// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
+/// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III; or the best one
+/// alone ([`SearchSettings::worst`]), which is what it is beside the worst one as long as the path is not searched on a subset.
 ///
 /// The result depends on the arguments alone, not on the number of threads. When `monitor` asks to stop, every stage ends with what
 /// it has, only the plans of the best and the worst placement are still made, and [`Outcome::interrupted`] is set. Maps are not
@@ -92,25 +93,27 @@ fn place_as_set_up(
     let evaluator = Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2);
     let (basins, refinements) = refine_basins(&evaluator, long, &found, monitor);
     let sets = Sets::of(&untied, (&found, long), &basins[0], monitor);
-    let [best, worst] = choose(&basins, sets.regrets().as_deref()).ok_or_else(refused)?;
+    let (best, worst) = choose(&basins, sets.regrets().as_deref(), settings).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
     let cases = |refined, sense| stated_cases((problem, &planner), transfer, sense, refined, monitor);
-    let (of_best, of_worst) = rayon::join(|| cases(&best, Sense::Min), || cases(&worst, Sense::Max));
-    let ([best_case, best_worst_plan], [worst_case, worst_worst_plan]) = (of_best, of_worst);
+    let of_worst = || worst.as_ref().map(|worst| cases(worst, Sense::Max));
+    let ([best_case, best_worst_plan], worst) = rayon::join(|| cases(&best, Sense::Min), of_worst);
+    let cases = Cases { best: best_case, best_worst_plan, worst };
     let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
     let sensitivity = match settings.sensitivity {
         Some(size) if !interrupted => force_sensitivity(&untied, &best.solution, (&found, long), size, monitor),
         _ => None,
     };
-    let named =
-        [(&best_case, "case 1"), (&best_worst_plan, "case 2"), (&worst_case, "case 3"), (&worst_worst_plan, "case 4")];
-    let of_moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)));
+    let named = cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
+    let of_moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>());
+    let mut notes = notes::of(problem, &cases.best.plan, &cases.best.cycle.feed);
+    notes.extend((!settings.worst).then(notes::best_alone));
     Ok(Outcome {
-        sets: sets.outcomes(&best_case),
+        sets: sets.outcomes(&cases.best),
         set_basins: sets.basins,
-        notes: notes::of(problem, &best_case.plan, &best_case.cycle.feed),
+        notes,
         sensitivity,
-        cases: Cases { best: best_case, best_worst_plan, worst: worst_case, worst_worst_plan },
+        cases,
         tried_setups: Vec::new(),
         lookup_summary,
         path_levels: long.map(|path| path.levels),

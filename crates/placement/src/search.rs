@@ -49,17 +49,22 @@ pub struct SearchResult {
 }
 
 impl SearchResult {
+    /// That of a search that is not made.
+    pub fn nothing() -> Self {
+        Self { basins: Vec::new(), history: Vec::new(), evaluations: 0, lookup_rejected: false, interrupted: false }
+    }
+
     /// Whether it met a feasible placement.
     pub fn is_feasible(&self) -> bool {
         self.basins.first().is_some_and(|best| best.objective.mean().is_some())
     }
 
-    /// Of the searches of both senses the one that met nothing feasible goes on from the basins of the other; whether either met
-    /// something.
-    pub fn share_basins(found: &mut [Self; 2]) -> bool {
+    /// Of the searches of both senses the one that met nothing feasible goes on from the basins of the other, where it is made at all;
+    /// whether either met something.
+    pub fn share_basins(found: &mut [Self; 2], settings: &SearchSettings) -> bool {
         let feasible = found.each_ref().map(Self::is_feasible);
         match feasible {
-            [true, false] => found[1].basins = found[0].basins.clone(),
+            [true, false] if settings.worst => found[1].basins = found[0].basins.clone(),
             [false, true] => found[0].basins = found[1].basins.clone(),
             _ => {}
         }

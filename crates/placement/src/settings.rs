@@ -1,5 +1,7 @@
 //! How hard to search.
 
+use super::sense::Sense;
+
 /// How the posture scheme of a candidate placement is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostureSearch {
@@ -38,6 +40,8 @@ pub struct SearchSettings {
     /// Points of a long path by which candidates are compared; chosen where none is given. With all points of the path or more, it
     /// is searched and refined whole.
     pub path_points: Option<usize>,
+    /// Whether the worst placement is looked for, too, to show what is at stake.
+    pub worst: bool,
     /// The relative size of a force error for which the basins are refined once more, to see how far the optimum moves; none
     /// where that is not asked.
     pub sensitivity: Option<f64>,
@@ -46,6 +50,11 @@ pub struct SearchSettings {
 impl SearchSettings {
     /// The force error of a sensitivity analysis where no other is given.
     pub const FORCE_ERROR: f64 = 0.1;
+
+    /// Whether the placement that is best in a sense is looked for.
+    pub fn seeks(&self, sense: Sense) -> bool {
+        sense == Sense::Min || self.worst
+    }
 }
 
 impl Default for SearchSettings {
@@ -59,6 +68,7 @@ impl Default for SearchSettings {
             basins: 4,
             tables: LookupUse::Auto,
             path_points: None,
+            worst: true,
             sensitivity: None,
         }
     }

@@ -61,8 +61,9 @@ pub struct AxisPath {
 pub struct TriedSetup {
     /// The setup.
     pub setup: Setup,
-    /// The objectives of the best and of the worst placement in it ([`Problem::objective`](crate::problem::Problem::objective)); `None` where none is feasible. m
-    pub objectives: Option<[f64; 2]>,
+    /// The objectives of the best and, where it was looked for, of the worst placement in it
+    /// ([`Problem::objective`](crate::problem::Problem::objective)); `None` where none is feasible. m
+    pub objectives: Option<(f64, Option<f64>)>,
 }
 
 impl Setup {

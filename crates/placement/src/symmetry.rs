@@ -25,11 +25,17 @@ pub enum Unsupported {
     /// There are several orientations of the part to choose from.
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
     Orientations,
-    /// A tool axis that is not vertical, or that is upside down against the first one.
-    #[error(
-        "the tool is not upright in the same sense at every point: at point {point} it is not as at the first, vertical one"
-    )]
+    /// A tool axis that is not vertical.
+    #[error("the tool is not upright: its axis is {:.3} deg from the vertical at point {point}", angle.to_degrees())]
     TiltedTool {
+        /// The first such path point, from 0.
+        point: usize,
+        /// Angle between the tool axis and the vertical there. rad
+        angle: f64,
+    },
+    /// A vertical tool axis that is upside down against the first one.
+    #[error("the tool is not the same way up at every point: at point {point} it is upside down against point 0")]
+    UpsideDown {
         /// The first such path point, from 0.
         point: usize,
     },
@@ -118,8 +124,15 @@ impl Upright {
         }
         let points = problem.task.points();
         let first = points.first().map_or(1.0, |point| point.axis.z.signum());
-        if let Some(point) = points.iter().position(|p| !is_vertical(&p.axis) || p.axis.z.signum() != first) {
-            return Err(Unsupported::TiltedTool { point });
+        if let Some(point) = points.iter().position(|p| !is_vertical(&p.axis)) {
+            let axis = &points[point].axis;
+            return Err(Unsupported::TiltedTool {
+                point,
+                angle: libm::atan2(libm::hypot(axis.x, axis.y), axis.z.abs()),
+            });
+        }
+        if let Some(point) = points.iter().position(|p| p.axis.z.signum() != first) {
+            return Err(Unsupported::UpsideDown { point });
         }
         if let Some(point) = problem.task.wrenches().iter().position(|wrench| wrench.moment.norm() > 0.0) {
             return Err(Unsupported::Moment { point });

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use stead_format::input::InputFile;
 use stead_model::robot::Robot;
 use stead_numerics::rotation::zyx_from_rotation;
-use stead_placement::overview::Overview;
+use stead_placement::overview::{Hit, Overview, Stand};
 use stead_placement::problem::Problem;
 
 /// A run as it was understood.
@@ -58,7 +58,14 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     if overview.moment.max > 0.0 {
         say(format!("          moment about the tool centre point up to {} N m", fixed(overview.moment.max, 2)));
     }
-    say(format!("feed      {} mm/s", MM.text(problem.redundancy.feed)));
+    say(match overview.feeds {
+        None => format!("feed      {} mm/s", MM.text(problem.redundancy.feed)),
+        Some(feeds) => format!(
+            "feed      {} mm/s, as the task states; the {} mm/s of redundancy.feed_mm_per_s stand for none of its moves",
+            interval(MM, feeds),
+            MM.text(problem.redundancy.feed)
+        ),
+    });
     let [x, y, z] = problem.cell.position.map(|bounds| interval(MM, [bounds.min, bounds.max]));
     let yaw = interval(DEG, [problem.cell.yaw.min, problem.cell.yaw.max]);
     let frame = if problem.robot.is_mounted() { "cell" } else { "base" };
@@ -72,7 +79,23 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
         "middle    {} of {} path points reached within the joint limits with the workpiece in the middle of the cell",
         middle.reached, middle.tried
     ));
+    if !overview.shapes.is_empty() {
+        let at = middle.first.map_or("mid-range joints".to_owned(), |(point, _)| format!("point {point}"));
+        say(format!(
+            "shapes    with the workpiece there and the arm at {at}, in the {} frame, mm:",
+            shape_frame(problem)
+        ));
+    }
+    for stand in &overview.shapes {
+        let [x, y, z] = stand.extents.map(|extent| interval(MM, extent));
+        say(format!("          {} (moves with {}): x {x}, y {y}, z {z}", stand.name, stand.attached));
+    }
     text
+}
+
+/// The frame in which shapes are stated: what stands in the cell does not move there.
+fn shape_frame(problem: &Problem) -> &'static str {
+    if problem.robot.is_mounted() || !problem.external_axes.is_empty() { "cell" } else { "base" }
 }
 
 /// Where a mounted robot stands.
@@ -123,6 +146,15 @@ pub fn run_json(run: &CheckedRun<'_>) -> Value {
     let mm = |values: [f64; 2]| values.map(|value| MM_EXACT.number(value));
     let deg = |values: [f64; 2]| values.map(|value| Unit::ANGLE_DEG.number(value));
     let middle = &overview.middle;
+    let shape =
+        |stand: &Stand| json!({ "name": stand.name, "attached": stand.attached, "extents_mm": stand.extents.map(mm) });
+    let hit = |hit: &Hit| {
+        json!({
+            "pair": hit.pair,
+            "distance_mm": MM_EXACT.number(hit.distance),
+            "required_mm": MM_EXACT.number(hit.required),
+        })
+    };
     Document::new(inputs).notes(notes.iter()).with(json!({
         "robot": robot_json(&problem.robot),
         "tool_tilt_deg": Unit::ANGLE_DEG.number(overview.tool_tilt),
@@ -132,13 +164,17 @@ pub fn run_json(run: &CheckedRun<'_>) -> Value {
         "extents_mm": overview.extents.map(mm),
         "tilts_deg": deg(overview.tilts),
         "force_n": { "mean": overview.force.mean, "max": overview.force.max },
+        "feeds_mm_per_s": overview.feeds.map(mm),
         "moment_nm": { "mean": overview.moment.mean, "max": overview.moment.max },
         "cell_distances_mm": mm(overview.cell_distances),
         "middle": {
             "placement": crate::document::placement(&middle.placement),
             "points_tried": middle.tried,
             "points_reached": middle.reached,
+            "first_point_reached": middle.first.map(|(point, _)| point),
         },
+        "shapes": overview.shapes.iter().map(shape).collect::<Vec<_>>(),
+        "hits": overview.hits.iter().map(hit).collect::<Vec<_>>(),
     }))
 }
 

@@ -53,7 +53,7 @@ fn limit(limit: Limit) -> String {
         Limit::CellX => "cell.x_mm".to_owned(),
         Limit::CellY => "cell.y_mm".to_owned(),
         Limit::CellZ => "cell.z_mm".to_owned(),
-        Limit::CellYaw => "cell.q4".to_owned(),
+        Limit::CellYaw => "cell.yaw_deg".to_owned(),
         Limit::Joint(joint) => format!("limit of joint {joint}"),
         Limit::JointStep(joint) => format!("speed of joint {joint}"),
         Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),

@@ -45,15 +45,15 @@ pub fn outcome() -> &'static Outcome {
         let cases = Cases {
             best: best.case(Sense::Min, Sense::Min),
             best_worst_plan: best.case(Sense::Min, Sense::Max),
-            worst: worst.case(Sense::Max, Sense::Min),
-            worst_worst_plan: worst.case(Sense::Max, Sense::Max),
+            worst: Some([Sense::Min, Sense::Max].map(|sense| worst.case(Sense::Max, sense))),
         };
-        let (low, high) = (cases.best.plan.mean, cases.worst.plan.mean);
+        let [low, high] = [0, 1].map(|k| cases.optima()[k].plan.mean);
         let mut convergence = Vec::new();
         for (sense, end) in [(Sense::Min, low), (Sense::Max, high)] {
             convergence.extend((0..=51).map(|k| generation(sense, end, k)));
         }
-        let refinements = vec![refinement(Sense::Min, &cases.best), refinement(Sense::Max, &cases.worst)];
+        let refinements =
+            Sense::BOTH.into_iter().zip(cases.optima()).map(|(sense, case)| refinement(sense, case)).collect();
         Outcome {
             cases,
             tried_setups: Vec::new(),
@@ -61,7 +61,7 @@ pub fn outcome() -> &'static Outcome {
             path_levels: None,
             convergence,
             refinements,
-            maps: Some([best.map(), worst.map()]),
+            maps: Some(vec![best.map(), worst.map()]),
             evaluations: 12480,
             states: 157_248_000,
             interrupted: false,
@@ -80,6 +80,7 @@ pub fn context() -> Context {
     Context {
         notes: Vec::new(),
         warnings: Vec::new(),
+        stated: serde_json::json!({ "robot": "kuka-kr270-2.toml" }),
         inputs: vec![input("config", "paper.toml"), input("robot", "kuka-kr270-2.toml")],
         search: SearchSettings::default(),
         transfer: TransferSettings::default(),

@@ -10,27 +10,27 @@ use stead_simulation::stability_analysis::{CutStability, StabilityError};
 /// Points analysed between two questions whether to go on.
 const CHUNK: usize = 32;
 
-/// How deep may be cut along two plans before the cut chatters.
+/// How deep may be cut along plans before the cut chatters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PathStability {
     /// What is to be cut.
     pub analysis: PathStabilityAnalysis,
-    /// Along both plans, point by point.
-    pub plans: [Vec<CutStability>; 2],
+    /// Along each plan, point by point.
+    pub plans: Vec<Vec<CutStability>>,
 }
 
 impl PathStability {
-    /// Critical depths at every point of two plans, each at its placement in its setup; `None` once the caller asks to stop.
+    /// Critical depths at every point of plans, each at its placement in its setup; `None` once the caller asks to stop.
     ///
     /// # Errors
     /// [`StabilityError`] for a robot that says too little of its masses, or a cut without width.
     pub fn along(
         problem: &Problem,
         analysis: &PathStabilityAnalysis,
-        plans: [(&Setup, &Placement, &Plan); 2],
+        plans: &[(&Setup, &Placement, &Plan)],
         monitor: &Monitor,
     ) -> Result<Option<Self>, StabilityError> {
-        let along = |(setup, placement, plan): (&Setup, &Placement, &Plan)| -> Result<_, StabilityError> {
+        let along = |(setup, placement, plan): &(&Setup, &Placement, &Plan)| -> Result<_, StabilityError> {
             let feeds = problem.in_setup(setup).feeds(placement);
             let configuration =
                 |point: &PlanPoint| PathConfiguration { joints: point.joints, feed: feeds[point.point] };
@@ -44,8 +44,7 @@ impl PathStability {
             }
             Ok(Some(depths))
         };
-        let [first, second] = plans;
-        let both = along(first)?.zip(along(second)?).map(<[Vec<CutStability>; 2]>::from);
-        Ok(both.map(|plans| Self { analysis: analysis.clone(), plans }))
+        let plans = plans.iter().map(along).collect::<Result<Option<Vec<_>>, _>>()?;
+        Ok(plans.map(|plans| Self { analysis: analysis.clone(), plans }))
     }
 }

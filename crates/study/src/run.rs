@@ -4,7 +4,7 @@ use super::PathStability;
 use stead_format::Run;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
-use stead_placement::outcome::{Cases, Outcome, Plan, left_out};
+use stead_placement::outcome::{Outcome, Plan, left_out};
 use stead_placement::place::{self, Infeasible, Score};
 use stead_placement::problem::Placement;
 use stead_placement::setup::Setup;
@@ -26,7 +26,7 @@ pub enum RunError {
 pub struct Placed {
     /// The four cases, and how they were found.
     pub outcome: Outcome,
-    /// Critical depths along cases 1 and 3, where the run file asks for them.
+    /// Critical depths along case 1, and case 3 where there is one, where the run file asks for them.
     pub stability: Option<PathStability>,
 }
 
@@ -51,9 +51,9 @@ pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
     if run.maps {
         outcome.map(&run.problem, monitor);
     }
-    let Cases { best, worst, .. } = &outcome.cases;
-    let plans = [(&best.setup, &best.placement, &best.plan), (&worst.setup, &worst.placement, &worst.plan)];
-    let stability = stability(run, plans, &mut outcome.warnings, monitor)?;
+    let optima = outcome.cases.optima();
+    let plans: Vec<_> = optima.iter().map(|case| (&case.setup, &case.placement, &case.plan)).collect();
+    let stability = stability(run, &plans, &mut outcome.warnings, monitor)?;
     outcome.interrupted |= monitor.should_stop();
     Ok(Placed { outcome, stability })
 }
@@ -66,7 +66,7 @@ pub fn score(run: &Run, placement: &Placement, monitor: &Monitor) -> Result<Scor
     let mut score = place::score(&run.problem, placement, &run.transfer, monitor)?;
     let setup = score.setup.clone();
     let plans = [(&setup, placement, &score.best), (&setup, placement, &score.worst)];
-    let stability = stability(run, plans, &mut score.warnings, monitor)?;
+    let stability = stability(run, &plans, &mut score.warnings, monitor)?;
     score.interrupted = monitor.should_stop();
     let notes = outside_cell(run, placement).into_iter().collect();
     Ok(Scored { score, stability, notes })
@@ -78,10 +78,10 @@ pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
     is_outside.then(|| "this placement is outside the cell of the run file".to_owned())
 }
 
-/// The critical depths along two plans, where the run file asks for them; a stop leaves them out, which is then warned of.
+/// The critical depths along plans, where the run file asks for them; a stop leaves them out, which is then warned of.
 fn stability(
     run: &Run,
-    plans: [(&Setup, &Placement, &Plan); 2],
+    plans: &[(&Setup, &Placement, &Plan)],
     warnings: &mut Vec<Warning>,
     monitor: &Monitor,
 ) -> Result<Option<PathStability>, StabilityError> {

@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Any, ClassVar, NamedTuple
 
 from . import _stead
+from ._errors import ArgumentError
 from ._records import (
     Case,
     Certificate,
@@ -149,13 +150,14 @@ class Placements(Result):
     _made = {**Result._made, "certificate": Certificate}
 
     @cached_property
-    def cases(self) -> tuple[Case, Case, Case, Case]:
-        """The four cases, in their order."""
+    def cases(self) -> tuple[Case, ...]:
+        """The four cases, in their order; the first two where the worst placement was not looked for."""
+        tables = ("best", "best-worst-plan", "worst", "worst-worst-plan")
 
-        def case(number: int, table: str) -> Case:
-            return Case(self._entries["cases"][number - 1], lambda: self.tables[table])
+        def case(entries: dict[str, Any], table: str) -> Case:
+            return Case(entries, lambda: self.tables[table])
 
-        return case(1, "best"), case(2, "best-worst-plan"), case(3, "worst"), case(4, "worst-worst-plan")
+        return tuple(case(entries, table) for entries, table in zip(self._entries["cases"], tables))
 
     @property
     def best(self) -> Case:
@@ -164,7 +166,13 @@ class Placements(Result):
 
     @property
     def worst(self) -> Case:
-        """Case 3: the worst placement with its best plan."""
+        """Case 3: the worst placement with its best plan.
+
+        Raises:
+            ArgumentError: where the worst placement was not looked for.
+        """
+        if len(self.cases) < 3:
+            raise ArgumentError("the worst placement was not looked for; allowed: a run with it")
         return self.cases[2]
 
 

@@ -48,6 +48,10 @@ class Run:
         """The same run, refined once more where scores have to cover force errors of this relative size (0.1 for 10 %)."""
         return Run(self._native.with_sensitivity(force_error))
 
+    def without_worst(self) -> Run:
+        """The same run without a search for the worst placement, which takes half of the time."""
+        return Run(self._native.without_worst())
+
     @property
     def notes(self) -> list[str]:
         """What the user should know about the input though it is not wrong."""
@@ -138,12 +142,22 @@ class Run:
             score = finished(PlacementScore, self._native.score_of(Path(placement), case, options))
         return finished(PlacementScore, score._native.mapped(options)) if deflection_map else score
 
-    def explain(self, placement: Placement, point: int, beta_deg: float) -> Explanations:
+    def explain(
+        self, placement: Placement | File, point: int, beta_deg: float, case: Literal[1, 3] = 1
+    ) -> Explanations:
         """What each of the eight postures gives at a path point (from 0) and a spindle angle beta (deg).
+
+        Args:
+            placement: The placement, or a results folder of `place` from the same files whose exact placement is taken.
+            point: The path point, from 0.
+            beta_deg: The spindle angle.
+            case: Case of those results: 1, the best placement, or 3, the worst.
 
         Raises:
             ArgumentError: for a point that the path does not have.
         """
         if point < 0:
             raise ArgumentError(f"no such path point, found {point}; allowed: 0 to {self.point_count - 1}")
-        return Explanations(self._native.explain(_place(placement), point, beta_deg))
+        if isinstance(placement, Placement):
+            return Explanations(self._native.explain(_place(placement), point, beta_deg))
+        return Explanations(self._native.explain_of(Path(placement), case, point, beta_deg))

@@ -62,7 +62,7 @@ pub const FACTORS: &[Factor] = &[
     factor("shapes", &["none", "tool and part", "cell", "mesh", "hull"]),
     factor("tool", &["none", "cutter", "holder"]),
     factor("transfer", &["default", "stated"]),
-    factor("search", &["auto", "never", "genetic", "subset"]),
+    factor("search", &["auto", "never", "genetic", "subset", "best alone"]),
     factor("output", &["tables", "page"]),
     factor("program", &["none", "native", "csv"]),
 ];

@@ -59,6 +59,10 @@ pub fn judge(run: &Path, results: &Path) -> Result<Verdict, String> {
     let summary = summary(results)?;
     let cases = summary.get("cases").and_then(Value::as_array).ok_or("no cases in the summary")?;
     let mut verdict = Verdict::default();
+    let search = cell.run.get("search");
+    let is_alone = search.and_then(|search| search.get("worst")).and_then(toml::Value::as_bool) == Some(false);
+    let wanted = if is_alone { 2 } else { CASES.len() };
+    verdict.holds("number of cases", || format!("{} cases and not {wanted}", cases.len()), cases.len() == wanted);
     let mut objectives = Vec::new();
     for case in cases {
         let plan = plan(&cell, results, case)?;

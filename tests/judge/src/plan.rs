@@ -377,7 +377,10 @@ impl Plan<'_> {
                 verdict.within("bounds of the cell (m)", || format!("{} {key}", self.name), beyond, 1e-9);
             }
         }
-        let [low, high] = crate::values::range(table, "q4", 1.0).unwrap_or([-1.0, 1.0]);
+        let degrees =
+            crate::values::range(table, "yaw_deg", 1.0).map(|ends| ends.map(|end| (end.to_radians() / 2.0).sin()));
+        let q4 = || crate::values::range(table, "q4", 1.0);
+        let [low, high] = degrees.or_else(q4).unwrap_or([-1.0, 1.0]);
         let q4 = (self.placement.yaw / 2.0).sin();
         verdict.within("bounds of the cell (q4)", || self.name.clone(), (low - q4).max(q4 - high), 1e-9);
     }

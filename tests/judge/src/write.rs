@@ -272,10 +272,12 @@ impl Writer<'_> {
         let (x, y, z) =
             (span(middle.x + aside[0], wide), span(middle.y + aside[1], wide), span(middle.z + aside[2], wide));
         let turn = self.random.between(-0.2, 0.1);
-        self.line(format_args!(
-            "\n[cell]\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\nq4 = {}",
-            list([turn - wide / 200.0, turn + wide / 200.0])
-        ));
+        let turns = [turn - wide / 200.0, turn + wide / 200.0];
+        let (key, turns) = match self.of("cell") {
+            "range" => ("yaw_deg", turns.map(|q4: f64| (2.0 * q4.asin()).to_degrees())),
+            _ => ("q4", turns),
+        };
+        self.line(format_args!("\n[cell]\nx_mm = {x}\ny_mm = {y}\nz_mm = {z}\n{key} = {}", list(turns)));
         let side = angles(self.key, &about(Vector3::x(), 15.0));
         match self.of("orientations") {
             "one" => self.line(format_args!("orientations = [{{ name = \"tilted\", {side} }}]")),
@@ -386,6 +388,7 @@ impl Writer<'_> {
             "never" => text.push_str("tables = \"never\"\n"),
             "genetic" => text.push_str("postures = \"genetic\"\n"),
             "subset" => text.push_str("path_points = 6\n"),
+            "best alone" => text.push_str("worst = false\n"),
             _ => {}
         }
         if self.of("transfer") == "stated" {

@@ -1,8 +1,10 @@
 //! A value put into the parse tree of a file.
 
 use super::path::{Step, written};
+use crate::shipped;
 use std::borrow::Cow;
 use std::ops::Range;
+use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -85,7 +87,8 @@ pub(crate) fn put<'a>(
     Ok(())
 }
 
-/// Whether a text may be the name of a file that a path can go on in.
+/// Whether a text may be the name of a file that a path can go on in, one of a shipped arm among them.
 fn names_a_file(text: &str) -> bool {
-    text.len() > ".toml".len() && text.to_ascii_lowercase().ends_with(".toml")
+    let is_toml = text.len() > ".toml".len() && text.to_ascii_lowercase().ends_with(".toml");
+    is_toml || shipped::text(Path::new(text)).is_some()
 }

@@ -142,7 +142,7 @@ abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or 
 x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
 y_mm = {}
 z_mm = {:<31} # {about_heights}
-# q4 = [-1.0, 1.0]                     # sin(yaw / 2): how the workpiece may be turned about the vertical
+# yaw_deg = [-180.0, 180.0]            # how the workpiece may be turned about the vertical; or q4, sin(yaw / 2)
 # A robot on a pedestal or a wall, a part on its side: the page cell_setup has the tables.
 
 {AXES}# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis

@@ -32,6 +32,7 @@ use crate::mount::MountTable;
 use crate::robot::{moving_robot_from, robot_from, robot_like, with_stiffness_like};
 use crate::sources::Sources;
 use crate::spindle::SpindleTable;
+use crate::stated::stated;
 use crate::surroundings::{CollisionTable, KeepOutTable, ShapeTable, SurroundingsFile, read_scene};
 use crate::toml_file::TomlFile;
 use crate::tool::{CutTable, Cutting, ToolTable};
@@ -42,6 +43,7 @@ use postures::check_postures;
 use redundancy::check_axis_turns;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::path::Path;
 use stead_model::published::Published;
 use stead_placement::problem::Problem;
@@ -128,6 +130,8 @@ pub struct Run {
     pub page: bool,
     /// The files that were read, in the order config, robot, task, and others that they name.
     pub inputs: Vec<InputFile>,
+    /// The keys of the run file with their values as they stand there, those of `--set` among them.
+    pub stated: Value,
     /// Published figures to print beside ours.
     pub reference: Option<Published<[f64; 4]>>,
     /// What is to be cut along the path, where its stability is asked for.
@@ -236,7 +240,7 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     inputs.extend(files);
     inputs.extend(lender);
     let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
-    let (cell, constraints) = (run.cell.cell(), run.constraints.constraints());
+    let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
     let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
@@ -275,5 +279,6 @@ pub(crate) fn run_of(source: &TomlFile, document: &Document<'_>, gap: Option<f64
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
-    Ok(Run { problem, search, transfer, certificate, maps, page, inputs, reference, path_stability, notes })
+    let stated = stated(&at);
+    Ok(Run { problem, search, transfer, certificate, maps, page, inputs, stated, reference, path_stability, notes })
 }

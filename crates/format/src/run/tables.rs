@@ -27,6 +27,8 @@ use stead_placement::tool_scene::{SegmentMoves, ToolScene};
 ranges! {
     /// From -1 to 1.
     PlusMinusOne: Included(-1.0), Included(1.0);
+    /// From half a turn one way to half a turn the other. deg
+    HalfTurns: Included(-180.0), Included(180.0);
     /// From 0 to below 1.
     BelowOne: Included(0.0), Excluded(1.0);
     /// A margin of joint angles. deg
@@ -64,8 +66,10 @@ pub struct CellTable {
     pub y_mm: Interval<Mm>,
     /// Range `[min, max]` of the z coordinate.
     pub z_mm: Interval<Mm>,
-    /// Range `[min, max]` of sin(yaw / 2), the quaternion component that turns the workpiece about the vertical axis; all
-    /// yaw angles where left out.
+    /// Range `[min, max]` of the yaw of the workpiece about the vertical axis, from -180 to 180; all yaw angles where this and `q4` are
+    /// left out.
+    pub yaw_deg: Option<Interval<Deg<HalfTurns>>>,
+    /// The same as a range of sin(yaw / 2), the quaternion component that the papers state; at most one of the two.
     pub q4: Option<Interval<Number<PlusMinusOne>>>,
     /// The ways in which the part may lie, of which the search chooses one: the part is turned so before it is placed.
     pub orientations: Option<Vec<OrientationTable>>,
@@ -74,10 +78,22 @@ pub struct CellTable {
 }
 
 impl CellTable {
-    pub(super) fn cell(&self) -> Cell {
+    /// The cell that it states.
+    ///
+    /// # Errors
+    /// [`InputError`] for a yaw that is stated twice.
+    pub(super) fn cell(&self, at: &Place<'_>) -> Result<Cell, InputError> {
         let interval = |[min, max]: [f64; 2]| problem::Interval { min, max };
-        let yaw = self.q4.map_or([-1.0, 1.0], Interval::si).map(yaw_from_q4);
-        Cell { position: [self.x_mm, self.y_mm, self.z_mm].map(|ends| interval(ends.si())), yaw: interval(yaw) }
+        let yaw = match (self.yaw_deg, self.q4) {
+            (Some(_), Some(_)) => {
+                return Err(at
+                    .key("yaw_deg")
+                    .error("states the yaw once more, beside cell.q4", "one of yaw_deg and q4"));
+            }
+            (Some(yaw), None) => yaw.si(),
+            (None, q4) => q4.map_or([-1.0, 1.0], Interval::si).map(yaw_from_q4),
+        };
+        Ok(Cell { position: [self.x_mm, self.y_mm, self.z_mm].map(|ends| interval(ends.si())), yaw: interval(yaw) })
     }
 }
 
@@ -142,6 +158,8 @@ pub struct SearchTable {
     pub basins: Option<Whole<1, 64>>,
     /// Whether candidates are scored by a precomputed lookup table: where there can be one, `always` or `never`.
     pub tables: Option<Word<LookupUse>>,
+    /// Whether the worst placement is looked for, too, to show what is at stake; `true` where left out. It takes half of the time.
+    pub worst: Option<bool>,
     /// Points of the path by which candidates are compared, at least one of every segment: chosen where left out, and all of them
     /// where the path is short. What can win is planned on the whole path in any case.
     pub path_points: Option<Whole<1, 1000000000>>,
@@ -160,6 +178,7 @@ impl SearchTable {
             basins: self.basins.map_or(default.basins, Whole::count),
             tables: self.tables.map_or(default.tables, |word| word.0),
             path_points: self.path_points.map(Whole::count),
+            worst: self.worst.unwrap_or(default.worst),
             sensitivity: default.sensitivity,
         }
     }
@@ -279,6 +298,9 @@ mod tests {
         assert_eq!(run.problem.constraints.max_deflection, Some(1.5e-3));
         assert_eq!(run.problem.cell.position[2], Interval { min: -0.5, max: -0.5 });
         assert!((run.problem.cell.yaw.min - PI / 3.0).abs() < 1e-15 && run.problem.cell.yaw.width() == 0.0);
+        let in_degrees =
+            read(&RUN.replace("z_mm = [-500, -500]", "z_mm = [-500, -500]\nyaw_deg = [-30, 180]")).unwrap();
+        assert_eq!(in_degrees.problem.cell.yaw, Interval { min: (-30.0_f64).to_radians(), max: PI });
         assert_eq!(run.problem.redundancy.beta_count, 50);
         let default = SearchSettings::default();
         let expected = SearchSettings {
@@ -305,6 +327,16 @@ mod tests {
             ("[-300, 300]", "'wide'", [":7: cell.x_mm: ", "not an array", "found 'wide'"]),
             ("[-500, -500]", "[-500, -500]\nq4 = [-1, 1.5]", [":10: cell.q4[2]: ", "found 1.5", "from -1 to 1"]),
             ("[-500, -500]", "[-500, -500]\nq4 = [1, -1]", [":10: cell.q4: ", "found [1, -1]", "from -1 to 1"]),
+            (
+                "[-500, -500]",
+                "[-500, -500]\nyaw_deg = [-181, 0]",
+                [":10: cell.yaw_deg[1]: ", "found -181", "from -180 to 180"],
+            ),
+            (
+                "[-500, -500]",
+                "[-500, -500]\nq4 = [0, 1]\nyaw_deg = [0, 90]",
+                [":11: cell.yaw_deg: ", "beside cell.q4, found [0, 90]", "one of yaw_deg and q4"],
+            ),
             ("[1, 0, 0]", "[1, 0, 0.1]", [":5: spindle.rotation: ", "no rotation", "found [[0, -0.7"]),
             ("[1, 0, 0]", "[-1, 0, 0]", [":5: spindle.rotation: ", "reflection", "right-handed"]),
             ("684]", "684, 0]", [":4: spindle.xyz_mm: ", "4 elements and not 3", "found [0, 0, 684, 0]"]),
@@ -352,8 +384,13 @@ mod tests {
         };
         assert!(read("auto").is_ok() && read("never").is_ok());
         let message = read("always").unwrap_err().to_string();
-        for part in ["run.toml:18: search.tables: ", "not upright", "point 0", "found 'always'", "; allowed: \"auto\""]
-        {
+        for part in [
+            "run.toml:18: search.tables: ",
+            "not upright: its axis is 36.870 deg",
+            "point 0",
+            "found 'always'",
+            "; allowed: \"auto\"",
+        ] {
             assert!(message.contains(part), "{part} in {message}");
         }
     }

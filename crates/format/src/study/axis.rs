@@ -21,7 +21,18 @@ pub(crate) struct Axis {
 #[derive(Debug, Clone)]
 enum AxisValues {
     Listed(Vec<AxisPoint>),
-    Range { from: f64, to: f64, count: Option<usize>, spacing: Spacing },
+    Range {
+        from: f64,
+        to: f64,
+        count: Option<usize>,
+        spacing: Spacing,
+    },
+    /// Numbers at equal differences, upwards or downwards.
+    Steps {
+        from: f64,
+        step: f64,
+        count: usize,
+    },
 }
 
 /// One value of an axis: what it puts into the files, and what stands for it in the table of results.
@@ -75,6 +86,7 @@ impl Axis {
         match &self.values {
             AxisValues::Listed(points) => Some(points.len()),
             AxisValues::Range { count, .. } => *count,
+            AxisValues::Steps { count, .. } => Some(*count),
         }
     }
 
@@ -86,6 +98,7 @@ impl Axis {
                 let last = count.unwrap_or(1).max(2) - 1;
                 self.number(number as f64 / last as f64)
             }
+            AxisValues::Steps { from, step, .. } => self.point_of(from + step * number as f64),
         }
     }
 
@@ -97,6 +110,7 @@ impl Axis {
                 points[number.min(points.len() - 1)].clone()
             }
             AxisValues::Range { .. } => self.number(share),
+            AxisValues::Steps { count, .. } => self.point(((share * *count as f64) as usize).min(count - 1)),
         }
     }
 
@@ -109,6 +123,11 @@ impl Axis {
             Spacing::Linear => from + (to - from) * share,
             Spacing::Log => from * libm::pow(to / from, share),
         };
+        self.point_of(value)
+    }
+
+    /// A number as a value of the axis.
+    fn point_of(&self, value: f64) -> AxisPoint {
         // Twelve digits are enough for any field, and spare the table of results the noise of rounding.
         let value: f64 = format!("{value:.11e}").parse().unwrap_or(value);
         let field = &self.fields[0];
@@ -185,6 +204,9 @@ fn listed(
 fn range_of(range: &RangeTable, at: &Place<'_>) -> Result<AxisValues, InputError> {
     let (from, to) = (range.from.si(), range.to.si());
     let spacing = range.spacing.map_or(Spacing::Linear, |word| word.0);
+    if let Some(step) = range.step {
+        return steps_of(range, step.si(), at);
+    }
     if spacing == Spacing::Log && !(from > 0.0 && to > 0.0) {
         return Err(at.key("spacing").error("has no ratios, for an end is not above 0", "\"linear\", or ends above 0"));
     }
@@ -192,4 +214,27 @@ fn range_of(range: &RangeTable, at: &Place<'_>) -> Result<AxisValues, InputError
         return Err(at.key("to").error("is equal to from", "another number"));
     }
     Ok(AxisValues::Range { from, to, count: range.count.map(|count| count.count()), spacing })
+}
+
+/// The most values that a step may make of a range.
+const MAX_STEPS: f64 = 1e6;
+
+/// A step that misses the end by less than this share of itself meets it.
+const ROUNDING: f64 = 1e-9;
+
+fn steps_of(range: &RangeTable, step: f64, at: &Place<'_>) -> Result<AxisValues, InputError> {
+    if range.count.is_some() {
+        return Err(at.key("step").error("is there beside count", "one of count and step"));
+    }
+    if range.spacing.is_some_and(|word| word.0 == Spacing::Log) {
+        return Err(at.key("step").error("is there beside ratios", "spacing = \"linear\", or a count"));
+    }
+    let (from, to) = (range.from.si(), range.to.si());
+    let steps = libm::floor((to - from).abs() / step + ROUNDING);
+    if !(1.0..MAX_STEPS).contains(&steps) {
+        let allowed =
+            format!("a step of at most {}, the length of the range, and at least a millionth of it", (to - from).abs());
+        return Err(at.key("step").error("leaves one value, or more than a million", allowed));
+    }
+    Ok(AxisValues::Steps { from, step: step.copysign(to - from), count: steps as usize + 1 })
 }

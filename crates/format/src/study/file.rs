@@ -3,7 +3,7 @@
 use crate::run::PositiveWeight;
 use crate::scalars::{Whole, Word, words};
 use crate::shapes::List;
-use crate::units::Number;
+use crate::units::{Number, Positive};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
@@ -94,8 +94,10 @@ pub struct RangeTable {
     pub from: Number,
     /// The last.
     pub to: Number,
-    /// How many; a Latin hypercube takes as many as it has samples.
+    /// How many; where this and `step` are left out, a Latin hypercube takes as many as it has samples.
     pub count: Option<Whole<2, 1000000>>,
+    /// In place of a count, the difference from one to the next, up to the last that is not past `to`.
+    pub step: Option<Number<Positive>>,
     /// At equal differences, `linear` (where left out), or at equal ratios, `log`.
     pub spacing: Option<Word<Spacing>>,
 }

@@ -89,6 +89,37 @@ values = [[-2000, -1900], [-2100, -2000], [-2200, -2100]]
 }
 
 #[test]
+fn steps_go_up_to_the_end_and_not_past_it() {
+    let folder = folder();
+    for (range, expected) in [
+        ("from = 0, to = 100, step = 25", &["0", "25", "50", "75", "100"][..]),
+        ("from = 0, to = 90, step = 25", &["0", "25", "50", "75"]),
+        ("from = 1, to = 0.7, step = 0.1", &["1", "0.9", "0.8", "0.7"]),
+    ] {
+        let text = format!(
+            "base = 'run.toml'\n[[axis]]\nfield = 'constraints.characteristic_length_mm'\nrange = {{ {range} }}\n"
+        );
+        assert_eq!(shown(&study_in(&folder, &text).unwrap()), expected, "{range}");
+    }
+    let text = "base = 'run.toml'\ncombine = 'latin'\nsamples = 6\n[[axis]]\nfield = 'cell.x_mm[1]'
+range = { from = -300, to = -100, step = 100 }\n";
+    let mut values = shown(&study_in(&folder, text).unwrap());
+    values.sort();
+    assert_eq!(values, ["-100", "-100", "-200", "-200", "-300", "-300"]);
+    for (range, parts) in [
+        ("from = 0, to = 90, step = 91", ["axis[1].range.step: ", "leaves one value", "found 91", "at most 90"]),
+        ("from = 0, to = 90, step = 1e-7", ["axis[1].range.step: ", "more than a million", "found 1e-7", "millionth"]),
+        ("from = 0, to = 90, step = 0", ["axis[1].range.step: ", "out of range", "found 0", "above 0"]),
+        ("from = 0, to = 90, step = 9, count = 3", ["axis[1].range.step: ", "beside count", "found 9", "one of"]),
+        ("from = 1, to = 9, step = 2, spacing = 'log'", ["axis[1].range.step: ", "ratios", "found 2", "linear"]),
+    ] {
+        let text = format!("base = 'run.toml'\n[[axis]]\nfield = 'cell.x_mm[1]'\nrange = {{ {range} }}\n");
+        let message = study_in(&folder, &text).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+}
+
+#[test]
 fn a_latin_hypercube_meets_every_stratum_once() {
     let folder = folder();
     let text = "base = 'run.toml'\ncombine = 'latin'\nsamples = 20\nseed = 7

@@ -38,7 +38,7 @@ pub fn best(
     // Of no placement anything is known until the tables are made.
     let ceiling = search.ceiling();
     let mut nodes = 0;
-    let coarse = CoarseBounds::new(&model, || search.report(monitor, 0.0, 1, 0));
+    let coarse = CoarseBounds::new(&model, monitor, || search.report(monitor, 0.0, 1, 0));
     let left = coarse.and_then(|coarse| survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor));
     let left = match left {
         Ok(left) => left,
@@ -52,7 +52,7 @@ pub fn best(
     let all = Parts {
         start,
         nodes,
-        of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling),
+        of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling, monitor),
         used: || model.table.used(),
         bytes: |active: &Arc<ActiveCells>| active.bytes(),
     };
@@ -78,7 +78,9 @@ fn survivors(
             return Err(stop);
         }
         *nodes += open.len();
-        let bounds: Vec<Option<f64>> = open.par_iter().map(|region| coarse.lower_bound(model, region)).collect();
+        // Where the caller asks to stop nothing is known, which is a bound too.
+        let bound = |region| if monitor.should_stop() { None } else { coarse.lower_bound(model, region) };
+        let bounds: Vec<Option<f64>> = open.par_iter().map(bound).collect();
         let mut next = Vec::new();
         for (region, bound) in open.iter().zip(bounds) {
             if bound.is_some_and(|bound| bound >= ceiling) || !model.yaws.allow(region) {
@@ -95,7 +97,12 @@ fn survivors(
 }
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.
-fn parts(model: &Model, open: &Open<Arc<ActiveCells>>, ceiling: f64) -> Option<Vec<Open<Arc<ActiveCells>>>> {
+fn parts(
+    model: &Model,
+    open: &Open<Arc<ActiveCells>>,
+    ceiling: f64,
+    monitor: &Monitor,
+) -> Option<Vec<Open<Arc<ActiveCells>>>> {
     let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
     let bounds = halves.map(|region| {
         let level = model.level(&region).unwrap_or(0);
@@ -103,7 +110,7 @@ fn parts(model: &Model, open: &Open<Arc<ActiveCells>>, ceiling: f64) -> Option<V
         while active.level < level {
             active = active.halved();
         }
-        let found = model.lower_bound(&region, &active, ceiling);
+        let found = model.lower_bound(&region, &active, ceiling, monitor);
         Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.active) }
     });
     Some(bounds.collect())

@@ -206,7 +206,7 @@ impl BranchAndBound {
                     (self.value, met) = (value, Some(placement));
                     queue.keep_past(self.sign() * self.ceiling());
                 }
-                None => break Status::Exhausted,
+                None => break monitor.stop().map_or(Status::Exhausted, Status::from),
             }
         };
         let (sign, count) = (self.sign(), self.points as f64);
@@ -243,8 +243,22 @@ impl BranchAndBound {
                 return Err(Status::Memory);
             }
             let batch: Vec<_> = std::iter::from_fn(|| queue.heap.pop()).take(BATCH).collect();
-            let results: Vec<_> = batch.par_iter().map(|queued| parts(&queued.open)).collect();
+            // What a box comes to after the caller has asked to stop says nothing: it stays as it was.
+            let of = |queued: &Queued<T>| match monitor.stop() {
+                Some(stop) => Err(stop),
+                None => Ok(parts(&queued.open)).and_then(|parts| monitor.stop().map_or(Ok(parts), Err)),
+            };
+            let results: Vec<_> = batch.par_iter().map(of).collect();
+            let mut stopped = None;
             for (whole, parts) in batch.into_iter().zip(results) {
+                let parts = match parts {
+                    Ok(parts) => parts,
+                    Err(stop) => {
+                        stopped = Some(stop);
+                        queue.heap.push(whole);
+                        continue;
+                    }
+                };
                 let Some(parts) = parts else {
                     queue.stuck.push(whole);
                     continue;
@@ -255,6 +269,9 @@ impl BranchAndBound {
                     let bytes = bytes(&part.known);
                     queue.push(part, bytes, ceiling);
                 }
+            }
+            if let Some(stop) = stopped {
+                return Err(stop.into());
             }
         }
         Ok(())

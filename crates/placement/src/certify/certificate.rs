@@ -63,6 +63,9 @@ pub enum NoProof {
     /// The problem cannot be certified.
     #[error(transparent)]
     Unsupported(#[from] Unsupported),
+    /// There is no placement to bound.
+    #[error("it was not looked for")]
+    NotLookedFor,
     /// The caller stopped before the search began.
     #[error("interrupted before it began")]
     Interrupted,
@@ -83,15 +86,15 @@ impl Serialize for NoProof {
     }
 }
 
-/// Bounds how far a placement with the mean score `mean` (m) is from the best there is, and the placement `worst` from the worst,
-/// within a common time limit: that of the settings, or the deadline of the monitor where it comes first.
+/// Bounds how far a placement with the mean score `mean` (m) is from the best there is, and the placement `worst`, where one was looked
+/// for, from the worst, within a common time limit: that of the settings, or the deadline of the monitor where it comes first.
 ///
 /// The lower bound keeps the rate of beta; the upper bound, like the value it is compared with ([`relaxed_value`]), does not. The
 /// result does not depend on the number of threads, unless the time limit or the caller ends it.
 pub fn certify(
     problem: &Problem,
     (found, mean): (&Placement, f64),
-    found_worst: &Placement,
+    found_worst: Option<&Placement>,
     settings: CertificateSettings,
     monitor: &Monitor,
 ) -> Certificate {
@@ -105,14 +108,15 @@ pub fn certify(
         Some(_) => (monitor.clone(), CertificateSettings { time_limit: None, ..settings }),
         None => (monitor.clone(), settings),
     };
+    let ended = || match monitor.stop() {
+        Some(Stop::Asked) => Err(NoProof::Interrupted),
+        Some(Stop::Deadline) => Err(NoProof::TimeLimit),
+        None => Ok(()),
+    };
     let prove = |sense: Sense, placement: &Placement, value: &dyn Fn() -> Option<f64>| -> Result<Proof, NoProof> {
         certifiable(problem, settings.memory)?;
-        match monitor.stop() {
-            Some(Stop::Asked) => return Err(NoProof::Interrupted),
-            Some(Stop::Deadline) => return Err(NoProof::TimeLimit),
-            None => {}
-        }
-        let value = value().ok_or(NoProof::NoRelaxedValue)?;
+        ended()?;
+        let Some(value) = value() else { return Err(ended().err().unwrap_or(NoProof::NoRelaxedValue)) };
         if value <= CANCELLATION {
             return Err(NoProof::Cancelled);
         }
@@ -123,7 +127,10 @@ pub fn certify(
         Ok(Proof { found: value, ..Proof::new(problem, sense, *placement, bound) })
     };
     let best = prove(Sense::Min, found, &|| Some(mean));
-    let worst = prove(Sense::Max, found_worst, &|| relaxed_value(problem, found_worst));
+    let worst = match found_worst {
+        Some(found) => prove(Sense::Max, found, &|| relaxed_value(problem, found, &monitor)),
+        None => Err(NoProof::NotLookedFor),
+    };
     let warnings = shortfalls(&settings, &best, &worst);
     Certificate { settings, best, worst, warnings, wall: started.elapsed().as_secs_f64() }
 }
@@ -150,6 +157,7 @@ fn shortfalls(
         Ok(proof) => {
             proof.shortfall(settings).map(|why| Warning::new("certificate-gap", format!("{name} placement, {why}")))
         }
+        Err(NoProof::NotLookedFor) => None,
         Err(reason) => Some(Warning::new("no-bound", format!("no certificate for the {name} placement: {reason}"))),
     };
     [("best", best), ("worst", worst)].into_iter().filter_map(one).collect()

@@ -7,7 +7,7 @@ use super::region::{Point, Region};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
-use stead_numerics::monitor::Stop;
+use stead_numerics::monitor::{Monitor, Stop};
 
 /// Coarse tables, one for each kind of force, in ever coarser levels.
 #[derive(Debug, Clone)]
@@ -34,11 +34,11 @@ const ROWS: usize = 64;
 const MAX_COUNTED: usize = 1000;
 
 impl CoarseBounds {
-    /// Makes them, unless `stop`, asked again and again, gives a reason to stop before that.
+    /// Makes them, unless `stop`, asked again and again, gives a reason to stop before that; `monitor` is asked the same within long steps.
     ///
     /// # Errors
     /// The reason to stop.
-    pub fn new(model: &Model, stop: impl Fn() -> Option<Stop>) -> Result<Self, Stop> {
+    pub fn new(model: &Model, monitor: &Monitor, stop: impl Fn() -> Option<Stop>) -> Result<Self, Stop> {
         let (extent, steps) = model.table.grid();
         let kinds = kinds(&model.points);
         let force_of = model.points.iter().map(|p| kinds.iter().position(|f| same(f, &p.force))).collect();
@@ -49,14 +49,20 @@ impl CoarseBounds {
             if let Some(stop) = stop() {
                 return Err(stop);
             }
-            let rows: Vec<Vec<Affine>> =
-                some.par_iter().map(|row| row_of(model, &kinds, [row / counts[1], row % counts[1]], steps)).collect();
+            let row = |row: &usize| match monitor.should_stop() {
+                true => Vec::new(),
+                false => row_of(model, &kinds, [row / counts[1], row % counts[1]], steps),
+            };
+            let rows: Vec<Vec<Affine>> = some.par_iter().map(row).collect();
             entries.extend(rows.into_iter().flatten());
         }
         let mut levels = vec![Level { counts, entries }];
         let mut half = [steps.length, steps.length, TAU / steps.headings as f64];
         for _ in 0..2 {
-            let next = levels.last().map(|level| level.coarser(half, kinds.len()));
+            let next = levels.last().map(|level| level.coarser(half, kinds.len(), monitor));
+            if let Some(stop) = stop() {
+                return Err(stop);
+            }
             levels.extend(next);
             half = half.map(|h| 2.0 * h);
         }
@@ -161,7 +167,7 @@ fn same(a: &[f64; 3], b: &[f64; 3]) -> bool {
 }
 
 impl Level {
-    fn coarser(&self, half: [f64; 3], forces: usize) -> Self {
+    fn coarser(&self, half: [f64; 3], forces: usize, monitor: &Monitor) -> Self {
         let [n0, n1, n2] = self.counts;
         let counts = [n0.div_ceil(2) + usize::from(n0 % 2 == 0), n1.div_ceil(2) + usize::from(n1 % 2 == 0), n2 / 2];
         let rows: Vec<Vec<Affine>> = (0..counts[0] * counts[1])
@@ -170,6 +176,9 @@ impl Level {
                 let (i, j) = (row / counts[1], row % counts[1]);
                 let near = |k: usize, n: usize| (2 * k).saturating_sub(1)..(2 * k + 2).min(n);
                 let mut out = Vec::with_capacity(counts[2] * forces * 4);
+                if monitor.should_stop() {
+                    return out;
+                }
                 for k in 0..counts[2] {
                     for kind in 0..forces * 4 {
                         let children = || {

@@ -13,6 +13,7 @@ use super::region::Region;
 use super::sliding_min::{INFINITE, SlidingMin, min_into, plus};
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
+use stead_numerics::monitor::Monitor;
 
 /// Steps over more cells than there are.
 const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);
@@ -31,10 +32,13 @@ impl Model {
     ///
     /// A point that tables do not answer for, whether the box is too large for the level, or may have it near axis 1, costs
     /// nothing and loses no cell, and beta may step anywhere from it and to it. The bound is left to the other points.
-    pub fn lower_bound(&self, region: &Region, active: &ActiveCells, ceiling: f64) -> LowerBound {
+    ///
+    /// Once the caller asks to stop, what is returned is no bound.
+    pub fn lower_bound(&self, region: &Region, active: &ActiveCells, ceiling: f64, monitor: &Monitor) -> LowerBound {
         let count = active.count();
         let mut pass = Pass {
             model: self,
+            monitor,
             region,
             points: self.point_costs(region),
             active: active.clone(),
@@ -92,6 +96,7 @@ impl Model {
 /// The dynamic programming over one box.
 struct Pass<'a> {
     model: &'a Model,
+    monitor: &'a Monitor,
     region: &'a Region,
     /// `None` for a point of which nothing is known.
     points: Vec<Option<PointCost>>,
@@ -129,6 +134,10 @@ impl Pass<'_> {
         let mut rows: Vec<Row> = Vec::with_capacity(span.len());
         let mut end = INFINITE;
         for point in span.clone() {
+            // Making the nodes of one point takes up to milliseconds, and there are thousands of points.
+            if self.monitor.should_stop() {
+                return None;
+            }
             let row = self.row(point, class, rows.last());
             end = row.min;
             if end[0] == f64::INFINITY {

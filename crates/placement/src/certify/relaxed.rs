@@ -5,6 +5,7 @@ use crate::problem::{Placement, Problem};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
+use stead_numerics::monitor::Monitor;
 
 /// Grid values of beta, before it is refined.
 const BETAS: usize = 360;
@@ -12,17 +13,20 @@ const BETAS: usize = 360;
 const NARROWINGS: usize = 43;
 
 /// The mean over the path points of the least score over beta, in the best posture class of each segment; `None` where some
-/// segment has no class that is allowed at all its points. m
+/// segment has no class that is allowed at all its points, or once the caller asks to stop. m
 ///
 /// What must hold: reach, the limits of joints 2, 3 and 5 (of the last the farther from zero, both ways) and the least inverse
 /// condition. What is relaxed: the rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest deflection of a
 /// point. So no plan of the placement has a lower mean score. Beta is sought over a grid of one degree and then by golden
 /// section about each least value; ranges of allowed beta narrower than the grid may be missed.
-pub fn relaxed_value(problem: &Problem, placement: &Placement) -> Option<f64> {
+pub fn relaxed_value(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<f64> {
     let points = problem.task.points().len();
     let all: Vec<[f64; 4]> = (0..points)
         .into_par_iter()
-        .map(|point| PostureClass::ALL.map(|class| minimum(&|beta| score(problem, placement, point, class, beta))))
+        .map(|point| {
+            let minimum = |class| minimum(&|beta| score(problem, placement, point, class, beta));
+            if monitor.should_stop() { [f64::INFINITY; 4] } else { PostureClass::ALL.map(minimum) }
+        })
         .collect();
     let mut sum = 0.0;
     for span in problem.task.segments() {

@@ -18,6 +18,7 @@ use super::region::Region;
 use super::sliding_min::plus;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
+use stead_numerics::monitor::Monitor;
 
 /// What a point may cost in the first, quick bound, as a share of the mean that is to be stayed below.
 const CHEAP: f64 = 0.8;
@@ -69,6 +70,8 @@ struct ClassBound {
 pub(super) struct BoxBounds<'a> {
     model: &'a Model,
     region: &'a Region,
+    /// Once it asks to stop, what is returned is no bound.
+    monitor: &'a Monitor,
     /// `None` for a point that may be near axis 1, so that nothing is known of it.
     pub points: Vec<Option<PointCost>>,
     pub level: usize,
@@ -76,9 +79,9 @@ pub(super) struct BoxBounds<'a> {
 
 impl<'a> BoxBounds<'a> {
     /// `None` for one too large for the tables.
-    pub fn new(model: &'a Model, region: &'a Region) -> Option<Self> {
+    pub fn new(model: &'a Model, region: &'a Region, monitor: &'a Monitor) -> Option<Self> {
         let level = model.level(region)?;
-        Some(Self { model, region, points: model.point_costs(region), level })
+        Some(Self { model, region, monitor, points: model.point_costs(region), level })
     }
 
     /// Bounds cells of one point and class: the best of those surely allowed, and the greatest costs of all that may be.
@@ -131,7 +134,7 @@ impl<'a> BoxBounds<'a> {
             for point in self.model.segments[segment].clone() {
                 let place = point * 4 + class.index();
                 let cell = before.cells[place];
-                let found = (cell != NONE).then(|| {
+                let found = (cell != NONE && !self.monitor.should_stop()).then(|| {
                     let middle = ((usize::from(cell) << finer) + (1 << finer) / 2) >> coarser;
                     let near = (0..2 * NEIGHBOURS + 1).map(|k| (middle + count + k - NEIGHBOURS) % count);
                     self.bound_cells(point, class, near).best
@@ -159,6 +162,9 @@ impl<'a> BoxBounds<'a> {
             let through = |class: PostureClass| {
                 let (mut sum, mut start) = ([0.0; CORNERS], 0);
                 for point in span.clone() {
+                    if self.monitor.should_stop() {
+                        return None;
+                    }
                     let found = (0..count).map(|k| (start + k) % count).find_map(|cell| {
                         let (cell, costs) = self.bound_cells(point, class, std::iter::once(cell)).best?;
                         (greatest(&costs) <= cheap).then_some((cell, costs))
@@ -180,6 +186,9 @@ impl<'a> BoxBounds<'a> {
     fn complete(&self, segment: usize, way: &mut ClassBound, seen: &mut Inherited) -> bool {
         let count = self.model.table.headings(self.level);
         for point in std::mem::take(&mut way.missing) {
+            if self.monitor.should_stop() {
+                return false;
+            }
             let bounds = self.bound_cells(point, way.class, 0..count);
             match bounds.best {
                 Some((cell, costs)) => {

@@ -51,11 +51,11 @@ pub fn worst(
     let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len(), memory };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
-    let start = first(&model, whole(problem)).into_iter().map(unknown).collect();
+    let start = first(&model, whole(problem), monitor).into_iter().map(unknown).collect();
     let all = Parts {
         start,
         nodes: 0,
-        of: |open: &WorstBox| parts(&model, open, ceiling),
+        of: |open: &WorstBox| parts(&model, open, ceiling, monitor),
         used: || model.table.used(),
         bytes: |seen: &Option<Arc<Inherited>>| seen.as_ref().map_or(0, |seen| seen.bytes()),
     };
@@ -74,7 +74,7 @@ const SAME: f64 = 1e-6;
 fn worse(problem: &Problem, known: f64, regions: &[Region], monitor: &Monitor) -> Option<(f64, Placement)> {
     let of = |region: &Region| {
         let placement = placement_in(problem, region);
-        let value = if monitor.should_stop() { None } else { relaxed_value(problem, &placement) };
+        let value = relaxed_value(problem, &placement, monitor);
         Some((value?, placement))
     };
     let met = regions.iter().filter_map(of).max_by(|a, b| a.0.total_cmp(&b.0));
@@ -88,13 +88,13 @@ fn without_rate(problem: &Problem) -> Model {
     Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
 }
 
-/// The boxes to begin with, together all of the cell.
-fn first(model: &Model, whole: Region) -> Vec<Region> {
+/// The boxes to begin with, together all of the cell; larger ones once the caller asks to stop.
+fn first(model: &Model, whole: Region, monitor: &Monitor) -> Vec<Region> {
     let (mut open, mut out) = (vec![whole], Vec::new());
     while let Some(region) = open.pop() {
         match widest(&region) {
             _ if !model.yaws.allow(&region) => {}
-            (_, size) if size <= SMALL || model.level(&region).is_some() => out.push(region),
+            (_, size) if size <= SMALL || monitor.should_stop() || model.level(&region).is_some() => out.push(region),
             (side, _) => open.extend(region.split(side)),
         }
     }
@@ -102,12 +102,12 @@ fn first(model: &Model, whole: Region) -> Vec<Region> {
 }
 
 /// A box not bounded in detail yet with its bound, or the halves of one with theirs; `None` where it is not to be cut further.
-fn parts(model: &Model, open: &WorstBox, ceiling: f64) -> Option<Vec<WorstBox>> {
+fn parts(model: &Model, open: &WorstBox, ceiling: f64, monitor: &Monitor) -> Option<Vec<WorstBox>> {
     let (parts, seen) = match &open.known {
         None => (vec![open.region], Arc::new(Inherited::nothing(model))),
         Some(seen) => (halves(&open.region)?.to_vec(), Arc::clone(seen)),
     };
-    let bound = |region: Region| match BoxBounds::new(model, &region) {
+    let bound = |region: Region| match BoxBounds::new(model, &region, monitor) {
         Some(over) => {
             let quick = if open.known.is_none() { over.quick_bound(ceiling) } else { f64::INFINITY };
             if quick <= ceiling {

@@ -284,16 +284,28 @@ fn the_same_table_for_any_number_of_threads() {
 #[test]
 fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     let refused = |problem: &Problem| LookupTable::shape_for(problem).unwrap_err();
-    let mut tilted = five_segments();
+    let with_axes = |axis_of: &dyn Fn(usize) -> Vector3<f64>| {
+        let mut problem = five_segments();
+        let path = problem.task.path();
+        let points = path.points().iter().enumerate();
+        let points = points.map(|(k, point)| (path.segment_of(k) as u32 + 1, PathPoint { axis: axis_of(k), ..*point }));
+        let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+        problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+        refused(&problem)
+    };
     let (sine, cosine) = libm::sincos(0.01);
-    let path = tilted.task.path();
-    let points = path.points().iter().enumerate().map(|(k, point)| {
-        let axis = if k == 40 { Vector3::new(sine, 0.0, cosine) } else { point.axis };
-        (path.segment_of(k) as u32 + 1, PathPoint { axis, ..*point })
-    });
-    let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    tilted.task = Task::new(path, tilted.task.wrenches().to_vec()).unwrap();
-    assert_eq!(refused(&tilted), Unsupported::TiltedTool { point: 40 });
+    let (tilted, upright) = (Vector3::new(sine, 0.0, cosine), Vector3::z());
+    // One point that leans, and a constant tilt, whose first point leans as well.
+    for first in [40, 0] {
+        let axis_of = |k: usize| if first == 0 || k == first { tilted } else { upright };
+        let Unsupported::TiltedTool { point, angle } = with_axes(&axis_of) else { panic!("the tool leans") };
+        assert!(point == first && (angle - 0.01).abs() < 1e-12, "{point} {angle}");
+    }
+    assert_eq!(
+        with_axes(&|_| tilted).to_string(),
+        "the tool is not upright: its axis is 0.573 deg from the vertical at point 0"
+    );
+    assert_eq!(with_axes(&|k| if k < 40 { upright } else { -upright }), Unsupported::UpsideDown { point: 40 });
 
     let mut twisted = five_segments();
     let mut wrenches = twisted.task.wrenches().to_vec();

@@ -9,6 +9,7 @@ use crate::outcome::Refinement;
 use crate::refine::{found_again, planned, refine};
 use crate::search::SearchResult;
 use crate::sense::Sense;
+use crate::settings::SearchSettings;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
@@ -21,21 +22,29 @@ pub(super) const TIE: f64 = 1e-5;
 /// improved on a lookup table: refinement gains less from there.
 pub(super) const MAX_DEFICIT: f64 = 0.03;
 
-/// The best and the worst of the refined basins of both searches, the best by its regret where regrets are given; `None` when
-/// there is none.
-pub(super) fn choose(basins: &[Vec<Refined>; 2], regrets: Option<&[Option<f64>]>) -> Option<[Refined; 2]> {
+/// The best and, where it is looked for, the worst of the refined basins of both searches, the best by its regret where regrets are given;
+/// `None` when there is none.
+pub(super) fn choose(
+    basins: &[Vec<Refined>; 2],
+    regrets: Option<&[Option<f64>]>,
+    settings: &SearchSettings,
+) -> Option<(Refined, Option<Refined>)> {
     let by_regret = regrets.and_then(least_regret).and_then(|place| basins[0].get(place));
     let best = by_regret.or_else(|| leading(Sense::Min, &basins[0]));
-    match [best, leading(Sense::Max, &basins[1])] {
+    if !settings.worst {
+        return best.map(|best| (best.clone(), None));
+    }
+    let [best, worst] = match [best, leading(Sense::Max, &basins[1])] {
         // Of two searches that were stopped early either may have met the better placement.
         [Some(best), Some(worst)] if by_regret.is_none() && best.solution.objective > worst.solution.objective => {
-            Some([worst.clone(), best.clone()])
+            [worst, best]
         }
-        [Some(best), Some(worst)] => Some([best.clone(), worst.clone()]),
+        [Some(best), Some(worst)] => [best, worst],
         // A search whose basins have no plan on the finer grid takes the other's.
-        [Some(only), None] | [None, Some(only)] => Some([only.clone(), only.clone()]),
-        [None, None] => None,
-    }
+        [Some(only), None] | [None, Some(only)] => [only, only],
+        [None, None] => return None,
+    };
+    Some((best.clone(), Some(worst.clone())))
 }
 
 /// The first of the basins whose objective is the best in a sense.

@@ -64,12 +64,12 @@ impl std::fmt::Display for Infeasible {
         }
         write!(
             f,
-            " x = {:.1} mm, y = {:.1} mm, z = {:.1} mm, Q4 = {:.4} (yaw {:.2} deg):",
+            " x = {:.1} mm, y = {:.1} mm, z = {:.1} mm, yaw = {:.2} deg (Q4 {:.4}):",
             x * 1e3,
             y * 1e3,
             z * 1e3,
-            self.placement.q4(),
-            self.placement.yaw.to_degrees()
+            self.placement.yaw.to_degrees(),
+            self.placement.q4()
         )?;
         self.findings.iter().try_for_each(|finding| write!(f, "\n  {finding}"))?;
         self.collisions.iter().try_for_each(|pair| write!(f, "\n  {pair}"))?;

@@ -142,11 +142,13 @@ impl LongPath {
                 repeats += 1;
                 continue;
             }
-            for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(|(_, found)| found.basins.is_empty()) {
+            let is_without =
+                |(sense, found): &(Sense, &mut SearchResult)| settings.seeks(*sense) && found.basins.is_empty();
+            for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(is_without) {
                 found.basins =
                     search::distinct(&self.search.of(problem), &self.comparison.ranked(sense), settings.basins);
             }
-            if !SearchResult::share_basins(&mut found) {
+            if !SearchResult::share_basins(&mut found, settings) {
                 return match monitor.should_stop() {
                     false => search_cell(full, settings, monitor),
                     true => Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor)),
@@ -173,7 +175,7 @@ impl LongPath {
             SearchSettings { population: settings.population.div_ceil(SHARE).max(settings.basins), ..*settings };
         let first = settings.generations - settings.generations / LAST_GENERATIONS;
         let mut evaluations = 0;
-        for (sense, found) in Sense::BOTH.into_iter().zip(found) {
+        for (sense, found) in Sense::BOTH.into_iter().zip(found).filter(|(sense, _)| settings.seeks(*sense)) {
             if monitor.should_stop() {
                 break;
             }

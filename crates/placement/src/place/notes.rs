@@ -24,6 +24,11 @@ pub(super) fn of(problem: &Problem, plan: &Plan, feed: &CutFeed) -> Vec<String> 
     small_part(problem, plan).into_iter().chain(large).chain(slowed(feed)).collect()
 }
 
+/// A note that there is no worst placement to compare with.
+pub(super) fn best_alone() -> String {
+    "the worst placement was not looked for: there is nothing to compare the best one with".to_owned()
+}
+
 /// A note that the arm does not hold the programmed feed.
 fn slowed(feed: &CutFeed) -> Option<String> {
     let (segments, limit) = (feed.slowed(), feed.highest()?);

@@ -20,6 +20,11 @@ pub(super) struct Searched<'a> {
     pub evaluations: usize,
 }
 
+/// What the searches of both senses come to, each by itself; nothing for one that is not asked for.
+fn of_sought(settings: &SearchSettings, search: impl Fn(Sense) -> SearchResult) -> [SearchResult; 2] {
+    Sense::BOTH.map(|sense| if settings.seeks(sense) { search(sense) } else { SearchResult::nothing() })
+}
+
 /// Searches for the best and the worst placement on the coarse grid; a planner on the finer one, `finer`, has the last word on
 /// what is feasible.
 pub(super) fn search_cell<'a>(
@@ -29,7 +34,7 @@ pub(super) fn search_cell<'a>(
 ) -> Result<Searched<'a>, Infeasible> {
     let problem = finer.problem();
     if let Some(placement) = problem.cell.pinned() {
-        let found = Sense::BOTH.map(|sense| search::pinned(finer, placement, sense));
+        let found = of_sought(settings, |sense| search::pinned(finer, placement, sense));
         return match found[0].basins[0].objective {
             Objective::Feasible(_) => Ok(Searched { found, table: None, lookup_summary: None, evaluations: 1 }),
             Objective::Infeasible { .. } => Err(infeasible(finer, &placement, None, false, monitor)),
@@ -47,7 +52,7 @@ pub(super) fn search_cell<'a>(
     let mut table = table.and_then(Result::ok);
     let search = |table: Option<&LookupTable<'_>>| {
         let evaluator = Evaluator::new(&planner, table).with_finer_planner(finer);
-        Sense::BOTH.map(|sense| search::search(&evaluator, settings, sense, monitor))
+        of_sought(settings, |sense| search::search(&evaluator, settings, sense, monitor))
     };
     let mut found = search(table.as_ref());
     let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
@@ -58,12 +63,12 @@ pub(super) fn search_cell<'a>(
     }
     if !found.iter().any(SearchResult::is_feasible) {
         evaluations += found.iter().map(|f| f.basins.len()).sum::<usize>();
-        for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
+        for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(|(sense, _)| settings.seeks(*sense)) {
             search::evaluate_finer(finer, sense, &mut found.basins, monitor);
             found.basins.truncate(settings.basins);
         }
     }
-    if !SearchResult::share_basins(&mut found) {
+    if !SearchResult::share_basins(&mut found, settings) {
         let nearest = &found[0].basins[0];
         return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
     }

@@ -66,9 +66,7 @@ pub(super) fn place_in_all(
         };
         return Err(refused.unwrap_or_else(nothing));
     };
-    if let Some([best_plan, worst_plan]) = worst {
-        (outcome.cases.worst, outcome.cases.worst_worst_plan) = (best_plan, worst_plan);
-    }
+    outcome.cases.worst = worst;
     (outcome.evaluations, outcome.states) = (evaluations, states);
     outcome.tried_setups = tried;
     job.improve(&mut outcome);
@@ -122,12 +120,13 @@ impl Job<'_> {
                 return None;
             }
         };
-        let [best, worst] = [&outcome.cases.best, &outcome.cases.worst].map(|case| case.plan.objective);
-        found.tried.push(tried(Some([best, worst])));
+        let best = outcome.cases.best.plan.objective;
+        let worst = outcome.cases.worst.as_ref().map(|[case, _]| case.plan.objective);
+        found.tried.push(tried(Some((best, worst))));
         found.evaluations += outcome.evaluations;
         found.states += outcome.states;
-        if found.worst.as_ref().is_none_or(|[known, _]| worst > known.plan.objective) {
-            found.worst = Some([outcome.cases.worst.clone(), outcome.cases.worst_worst_plan.clone()]);
+        if found.worst.as_ref().is_none_or(|[known, _]| worst > Some(known.plan.objective)) {
+            found.worst = outcome.cases.worst.clone();
         }
         if found.best.as_ref().is_none_or(|known| best < known.cases.best.plan.objective) {
             found.best = Some(outcome);
@@ -155,6 +154,7 @@ impl Job<'_> {
         let [best, worst_plan] = stated_cases(planners, self.transfer, Sense::Min, &refined, self.monitor);
         if best.plan.objective < outcome.cases.best.plan.objective {
             outcome.notes = notes::of(&problem, &best.plan, &best.cycle.feed);
+            outcome.notes.extend((!self.settings.worst).then(notes::best_alone));
             (outcome.cases.best, outcome.cases.best_worst_plan) = (best, worst_plan);
         }
     }
@@ -226,8 +226,7 @@ fn back(placement: &Placement, by: [f64; 3]) -> Placement {
 
 /// What was found in a shifted cell, in the cell itself with the axes that shift it.
 fn unshifted(mut outcome: Outcome, problem: &Problem, by: [f64; 3]) -> Outcome {
-    let cases = &mut outcome.cases;
-    for case in [&mut cases.best, &mut cases.best_worst_plan, &mut cases.worst, &mut cases.worst_worst_plan] {
+    for case in outcome.cases.all_mut() {
         case.placement = back(&case.placement, by);
         case.setup = problem.setup.clone();
         case.plan.axes = problem.axis_paths();

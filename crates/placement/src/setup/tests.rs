@@ -158,8 +158,8 @@ fn the_best_orientation_is_taken_and_named() {
     assert_eq!(found.setup.orientation, chosen);
     assert_eq!(found.orientation.as_deref(), Some(["as drawn", "on its side"][chosen]));
     assert_eq!(found.plan.objective, best[chosen]);
-    let worst = alone.each_ref().map(|cases| cases.worst.plan.objective);
-    assert_eq!(outcome.cases.worst.plan.objective, worst[0].max(worst[1]));
+    let worst = alone.each_ref().map(|cases| cases.optima()[1].plan.objective);
+    assert_eq!(outcome.cases.optima()[1].plan.objective, worst[0].max(worst[1]));
     assert_eq!(outcome.tried_setups.len(), 2);
     // The part itself lies where the turned task is.
     let set_up = problem.in_setup(&found.setup);

@@ -39,7 +39,8 @@ const KINDS: [Kind; 2] = [
 pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     let Some(kind) = KINDS.iter().find(|kind| kind.command == command) else { return Vec::new() };
     let mut names = vec![(DATA, true), (kind.document, true)];
-    names.extend(kind.plans.iter().map(|name| (*name, true)));
+    // Those of the worst placement are there where it was looked for.
+    names.extend(kind.plans.iter().enumerate().map(|(number, name)| (*name, number < 2)));
     let optional = ["deflection-map-best.csv", "deflection-map-worst.csv", "deflection-map.csv"];
     names.extend(optional.iter().chain(kind.stability).map(|name| (*name, false)));
     names.extend(["convergence.csv", "certificate.json", OPEN_REGION].map(|name| (name, false)));
@@ -65,7 +66,8 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     if document["inputs"] != data["inputs"] {
         return Err(PageError::data("inputs", &format!("are not those of {}: they are of two runs", kind.document)));
     }
-    let tables = kind.plans.iter().map(|name| table(name)).collect::<Result<Vec<_>, _>>()?;
+    let cases = document["cases"].as_array().map_or(kind.plans.len(), Vec::len);
+    let tables = kind.plans.iter().take(cases).map(|name| table(name)).collect::<Result<Vec<_>, _>>()?;
     let points = data["task"]["points"].as_u64().unwrap_or(0) as usize;
     for table in &tables {
         if table.len() != points {

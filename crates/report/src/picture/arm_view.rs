@@ -3,8 +3,10 @@
 use super::axes::{Panel, Scale, around};
 use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
 use super::colour::{BLUE, GREEN, GREY, INK, RED};
+use super::surroundings::Outline;
 use crate::units::fixed;
 use nalgebra::Vector3;
+use stead_cell::{Poses, Shape};
 use stead_model::robot::{Frames, Robot, Spindle};
 use stead_placement::overview::Overview;
 use stead_placement::problem::{Cell, Problem};
@@ -25,6 +27,8 @@ struct Surroundings<'a> {
     cell: &'a Cell,
     /// The tool path, a line for each segment. m
     path: Vec<Vec<Vector3<f64>>>,
+    /// The shapes, where they stand, and whether they hit one another.
+    shapes: Vec<(&'a Shape, Poses, bool)>,
 }
 
 /// The arm of a run at the first path point that it reaches with the workpiece in the middle of its cell, or in the middle of its
@@ -36,8 +40,14 @@ pub fn arm_of_run(problem: &Problem, overview: &Overview) -> String {
         points[segment.clone()].iter().map(|point| base_from_workpiece.point(&point.position)).collect()
     };
     let path = problem.task.segments().iter().map(of_segment).collect();
-    let surroundings = Surroundings { cell: &problem.cell, path };
-    let joints = overview.middle.joints.unwrap_or_else(|| problem.robot.mid_range());
+    let (point, joints) = overview.middle.shown(&problem.robot);
+    let hits = |shape: &Shape| overview.hits.iter().any(|hit| hit.pair.contains(&shape.name));
+    let mut shapes = Vec::new();
+    if let Some(scene) = problem.scene.as_deref() {
+        let poses = problem.poses(scene, point, &overview.middle.placement, &joints);
+        shapes.extend(scene.surroundings().shapes().iter().map(|shape| (shape, poses, hits(shape))));
+    }
+    let surroundings = Surroundings { cell: &problem.cell, path, shapes };
     drawn(&problem.robot, &joints, Some(&problem.spindle), Some(&surroundings))
 }
 
@@ -63,7 +73,7 @@ fn drawn(
     arm.push(flange);
     let mut all = arm.clone();
     all.extend(tip.map(|tip| tip.translation));
-    if let Some(Surroundings { cell, path }) = surroundings {
+    if let Some(Surroundings { cell, path, .. }) = surroundings {
         all.extend(path.iter().flatten());
         all.extend((0..8).map(|corner| corner_of(cell, corner)));
     }
@@ -74,13 +84,23 @@ fn drawn(
         canvas.text(&format!("joint angles {angles} deg"), (COLUMNS[0], 50), TextStyle::new(12.0).coloured(INK));
         for (((title, labels), along), left) in VIEWS.into_iter().zip(directions).zip(COLUMNS) {
             let shown = |point: &Vector3<f64>| along.map(|direction| point.dot(&direction) * 1e3);
-            let panel = panel(all.iter().map(shown), left, labels);
+            let shapes = surroundings.map_or(&[][..], |surroundings| &surroundings.shapes);
+            let outlines: Vec<Outline> = shapes
+                .iter()
+                .map(|(shape, poses, is_hit)| {
+                    let outline = Outline::new(shape, poses, shown);
+                    if *is_hit { outline.coloured(RED) } else { outline }
+                })
+                .collect();
+            let corners = outlines.iter().flat_map(|outline| outline.corners.iter().copied());
+            let panel = panel(all.iter().map(shown).chain(corners), left, labels);
             let place = |point: &Vector3<f64>| {
                 let [x, y] = shown(point);
                 panel.place(x, y)
             };
             canvas.text(title, (left, TOP - 18), TextStyle::new(13.0).bold().coloured(INK));
             panel.draw_grid(canvas);
+            outlines.iter().for_each(|outline| outline.draw(canvas, |[x, y]| panel.place(x, y)));
             if let Some(surroundings) = surroundings {
                 draw_surroundings(canvas, surroundings, &place);
             }
@@ -100,6 +120,10 @@ fn drawn(
             (COLUMNS[0], 615),
             TextStyle::new(12.0),
         );
+        if surroundings.is_some_and(|surroundings| !surroundings.shapes.is_empty()) {
+            let legend = "outlines: shapes, grey where they stand, blue with the workpiece, pale on the arm, red where they hit another";
+            canvas.text(legend, (COLUMNS[0], 632), TextStyle::new(12.0));
+        }
     })
 }
 
@@ -112,7 +136,7 @@ fn draw_arm(canvas: &mut Canvas, arm: &[Vector3<f64>], place: &impl Fn(&Vector3<
 
 fn draw_surroundings(
     canvas: &mut Canvas,
-    Surroundings { cell, path }: &Surroundings<'_>,
+    Surroundings { cell, path, .. }: &Surroundings<'_>,
     place: &impl Fn(&Vector3<f64>) -> Place,
 ) {
     // The twelve edges of the cell: from every corner along each axis whose lower end it is at.

@@ -6,7 +6,7 @@ use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::fixed;
 use nalgebra::Vector3;
-use stead_placement::outcome::{Case, Cases, Outcome};
+use stead_placement::outcome::{Case, Outcome};
 use stead_placement::problem::Problem;
 
 const SIZE: Pixel = (1110, 1180);
@@ -32,10 +32,12 @@ struct Shown<'a> {
 /// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger, with
 /// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
-    let Cases { best, worst, .. } = &outcome.cases;
-    let best = Shown { case: best, colour: GREEN, title: "Best placement", path: "tool path at the best placement" };
-    let worst = Shown { case: worst, colour: RED, title: "Worst placement", path: "tool path at the worst placement" };
-    drawn(problem, &[best, worst])
+    let names = [
+        (GREEN, "Best placement", "tool path at the best placement"),
+        (RED, "Worst placement", "tool path at the worst placement"),
+    ];
+    let shown = outcome.cases.optima().into_iter().zip(names);
+    drawn(problem, &shown.map(|(case, (colour, title, path))| Shown { case, colour, title, path }).collect::<Vec<_>>())
 }
 
 /// The same with one given placement.

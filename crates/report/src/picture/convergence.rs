@@ -5,20 +5,19 @@ use super::canvas::{Canvas, TextStyle, picture};
 use super::colour::{BLACK, BLUE, GREEN, GREY, RED, WHITE};
 use super::line_chart::{LineChart, Mark};
 use crate::units::fixed;
-use stead_placement::outcome::{Cases, Generation, Outcome};
+use stead_placement::outcome::{Generation, Outcome};
 use stead_placement::sense::Sense;
 
 /// Best and average mean deflection over the generations: the search for the best placement above, for the worst below.
 /// Dashed lines are the means after refinement.
 pub fn convergence(outcome: &Outcome) -> String {
-    picture((900, 820), |canvas| {
+    let height = if outcome.cases.worst.is_some() { 820 } else { 432 };
+    picture((900, height), |canvas| {
         canvas.title("Convergence of the genetic search", (85, 26));
-        let Cases { best, worst, .. } = &outcome.cases;
-        for (sense, refined, top, bottom) in
-            [(Sense::Min, best.plan.mean, 72, 375), (Sense::Max, worst.plan.mean, 460, 763)]
-        {
+        for (case, sides) in outcome.cases.optima().into_iter().zip([(72, 375), (460, 763)]) {
+            let sense = case.placement_sense;
             let generations = outcome.convergence.iter().filter(|generation| generation.sense == sense);
-            search(canvas, sense, &generations.collect::<Vec<_>>(), refined, (top, bottom));
+            search(canvas, sense, &generations.collect::<Vec<_>>(), case.plan.mean, sides);
         }
     })
 }

@@ -94,7 +94,7 @@ impl<'a> Picture<'a> {
         let [x, y, z] = [place.x, place.y, place.z].map(|value| fixed(value * 1e3, 1));
         let (q4, yaw) = (fixed(place.q4(), 4), fixed(place.yaw.to_degrees(), 1));
         let subtitle = format!(
-            "x = {x} mm, y = {y} mm, z = {z} mm, Q4 = {q4} (yaw {yaw} deg); for each state the smallest over the allowed postures"
+            "x = {x} mm, y = {y} mm, z = {z} mm, yaw = {yaw} deg (Q4 {q4}); for each state the smallest over the allowed postures"
         );
         canvas.text(&subtitle, (LEFT, 47), TextStyle::new(12.0).coloured(INK))
     }

@@ -40,10 +40,34 @@ pub fn surroundings(problem: &Problem, cases: &[(&Case, &str)]) -> Option<String
 }
 
 /// A shape as a view shows it: the outline of its points. mm
-struct Outline {
-    corners: Vec<[f64; 2]>,
+pub(super) struct Outline {
+    pub corners: Vec<[f64; 2]>,
     colour: Colour,
     width: i32,
+}
+
+impl Outline {
+    /// That of a shape, for a view that makes a point of the base frame (m) one of its own (mm).
+    pub fn new(shape: &Shape, poses: &Poses, flat: impl Fn(&Vector3<f64>) -> [f64; 2]) -> Self {
+        let (colour, width) = match shape.attached {
+            Attachment::Base | Attachment::Axis(_) => (GREY, 2),
+            Attachment::Workpiece => (BLUE, 2),
+            Attachment::Link(_) | Attachment::Flange => (PALE, 1),
+        };
+        Self { corners: hull(corners(shape, poses).iter().map(flat).collect()), colour, width }
+    }
+
+    /// The same in another colour, more boldly.
+    pub fn coloured(self, colour: Colour) -> Self {
+        Self { colour, width: 3, ..self }
+    }
+
+    /// Draws it.
+    pub fn draw(&self, canvas: &mut Canvas, place: impl Fn([f64; 2]) -> Place) {
+        let mut closed: Vec<Place> = self.corners.iter().map(|corner| place(*corner)).collect();
+        closed.extend(closed.first().copied());
+        canvas.curve(&closed, self.colour, self.width);
+    }
 }
 
 fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name): (&Case, &str), top: i32) {
@@ -56,15 +80,9 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
         let mut outlines = Vec::new();
         for shape in scene.surroundings().shapes() {
             let is_on_arm = matches!(shape.attached, Attachment::Link(_) | Attachment::Flange);
-            let (colour, width) = match shape.attached {
-                Attachment::Base | Attachment::Axis(_) => (GREY, 2),
-                Attachment::Workpiece => (BLUE, 2),
-                Attachment::Link(_) | Attachment::Flange => (PALE, 1),
-            };
             for point in if is_on_arm { &shown[..] } else { &shown[..1] } {
                 let poses = problem.poses(scene, point.point, &case.placement, &point.joints);
-                let points = corners(shape, &poses).iter().map(flat).collect();
-                outlines.push(Outline { corners: hull(points), colour, width });
+                outlines.push(Outline::new(shape, &poses, flat));
             }
         }
         let path: Vec<[f64; 2]> = case.plan.points.iter().map(|point| flat(&point.position)).collect();
@@ -73,11 +91,7 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
         let place = |[x, y]: [f64; 2]| panel.place(x, y);
         canvas.text(&format!("{title}: {name}"), (left, top - 18), TextStyle::new(13.0).bold().coloured(INK));
         panel.draw_grid(canvas);
-        for outline in &outlines {
-            let mut closed: Vec<Place> = outline.corners.iter().map(|corner| place(*corner)).collect();
-            closed.extend(closed.first().copied());
-            canvas.curve(&closed, outline.colour, outline.width);
-        }
+        outlines.iter().for_each(|outline| outline.draw(canvas, place));
         for point in &shown {
             let arm: Vec<Place> = arm(problem, point).iter().map(|joint| place(flat(joint))).collect();
             canvas.curve(&arm, INK, 2);

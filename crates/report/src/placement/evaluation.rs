@@ -189,11 +189,11 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
 
 fn place_text(placement: &Placement) -> String {
     format!(
-        "x {} mm, y {} mm, z {} mm, Q4 {} (yaw {} deg)",
+        "x {} mm, y {} mm, z {} mm, yaw {} deg (Q4 {})",
         fixed(placement.x * 1e3, 1),
         fixed(placement.y * 1e3, 1),
         fixed(placement.z * 1e3, 1),
-        fixed(placement.q4(), 4),
-        fixed(placement.yaw.to_degrees(), 2)
+        fixed(placement.yaw.to_degrees(), 2),
+        fixed(placement.q4(), 4)
     )
 }

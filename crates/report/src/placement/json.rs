@@ -52,6 +52,7 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
         ("redundancy", redundancy(problem)),
         ("task", task(problem)),
         ("cases", cases(outcome, false)),
+        ("run_file", context.stated.clone()),
     ];
     entries.extend(settings.map(|(key, value)| (key.to_owned(), value)));
     entries.extend(tried(problem, outcome).map(|tried| ("setups".to_owned(), tried)));
@@ -321,13 +322,17 @@ fn search(context: &Context) -> Value {
         LookupUse::Always => "always",
         LookupUse::Never => "never",
     };
-    json!({
+    let mut value = json!({
         "population": context.search.population,
         "generations": context.search.generations,
         "postures": postures,
         "basins": context.search.basins,
         "tables": tables,
-    })
+    });
+    if !context.search.worst {
+        value["worst"] = json!(false);
+    }
+    value
 }
 
 fn transfer_settings(context: &Context) -> Value {

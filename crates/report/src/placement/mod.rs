@@ -17,6 +17,7 @@ use crate::output::{Folder, ReportError};
 use crate::page;
 use crate::page::data::{MapOf, Placed, page_data};
 use crate::{Files, named, picture};
+use serde_json::Value;
 use std::path::PathBuf;
 use stead_format::Run;
 use stead_format::input::InputFile;
@@ -34,6 +35,8 @@ use stead_study::PathStability;
 pub struct Context {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
+    /// What the run file states, key by key.
+    pub stated: Value,
     /// What the result rests on: assumptions made and values left at their defaults.
     pub notes: Vec<String>,
     /// Why the result may not be what was wanted.
@@ -55,6 +58,7 @@ impl Context {
     pub fn new(run: &Run, search: SearchSettings) -> Self {
         Self {
             inputs: run.inputs.clone(),
+            stated: run.stated.clone(),
             notes: run.notes.clone(),
             warnings: Vec::new(),
             search,
@@ -104,8 +108,14 @@ pub(crate) const SUMMARY: &str = "summary.json";
 const MAPS: [[&str; 2]; 2] =
     [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
 
+/// What these placements are called.
+const PLACES: [&str; 2] = ["the best placement", "the worst placement"];
+
 /// The files of the map at a given placement.
 const SCORE_MAP: [&str; 2] = ["deflection-map.csv", "deflection-map.svg"];
+
+/// The files that are there where the worst placement was looked for.
+const OF_WORST: [&str; 3] = ["worst.csv", "worst-worst-plan.csv", "stability-worst.csv"];
 
 /// The picture of the shapes of the cell.
 const SURROUNDINGS: &str = "surroundings.svg";
@@ -173,7 +183,7 @@ pub fn score_files(
     }
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
-        files.extend(crate::stability::path::files(stability, [&score.best, &score.worst], tables, names)?);
+        files.extend(crate::stability::path::files(stability, &[&score.best, &score.worst], tables, names)?);
     }
     let placed: Placed<'_> = (&score.placement, &score.setup);
     let maps: Vec<MapOf<'_>> = map.iter().map(|map| (placed, *map, SCORE_MAP[0])).collect();
@@ -181,7 +191,7 @@ pub fn score_files(
 }
 
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
-/// `worst-worst-plan.csv` (cases 1 to 4), `placements.csv`,
+/// `worst-worst-plan.csv` (cases 1 to 4; without the worst placement those of it are left out), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, with shapes of the cell `surroundings.svg`; and where stability
 /// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does
@@ -198,7 +208,9 @@ pub fn write_placement(
     let files = placement_files(problem, outcome, context)?;
     let beside = folder.beside_finished(PLACE, outcome.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);
-    let outdated = outcome.maps.is_none().then_some(MAPS).into_iter().flatten().flatten();
+    let made = outcome.maps.as_ref().map_or(0, Vec::len);
+    let outdated = MAPS.into_iter().skip(made).flatten();
+    let outdated = outdated.chain(outcome.cases.worst.is_none().then_some(OF_WORST).into_iter().flatten());
     let outdated = outdated.chain(problem.scene.is_none().then_some(SURROUNDINGS));
     folder.results(PLACE, &context.inputs).interrupted(outcome.interrupted).without(outdated).write(&files)
 }
@@ -208,14 +220,12 @@ pub fn write_placement(
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.
 pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) -> Result<Files, ReportError> {
-    let Cases { best, best_worst_plan, worst, worst_worst_plan } = &outcome.cases;
+    let Cases { best, best_worst_plan, worst } = &outcome.cases;
     let summary = summary_json(problem, outcome, context);
     let scene = problem.scene.as_deref();
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan, scene)?),
         ("best-worst-plan.csv", tables::plan(&best_worst_plan.plan, scene)?),
-        ("worst.csv", tables::plan(&worst.plan, scene)?),
-        ("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan, scene)?),
         ("placements.csv", tables::placements(&outcome.cases, context.reference.as_ref())?),
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
         ("transfers.csv", tables::transfers(&outcome.cases, scene)?),
@@ -224,18 +234,23 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
-    files.extend(surroundings(problem, &[(best, "the best placement"), (worst, "the worst placement")]));
+    if let Some([worst, worst_worst_plan]) = worst {
+        files.push(("worst.csv", tables::plan(&worst.plan, scene)?));
+        files.push(("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan, scene)?));
+    }
+    let optima = outcome.cases.optima();
+    let shown: Vec<_> = optima.iter().copied().zip(PLACES).collect();
+    files.extend(surroundings(problem, &shown));
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best.csv", "stability-worst.csv"], ["best placement", "worst placement"]);
-        files.extend(crate::stability::path::files(stability, [&best.plan, &worst.plan], tables, names)?);
+        let plans: Vec<_> = optima.iter().map(|case| &case.plan).collect();
+        files.extend(crate::stability::path::files(stability, &plans, tables, names)?);
     }
-    if let Some([map_best, map_worst]) = &outcome.maps {
-        let plans = [[best, best_worst_plan], [worst, worst_worst_plan]];
-        files.extend(map_files(problem, map_best, plans[0], MAPS[0], "the best placement")?);
-        files.extend(map_files(problem, map_worst, plans[1], MAPS[1], "the worst placement")?);
+    let plans = [[best, best_worst_plan]].into_iter().chain(worst.iter().map(|[best, worst]| [best, worst]));
+    let mut maps = Vec::new();
+    for ((map, plans), (names, place)) in outcome.maps.iter().flatten().zip(plans).zip(MAPS.into_iter().zip(PLACES)) {
+        files.extend(map_files(problem, map, plans, names, place)?);
+        maps.push((placed(plans[0]), map, names[0]));
     }
-    let maps = outcome.maps.iter().flat_map(|[map_best, map_worst]| {
-        [(placed(best), map_best, MAPS[0][0]), (placed(worst), map_worst, MAPS[1][0])]
-    });
-    context.with_page(named(files), PLACE, problem, &outcome.cases.all(), &maps.collect::<Vec<_>>())
+    context.with_page(named(files), PLACE, problem, &outcome.cases.all(), &maps)
 }

@@ -1,5 +1,6 @@
 //! How part and external axes are set up, in documents, tables and words; nothing where a run has neither orientations nor axes.
 
+use super::PLACES;
 use crate::columns::aligned;
 use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
@@ -86,8 +87,8 @@ pub(super) fn tried(problem: &Problem, outcome: &Outcome) -> Option<Value> {
     let entry = |TriedSetup { setup, objectives }: &TriedSetup| {
         let problem = problem.in_setup(setup);
         let mut value = json!({
-            "best_objective_mm": objectives.map(|[best, _]| Unit::DEFLECTION_MM.number(best)),
-            "worst_objective_mm": objectives.map(|[_, worst]| Unit::DEFLECTION_MM.number(worst)),
+            "best_objective_mm": objectives.map(|(best, _)| Unit::DEFLECTION_MM.number(best)),
+            "worst_objective_mm": objectives.and_then(|(_, worst)| worst).map(|worst| Unit::DEFLECTION_MM.number(worst)),
         });
         let name = problem.orientation().map(|orientation| orientation.name.clone());
         put_setup(&mut value, name.as_ref(), setup, &problem.axis_paths());
@@ -116,9 +117,9 @@ pub(crate) fn lines(of: &str, orientation: Option<&String>, axes: &[AxisPath]) -
 
 /// The lines of the best and the worst placement, and a table of the setups that were searched.
 pub(super) fn text(problem: &Problem, outcome: &Outcome) -> String {
-    let cases = [("the best placement", &outcome.cases.best), ("the worst placement", &outcome.cases.worst)];
+    let cases = PLACES.into_iter().zip(outcome.cases.optima());
     let of = |(name, case): (&str, &Case)| lines(name, case.orientation.as_ref(), &case.plan.axes);
-    let all: Vec<String> = cases.into_iter().flat_map(of).collect();
+    let all: Vec<String> = cases.flat_map(of).collect();
     let mut text: String = all.iter().map(|line| format!("{line}\n")).collect();
     if outcome.tried_setups.len() > 1 {
         let mut header = vec!["setup".to_owned()];
@@ -131,8 +132,8 @@ pub(super) fn text(problem: &Problem, outcome: &Outcome) -> String {
             let mut row = vec![number.to_string()];
             row.extend(problem.orientation().map(|orientation| orientation.name.clone()));
             row.extend(standing(&problem.axis_paths()));
-            let figure = |side: usize| objectives.map_or_else(|| "-".to_owned(), |both| fixed(both[side] * 1e3, 4));
-            row.extend([figure(0), figure(1)]);
+            let figure = |objective: Option<f64>| objective.map_or_else(|| "-".to_owned(), |of| fixed(of * 1e3, 4));
+            row.extend([objectives.map(|(best, _)| best), objectives.and_then(|(_, worst)| worst)].map(figure));
             rows.push(row);
         }
         let names = if problem.orientations.is_empty() { vec![] } else { vec![1] };

@@ -103,8 +103,8 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         "x_mm",
         "y_mm",
         "z_mm",
-        "q4",
         "yaw_deg",
+        "q4",
         "postures",
         "mean_mm",
         "max_mm",
@@ -274,12 +274,12 @@ pub fn refinements(refinements: &[Refinement]) -> Result<Vec<u8>, ReportError> {
     table("the table of refinements", header, rows)
 }
 
-/// x, y, z in mm, Q4 where asked for, and the yaw in degrees.
+/// x, y, z in mm, the yaw in degrees, and Q4 where asked for.
 fn placement(placement: &Placement, with_q4: bool) -> Vec<String> {
     let mut fields = [placement.x, placement.y, placement.z].map(|value| Unit::PLACE_MM.text(value)).to_vec();
+    fields.push(Unit::ANGLE_DEG.text(placement.yaw));
     if with_q4 {
         fields.push(Unit::PLAIN.text(placement.q4()));
     }
-    fields.push(Unit::ANGLE_DEG.text(placement.yaw));
     fields
 }

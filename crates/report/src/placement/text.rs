@@ -15,7 +15,7 @@ use stead_placement::symmetry::Unsupported;
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
 
-/// The four cases: first placements and posture schemes, then mean and largest score and total deflection, the ratio to case 1 beside the
+/// The four cases, or the first two of them where the worst placement was not looked for: first placements and posture schemes, then mean and largest score and total deflection, the ratio to case 1 beside the
 /// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
 /// uncertainty is known; last the size of the search. Lines are at most 110 characters wide and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
@@ -31,7 +31,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         line(&mut text, &format!("ref: {}", reference.source));
     }
     text.push('\n');
-    for case in [&outcome.cases.best, &outcome.cases.worst] {
+    for case in outcome.cases.optima() {
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     line(&mut text, &stiffest(&outcome.cases.best.plan));
@@ -186,15 +186,15 @@ fn sensitivity(found: &ForceSensitivity) -> Vec<String> {
 }
 
 fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
-    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "Q4", "yaw deg", "postures"];
+    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "yaw deg", "Q4", "postures"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for case in outcome.cases.all() {
         let [placement_word, plan_word] = [case.placement_sense, case.plan_sense].map(names::sense);
         let placement = &case.placement;
         let mut row = vec![case.number().to_string(), placement_word.to_owned(), plan_word.to_owned()];
         row.extend([placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1)));
-        row.push(fixed(placement.q4(), 4));
         row.push(fixed(placement.yaw.to_degrees(), 1));
+        row.push(fixed(placement.q4(), 4));
         row.push(names::postures_within(&case.plan.postures, POSTURES_WIDTH));
         rows.push(row);
     }

@@ -13,21 +13,21 @@ use stead_simulation::path_stability::smallest;
 use stead_simulation::stability_analysis::CutStability;
 use stead_study::PathStability;
 
-/// The tables of two plans by their file names and `stability.svg`, which calls the plans by other names.
+/// The tables of plans by their file names and `stability.svg`, which calls the plans by other names.
 ///
 /// # Errors
 /// [`ReportError::Format`] when a file cannot be made.
 pub fn files(
     stability: &PathStability,
-    plans: [&Plan; 2],
+    plans: &[&Plan],
     tables: [&'static str; 2],
     names: [&str; 2],
-) -> Result<[(&'static str, Vec<u8>); 3], ReportError> {
-    Ok([
-        (tables[0], along(plans[0], &stability.plans[0])?),
-        (tables[1], along(plans[1], &stability.plans[1])?),
-        ("stability.svg", picture::path_stability(stability, plans, names).into_bytes()),
-    ])
+) -> Result<Vec<(&'static str, Vec<u8>)>, ReportError> {
+    let of = plans.iter().zip(&stability.plans).zip(tables);
+    let of_each = of.map(|((plan, depths), name)| Ok((name, along(plan, depths)?)));
+    let mut files = of_each.collect::<Result<Vec<_>, ReportError>>()?;
+    files.push(("stability.svg", picture::path_stability(stability, plans, names).into_bytes()));
+    Ok(files)
 }
 
 /// The setting and, for each plan, the smallest critical depth, where it is, and how many points chatter; with `points` all
@@ -49,8 +49,8 @@ pub fn document(stability: &PathStability, points: bool) -> Value {
         "spindle_rpm": RPM.number(stability.analysis.cut.spindle_speed),
         "axial_depth_mm": DEPTH_MM.number(stability.analysis.cut.section.axial_depth),
         "max_depth_mm": DEPTH_MM.number(stability.analysis.max_depth),
-        "best": plan(&stability.plans[0]),
-        "worst": plan(&stability.plans[1]),
+        "best": stability.plans.first().map(plan),
+        "worst": stability.plans.get(1).map(plan),
     })
 }
 

@@ -118,6 +118,7 @@ fn effects(effects: &Effects) -> Value {
             "share_percent": axis.share.map(percent),
             "range": number(axis.range),
             "rank_correlation": axis.rank_correlation.map(number),
+            "slope": axis.slope.map(number),
             "values": axis.levels.iter().map(level).collect::<Value>(),
         })
     };

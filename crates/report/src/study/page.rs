@@ -191,7 +191,9 @@ fn map_card(map: &Map) -> Card {
 }
 
 fn effect(axis: &AxisEffect, measure: &Measure) -> Card {
-    let share = axis.share.map_or_else(String::new, |share| format!("{} % of the variation", figures(percent(share))));
+    let share = axis.share.map(|share| format!("{} % of the variation", figures(percent(share))));
+    let slope = axis.slope.map(|slope| format!("{} per unit along a straight line", figures(slope)));
+    let detail = [share, slope].into_iter().flatten().collect::<Vec<_>>().join("; ");
     let numbers: Option<Vec<f64>> = axis.levels.iter().map(|level| level.number).collect();
     let labels = axis.levels.iter().map(|level| format!("{}: {} layouts", level.label, level.count)).collect();
     let names: Vec<String> = axis.levels.iter().map(|level| level.label.clone()).collect();
@@ -202,7 +204,7 @@ fn effect(axis: &AxisEffect, measure: &Measure) -> Card {
     let points: Vec<[f64; 2]> = places.iter().zip(&axis.levels).map(|(place, level)| [*place, level.value]).collect();
     Card::Chart(Chart {
         title: format!("Effect of {}", axis.name),
-        detail: share,
+        detail,
         x,
         y: Axis::new(format!("mean of {}", measure.name)),
         series: vec![Series::dots("", 1, points).labelled(labels)],

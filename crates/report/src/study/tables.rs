@@ -62,7 +62,8 @@ pub fn front_table(front: &Front, layouts: &Layouts) -> Result<Vec<u8>, ReportEr
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn effects_table(effects: &Effects) -> Result<Vec<u8>, ReportError> {
-    let names = ["axis", "method", "share_percent", "range", "rank_correlation", "value", "layouts"].map(str::to_owned);
+    let names = ["axis", "method", "share_percent", "range", "rank_correlation", "slope", "value", "layouts"];
+    let names = names.map(str::to_owned);
     let header = names.into_iter().chain([format!("mean_of_{}", effects.measure.name)]);
     let rows = effects.axes.iter().flat_map(|axis| {
         axis.levels.iter().map(move |level| {
@@ -73,6 +74,7 @@ pub fn effects_table(effects: &Effects) -> Result<Vec<u8>, ReportError> {
                 or_empty(axis.share.map(percent)),
                 number(axis.range).to_string(),
                 or_empty(axis.rank_correlation.map(number)),
+                or_empty(axis.slope.map(number)),
                 level.label.clone(),
                 level.count.to_string(),
                 number(level.value).to_string(),

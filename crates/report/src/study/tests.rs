@@ -26,8 +26,8 @@ fn tables_have_what_was_found() {
     ];
     assert_eq!(lines(front_table(front, &analysis.layouts).unwrap()), expected);
     let effects = lines(effects_table(&analysis.effects).unwrap());
-    assert_eq!(effects[0], "axis,method,share_percent,range,rank_correlation,value,layouts,mean_of_objective_mm");
-    assert!(effects[1].starts_with("robot,adjusted means,") && effects[1].contains(",3,,a.toml,2,"), "{}", effects[1]);
+    assert_eq!(effects[0], "axis,method,share_percent,range,rank_correlation,slope,value,layouts,mean_of_objective_mm");
+    assert!(effects[1].starts_with("robot,adjusted means,") && effects[1].contains(",3,,,a.toml,2,"), "{}", effects[1]);
 }
 
 #[test]
@@ -52,7 +52,9 @@ fn an_axis_alone_is_told_by_its_ends() {
     let mut table = table();
     table.rows.truncate(2);
     let text = study_text("cells", &Analysis::of(&table, &Question::default()).unwrap());
-    assert!(text.contains("\nOnly height varies: objective_mm is from 1.0000 at 100 to 2.0000 at 200.\n"), "{text}");
+    let expected = "\nOnly height varies: objective_mm is from 1.0000 at 100 to 2.0000 at 200; along a straight line it changes by \
+                    0.010000 per unit of height.\n";
+    assert!(text.contains(expected), "{text}");
     assert!(!text.contains("of the variance"), "{text}");
 }
 

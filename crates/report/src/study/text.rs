@@ -164,9 +164,9 @@ fn effects(text: &mut String, analysis: &Analysis) {
         }
         _ => line(text, &format!("\nNo axis changes {name}.")),
     }
-    let mut rows = vec![["axis", "% of variance", "range", "best value", "by"].map(str::to_owned).to_vec()];
+    let mut rows = vec![["axis", "% of variance", "range", "per unit", "best value", "by"].map(str::to_owned).to_vec()];
     rows.extend(effects.axes.iter().map(|axis| effect_row(axis, &effects.measure)));
-    text.push_str(&aligned(&rows, &[0, 3, 4]));
+    text.push_str(&aligned(&rows, &[0, 4, 5]));
     if let Some(rest) = effects.remainder.filter(|rest| *rest >= 0.0005) {
         line(text, &format!("{} % is what the axes do together, beyond their effects one by one", percent(rest)));
     }
@@ -217,7 +217,10 @@ fn alone(axis: &AxisEffect, measure: &Measure) -> String {
         let level = axis.levels.iter().min_by(|a, b| sense.compare(a.value, b.value));
         level.map_or_else(String::new, |level| format!("{} at {}", digits(level.value), level.label))
     };
-    format!("\nOnly {} varies: {} is from {} to {}.", axis.name, measure.name, at(Sense::Min), at(Sense::Max))
+    let slope = axis.slope.map_or_else(String::new, |slope| {
+        format!("; along a straight line it changes by {} per unit of {}", digits(slope), axis.name)
+    });
+    format!("\nOnly {} varies: {} is from {} to {}{slope}.", axis.name, measure.name, at(Sense::Min), at(Sense::Max))
 }
 
 fn effect_row(axis: &AxisEffect, measure: &Measure) -> Vec<String> {
@@ -231,7 +234,8 @@ fn effect_row(axis: &AxisEffect, measure: &Measure) -> Vec<String> {
     let method = correlation
         .map_or_else(|| axis.method.word().to_owned(), |c| format!("line, rank correlation {}", fixed(c, 2)));
     let share = axis.share.map_or_else(|| "–".to_owned(), percent);
-    vec![axis.name.clone(), share, digits(axis.range), best, method]
+    let slope = axis.slope.map_or_else(|| "–".to_owned(), digits);
+    vec![axis.name.clone(), share, digits(axis.range), slope, best, method]
 }
 
 fn front_text(text: &mut String, front: &Front, layouts: &Layouts) {

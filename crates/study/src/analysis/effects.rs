@@ -65,6 +65,9 @@ pub struct AxisEffect {
     pub share: Option<f64>,
     /// Spearman's rank correlation of an axis of numbers with the column.
     pub rank_correlation: Option<f64>,
+    /// Of an axis of numbers, by how much the column changes for each unit of it: the straight line through the values of the levels, each
+    /// with the weight of its layouts. None where the effects of other axes are in them.
+    pub slope: Option<f64>,
 }
 
 impl AxisEffect {
@@ -124,6 +127,7 @@ pub fn effects(layouts: &Layouts, measure: &Measure) -> Effects {
     for (effect, factor) in axes.iter_mut().zip(&factors) {
         effect.name.clone_from(&layouts.columns[factor.axis].name);
         effect.rank_correlation = factor.place().and_then(|place| rank_correlation(&place, &values));
+        effect.slope = slope(effect);
     }
     axes.sort_by(|a, b| b.share.unwrap_or(0.0).total_cmp(&a.share.unwrap_or(0.0)));
     Effects { measure: measure.clone(), axes, count: values.len(), mean, remainder }
@@ -211,6 +215,7 @@ impl Factor {
             range: range(f64::max) - range(f64::min),
             share,
             rank_correlation: None,
+            slope: None,
         }
     }
 
@@ -314,6 +319,23 @@ impl Factor {
         }
         (Method::Line, heights)
     }
+}
+
+/// See [`AxisEffect::slope`].
+fn slope(effect: &AxisEffect) -> Option<f64> {
+    if effect.method == Method::MixedMeans {
+        return None;
+    }
+    let levels: Option<Vec<[f64; 3]>> =
+        effect.levels.iter().map(|level| Some([level.count as f64, level.number?, level.value])).collect();
+    let levels = levels?;
+    let count: f64 = levels.iter().map(|[count, ..]| count).sum();
+    let mean = |of: usize| levels.iter().map(|level| level[0] * level[of]).sum::<f64>() / count;
+    let (at, height) = (mean(1), mean(2));
+    let product =
+        |of: usize, mean: f64| levels.iter().map(|level| level[0] * (level[1] - at) * (level[of] - mean)).sum::<f64>();
+    let scale = product(1, at);
+    (scale > 0.0).then(|| product(2, height) / scale)
 }
 
 /// Spearman's rank correlation: that of the ranks, ties at the mean of theirs. None where one side does not vary.

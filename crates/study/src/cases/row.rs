@@ -48,8 +48,8 @@ const FIGURES: [(&str, Kind); 23] = [
     ("x_mm", Kind::Number),
     ("y_mm", Kind::Number),
     ("z_mm", Kind::Number),
-    ("q4", Kind::Number),
     ("yaw_deg", Kind::Number),
+    ("q4", Kind::Number),
     ("postures", Kind::Count),
     ("active_bounds", Kind::Text),
     ("payload_kg", Kind::Number),
@@ -98,6 +98,8 @@ pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Ce
                 .flat_map(|figures| [figures.mean, figures.max].map(|value| number(Unit::DEFLECTION_MM, Some(value)))),
         );
     }
+    // Where the worst placement was not looked for there are no figures of it.
+    row.resize(result_columns().len() - FIGURES.len(), Cell::None);
     row.extend(figures(problem, &cases.best));
     row.extend(bound(certificate.map(|certificate| certificate.best.as_ref().map_err(ToString::to_string))));
     row.extend(bound(certificate.map(|certificate| certificate.worst.as_ref().map_err(ToString::to_string))));
@@ -130,8 +132,8 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
         number(Unit::PLACE_MM, Some(placement.x)),
         number(Unit::PLACE_MM, Some(placement.y)),
         number(Unit::PLACE_MM, Some(placement.z)),
-        number(Unit::PLAIN, Some(placement.q4())),
         number(Unit::ANGLE_DEG, Some(placement.yaw)),
+        number(Unit::PLAIN, Some(placement.q4())),
         Cell::Count(postures.len() as i64),
         if bounds.is_empty() { Cell::None } else { Cell::Text(bounds) },
         Cell::number(problem.robot.data_sheet().payload),

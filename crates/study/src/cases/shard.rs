@@ -211,7 +211,7 @@ fn do_case(
     let certificate = read.certificate.map(|settings| {
         let cases = &placed.outcome.cases;
         let found = (&cases.best.placement, cases.best.plan.mean);
-        certify(&read.problem, found, &cases.worst.placement, settings, monitor)
+        certify(&read.problem, found, cases.worst.as_ref().map(|[case, _]| &case.placement), settings, monitor)
     });
     if monitor.should_stop() {
         return Ok(None);

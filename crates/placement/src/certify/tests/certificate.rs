@@ -39,7 +39,7 @@ fn why_there_is_no_bound_is_told() {
     let problem = five_segments();
     let settings = CertificateSettings::new(1e-3);
     let run = |problem: &Problem, mean: f64, settings: CertificateSettings, monitor: &Monitor| {
-        let certificate = certify(problem, (&PLACEMENT, mean), &PLACEMENT, settings, monitor);
+        let certificate = certify(problem, (&PLACEMENT, mean), Some(&PLACEMENT), settings, monitor);
         let kinds: Vec<_> = certificate.warnings.iter().map(|warning| warning.kind).collect();
         let Certificate { best, worst, .. } = certificate;
         (best.unwrap_err(), worst.unwrap_err(), kinds)
@@ -58,9 +58,12 @@ fn why_there_is_no_bound_is_told() {
         let timed = CertificateSettings { time_limit, ..settings };
         let (best, ..) = run(&problem, 1e-4, timed, &over);
         assert_eq!(best, NoProof::TimeLimit);
-        let certificate = certify(&problem, (&PLACEMENT, 1e-4), &PLACEMENT, timed, &over);
+        let certificate = certify(&problem, (&PLACEMENT, 1e-4), Some(&PLACEMENT), timed, &over);
         assert_eq!(certificate.settings.time_limit, None);
     }
+    // A placement that was not looked for is no shortfall.
+    let alone = certify(&problem, (&PLACEMENT, 0.0), None, settings, &Monitor::silent());
+    assert_eq!((alone.worst.unwrap_err(), alone.warnings.len()), (NoProof::NotLookedFor, 1));
     let mut robust = problem;
     robust.criterion.force_uncertainty = 0.1;
     let reason = || NoProof::Unsupported(Unsupported::UncertainForce);

@@ -6,6 +6,7 @@ use super::super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, col
 use super::*;
 use crate::redundancy::Planner;
 use crate::sense::Sense;
+use stead_numerics::monitor::Monitor;
 
 /// The same with a table of other steps, of nodes about some radii and heights only.
 pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: Steps, levels: usize) -> Model {
@@ -226,7 +227,7 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
         (all().fold(f64::INFINITY, f64::min) - 0.06, all().fold(f64::NEG_INFINITY, f64::max) + 0.06)
     };
     let model = local(&setting, over(0), over(1), COARSE, 2);
-    let coarse = CoarseBounds::new(&model, || None).expect("nobody ends it");
+    let coarse = CoarseBounds::new(&model, &Monitor::silent(), || None).expect("nobody ends it");
     let planner = Planner::new(&setting.problem);
     let mut space = planner.workspace();
     let mut random = seeded(24);

@@ -8,6 +8,7 @@ use super::*;
 use crate::certify::compliance_table::Steps;
 use crate::redundancy::Planner;
 use crate::sense::Sense;
+use stead_numerics::monitor::Monitor;
 
 #[test]
 fn windows_hold_the_least_of_their_neighbours() {
@@ -114,10 +115,10 @@ fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, ActiveCells)
     }
     let level = model.level(&region).unwrap();
     let mut active = ActiveCells::full(model.points.len(), model.table.headings(0));
-    let mut found = model.lower_bound(&region, &active, 1.1 * value);
+    let mut found = model.lower_bound(&region, &active, 1.1 * value, &Monitor::silent());
     while active.level < level {
         active = found.active.halved();
-        found = model.lower_bound(&region, &active, 1.1 * value);
+        found = model.lower_bound(&region, &active, 1.1 * value, &Monitor::silent());
     }
     (found.sum, value, found.active)
 }
@@ -173,7 +174,7 @@ fn boxes_that_tables_do_not_answer_for_are_never_infeasible() {
     let full = |model: &Model| ActiveCells::full(105, model.table.headings(0));
     // Too large for the coarsest level.
     let wide = Region { middle: at, half: [0.3, 0.0, 0.0] };
-    let found = setting.model.lower_bound(&wide, &full(&setting.model), f64::INFINITY);
+    let found = setting.model.lower_bound(&wide, &full(&setting.model), f64::INFINITY, &Monitor::silent());
     assert_eq!(found.sum, 0.0);
     assert_eq!(found.active, full(&setting.model));
     // Outside a table, on every side.
@@ -183,11 +184,11 @@ fn boxes_that_tables_do_not_answer_for_are_never_infeasible() {
     {
         let model = local(&setting, radius, height, steps, 1);
         let region = Region { middle: at, half: [1e-3; 3] };
-        let found = model.lower_bound(&region, &full(&model), f64::INFINITY);
+        let found = model.lower_bound(&region, &full(&model), f64::INFINITY, &Monitor::silent());
         assert_eq!(found.sum, 0.0);
         assert_eq!(found.active, full(&model));
     }
     // About axis 1.
     let region = Region { middle: [0.1, -0.5, 0.0], half: [0.1, 0.01, 3.0] };
-    assert_eq!(setting.model.lower_bound(&region, &full(&setting.model), f64::INFINITY).sum, 0.0);
+    assert_eq!(setting.model.lower_bound(&region, &full(&setting.model), f64::INFINITY, &Monitor::silent()).sum, 0.0);
 }

@@ -43,11 +43,12 @@ fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
     let problem = five_segments();
     let model = without_rate(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(5);
+    let silent = &Monitor::silent();
     let (mut looked, mut wrong) = (0, 0);
     while looked < 300 {
         let size = [1.2, 0.6, 0.3][looked % 3];
         let region = somewhere(&mut random, size);
-        let Some(over) = BoxBounds::new(&model, &region) else { continue };
+        let Some(over) = BoxBounds::new(&model, &region, silent) else { continue };
         let point = random.random_range(0..over.points.len());
         let cell = random.random_range(0..model.table.headings(over.level));
         let class = PostureClass::ALL[random.random_range(0..4)];
@@ -95,15 +96,16 @@ fn boxes_are_worth_no_more_than_is_said() {
     let problem = five_segments();
     let model = without_rate(&problem);
     let mut random = ChaCha8Rng::seed_from_u64(6);
+    let silent = &Monitor::silent();
     let (mut tight, mut nothing) = (0, 0);
     for k in 0..9 {
         let region = somewhere(&mut random, [0.6, 0.2, 0.1][k % 3]);
-        let over = BoxBounds::new(&model, &region).unwrap();
+        let over = BoxBounds::new(&model, &region, silent).unwrap();
         let (sum, seen) = over.upper_bound(&Inherited::nothing(&model), 0.0);
         let (again, _) = over.upper_bound(&seen, f64::MAX);
         let bound = sum / over.points.len() as f64;
         let place = std::array::from_fn(|i| region.middle[i] + region.half[i] * random.random_range(-1.0..1.0));
-        match relaxed_value(&problem, &placed(&problem, place)) {
+        match relaxed_value(&problem, &placed(&problem, place), &Monitor::silent()) {
             Some(value) => {
                 assert!(value <= bound && value * over.points.len() as f64 <= again, "{value} {bound} {region:?}");
                 tight += usize::from(bound < 1.1 * value);
@@ -121,7 +123,7 @@ fn the_relaxed_value_is_that_of_a_plan_without_limits_between_points() {
     let planner = Planner::new(&problem);
     for yaw in [-2.6, 1.4] {
         let placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw };
-        let relaxed = relaxed_value(&problem, &placement);
+        let relaxed = relaxed_value(&problem, &placement, &Monitor::silent());
         let plan = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean();
         match (relaxed, plan) {
             (Some(relaxed), Some(plan)) => assert!(relaxed <= plan && plan < 1.05 * relaxed, "{relaxed} {plan}"),
@@ -154,7 +156,7 @@ fn corner_of_the_cell() -> (Problem, Placement) {
 #[test]
 fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
     let (problem, placement) = corner_of_the_cell();
-    let value = relaxed_value(&problem, &placement).unwrap();
+    let value = relaxed_value(&problem, &placement, &Monitor::silent()).unwrap();
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| worst(&problem, value, &CertificateSettings::new(5e-3), &Monitor::silent()).unwrap())
@@ -169,7 +171,7 @@ fn the_worst_of_a_small_cell_is_certified_whatever_the_threads() {
 #[test]
 fn a_worse_placement_that_is_met_takes_the_place_of_the_one_known() {
     let (problem, placement) = corner_of_the_cell();
-    let value = relaxed_value(&problem, &placement).unwrap();
+    let value = relaxed_value(&problem, &placement, &Monitor::silent()).unwrap();
     let found = worst(&problem, 0.98 * value, &CertificateSettings::new(1e-3), &Monitor::silent()).unwrap();
     assert_eq!(found.status, Status::Reached, "{} {}", found.bound, found.value);
     assert!(
@@ -177,13 +179,13 @@ fn a_worse_placement_that_is_met_takes_the_place_of_the_one_known() {
     );
     let met = found.met.unwrap();
     assert!(problem.cell.contains(&met));
-    assert_eq!(relaxed_value(&problem, &met), Some(found.value));
+    assert_eq!(relaxed_value(&problem, &met, &Monitor::silent()), Some(found.value));
 }
 
 #[test]
 fn what_is_ended_early_is_a_bound_all_the_same() {
     let (problem, placement) = corner_of_the_cell();
-    let value = relaxed_value(&problem, &placement).unwrap();
+    let value = relaxed_value(&problem, &placement, &Monitor::silent()).unwrap();
     let found = worst(&problem, 0.5 * value, &CertificateSettings::new(1e-3), &stopped_at(12)).unwrap();
     assert_eq!(found.status, Status::Interrupted);
     assert!(found.bound >= value && !found.open.is_empty());
@@ -194,7 +196,7 @@ fn what_is_ended_early_is_a_bound_all_the_same() {
 fn the_worst_of_the_papers_cell_is_certified() {
     let problem = five_segments();
     let (_, placement) = corner_of_the_cell();
-    let value = relaxed_value(&problem, &placement).unwrap();
+    let value = relaxed_value(&problem, &placement, &Monitor::silent()).unwrap();
     let found = worst(&problem, value, &CertificateSettings::new(1e-3), &Monitor::silent()).unwrap();
     assert_eq!(found.status, Status::Reached);
     assert!(found.bound >= value && found.gap() <= 1e-3);

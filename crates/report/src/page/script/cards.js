@@ -79,7 +79,7 @@ function convergenceCard() {
     colour,
     width: 2,
   });
-  const lines = [line('best', '--good'), line('worst', '--bad')];
+  const lines = [line('best', '--good'), line('worst', '--bad')].filter((one) => one.y.length);
   const values = lines.flatMap((one) => one.y).filter(Number.isFinite);
   if (!values.length) return null;
   const range = /** @type {[number, number]} */ ([0, Math.max(...values) * 1.05]);
@@ -95,7 +95,7 @@ function convergenceCard() {
   });
   return card(
     'Search',
-    'best and worst objective in mm over generations; drag to zoom, double click to reset',
+    `${lines.length > 1 ? 'best and worst objective' : 'best objective'} in mm over generations; drag to zoom, double click to reset`,
     chart.host,
     legendOf(lines),
   );
@@ -182,7 +182,7 @@ function stabilityCard() {
   if (!said || !RAW.depths) return null;
   const depths = RAW.depths.map((/** @type {any} */ columns) => singlesOf(columns.critical_depth_mm));
   const most = Math.max(said.max_depth_mm || 0, said.axial_depth_mm) * 1.1;
-  const names = IS_SCORE ? ['best plan', 'worst plan'] : ['best placement', 'worst placement'];
+  const names = (IS_SCORE ? ['best plan', 'worst plan'] : ['best placement', 'worst placement']).slice(0, depths.length);
   const lines = depths.map((/** @type {Float32Array} */ y, /** @type {number} */ k) => ({
     name: names[k],
     y,

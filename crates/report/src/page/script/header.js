@@ -25,10 +25,10 @@ function verdict() {
         {},
         `At the best placement in the cell the ${SCORED} is off by `,
         mm(0),
-        ' in the mean, at the worst by ',
-        mm(2),
-        ...times_(2),
-        ' for the same robot, tool and cut.',
+        ' in the mean',
+        ...(CASES[2]
+          ? [', at the worst by ', mm(2), ...times_(2), ' for the same robot, tool and cut.']
+          : ['; the worst was not looked for.']),
       );
   const { document: said } = RAW;
   if (said.interrupted) out.append(' The search was stopped before its end: this is the best result so far.');

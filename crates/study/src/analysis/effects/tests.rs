@@ -41,6 +41,9 @@ fn a_grid_by_hand() {
     assert!((height.share.unwrap() - 49.0 / 233.5).abs() < 1e-12);
     assert!((found.remainder.unwrap() - 3.0 / 233.5).abs() < 1e-12);
     assert_eq!((robot.rank_correlation, height.best(Sense::Min).unwrap().label.as_str()), (None, "100"));
+    // About (350 / 3, 17.5): heights of -200/3, -50/3, 250/3 with values of -1.5, -2.5, 4.
+    let slope = (200.0 * 1.5 + 50.0 * 2.5 + 250.0 * 4.0) / ((200.0 * 200.0 + 50.0 * 50.0 + 250.0 * 250.0) / 3.0);
+    assert!((height.slope.unwrap() - slope).abs() < 1e-12 && robot.slope.is_none(), "{:?}", height.slope);
     // Ranks of the heights 1 0 2 | 1 0 2 and of the values 0 1 2 | 3 4 5.
     assert!((height.rank_correlation.unwrap() - 4.0 / libm::sqrt(16.0 * 17.5)).abs() < 1e-12);
 }
@@ -73,6 +76,7 @@ fn many_numbers_are_a_line() {
     let k1 = &found.axes[0];
     assert_eq!((k1.method, found.axes[1].method), (Method::Line, Method::AdjustedMeans));
     assert!(close(&values(k1), &[("0", 7.0), ("361", -173.5)]));
+    assert!((k1.slope.unwrap() + 0.5).abs() < 1e-12);
     assert!((k1.rank_correlation.unwrap() + 1.0).abs() < 1e-12 && found.axes[1].range < 1e-9);
 }
 
@@ -81,7 +85,9 @@ fn axes_that_go_together_are_not_told_apart() {
     let cases = [("a", "1"), ("b", "2"), ("a", "1"), ("b", "2")].map(|(a, b)| vec![a, b]);
     let cases: Vec<_> = cases.into_iter().zip([1.0, 2.0, 3.0, 4.0]).map(|(case, value)| (case, Some(value))).collect();
     let found = effects_of(&["robot", "spindle"], &cases);
-    assert!(found.axes.iter().all(|axis| axis.method == Method::MixedMeans && axis.range == 1.0));
+    assert!(
+        found.axes.iter().all(|axis| axis.method == Method::MixedMeans && axis.range == 1.0 && axis.slope.is_none())
+    );
 }
 
 #[test]
