@@ -7,6 +7,7 @@ mod tests;
 mod text;
 
 pub use json::certificate_json;
+use json::certificate_content;
 pub use tables::open_region;
 pub use text::certificate_text;
 
@@ -73,7 +74,7 @@ pub fn certificate_files(
     inputs: &[InputFile],
 ) -> Result<Files, ReportError> {
     let mut files = vec![
-        (CERTIFICATE, bytes(&certificate_json(certificate, inputs))),
+        (CERTIFICATE, bytes(&certificate_content(certificate, inputs))),
         ("open-region.csv", open_region(problem, certificate)?),
     ];
     for (name, proof) in proofs(certificate) {
