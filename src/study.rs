@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use stead_format as format;
+use stead_format::files;
 use stead_format::input::{InputFile, input_file};
 use stead_format::manifest::{self, Unlisted};
 use stead_placement::certify::Certificate;
@@ -94,7 +95,7 @@ impl Study {
     pub fn results(&self, folder: impl AsRef<Path>) -> Result<Option<Table>, Error> {
         let folder = folder.as_ref();
         for file in cases::TABLES.map(|name| folder.join(name)) {
-            if let Ok(bytes) = std::fs::read(&file) {
+            if let Ok(bytes) = files::read(&file) {
                 manifest::check(&file, &bytes, Unlisted::Refused)?;
             }
         }
@@ -234,7 +235,7 @@ impl Keeping for StudyFolder<'_> {
 
     fn is_kept(&self, case: &PlannedCase) -> bool {
         let file = self.of_case(case).join("placements.csv");
-        std::fs::read(&file).is_ok_and(|bytes| manifest::check(&file, &bytes, Unlisted::Refused).is_ok())
+        files::read(&file).is_ok_and(|bytes| manifest::check(&file, &bytes, Unlisted::Refused).is_ok())
     }
 
     fn keep(

@@ -64,8 +64,8 @@ enum Failure {
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
-            // It is no wrong folder, only a wrong time.
-            Failure::Output(ReportError::Locked { .. }) => 1,
+            // It is no wrong folder, only a wrong time, or a disk without room.
+            Failure::Output(error) if matches!(error, ReportError::Locked { .. }) || error.is_of_disk() => 1,
             Failure::Usage(_) | Failure::Output(_) => 2,
             Failure::Stead(error) if error.is_bad_input() => 2,
             Failure::Stead(error) if error.is_interrupted() => 130,

@@ -4,10 +4,9 @@ mod run_for;
 
 pub use run_for::init_run;
 
+use crate::files::new::write_all_new;
 use crate::input::InputError;
 use crate::toml_file::without_schema;
-use std::fs::{File, OpenOptions};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What a starter set is for.
@@ -56,40 +55,8 @@ impl StarterSet {
 /// [`InputError`] that names the file that is there already, or that cannot be written.
 pub fn init(set: StarterSet, folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     let files: Vec<(PathBuf, &str)> = set.files().into_iter().map(|(name, text)| (folder.join(name), text)).collect();
-    if let Some((path, _)) = files.iter().find(|(path, _)| path.symlink_metadata().is_ok()) {
-        return Err(InputError::new(path, "is there already, and is left as it is").allowed(EMPTY));
-    }
-    let is_new = !folder.exists();
-    std::fs::create_dir_all(folder).map_err(|e| cannot(folder, &e))?;
-    let mut written = Vec::with_capacity(files.len());
-    for (path, text) in &files {
-        // Fails rather than replacing a file that has come in the meantime.
-        let created = OpenOptions::new().write(true).create_new(true).open(path);
-        let result = created.and_then(|file| {
-            written.push(path.clone());
-            write(file, text)
-        });
-        if let Err(error) = result {
-            // What is removed here is what was made here.
-            written.iter().for_each(|path| drop(std::fs::remove_file(path)));
-            if is_new {
-                let _ = std::fs::remove_dir(folder);
-            }
-            return Err(cannot(path, &error));
-        }
-    }
-    Ok(written)
-}
-
-const EMPTY: &str = "a folder without files of these names, or one that can be made";
-
-fn write(mut file: File, text: &str) -> std::io::Result<()> {
-    file.write_all(text.as_bytes())?;
-    file.sync_all()
-}
-
-fn cannot(path: &Path, error: &std::io::Error) -> InputError {
-    InputError::new(path, format!("cannot be written: {error}")).allowed(EMPTY)
+    write_all_new(&files)?;
+    Ok(files.into_iter().map(|(path, _)| path).collect())
 }
 
 #[cfg(test)]
@@ -150,6 +117,6 @@ mod tests {
         let file = folder.path().join("file");
         std::fs::write(&file, "mine").unwrap();
         let message = init(StarterSet::Assess, &file.join("below")).unwrap_err().to_string();
-        assert!(message.contains("below: cannot be written: "), "{message}");
+        assert!(message.contains("below/assess.toml: cannot be written: "), "{message}");
     }
 }

@@ -37,6 +37,8 @@ pub struct InputError {
     pub found: Option<Box<str>>,
     /// What would have been accepted.
     pub allowed: Option<Box<str>>,
+    /// Whether nothing is wrong with the input: a file that was to be made did not fit on the disk.
+    pub is_of_disk: bool,
 }
 
 impl InputError {
@@ -50,7 +52,14 @@ impl InputError {
             problem: one_line(problem),
             found: None,
             allowed: None,
+            is_of_disk: false,
         }
+    }
+
+    /// States that the disk is at fault, and not the input.
+    pub(crate) fn of_disk(mut self) -> Self {
+        self.is_of_disk = true;
+        self
     }
 
     /// Adds the line, from 1.

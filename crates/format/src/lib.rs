@@ -25,6 +25,7 @@ mod deserialize;
 pub mod document;
 pub mod field;
 mod file_kind;
+pub mod files;
 #[cfg(any(test, feature = "fuzzing"))]
 pub mod fuzzing;
 pub mod identify;
@@ -34,7 +35,6 @@ pub mod input;
 pub mod manifest;
 pub mod mesh;
 pub mod mount;
-mod new_file;
 pub mod orientation;
 pub mod place;
 mod placed;

@@ -3,7 +3,7 @@
 use super::segments::{Counts, Point, Resampling, expected_points, segments};
 use super::{Program, counted};
 use crate::input::InputError;
-use crate::new_file::write_new;
+use crate::files::new::write_new;
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};

@@ -1,8 +1,8 @@
 //! Files that a command makes and that must not be there yet.
 
+use super::staged::{PREFIX, Staged, sync};
+use super::is_full;
 use crate::input::InputError;
-use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 const ALLOWED: &str = "the name of a file that is not there yet, in a folder that can be written to";
@@ -12,33 +12,69 @@ const ALLOWED: &str = "the name of a file that is not there yet, in a folder tha
 /// # Errors
 /// [`InputError`] where the file is there already or cannot be written; it is then as it was.
 pub(crate) fn write_new(file: &Path, text: &str) -> Result<(), InputError> {
-    check_new(file)?;
-    let cannot = |error: std::io::Error| InputError::new(file, format!("cannot be written: {error}")).allowed(ALLOWED);
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(cannot)?;
-    }
-    // Fails rather than replacing a file that has come in the meantime.
-    let mut made = OpenOptions::new().write(true).create_new(true).open(file).map_err(cannot)?;
-    let result = made.write_all(text.as_bytes()).and_then(|()| made.sync_all());
-    result.map_err(|error| {
-        let _ = std::fs::remove_file(file);
-        cannot(error)
-    })
+    write_all_new(&[(file.to_owned(), text)])
 }
 
-/// Writes files none of which may be there: all, or none where one of them is there already or cannot be written.
+/// Writes files none of which may be there: all, or none where one of them is there already or cannot be written. They are written under
+/// temporary names first. The first of them, which tells of the others, gets its name last: a process that is killed leaves it or nothing
+/// that looks whole.
 ///
 /// # Errors
-/// Those of [`write_new`].
+/// [`InputError`] where a file is there already or cannot be written.
 pub(crate) fn write_all_new(files: &[(PathBuf, &str)]) -> Result<(), InputError> {
     files.iter().try_for_each(|(file, _)| check_new(file))?;
-    for (index, (file, text)) in files.iter().enumerate() {
-        write_new(file, text).inspect_err(|_| {
+    let mut made = MadeFolders::default();
+    let mut staged = Vec::with_capacity(files.len());
+    for (file, text) in files {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let written = made.make(folder).and_then(|()| Staged::write(folder, PREFIX, text.as_bytes()));
+        staged.push((written.map_err(|cause| cannot(file, &cause))?, file));
+    }
+    let mut named: Vec<&PathBuf> = Vec::new();
+    while let Some((written, file)) = staged.pop() {
+        // Fails rather than replacing a file that has come in the meantime.
+        if let Err(cause) = written.put_new(file) {
             // What is removed here is what was made here.
-            files[..index].iter().for_each(|(made, _)| drop(std::fs::remove_file(made)));
-        })?;
+            named.into_iter().for_each(|made| drop(std::fs::remove_file(made)));
+            return Err(cannot(file, &cause));
+        }
+        named.push(file);
+    }
+    made.keep();
+    if let Some(folder) = files.first().and_then(|(file, _)| file.parent()).filter(|folder| folder.is_dir()) {
+        // They are there; where the names cannot be put on the disk now, the system does it later.
+        let _ = sync(folder);
     }
     Ok(())
+}
+
+/// Folders that were made on the way, removed when this is dropped, where they are empty and not to be kept.
+#[derive(Debug, Default)]
+struct MadeFolders(Vec<PathBuf>);
+
+impl MadeFolders {
+    /// Makes a folder and those above it.
+    fn make(&mut self, folder: &Path) -> std::io::Result<()> {
+        let missing = folder.ancestors().take_while(|above| !above.as_os_str().is_empty() && !above.exists());
+        let missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        self.0.extend(missing.into_iter().rev());
+        std::fs::create_dir_all(folder)
+    }
+
+    fn keep(mut self) {
+        self.0.clear();
+    }
+}
+
+impl Drop for MadeFolders {
+    fn drop(&mut self) {
+        self.0.iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
+}
+
+fn cannot(file: &Path, cause: &std::io::Error) -> InputError {
+    let error = InputError::new(file, format!("cannot be written: {cause}"));
+    if is_full(cause) { error.of_disk() } else { error.allowed(ALLOWED) }
 }
 
 fn check_new(file: &Path) -> Result<(), InputError> {
@@ -62,6 +98,7 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "mine");
         assert!(write_new(&file.join("below"), "other").unwrap_err().to_string().contains("cannot be written: "));
     }
+
     #[test]
     fn of_several_files_all_are_written_or_none() {
         let folder = tempfile::tempdir().unwrap();
@@ -73,5 +110,10 @@ mod tests {
         // The second cannot be written, since its folder is a file.
         let files = [(folder.path().join("c.src"), "text"), (files[1].0.join("d.src"), "text")];
         assert!(write_all_new(&files).is_err() && !files[0].0.exists());
+        // Nor is a folder left, or a temporary file.
+        let files = ["new/e.src", "new/deep/f.src", "b.src/g.src"].map(|name| (folder.path().join(name), "text"));
+        assert!(write_all_new(&files).is_err());
+        let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(names, ["b.src"]);
     }
 }

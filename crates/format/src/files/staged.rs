@@ -1,24 +1,31 @@
 //! Files written whole under temporary names, to be renamed when all of them are there.
 
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Result, Write};
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile};
 
-const PREFIX: &str = ".stead-";
+/// How the names of temporary files begin, unless whoever clears up after them knows its own by another name.
+pub const PREFIX: &str = ".stead-";
+/// What the names of temporary files end with.
 const SUFFIX: &str = ".tmp";
 /// Random characters between the two.
 const RANDOM: usize = 6;
 
 /// A file with its content on disk under a temporary name. Gone again when it is dropped.
 #[derive(Debug)]
-pub(super) struct Staged(NamedTempFile);
+pub struct Staged(NamedTempFile);
 
 impl Staged {
-    /// Writes a file under a temporary name.
-    pub(super) fn write(folder: &Path, bytes: &[u8]) -> std::io::Result<Self> {
+    /// Writes a file into a folder, under a temporary name that begins with [`PREFIX`] or one's own.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write(folder: &Path, prefix: &str, bytes: &[u8]) -> Result<Self> {
         let mut builder = Builder::new();
-        builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
+        builder.prefix(prefix).suffix(SUFFIX).rand_bytes(RANDOM);
         readable(&mut builder);
+        // The name of a file in this folder has no folder of its own.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let mut file = builder.tempfile_in(folder)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
@@ -26,50 +33,80 @@ impl Staged {
     }
 
     /// Gives it its name, over an older file of that name.
-    pub(super) fn put(self, path: &Path) -> std::io::Result<()> {
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn put(self, path: &Path) -> Result<()> {
         self.0.persist(path).map(drop).map_err(|error| error.error)
     }
 
+    /// Gives it its name, unless there is a file of that name.
+    ///
+    /// # Errors
+    /// What the system says; [`ErrorKind::AlreadyExists`] where there is one.
+    pub fn put_new(self, path: &Path) -> Result<()> {
+        match self.0.persist_noclobber(path) {
+            Ok(_) => Ok(()),
+            // A file system that cannot do both in one: it is looked for just before.
+            Err(error) if error.error.kind() != ErrorKind::AlreadyExists && path.symlink_metadata().is_err() => {
+                Self(error.file).put(path)
+            }
+            Err(error) => Err(error.error),
+        }
+    }
+
     /// Leaves it under its temporary name, as a process that is killed does.
-    #[cfg(test)]
-    pub(super) fn abandon(self) {
-        self.0.keep().unwrap();
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn abandon(self) -> Result<()> {
+        self.0.keep().map(drop).map_err(|error| error.error)
     }
 }
 
-/// Removes the temporary files of a process that is gone. What cannot be removed stays.
-pub(super) fn remove_stale(folder: &Path) {
+/// Removes the temporary files of a process that is gone, by how their names begin. What cannot be removed stays.
+pub fn remove_stale(folder: &Path, prefix: &str) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && entry.file_name().to_str().is_some_and(is_temporary) {
+        if is_file && entry.file_name().to_str().is_some_and(|name| is_temporary(name, prefix)) {
             let _ = std::fs::remove_file(entry.path());
         }
     }
 }
 
 /// Whether a name is one that [`Staged::write`] gives.
-fn is_temporary(name: &str) -> bool {
-    let random = name.strip_prefix(PREFIX).and_then(|rest| rest.strip_suffix(SUFFIX));
+fn is_temporary(name: &str, prefix: &str) -> bool {
+    let random = name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(SUFFIX));
     random.is_some_and(|random| random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric()))
 }
 
 /// Puts the names in a folder on disk, in the order in which they were given. A file system that cannot do so is none to wait for.
+///
+/// # Errors
+/// What the system says.
 #[cfg(unix)]
-pub(super) fn sync(folder: &Path) -> std::io::Result<()> {
+pub fn sync(folder: &Path) -> Result<()> {
     match std::fs::File::open(folder)?.sync_all() {
         Err(cause) if matches!(cause.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
         result => result,
     }
 }
 
+/// Names are on disk as soon as they are given.
+///
+/// # Errors
+/// None.
 #[cfg(not(unix))]
-pub(super) fn sync(_: &Path) -> std::io::Result<()> {
+pub fn sync(_: &Path) -> Result<()> {
     Ok(())
 }
 
 /// Removes a file, if it is there.
-pub(super) fn remove(path: &Path) -> std::io::Result<()> {
+///
+/// # Errors
+/// What the system says.
+pub fn remove(path: &Path) -> Result<()> {
     match std::fs::remove_file(path) {
         Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),
         result => result,
@@ -99,9 +136,19 @@ mod tests {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         std::fs::create_dir(folder.path().join(".stead-folder.tmp")).unwrap();
-        Staged::write(folder.path(), b"stale").unwrap().abandon();
-        remove_stale(folder.path());
+        Staged::write(folder.path(), PREFIX, b"stale").unwrap().abandon().unwrap();
+        remove_stale(folder.path(), PREFIX);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1 + foreign.len());
-        remove_stale(Path::new("nowhere"));
+        remove_stale(Path::new("nowhere"), PREFIX);
+    }
+
+    #[test]
+    fn a_new_file_takes_the_place_of_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let staged = || Staged::write(folder.path(), PREFIX, b"new").unwrap();
+        staged().put_new(&path).unwrap();
+        assert_eq!(staged().put_new(&path).unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

@@ -28,7 +28,7 @@ pub use layout::ProgramFile;
 
 use crate::input::{InputError, InputFile};
 use crate::manifest::interruption_note;
-use crate::new_file::write_all_new;
+use crate::files::new::write_all_new;
 use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
 use carrier::Carrier;

@@ -35,7 +35,7 @@ pub use home::HomePose;
 pub use rows::ImportedRow;
 
 use crate::input::{InputError, sha256};
-use crate::new_file::write_all_new;
+use crate::files::new::write_all_new;
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};

@@ -1,11 +1,11 @@
 //! A results folder that this process alone writes to.
 
 use super::lock::{Lock, LockError};
-use super::staged::{Staged, remove_stale};
 use super::transaction::Transaction;
 use super::{ReportError, transaction};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use stead_format::files::{PREFIX, Staged, remove_stale};
 use stead_format::input::InputFile;
 use stead_format::manifest::ResultSet;
 
@@ -42,10 +42,10 @@ impl Folder {
             LockError::System(cause) => fail(cause),
         })?;
         if lock.is_locked() {
-            remove_stale(path);
+            remove_stale(path, PREFIX);
         }
         // Gone again as soon as it is dropped.
-        Staged::write(path, b"").map_err(fail)?;
+        Staged::write(path, PREFIX, b"").map_err(fail)?;
         transaction::manifest_in(path)?;
         Ok(Self { path: path.to_owned(), lock, keeps_partial: false })
     }
@@ -140,7 +140,7 @@ impl Folder {
     /// [`ReportError::File`] with the path of the file; what was there is left as it was.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, ReportError> {
         let path = self.path.join(name);
-        match Staged::write(&self.path, bytes).and_then(|staged| staged.put(&path)) {
+        match Staged::write(&self.path, PREFIX, bytes).and_then(|staged| staged.put(&path)) {
             Ok(()) => Ok(path),
             Err(cause) => Err(ReportError::File { path, cause }),
         }
@@ -208,7 +208,7 @@ mod tests {
         }
         drop(folder);
         std::fs::write(place.path().join(LOCK), "1").unwrap();
-        Staged::write(place.path(), b"stale").unwrap().abandon();
+        Staged::write(place.path(), PREFIX, b"stale").unwrap().abandon().unwrap();
         drop(Folder::create(place.path()).unwrap());
         assert!(names(place.path()).is_empty());
     }
