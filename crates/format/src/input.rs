@@ -2,6 +2,7 @@
 
 pub mod csv_table;
 
+use crate::quote;
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 use std::path::Path;
@@ -102,8 +103,7 @@ impl InputError {
 
 /// A text without the line breaks and other controls of the file that it comes from.
 fn one_line(text: impl Into<String>) -> Box<str> {
-    let text = text.into();
-    if text.contains(char::is_control) { text.replace(char::is_control, " ").into() } else { text.into() }
+    quote::one_line(&text.into()).into()
 }
 
 impl fmt::Display for InputError {

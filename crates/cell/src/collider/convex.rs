@@ -92,7 +92,8 @@ fn outermost(points: &[Vector]) -> Option<Vec<Vector>> {
         let tolerance = HULL_TOLERANCE * inner / 2.0;
         let mut farthest: Vec<Option<(f64, usize)>> = vec![None; planes.len()];
         outside.retain(|number| {
-            let beyond = |(face, (normal, offset)): (usize, &(Vector, f64))| (normal.dot(points[*number]) - offset, face);
+            let beyond =
+                |(face, (normal, offset)): (usize, &(Vector, f64))| (normal.dot(points[*number]) - offset, face);
             let most = planes.iter().enumerate().map(beyond).max_by(|a, b| a.0.total_cmp(&b.0));
             let Some((distance, face)) = most.filter(|(distance, _)| *distance > tolerance) else { return false };
             if farthest[face].is_none_or(|(known, _)| known < distance) {
@@ -281,7 +282,8 @@ mod tests {
         let sphere: Vec<Vector> = (0..200_000).map(|_| on(any())).collect();
         let ball: Vec<Vector> = sphere.iter().map(|point| *point * libm::cbrt(any().x.abs())).collect();
         let cube: Vec<Vector> = (0..200_000).map(|_| any() / any().abs().max_element()).collect();
-        let block: Vec<Vector> = cube.iter().map(|point| point.clamp(Vector::splat(-0.4), Vector::splat(0.4))).collect();
+        let block: Vec<Vector> =
+            cube.iter().map(|point| point.clamp(Vector::splat(-0.4), Vector::splat(0.4))).collect();
         for (points, most) in [(sphere, 200_000), (ball, 20_000), (block, 2000)] {
             let found = corners(points.clone());
             assert!(found.len() <= most, "{}", found.len());

@@ -2,8 +2,8 @@
 
 use super::segments::{Counts, Point, Resampling, expected_points, segments};
 use super::{Program, counted};
-use crate::input::InputError;
 use crate::files::new::write_new;
+use crate::input::InputError;
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};

@@ -1,7 +1,7 @@
 //! Files that a command makes and that must not be there yet.
 
-use super::staged::{PREFIX, Staged, sync};
 use super::is_full;
+use super::staged::{PREFIX, Staged, sync};
 use crate::input::InputError;
 use std::path::{Path, PathBuf};
 

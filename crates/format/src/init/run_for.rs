@@ -1,7 +1,7 @@
 //! A run file for a robot and a task that are there.
 
-use crate::input::InputError;
 use crate::files::new::write_new;
+use crate::input::InputError;
 use crate::robot::{read_geometry, says_stiffness};
 use crate::shipped;
 use crate::task::read_csv;

@@ -34,8 +34,8 @@ pub use deviation::{Deviation, POSTURES};
 pub use home::HomePose;
 pub use rows::ImportedRow;
 
-use crate::input::{InputError, sha256};
 use crate::files::new::write_all_new;
+use crate::input::{InputError, sha256};
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};

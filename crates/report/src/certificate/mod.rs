@@ -6,8 +6,8 @@ mod tables;
 mod tests;
 mod text;
 
-pub use json::certificate_json;
 use json::certificate_content;
+pub use json::certificate_json;
 pub use tables::open_region;
 pub use text::certificate_text;
 

@@ -5,9 +5,9 @@ use super::transaction::Transaction;
 use super::{ReportError, transaction};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use stead_format::files::{PREFIX, Staged, remove_stale};
+use stead_format::files::{self, PREFIX, Staged, remove_stale};
 use stead_format::input::InputFile;
-use stead_format::manifest::ResultSet;
+use stead_format::manifest::{MANIFEST, ResultSet};
 
 /// The name of the lock file, which is there as long as a run writes.
 const LOCK: &str = ".stead.lock";
@@ -134,6 +134,20 @@ impl Folder {
         Transaction::new(&self.path, command, inputs)
     }
 
+    /// Removes all results here that the manifest lists, and the manifest. What it does not list stays.
+    ///
+    /// # Errors
+    /// [`ReportError`] for a manifest that cannot be read, or with the path of a file that cannot be removed.
+    pub fn clear(&self) -> Result<(), ReportError> {
+        let manifest = transaction::manifest_in(&self.path)?;
+        let listed = manifest.results.iter().flat_map(|set| &set.files).map(|file| file.name.as_str());
+        for name in listed.chain([MANIFEST]) {
+            let path = self.path.join(name);
+            files::remove(&path).map_err(|cause| ReportError::File { path, cause })?;
+        }
+        Ok(())
+    }
+
     /// Writes one file that is no result, over an older one of that name, whole or not at all. Returns its path.
     ///
     /// # Errors
@@ -150,7 +164,6 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_format::manifest::MANIFEST;
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = std::fs::read_dir(folder).unwrap();
