@@ -20,7 +20,7 @@ fn exception(py: Python<'_>, error: &Error, document: Option<String>) -> PyResul
         Error::Input(input) if input.is_of_disk => "OutputError",
         Error::Input(input) => {
             fields.set_item("file", input.file.display().to_string())?;
-            fields.set_item("line", input.line)?;
+            fields.set_item("line", input.line.map(std::num::NonZeroUsize::get))?;
             fields.set_item("field", input.field.as_deref())?;
             fields.set_item("problem", &*input.problem)?;
             fields.set_item("found", input.found.as_deref())?;

@@ -115,7 +115,8 @@ Files written to the results folder:
   study.json, shards/                what is done so far
 
 The command may be killed at any moment: the same command goes on where it was. After an edit of the study file it does what the
-edit has changed; folders of kept cases that are not of the study any longer are named, and removed with --prune. Shards may run at the same time, on many machines, in one folder that they share; the last one writes the table.
+edit has changed; kept cases that are not of the study any longer are named, and removed with --prune. Shards may run at the same
+time, on many machines, in one folder that they share; the last one writes the table.
 The bytes of study.csv and study.parquet depend on neither threads nor shards.
 
 Exit codes:

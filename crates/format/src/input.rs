@@ -5,6 +5,7 @@ pub mod csv_table;
 use crate::quote;
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 /// A file that was read, so that a result can say what it came from.
@@ -27,7 +28,7 @@ pub struct InputError {
     /// The file as the user named it.
     pub file: Box<Path>,
     /// Line in the file, from 1.
-    pub line: Option<usize>,
+    pub line: Option<NonZeroUsize>,
     /// What put the value there, where it is not the file's own: `--set cell.z_mm=[0, 1]`, or the case of a study.
     pub set_by: Option<Box<str>>,
     /// Field: dotted key of a TOML file, or column of a CSV file.
@@ -65,7 +66,7 @@ impl InputError {
 
     /// Adds the line, from 1.
     pub fn at_line(mut self, line: usize) -> Self {
-        self.line = Some(line);
+        self.line = NonZeroUsize::new(line);
         self
     }
 

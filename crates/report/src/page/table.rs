@@ -2,7 +2,7 @@
 
 use super::PageError;
 use super::packed::singles;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// A table in the bytes of its file: the rows of a long path are many times as large once they are taken apart, and few of them are shown.
 #[derive(Debug, Clone)]
@@ -73,11 +73,12 @@ impl<'a> Table<'a> {
             }
             Ok(())
         })?;
-        let columns = self.header.iter().zip(is_words).zip(texts.into_iter().zip(numbers));
-        let value = |((name, is_word), (texts, numbers)): ((&String, bool), (Vec<String>, Vec<f64>))| {
-            (name.clone(), if is_word { json!(texts) } else { json!(singles(numbers)) })
-        };
-        Ok(Value::Object(columns.map(value).collect()))
+        let mut columns = Map::new();
+        let values = texts.into_iter().zip(numbers);
+        for ((name, is_word), (texts, numbers)) in self.header.iter().zip(is_words).zip(values) {
+            columns.insert(name.clone(), if is_word { json!(texts) } else { json!(singles(numbers)) });
+        }
+        Ok(Value::Object(columns))
     }
 
     /// What a function makes of the rows chosen, in ascending order, or of all.
