@@ -100,3 +100,27 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
     value["scores"] = json!(packed.text());
     Ok(value)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_not_shown_are_not_looked_at() {
+        let (count, beta_count) = (2 * COLUMNS, 3);
+        let shown = columns(count);
+        let row = |point: usize, k: usize| match point % 2 {
+            0 => format!("{point},1,{k},0.{:04},2,\n", point + k),
+            _ => "no,row,that,is,looked,at\n".to_owned(),
+        };
+        let rows: String = (0..count).flat_map(|point| (0..beta_count).map(move |k| row(point, k))).collect();
+        let text = format!("point,segment,beta_deg,score_mm,posture,reason\n{rows}");
+        let entry = json!({ "points": shown, "beta_count": beta_count });
+        let content = |text: &str| content(&entry, &Table::read("map.csv", text.as_bytes())?);
+        assert_eq!(shown.len(), COLUMNS);
+        let codes = super::super::base64::base64(&[2; 3 * COLUMNS]);
+        assert_eq!(content(&text).unwrap()["codes"], codes.as_str());
+        let cut: String = text.lines().take(100).map(|line| format!("{line}\n")).collect();
+        assert!(content(&cut).unwrap_err().to_string().contains("has fewer states"));
+    }
+}
