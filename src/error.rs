@@ -40,10 +40,11 @@ pub enum Error {
 impl Error {
     /// Whether the input or an argument is at fault, and not the job.
     pub fn is_bad_input(&self) -> bool {
-        matches!(
-            self,
-            Self::Input(_) | Self::Argument(_) | Self::Study(StudyError::Folder { .. } | StudyError::Locked { .. })
-        )
+        match self {
+            Self::Input(error) => !error.is_of_disk,
+            Self::Argument(_) | Self::Study(StudyError::Folder { .. } | StudyError::Locked { .. }) => true,
+            _ => false,
+        }
     }
 
     /// Whether the caller stopped the job before it had a result.

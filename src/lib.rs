@@ -47,6 +47,9 @@
 //! input and seed give the same bytes for any number of threads: random numbers are counter-based, reductions run in a
 //! fixed order, and transcendental functions do not come from the C library of the machine.
 
+/// The most threads that a job is given: more are a slip, and a machine that is asked for them may not answer.
+pub const MAX_THREADS: usize = 1024;
+
 mod assessment;
 mod check;
 mod circularity;

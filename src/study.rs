@@ -3,10 +3,12 @@
 use crate::result::{Report, result};
 use crate::{Error, Monitor};
 use serde_json::Value;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use stead_format as format;
+use stead_format::files;
 use stead_format::input::{InputFile, input_file};
 use stead_format::manifest::{self, Unlisted};
 use stead_placement::certify::Certificate;
@@ -78,7 +80,27 @@ impl Study {
     /// # Errors
     /// [`Error::Study`]: the folder of another study, or a file that cannot be read.
     pub fn status(&self, folder: impl AsRef<Path>) -> Result<StudyStatus, Error> {
-        Ok(cases::status(&self.plan, folder.as_ref())?)
+        let folder = folder.as_ref();
+        Ok(StudyStatus { stale: self.folder(folder).stale(&self.plan), ..cases::status(&self.plan, folder)? })
+    }
+
+    /// Removes the kept cases in a folder that the study as it is now has not: those of values that an edit has changed. Only what
+    /// `manifest.json` lists is removed; a folder that something else is in stays. Returns the folders that are gone.
+    ///
+    /// # Errors
+    /// As [`Study::status`], and [`Error::Output`] for a case that another process writes, or one that cannot be removed.
+    pub fn prune(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+        let folder = folder.as_ref();
+        let stale = self.status(folder)?.stale;
+        let mut gone = Vec::new();
+        for path in stale.into_iter().map(|name| folder.join(CASES).join(name)) {
+            Folder::create(&path)?.clear()?;
+            // It stays where something of the user's is in it.
+            if std::fs::remove_dir(&path).is_ok() {
+                gone.push(path);
+            }
+        }
+        Ok(gone)
     }
 
     /// What `stead study status --json` prints.
@@ -94,7 +116,7 @@ impl Study {
     pub fn results(&self, folder: impl AsRef<Path>) -> Result<Option<Table>, Error> {
         let folder = folder.as_ref();
         for file in cases::TABLES.map(|name| folder.join(name)) {
-            if let Ok(bytes) = std::fs::read(&file) {
+            if let Ok(bytes) = files::read(&file) {
                 manifest::check(&file, &bytes, Unlisted::Refused)?;
             }
         }
@@ -220,9 +242,28 @@ impl StudyFolder<'_> {
         format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default())
     }
 
+    /// The names of folders of kept cases that are none of a plan, in their order.
+    fn stale(&self, plan: &Plan) -> Vec<String> {
+        let known: HashSet<String> = plan.cases.iter().map(|case| self.name_of_case(case)).collect();
+        let entries = std::fs::read_dir(self.path.join(CASES)).into_iter().flatten().flatten();
+        let folders = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
+        let names = folders.filter_map(|entry| entry.file_name().into_string().ok());
+        let mut stale: Vec<String> = names.filter(|name| is_of_case(name) && !known.contains(name)).collect();
+        stale.sort();
+        stale
+    }
+
     fn of_case(&self, case: &PlannedCase) -> PathBuf {
         self.path.join(CASES).join(self.name_of_case(case))
     }
+}
+
+/// Whether a name is one that a kept case of some study has.
+fn is_of_case(name: &str) -> bool {
+    name.split_once('-').is_some_and(|(number, id)| {
+        let is_digest = id.len() == 8 && id.bytes().all(|byte| byte.is_ascii_hexdigit());
+        is_digest && number.len() >= 4 && number.bytes().all(|byte| byte.is_ascii_digit())
+    })
 }
 
 impl Keeping for StudyFolder<'_> {
@@ -234,7 +275,7 @@ impl Keeping for StudyFolder<'_> {
 
     fn is_kept(&self, case: &PlannedCase) -> bool {
         let file = self.of_case(case).join("placements.csv");
-        std::fs::read(&file).is_ok_and(|bytes| manifest::check(&file, &bytes, Unlisted::Refused).is_ok())
+        files::read(&file).is_ok_and(|bytes| manifest::check(&file, &bytes, Unlisted::Refused).is_ok())
     }
 
     fn keep(

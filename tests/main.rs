@@ -18,6 +18,8 @@ mod drive;
 mod export;
 mod facade;
 mod feed;
+#[cfg(unix)]
+mod files;
 mod help;
 mod identify;
 mod identify_plan;

@@ -174,6 +174,46 @@ fn an_edited_study_does_what_the_edit_has_changed() {
 }
 
 #[test]
+fn kept_cases_of_values_that_were_edited_are_named_and_removed_when_asked() {
+    let bench = bench();
+    bench.write(STUDY, &format!("keep = \"all\"\n{AXES}"));
+    run(&bench, "out", &[]);
+    let kept = |bench: &Bench| -> Vec<String> {
+        bench.names("out/cases").into_iter().filter(|name| !name.contains('/')).collect()
+    };
+    let before = kept(&bench);
+    assert_eq!(before.len(), 6);
+    bench.replace(STUDY, "[0.2, 0.8, 6.0]", "[0.2, 0.9, 6.0]");
+    // Of one of the two that are not of the study any longer the user has made something, and beside them.
+    bench.write(&format!("out/cases/{}/mine.txt", before[2]), "the user's own\n");
+    bench.write("out/cases/mine/mine.txt", "the user's own\n");
+    let stale = format!(
+        "note: 2 kept cases not of the study as it is now: {}, {}; `stead study run --prune` removes them",
+        before[2], before[3]
+    );
+    let ended = bench.stead(&["study", "run", STUDY, "--out", "out"]);
+    assert_eq!((ended.code, ended.stderr.contains(&stale)), (Some(0), true), "{}", ended.stderr);
+    let status = bench.stead(&["study", "status", STUDY, "--out", "out"]);
+    assert!(status.stderr.contains(&stale), "{}", status.stderr);
+    let document = bench.stead(&["study", "status", STUDY, "--out", "out", "--json"]).json();
+    assert_eq!(document["stale_cases"], serde_json::json!([before[2], before[3]]));
+    assert_eq!(kept(&bench).len(), 9);
+
+    let ended = bench.stead(&["study", "run", STUDY, "--out", "out", "--prune"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: 1 kept case removed that the study has no longer"]);
+    let after = kept(&bench);
+    assert!(after.len() == 8 && !after.contains(&before[3]), "{after:?}");
+    assert_eq!(bench.names(&format!("out/cases/{}", before[2])), ["mine.txt"]);
+    assert_eq!(bench.read("out/cases/mine/mine.txt"), "the user's own\n");
+    // The others are as the study has left them.
+    let ended = run(&bench, "fresh", &[]);
+    assert!(ended.stdout.contains("6 of them now"));
+    let [pruned, fresh] = ["out", "fresh"].map(|out| bench.tree(&format!("{out}/cases/{}", before[0])));
+    assert!(pruned == fresh);
+}
+
+#[test]
 fn a_case_without_a_placement_is_a_row_with_its_reason() {
     let bench = bench();
     bench.replace(STUDY, "[-240.0, -234.0]", "[-9240.0, -9234.0]");

@@ -17,9 +17,10 @@ pub fn raised_with(py: Python<'_>, error: Error, document: impl FnOnce(&Error) -
 fn exception(py: Python<'_>, error: &Error, document: Option<String>) -> PyResult<PyErr> {
     let fields = PyDict::new(py);
     let class = match error {
+        Error::Input(input) if input.is_of_disk => "OutputError",
         Error::Input(input) => {
             fields.set_item("file", input.file.display().to_string())?;
-            fields.set_item("line", input.line)?;
+            fields.set_item("line", input.line.map(std::num::NonZeroUsize::get))?;
             fields.set_item("field", input.field.as_deref())?;
             fields.set_item("problem", &*input.problem)?;
             fields.set_item("found", input.found.as_deref())?;

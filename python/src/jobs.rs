@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use stead::{Error, Monitor, Progress};
+use stead::{Error, MAX_THREADS, Monitor, Progress};
 
 /// Between two looks at the progress and at Ctrl-C.
 const LOOK_EVERY: Duration = Duration::from_millis(150);
@@ -117,8 +117,8 @@ fn started<T: Send + 'static>(
     job: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<Results<T>> {
     let threads = options.threads;
-    if threads == Some(0) {
-        let problem = "no such number of threads, found 0; allowed: 1 or more".to_owned();
+    if let Some(threads) = threads.filter(|threads| !(1..=MAX_THREADS).contains(threads)) {
+        let problem = format!("no such number of threads, found {threads}; allowed: 1 to {MAX_THREADS}");
         return Err(raised(py, Error::Argument(problem)));
     }
     let (sender, results) = channel();

@@ -42,6 +42,7 @@ fn schema(py: Python<'_>, kind: &str) -> PyResult<String> {
 #[pymodule]
 fn _stead(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("MAX_THREADS", stead::MAX_THREADS)?;
     module.add_class::<inputs::Run>()?;
     module.add_class::<inputs::AssessmentRun>()?;
     module.add_class::<inputs::FitRun>()?;

@@ -60,6 +60,7 @@ struct Status {
     failed: usize,
     shards: Vec<ShardStatus>,
     problems: Vec<String>,
+    stale: Vec<String>,
 }
 
 #[derive(IntoPyObject)]
@@ -73,9 +74,9 @@ struct ShardStatus {
 
 impl From<StudyStatus> for Status {
     fn from(status: StudyStatus) -> Self {
-        let StudyStatus { planned, done, infeasible, failed, shards, problems } = status;
+        let StudyStatus { planned, done, infeasible, failed, shards, problems, stale } = status;
         let shards = shards.into_iter().map(ShardStatus::from).collect();
-        Self { planned, done, infeasible, failed, shards, problems }
+        Self { planned, done, infeasible, failed, shards, problems, stale }
     }
 }
 
@@ -128,6 +129,10 @@ impl Study {
 
     fn status(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Status> {
         py.detach(|| self.0.status(&folder)).map(Status::from).map_err(|error| raised(py, error))
+    }
+
+    fn prune(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
+        py.detach(|| self.0.prune(&folder)).map_err(|error| raised(py, error))
     }
 
     fn merge(&self, py: Python<'_>, folder: PathBuf) -> PyResult<bool> {

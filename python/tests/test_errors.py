@@ -59,7 +59,8 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
 def test_arguments_out_of_range() -> None:
     run = stead.Run.read(CARO)
     wrong_calls: list[tuple[Callable[[], object], str]] = [
-        (lambda: run.place(threads=0), "threads, found 0; allowed: 1 or more"),
+        (lambda: run.place(threads=0), "threads, found 0; allowed: 1 to 1024"),
+        (lambda: run.place(threads=2**40), "threads, found 1099511627776; allowed: 1 to 1024"),
         (lambda: run.place(time_limit_s=-1.0), "time limit, found -1 s"),
         (lambda: run.with_seed(-1), "seed, found -1"),
         (lambda: run.explain(stead.Placement(0.0, -1640.0, -214.0, 79.0), 105, 0.0), "found 105; allowed: 0 to 104"),

@@ -220,6 +220,9 @@ pub(super) struct StudyRunOptions {
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
+    /// Remove kept cases that are not of the study as it is now, after an edit of its files
+    #[arg(long)]
+    pub prune: bool,
 }
 
 #[derive(Debug, Args)]

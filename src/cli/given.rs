@@ -3,7 +3,7 @@
 use super::Failure;
 use super::values::{case, damping_scale, finite, quaternion, rpm, variant};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use stead::{Error, Run};
 use stead_format::{Existing, Overrides};
 use stead_placement::problem::Placement;

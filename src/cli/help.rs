@@ -108,6 +108,7 @@ Examples:
   stead study run configs/study-example.toml
   stead study run configs/study-example.toml --threads 1 --out results/again
   stead study run configs/study-example.toml --shard 3/4
+  stead study run configs/study-example.toml --prune
 
 Files written to the results folder:
   study.csv, study.parquet           one row for each case, once every case is done
@@ -116,7 +117,8 @@ Files written to the results folder:
   study.json, shards/                what is done so far
 
 The command may be killed at any moment: the same command goes on where it was. After an edit of the study file it does what the
-edit has changed. Shards may run at the same time, on many machines, in one folder that they share; the last one writes the table.
+edit has changed; kept cases that are not of the study any longer are named, and removed with --prune. Shards may run at the same
+time, on many machines, in one folder that they share; the last one writes the table.
 The bytes of study.csv and study.parquet depend on neither threads nor shards.
 
 Exit codes:

@@ -64,8 +64,8 @@ enum Failure {
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
-            // It is no wrong folder, only a wrong time.
-            Failure::Output(ReportError::Locked { .. }) => 1,
+            // It is no wrong folder, only a wrong time, or a disk without room.
+            Failure::Output(error) if matches!(error, ReportError::Locked { .. }) || error.is_of_disk() => 1,
             Failure::Usage(_) | Failure::Output(_) => 2,
             Failure::Stead(error) if error.is_bad_input() => 2,
             Failure::Stead(error) if error.is_interrupted() => 130,
@@ -95,7 +95,12 @@ fn command() -> clap::Command {
 
 /// Parses the command line, runs the command, and says how it went.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::from_arg_matches(&command().get_matches()).unwrap_or_else(|error| error.exit());
+    outlive_file_limits();
+    let matches = command().try_get_matches();
+    let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
+        Ok(arguments) => arguments,
+        Err(shown) => return show_usage(&shown),
+    };
     let result = match arguments.command {
         Command::Place(options) => place::run(&options),
         Command::Score(options) => score::run(&options),
@@ -125,6 +130,25 @@ pub fn main() -> ExitCode {
             say(&format!("error: {failure}"));
             ExitCode::from(failure.exit_code())
         }
+    }
+}
+
+/// A limit on the size of files is a disk that is full, and no reason to die in mid-write, which the signal that comes with it would be.
+fn outlive_file_limits() {
+    #[cfg(unix)]
+    // Where it cannot be caught, the limit is as deadly as before. Nobody looks whether it came: the write itself fails.
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
+}
+
+/// Shows the help or the version that was asked for, or what is wrong with the command line.
+fn show_usage(shown: &clap::Error) -> ExitCode {
+    let code = u8::try_from(shown.exit_code()).unwrap_or(2);
+    match shown.print() {
+        Err(error) if code == 0 && error.kind() != ErrorKind::BrokenPipe => {
+            say(&format!("error: the result cannot be written to standard output: {error}"));
+            ExitCode::from(1)
+        }
+        _ => ExitCode::from(code),
     }
 }
 

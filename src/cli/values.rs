@@ -1,5 +1,6 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
+use stead::MAX_THREADS;
 use stead_assessment::roundness::Sector;
 use stead_format::field::FieldOverride;
 use stead_format::{GAPS_ALLOWED, MAX_DAMPING_SCALE, MAX_SPINDLE_SPEED_RPM};
@@ -117,9 +118,6 @@ pub(super) fn case(text: &str) -> Result<u8, String> {
 pub(super) fn point(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "allowed: a whole number from 0".to_owned())
 }
-
-/// More threads than this help nobody.
-const MAX_THREADS: usize = 1024;
 
 pub(super) fn threads(text: &str) -> Result<usize, String> {
     text.parse()

@@ -6,6 +6,7 @@
 
 use crate::input::InputError;
 use crate::place::Place;
+use crate::quote::{GARBLED, garbles};
 use crate::tool::successor;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, Deserializer, Error, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
@@ -177,7 +178,13 @@ impl<'de, 'a> Deserializer<'de> for Node<'a> {
     fn deserialize_string<V: Visitor<'de>>(mut self, visitor: V) -> Result<V::Value, Problem> {
         self.whole = Some(TEXT.into());
         self.scalar(visitor, NOT_TEXT, DeValue::as_str, |visitor, text| {
-            if text.trim().is_empty() { Err(Problem::custom("is blank")) } else { visitor.visit_str(text) }
+            if text.trim().is_empty() {
+                Err(Problem::custom("is blank"))
+            } else if text.contains(|c| garbles(c) && !matches!(c, '\n' | '\r' | '\t')) {
+                Err(Problem::custom(GARBLED))
+            } else {
+                visitor.visit_str(text)
+            }
         })
     }
 

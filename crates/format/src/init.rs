@@ -5,8 +5,8 @@ mod run_for;
 
 pub use run_for::init_run;
 
+use crate::files::new::{Existing, write_all_new};
 use crate::input::InputError;
-use crate::new_file::{Existing, write_all_new};
 use crate::toml_file::without_schema;
 use std::path::{Path, PathBuf};
 

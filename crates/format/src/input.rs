@@ -2,8 +2,10 @@
 
 pub mod csv_table;
 
+use crate::quote;
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 /// A file that was read, so that a result can say what it came from.
@@ -26,7 +28,7 @@ pub struct InputError {
     /// The file as the user named it.
     pub file: Box<Path>,
     /// Line in the file, from 1.
-    pub line: Option<usize>,
+    pub line: Option<NonZeroUsize>,
     /// What put the value there, where it is not the file's own: `--set cell.z_mm=[0, 1]`, or the case of a study.
     pub set_by: Option<Box<str>>,
     /// Field: dotted key of a TOML file, or column of a CSV file.
@@ -37,6 +39,8 @@ pub struct InputError {
     pub found: Option<Box<str>>,
     /// What would have been accepted.
     pub allowed: Option<Box<str>>,
+    /// Whether nothing is wrong with the input: a file that was to be made did not fit on the disk.
+    pub is_of_disk: bool,
 }
 
 impl InputError {
@@ -50,12 +54,19 @@ impl InputError {
             problem: one_line(problem),
             found: None,
             allowed: None,
+            is_of_disk: false,
         }
+    }
+
+    /// States that the disk is at fault, and not the input.
+    pub(crate) fn of_disk(mut self) -> Self {
+        self.is_of_disk = true;
+        self
     }
 
     /// Adds the line, from 1.
     pub fn at_line(mut self, line: usize) -> Self {
-        self.line = Some(line);
+        self.line = NonZeroUsize::new(line);
         self
     }
 
@@ -93,8 +104,7 @@ impl InputError {
 
 /// A text without the line breaks and other controls of the file that it comes from.
 fn one_line(text: impl Into<String>) -> Box<str> {
-    let text = text.into();
-    if text.contains(char::is_control) { text.replace(char::is_control, " ").into() } else { text.into() }
+    quote::one_line(&text.into()).into()
 }
 
 impl fmt::Display for InputError {

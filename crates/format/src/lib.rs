@@ -25,6 +25,7 @@ mod deserialize;
 pub mod document;
 pub mod field;
 mod file_kind;
+pub mod files;
 #[cfg(any(test, feature = "fuzzing"))]
 pub mod fuzzing;
 pub mod identify;
@@ -34,7 +35,6 @@ pub mod input;
 pub mod manifest;
 pub mod mesh;
 pub mod mount;
-mod new_file;
 pub mod orientation;
 pub mod place;
 mod placed;
@@ -67,8 +67,8 @@ pub mod urdf;
 
 pub use assess::{AssessRun, read_assessment};
 pub use compensate::{CompensateRun, read_compensation};
+pub use files::new::Existing;
 pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
-pub use new_file::Existing;
 pub use placed::{read_placement_of, read_setup_of};
 pub use points::{PointFile, read_points};
 pub use robot::{covariance, read_geometry, read_robot};

@@ -3,6 +3,7 @@
 //! A command that puts results in place first marks its entry as incomplete and states it complete at the very end. Whoever reads a result
 //! asks [`check`] whether the bytes are those of a run that came to its end. A folder without a manifest holds the user's own files.
 
+use crate::files;
 use crate::input::{InputError, InputFile, sha256};
 use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
@@ -111,7 +112,7 @@ impl Manifest {
     /// # Errors
     /// What the system says, where there is a file that cannot be read.
     pub fn find(folder: &Path) -> std::io::Result<Found> {
-        let bytes = match std::fs::read(folder.join(MANIFEST)) {
+        let bytes = match files::read(&folder.join(MANIFEST)) {
             Ok(bytes) => bytes,
             Err(cause) if matches!(cause.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
                 return Ok(Found::Nothing);

@@ -1,5 +1,6 @@
 //! A placement out of the results of `stead place`: the exact one of a case, from `summary.json`.
 
+use crate::files;
 use crate::input::{InputError, InputFile};
 use crate::manifest::{self, Unlisted, interruption_note};
 use crate::run::Run;
@@ -76,9 +77,9 @@ fn read_case(
 ) -> Result<(Placement, Value, Option<String>), InputError> {
     let file = folder.join(SUMMARY);
     let error = |problem: String| InputError::new(&file, problem).allowed(ALLOWED);
-    let text = std::fs::read_to_string(&file).map_err(|cause| error(format!("cannot be read: {cause}")))?;
-    manifest::check(&file, text.as_bytes(), Unlisted::Refused)?;
-    let summary: Value = serde_json::from_str(&text).map_err(|cause| {
+    let bytes = files::read(&file).map_err(|cause| error(format!("cannot be read: {cause}")))?;
+    manifest::check(&file, &bytes, Unlisted::Refused)?;
+    let summary: Value = serde_json::from_slice(&bytes).map_err(|cause| {
         let line = cause.line().max(1);
         error(format!("is no JSON document: {cause}")).at_line(line)
     })?;

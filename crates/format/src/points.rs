@@ -1,5 +1,6 @@
 //! Measured points from CSV, as coordinate measuring machines export them.
 
+use crate::files;
 use crate::input::csv_table::CsvTable;
 use crate::input::input_file;
 use crate::input::{InputError, InputFile};
@@ -28,7 +29,7 @@ pub struct PointFile {
 /// [`InputError`] naming line and column: a file that cannot be read, a missing or doubled column, a value that is no finite
 /// number.
 pub fn read_points(file: &Path) -> Result<PointFile, InputError> {
-    let bytes = std::fs::read(file).map_err(|e| {
+    let bytes = files::read(file).map_err(|e| {
         InputError::new(file, format!("cannot be read: {e}")).allowed("the name of a readable CSV file of points")
     })?;
     manifest::check(file, &bytes, Unlisted::Accepted)?;

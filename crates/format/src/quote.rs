@@ -1,4 +1,4 @@
-//! Pieces of input files as messages quote them.
+//! Pieces of input files as messages quote them, and names as they may be.
 
 /// Longest piece of a file that is quoted in a message, in characters.
 const QUOTE: usize = 80;
@@ -10,6 +10,21 @@ pub(crate) fn shorten(text: &str) -> String {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line,
     }
+}
+
+/// What is refused in a text of a file.
+pub(crate) const GARBLED: &str = "holds a control character or a mark of writing direction";
+
+/// Whether a character is none that is seen, and changes how what is around it is shown: a control, an end of a line, or a mark of writing
+/// direction, which makes a name look like another one.
+pub(crate) fn garbles(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
+}
+
+/// A text with a space for each character that [`garbles`] it.
+pub(crate) fn one_line(text: &str) -> String {
+    text.replace(garbles, " ")
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Where files come from: the disk, or what was read from it once for many runs.
 
+use crate::files;
 use crate::input::InputError;
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::task::{Imported, parse_csv};
@@ -39,8 +40,8 @@ impl Sources {
 
     /// The bytes of a file.
     pub(crate) fn read(&self, file: &Path) -> std::io::Result<Arc<[u8]>> {
-        let Some(shared) = &self.0 else { return std::fs::read(file).map(Arc::from) };
-        once(&shared.files, file.to_owned(), || std::fs::read(file).map(Arc::from))
+        let Some(shared) = &self.0 else { return files::read(file).map(Arc::from) };
+        once(&shared.files, file.to_owned(), || files::read(file).map(Arc::from))
     }
 
     /// The robot of a file, read by a function for this kind of use; anew where values of the file were replaced.

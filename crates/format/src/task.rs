@@ -1,6 +1,7 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
 use crate::file_kind::FileKind;
+use crate::files;
 use crate::input::InputError;
 use crate::input::csv_table::{CsvTable, Row, try_each};
 use crate::manifest::{self, Unlisted};
@@ -39,7 +40,7 @@ const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
 /// no finite number, or a point that breaks a rule of [`ToolPath::new`].
 pub fn read_csv(file: &Path) -> Result<Imported, InputError> {
     let bytes =
-        std::fs::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")).in_field("task"))?;
+        files::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")).in_field("task"))?;
     manifest::check(file, &bytes, Unlisted::Accepted)?;
     parse_csv(file, &bytes)
 }

@@ -1,6 +1,7 @@
 //! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
 use crate::field::{FieldOverride, FieldOverrides};
+use crate::files;
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
 use crate::quote::shorten;
@@ -31,7 +32,7 @@ impl TomlFile {
         if let Some(text) = shipped::text(file) {
             return Self::new(file, text?.as_bytes().to_vec());
         }
-        let bytes = std::fs::read(file).map_err(|e| {
+        let bytes = files::read(file).map_err(|e| {
             let name = file.to_string_lossy();
             let allowed = match shipped::by_name(&name) {
                 Some(_) => format!("{PREFIX}{name} for the shipped arm of this name"),

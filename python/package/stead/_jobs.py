@@ -2,7 +2,7 @@
 
 - `progress(stage, done, total)` is called on the calling thread, a few times a second and once at the end; what it raises stops the job. Of
   a certificate, `done` are the nodes bounded and `total` those and the open ones.
-- `threads`: by default one for each processor. It does not change a result.
+- `threads`: by default one for each processor, at most 1024. It does not change a result.
 - `time_limit_s`: the job ends then with what it has.
 - Ctrl-C stops a job that takes `progress`, and raises `Interrupted`, a `KeyboardInterrupt` with what was found as `result`; the second one
   does not wait. Other jobs raise `KeyboardInterrupt` at once, and what they have begun ends unheard.
@@ -26,8 +26,8 @@ _R = TypeVar("_R", bound=Result)
 def options_of(
     progress: Progress | None = None, threads: int | None = None, time_limit_s: float | None = None
 ) -> _stead._Options:
-    if threads is not None and threads < 1:
-        raise ArgumentError(f"no such number of threads, found {threads}; allowed: 1 or more")
+    if threads is not None and not 1 <= threads <= _stead.MAX_THREADS:
+        raise ArgumentError(f"no such number of threads, found {threads}; allowed: 1 to {_stead.MAX_THREADS}")
     return {"progress": progress, "threads": threads, "time_limit_s": time_limit_s}
 
 

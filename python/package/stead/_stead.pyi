@@ -4,9 +4,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict, final
 
-__all__ = ["__version__", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema"]
+__all__ = ["__version__", "MAX_THREADS", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema"]
 
 __version__: str
+MAX_THREADS: int
 
 class _Options(TypedDict):
     progress: Callable[[str, int, int], object] | None
@@ -45,6 +46,7 @@ class _Status(TypedDict):
     failed: int
     shards: list[_ShardStatus]
     problems: list[str]
+    stale: list[str]
 
 @final
 class Outcome:
@@ -141,6 +143,7 @@ class Study:
     def cases(self) -> list[_Case]: ...
     def run(self, folder: Path, shard: str, options: _Options) -> tuple[_Finished | None, bool]: ...
     def status(self, folder: Path) -> _Status: ...
+    def prune(self, folder: Path) -> list[Path]: ...
     def merge(self, folder: Path) -> bool: ...
     def results(self, folder: Path) -> tuple[bytes, list[str]] | None: ...
     def report(

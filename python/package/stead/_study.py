@@ -84,6 +84,7 @@ class StudyStatus:
         failed: Of these, those that failed.
         shards: The shards that have left anything, and with them all others of as many.
         problems: What is wrong in the folder and will be done again, in sentences.
+        stale: Kept cases that are not of the study as it is now, by the names of their folders.
     """
 
     planned: int
@@ -92,6 +93,7 @@ class StudyStatus:
     failed: int
     shards: list[ShardStatus]
     problems: list[str]
+    stale: list[str]
 
 
 class Study:
@@ -166,8 +168,22 @@ class Study:
         entries = self._native.status(Path(folder))
         shards = [ShardStatus(**shard) for shard in entries["shards"]]
         return StudyStatus(
-            entries["planned"], entries["done"], entries["infeasible"], entries["failed"], shards, entries["problems"]
+            entries["planned"],
+            entries["done"],
+            entries["infeasible"],
+            entries["failed"],
+            shards,
+            entries["problems"],
+            entries["stale"],
         )
+
+    def prune(self, folder: File) -> list[Path]:
+        """Removes kept cases that are not of the study as it is now, after an edit of its files. Returns the folders that are gone.
+
+        Raises:
+            OutputError: the folder of another study, or a file that cannot be read or removed.
+        """
+        return self._native.prune(Path(folder))
 
     def merge(self, folder: File) -> bool:
         """Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done, and says whether it is so.

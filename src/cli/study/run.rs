@@ -1,6 +1,6 @@
 //! `stead study run`: what is left to do of a study, or of a shard of it.
 
-use super::folder;
+use super::{counted_cases, folder, say_stale};
 use crate::cli::arguments::StudyRunOptions;
 use crate::cli::progress::Terminal;
 use crate::cli::{Failure, on_threads, print, say};
@@ -10,6 +10,11 @@ pub(super) fn run(options: &StudyRunOptions) -> Result<(), Failure> {
     let study = on_threads(options.threads, || Study::read(&options.config))??;
     let folder = folder(options.out.as_deref(), &options.config);
     let shard = options.shard.unwrap_or(Shard::WHOLE);
+    if options.prune {
+        let gone = study.prune(&folder)?;
+        say(&format!("note: {} removed that the study has no longer", counted_cases(gone.len())));
+    }
+    say_stale(&study.status(&folder)?);
     let shown = Terminal::start(None).show(None);
     let finished = on_threads(options.threads, || study.run(&folder, shard, &shown.monitor))?;
     drop(shown);

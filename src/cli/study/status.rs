@@ -1,6 +1,6 @@
 //! `stead study status`: how far a study is.
 
-use super::folder;
+use super::{folder, say_stale};
 use crate::cli::arguments::StudyStatusOptions;
 use crate::cli::{Failure, on_threads, print, print_json, say};
 use std::fmt::Write;
@@ -15,6 +15,7 @@ pub(super) fn run(options: &StudyStatusOptions) -> Result<(), Failure> {
     for problem in &status.problems {
         say(&format!("warning: {problem}"));
     }
+    say_stale(&status);
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(

@@ -11,6 +11,7 @@ use parry3d_f64::query::PointQuery;
 use parry3d_f64::query::details::closest_points_support_map_support_map_with_params;
 use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
 use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, Cylinder, Segment, SupportMap};
+use parry3d_f64::transformation::try_convex_hull;
 use std::sync::Arc;
 
 /// All points that are not farther than a radius from a core.
@@ -43,20 +44,84 @@ impl SupportMap for Hull {
     }
 }
 
-/// The corners of the hull of points, or all points where the library forms no hull that contains them: the hull is the same, only more
-/// is looked at.
+/// The corners of the hull of points and, of many points, others on it or near it; all points where the library forms no hull that contains
+/// them: the hull is the same, only more is looked at.
 fn corners(points: Vec<Vector>) -> Vec<Vector> {
     // A corrupt mesh must not end the program: the library asserts that its links are right.
-    let formed = || {
-        let hull = ConvexPolyhedron::from_convex_hull(&points)?;
-        // What the library makes of flat meshes does not contain them.
-        let size = hull.local_aabb().half_extents().length();
-        let is_inside = |point: &Vector| hull.distance_to_local_point(*point, true) <= HULL_TOLERANCE * size;
-        points.iter().all(is_inside).then(|| hull.points().to_vec())
-    };
+    let formed = || if points.len() <= MOST_AT_ONCE { formed(&points) } else { outermost(&points) };
     std::panic::catch_unwind(formed).ok().flatten().unwrap_or(points)
 }
 
+/// The corners of the hull that the library forms, in a time that grows with the square of their number.
+fn formed(points: &[Vector]) -> Option<Vec<Vector>> {
+    let hull = ConvexPolyhedron::from_convex_hull(points)?;
+    // What the library makes of flat meshes does not contain them.
+    let size = hull.local_aabb().half_extents().length();
+    let is_inside = |point: &Vector| hull.distance_to_local_point(*point, true) <= HULL_TOLERANCE * size;
+    points.iter().all(is_inside).then(|| hull.points().to_vec())
+}
+
+/// Points without those that are in the hull of a few of them, in a time that grows with their number: the hull of the outermost ones along
+/// some directions, and of those that are farthest from the faces of that hull, and so on.
+fn outermost(points: &[Vector]) -> Option<Vec<Vector>> {
+    let size = Aabb::from_points(points.iter().copied()).half_extents().length();
+    let mut chosen: Vec<usize> = Vec::new();
+    for k in 0..27 {
+        let direction = Vector::new(f64::from(k % 3 - 1), f64::from(k / 3 % 3 - 1), f64::from(k / 9 - 1));
+        chosen.extend((0..points.len()).max_by(|a, b| points[*a].dot(direction).total_cmp(&points[*b].dot(direction))));
+    }
+    let mut outside: Vec<usize> = (0..points.len()).collect();
+    let mut known = 0;
+    loop {
+        chosen.sort_unstable();
+        chosen.dedup();
+        let some: Vec<Vector> = chosen.iter().map(|number| points[*number]).collect();
+        let (corners, faces) = try_convex_hull(&some).ok()?;
+        let centre = corners.iter().fold(Vector::ZERO, |sum, point| sum + *point) / corners.len() as f64;
+        let faces = faces.iter().map(|face| face.map(|number| corners[number as usize]));
+        let planes = faces.filter_map(|[a, b, c]| {
+            let normal = (b - a).cross(c - a).try_normalize()?;
+            Some((normal, normal.dot(a)))
+        });
+        let planes: Vec<(Vector, f64)> = planes.collect();
+        // A hull that is as much larger that its nearest face is so much farther out sticks out by no more than the tolerance.
+        let inner = planes.iter().map(|(normal, offset)| offset - normal.dot(centre)).fold(f64::INFINITY, f64::min);
+        if !inner.is_finite() || inner < FLAT * size {
+            return None;
+        }
+        let tolerance = HULL_TOLERANCE * inner / 2.0;
+        let mut farthest: Vec<Option<(f64, usize)>> = vec![None; planes.len()];
+        outside.retain(|number| {
+            let beyond =
+                |(face, (normal, offset)): (usize, &(Vector, f64))| (normal.dot(points[*number]) - offset, face);
+            let most = planes.iter().enumerate().map(beyond).max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((distance, face)) = most.filter(|(distance, _)| *distance > tolerance) else { return false };
+            if farthest[face].is_none_or(|(known, _)| known < distance) {
+                farthest[face] = Some((distance, *number));
+            }
+            true
+        });
+        if outside.is_empty() {
+            return Some(corners);
+        }
+        if planes.len() > MOST_FACES || chosen.len() == known {
+            chosen.extend(outside);
+            chosen.sort_unstable();
+            chosen.dedup();
+            let some: Vec<Vector> = chosen.into_iter().map(|number| points[number]).collect();
+            return if some.len() <= MOST_AT_ONCE { formed(&some) } else { Some(some) };
+        }
+        known = chosen.len();
+        chosen.extend(farthest.into_iter().flatten().map(|(_, number)| number));
+    }
+}
+
+/// Points of which the library forms the hull at once.
+const MOST_AT_ONCE: usize = 2000;
+/// The hull of a few points that the others are looked for in has about so many faces.
+const MOST_FACES: usize = 800;
+/// A hull whose nearest face is so near to its middle, relative to its size, is flat.
+const FLAT: f64 = 2e-6;
 /// How far a vertex may be outside of the hull, relative to its size.
 const HULL_TOLERANCE: f64 = 1e-6;
 /// See [`Convex::around`].
@@ -199,5 +264,42 @@ pub fn core_distance(a: &dyn SupportMap, pose: &ParryPose, b: &dyn SupportMap, l
             if gap >= limit * (1.0 - ROUNDING) { (gap.max(limit), Some(axis)) } else { (gap.max(0.0), None) }
         }
         GJKResult::Intersection | GJKResult::Proximity(_) => (0.0, None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    /// Points in a ball or on it, as scans and finely meshed parts have them: with the square of their number it would take an hour.
+    #[test]
+    fn the_hull_of_very_many_points_is_theirs() {
+        let mut random = ChaCha8Rng::seed_from_u64(30);
+        let mut any = || Vector::from_array([0; 3].map(|_| random.random_range(-1.0..1.0)));
+        let on = |point: Vector| point.normalize() * Vector::new(0.3, 0.2, 0.5);
+        let sphere: Vec<Vector> = (0..200_000).map(|_| on(any())).collect();
+        let ball: Vec<Vector> = sphere.iter().map(|point| *point * libm::cbrt(any().x.abs())).collect();
+        let cube: Vec<Vector> = (0..200_000).map(|_| any() / any().abs().max_element()).collect();
+        let block: Vec<Vector> =
+            cube.iter().map(|point| point.clamp(Vector::splat(-0.4), Vector::splat(0.4))).collect();
+        for (points, most) in [(sphere, 200_000), (ball, 20_000), (block, 2000)] {
+            let found = corners(points.clone());
+            assert!(found.len() <= most, "{}", found.len());
+            let [hull, all] = [found, points].map(|points| Hull { points });
+            for _ in 0..30 {
+                let direction = any().normalize();
+                let off = (all.local_support_point(direction) - hull.local_support_point(direction)).dot(direction);
+                assert!((0.0..1e-6).contains(&off), "{off}");
+            }
+        }
+    }
+
+    #[test]
+    fn flat_points_all_count() {
+        let plate: Vec<Vector> = (0..3000).map(|k| Vector::new(f64::from(k % 60), f64::from(k / 60), 1.0)).collect();
+        let hull = Hull { points: corners(plate) };
+        assert_eq!(hull.local_support_point(Vector::new(1.0, 2.0, 0.0)), Vector::new(59.0, 49.0, 1.0));
     }
 }

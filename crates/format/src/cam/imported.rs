@@ -3,8 +3,8 @@
 use super::segments::{Counts, Point, Resampling, expected_points, segments};
 use super::tool::{self, Use};
 use super::{Program, counted, rounded};
+use crate::files::new::{Existing, write_all_new};
 use crate::input::InputError;
-use crate::new_file::{Existing, write_all_new};
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};

@@ -18,6 +18,7 @@ pub use segments::Resampling;
 pub use tool::ProgramTool;
 pub(crate) use tool::file_beside;
 
+use crate::files;
 use crate::input::InputError;
 use gcode::Machine;
 use nalgebra::Vector3;
@@ -130,7 +131,7 @@ impl Program {
 /// [`InputError`] with file and line: a file that cannot be read, a format or a unit that cannot be told, whatever the reader of the format
 /// refuses, or a program without a cutting move that can be scored.
 pub fn import_path(file: &Path, settings: &ReadSettings) -> Result<ImportedPath, InputError> {
-    let bytes = std::fs::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")))?;
+    let bytes = files::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")))?;
     import_bytes(file, &bytes, settings)
 }
 

@@ -3,8 +3,8 @@
 use super::ground::{Ground, ground};
 use crate::cam::file_beside;
 use crate::document::Document;
+use crate::files::new::{Existing, write_new};
 use crate::input::InputError;
-use crate::new_file::{Existing, write_new};
 use crate::robot::{read_geometry, says_stiffness};
 use crate::shipped;
 use crate::task::read_csv;

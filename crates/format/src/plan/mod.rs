@@ -9,6 +9,7 @@ mod tests;
 pub(crate) use rows::axis_column;
 pub(crate) use stations::PlacedPlan;
 
+use crate::files;
 use crate::input::{InputError, InputFile, input_file};
 use crate::manifest::{self, Unlisted};
 use std::path::Path;
@@ -40,5 +41,5 @@ pub(crate) fn read_plan(file: &Path, problem: &Problem) -> Result<(PlacedPlan, I
 
 /// The bytes of a file.
 pub(crate) fn read(file: &Path, allowed: &str) -> Result<Vec<u8>, InputError> {
-    std::fs::read(file).map_err(|cause| InputError::new(file, format!("cannot be read: {cause}")).allowed(allowed))
+    files::read(file).map_err(|cause| InputError::new(file, format!("cannot be read: {cause}")).allowed(allowed))
 }

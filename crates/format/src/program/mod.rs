@@ -26,9 +26,9 @@ pub use error::{ExportError, ProgramError};
 pub use frames::{OperatorFrame, Rotation};
 pub use layout::ProgramFile;
 
+use crate::files::new::{Existing, write_all_new};
 use crate::input::{InputError, InputFile};
 use crate::manifest::interruption_note;
-use crate::new_file::{Existing, write_all_new};
 use crate::plan::{PlacedPlan, read_plan};
 use crate::run::Run;
 use carrier::Carrier;

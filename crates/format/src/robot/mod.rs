@@ -15,6 +15,7 @@ pub use one_or_range::OneOrRange;
 use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::quantity::Quantity;
+use crate::quote::garbles;
 use crate::toml_file::TomlFile;
 use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
 use controller::with_controller;
@@ -124,7 +125,7 @@ fn made(
     at: &Place<'_>,
     mut compliance: impl FnMut(&JointRow, &Place<'_>) -> Result<Compliance, InputError>,
 ) -> Result<Robot, InputError> {
-    if file.name.chars().any(char::is_control) {
+    if file.name.contains(garbles) {
         let rule = "a text in quotes on one line";
         return Err(at.key("name").error("has a line break or another control in it", rule));
     }
@@ -169,7 +170,7 @@ const STIFFNESS_LIKE: &str = "stiffness_like";
 pub(super) fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
     match other {
         None => Ok(robot),
-        Some(name) if !name.chars().any(char::is_control) => Ok(robot.with_stiffness_like(name)),
+        Some(name) if !name.contains(garbles) => Ok(robot.with_stiffness_like(name)),
         Some(_) => {
             let rule = "the name of the other arm, a text on one line";
             Err(at.key(STIFFNESS_LIKE).error("has a line break or another control in it", rule))

@@ -4,6 +4,7 @@ use super::tables::CellTable;
 use crate::input::InputError;
 use crate::orientation::orientation_keys;
 use crate::place::Place;
+use crate::quote::garbles;
 use nalgebra::Matrix3;
 use std::sync::Arc;
 use stead_model::task::Task;
@@ -14,7 +15,7 @@ pub(super) const NAME: &str = "a text on one line that is not empty";
 
 /// Whether a text may be the name of something.
 pub(super) fn is_name(name: &str) -> bool {
-    !name.trim().is_empty() && !name.chars().any(char::is_control)
+    !name.trim().is_empty() && !name.contains(garbles)
 }
 
 impl CellTable {

@@ -5,6 +5,7 @@ use crate::mesh::MeshUnit;
 use crate::orientation::{OrientationKeys, Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::quantity::Quantity;
+use crate::quote::garbles;
 use crate::scalars::{Word, words};
 use crate::shapes::{Array, List, Matrix, Vector};
 use crate::units::{Deg, Mm, NotNegative, Number, Positive};
@@ -163,7 +164,7 @@ fn check_name(name: &str, axes: &[ExternalAxis], at: &Place<'_>) -> Result<(), I
     if attachment(name).is_some() || axis_of(name, axes).is_some() {
         return Err(at.key("name").error("is the name of a frame", allowed));
     }
-    if name.contains(|c: char| c.is_control() || c == '"') {
+    if name.contains(|c: char| garbles(c) || c == '"') {
         return Err(at.key("name").error("holds a quote or a control character", allowed));
     }
     Ok(())

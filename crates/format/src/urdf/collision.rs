@@ -6,6 +6,7 @@ use super::read::{Geometry, Urdf};
 use super::rows::Rows;
 use super::tree::Chain;
 use super::xml::{one_line, quoted};
+use crate::files;
 use crate::input::InputError;
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::surroundings::{CLEARANCE, attachment};
@@ -130,7 +131,7 @@ impl Reading<'_> {
             self.notes.push(format!("mesh {} of {name:?} is not found: the shape is left out", quoted(file)));
             return Ok(None);
         };
-        let bytes = std::fs::read(&path)
+        let bytes = files::read(&path)
             .map_err(|e| InputError::new(&path, format!("cannot be read: {e}")).allowed("a readable mesh file"))?;
         let unit = |unit: MeshUnit| (scale - Vector3::repeat(unit.metres())).amax() <= 1e-9 * unit.metres();
         let Some(unit) = [MeshUnit::Metre, MeshUnit::Millimetre].into_iter().find(|known| unit(*known)) else {

@@ -34,8 +34,8 @@ pub use deviation::{Deviation, POSTURES};
 pub use home::HomePose;
 pub use rows::ImportedRow;
 
+use crate::files::new::{Existing, write_all_new};
 use crate::input::{InputError, sha256};
-use crate::new_file::{Existing, write_all_new};
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};

@@ -1,6 +1,7 @@
 //! The elements of a URDF: links and joints, with what stead uses of them.
 
 use super::xml::{Element, one_line, quoted};
+use crate::files;
 use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::{Document, Error as XmlError, Node};
@@ -96,7 +97,7 @@ pub(super) struct Limit {
 impl Urdf {
     /// Reads a file.
     pub fn read(file: &Path) -> Result<Self, InputError> {
-        let bytes = std::fs::read(file).map_err(|error| {
+        let bytes = files::read(file).map_err(|error| {
             InputError::new(file, format!("cannot be read: {error}")).allowed("the name of a readable URDF file")
         })?;
         let text = String::from_utf8(bytes)

@@ -1,6 +1,8 @@
 //! Elements of an XML document with their place in the file: attributes read as text and numbers, errors with line, tag and value.
 
 use crate::input::InputError;
+pub(super) use crate::quote::one_line;
+use crate::quote::{GARBLED, garbles};
 use roxmltree::Node;
 use std::path::Path;
 
@@ -46,7 +48,10 @@ impl<'a> Element<'a> {
     /// The text of an attribute, which must be there and not empty.
     pub fn require(self, name: &str) -> Result<&'a str, InputError> {
         let text = self.attribute(name).filter(|text| !text.trim().is_empty());
-        text.ok_or_else(|| self.error(Some(name), "is missing", "a text that is not empty"))
+        let text = text.ok_or_else(|| self.error(Some(name), "is missing", "a text that is not empty"))?;
+        // What comes of it stands in the files that are written.
+        let is_plain = !text.contains(garbles);
+        is_plain.then_some(text).ok_or_else(|| self.error(Some(name), GARBLED, "a text without them"))
     }
 
     /// The number of an attribute, where it is given; its size may not be above `largest`.
@@ -114,9 +119,4 @@ pub(super) fn quoted(text: &str) -> String {
     let clean = one_line(text);
     let short: String = clean.chars().take(QUOTE).collect();
     if short == clean { format!("\"{short}\"") } else { format!("\"{short}..\"") }
-}
-
-/// A text without line breaks and other controls.
-pub(super) fn one_line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

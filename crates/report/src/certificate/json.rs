@@ -6,10 +6,16 @@ use serde_json::{Value, json};
 use stead_format::input::InputFile;
 use stead_placement::certify::{Certificate, NoProof, Proof};
 
-/// The content of `certificate.json`, and what `stead place --json` prints under `certificate`. `best` and `worst` are null
-/// where nothing is known; `best_reason` and `worst_reason` say why, or why a bound is farther off than was asked for. Only `wall_s` differs from run to run, unless a time
-/// limit or the user ended it.
+/// What `stead place --json` prints under `certificate`: the content of `certificate.json`, and how long it took.
 pub fn certificate_json(certificate: &Certificate, inputs: &[InputFile]) -> Value {
+    let mut document = certificate_content(certificate, inputs);
+    document["wall_s"] = json!(Unit::TIME_S.number(certificate.wall));
+    document
+}
+
+/// The content of `certificate.json`: the same in every run, unless a time limit or the user ended it. `best` and `worst` are null where
+/// nothing is known; `best_reason` and `worst_reason` say why, or why a bound is farther off than was asked for.
+pub(super) fn certificate_content(certificate: &Certificate, inputs: &[InputFile]) -> Value {
     let [best, worst] = [&certificate.best, &certificate.worst];
     let nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum();
     let reason = |side: &Result<Proof, NoProof>| match side {
@@ -25,7 +31,6 @@ pub fn certificate_json(certificate: &Certificate, inputs: &[InputFile]) -> Valu
         "worst": worst.as_ref().map_or(Value::Null, side),
         "worst_reason": reason(worst),
         "nodes": nodes,
-        "wall_s": Unit::TIME_S.number(certificate.wall),
     }))
 }
 

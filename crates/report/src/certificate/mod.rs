@@ -6,6 +6,7 @@ mod tables;
 mod tests;
 mod text;
 
+use json::certificate_content;
 pub use json::certificate_json;
 pub use tables::open_region;
 pub use text::certificate_text;
@@ -73,7 +74,7 @@ pub fn certificate_files(
     inputs: &[InputFile],
 ) -> Result<Files, ReportError> {
     let mut files = vec![
-        (CERTIFICATE, bytes(&certificate_json(certificate, inputs))),
+        (CERTIFICATE, bytes(&certificate_content(certificate, inputs))),
         ("open-region.csv", open_region(problem, certificate)?),
     ];
     for (name, proof) in proofs(certificate) {

@@ -1,13 +1,13 @@
 //! A results folder that this process alone writes to.
 
 use super::lock::{Lock, LockError};
-use super::staged::{Staged, remove_stale};
 use super::transaction::Transaction;
 use super::{ReportError, transaction};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use stead_format::files::{self, PREFIX, Staged, remove_stale};
 use stead_format::input::InputFile;
-use stead_format::manifest::ResultSet;
+use stead_format::manifest::{MANIFEST, ResultSet};
 
 /// The name of the lock file, which is there as long as a run writes.
 const LOCK: &str = ".stead.lock";
@@ -42,10 +42,10 @@ impl Folder {
             LockError::System(cause) => fail(cause),
         })?;
         if lock.is_locked() {
-            remove_stale(path);
+            remove_stale(path, PREFIX);
         }
         // Gone again as soon as it is dropped.
-        Staged::write(path, b"").map_err(fail)?;
+        Staged::write(path, PREFIX, b"").map_err(fail)?;
         transaction::manifest_in(path)?;
         Ok(Self { path: path.to_owned(), lock, keeps_partial: false })
     }
@@ -134,13 +134,27 @@ impl Folder {
         Transaction::new(&self.path, command, inputs)
     }
 
+    /// Removes all results here that the manifest lists, and the manifest. What it does not list stays.
+    ///
+    /// # Errors
+    /// [`ReportError`] for a manifest that cannot be read, or with the path of a file that cannot be removed.
+    pub fn clear(&self) -> Result<(), ReportError> {
+        let manifest = transaction::manifest_in(&self.path)?;
+        let listed = manifest.results.iter().flat_map(|set| &set.files).map(|file| file.name.as_str());
+        for name in listed.chain([MANIFEST]) {
+            let path = self.path.join(name);
+            files::remove(&path).map_err(|cause| ReportError::File { path, cause })?;
+        }
+        Ok(())
+    }
+
     /// Writes one file that is no result, over an older one of that name, whole or not at all. Returns its path.
     ///
     /// # Errors
     /// [`ReportError::File`] with the path of the file; what was there is left as it was.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, ReportError> {
         let path = self.path.join(name);
-        match Staged::write(&self.path, bytes).and_then(|staged| staged.put(&path)) {
+        match Staged::write(&self.path, PREFIX, bytes).and_then(|staged| staged.put(&path)) {
             Ok(()) => Ok(path),
             Err(cause) => Err(ReportError::File { path, cause }),
         }
@@ -150,7 +164,6 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_format::manifest::MANIFEST;
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = std::fs::read_dir(folder).unwrap();
@@ -208,7 +221,7 @@ mod tests {
         }
         drop(folder);
         std::fs::write(place.path().join(LOCK), "1").unwrap();
-        Staged::write(place.path(), b"stale").unwrap().abandon();
+        Staged::write(place.path(), PREFIX, b"stale").unwrap().abandon().unwrap();
         drop(Folder::create(place.path()).unwrap());
         assert!(names(place.path()).is_empty());
     }

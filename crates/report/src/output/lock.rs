@@ -1,16 +1,15 @@
-//! A lock of the system on a file: held by one process at a time, and free again when that process ends, however it ends.
+//! A lock file that tells who holds it, and goes with the lock.
 
-use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{ErrorKind, Read, Seek, Write};
+use std::fs::File;
+use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
+use stead_format::files::{self, TryLock};
 
 /// A lock file that this process holds. It is removed when this is dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
-    /// Open as long as the lock is held.
-    file: File,
-    is_locked: bool,
+    lock: files::Lock,
 }
 
 /// Why a lock was not taken.
@@ -39,18 +38,15 @@ impl Lock {
     /// made.
     pub fn take(path: &Path) -> Result<Self, LockError> {
         for _ in 0..ATTEMPTS {
-            let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
-            let is_locked = match file.try_lock() {
-                Ok(()) => true,
-                Err(TryLockError::WouldBlock) => return Err(LockError::Held { process: holder(&mut file) }),
-                Err(TryLockError::Error(cause)) if cause.kind() == ErrorKind::Unsupported => false,
-                Err(TryLockError::Error(cause)) => return Err(cause.into()),
+            let mut lock = match files::Lock::attempt(path)? {
+                TryLock::Taken(lock) => lock,
+                TryLock::Held(mut file) => return Err(LockError::Held { process: holder(&mut file) }),
             };
             // The holder before may have removed the file between the two: a lock on a file without a name keeps nobody out.
-            if is_at(&file, path) {
+            if is_at(&lock.file, path) {
                 // For the message of whoever comes next: a disk without room for it is no reason to stop.
-                let _ = file.set_len(0).and_then(|()| write!(file, "{}", std::process::id()));
-                return Ok(Self { path: path.to_owned(), file, is_locked });
+                let _ = lock.file.set_len(0).and_then(|()| write!(lock.file, "{}", std::process::id()));
+                return Ok(Self { path: path.to_owned(), lock });
             }
         }
         Err(LockError::Held { process: None })
@@ -58,7 +54,7 @@ impl Lock {
 
     /// Whether other processes are kept out: not so where the file system knows no locks.
     pub fn is_locked(&self) -> bool {
-        self.is_locked
+        self.lock.is_locked
     }
 
     /// The lock file.
@@ -70,7 +66,7 @@ impl Lock {
 impl Drop for Lock {
     fn drop(&mut self) {
         // While it is locked still, and not where whoever waits could not tell that it has gone. One that stays keeps nobody out.
-        if cfg!(unix) && self.is_locked && is_at(&self.file, &self.path) {
+        if cfg!(unix) && self.lock.is_locked && is_at(&self.lock.file, &self.path) {
             let _ = std::fs::remove_file(&self.path);
         }
     }

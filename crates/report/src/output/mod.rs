@@ -6,7 +6,6 @@
 
 mod folder;
 mod lock;
-mod staged;
 mod transaction;
 
 pub use folder::Folder;
@@ -14,6 +13,7 @@ pub use lock::{Lock, LockError};
 pub use transaction::Transaction;
 
 use std::path::PathBuf;
+use stead_format::files::is_full;
 
 /// Why a result could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -73,4 +73,11 @@ pub enum ReportError {
         /// What the writer of the format says.
         cause: String,
     },
+}
+
+impl ReportError {
+    /// Whether there was no room on the disk, so that nothing is wrong with the place.
+    pub fn is_of_disk(&self) -> bool {
+        matches!(self, Self::Folder { cause, .. } | Self::File { cause, .. } if is_full(cause))
+    }
 }

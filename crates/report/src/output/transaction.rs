@@ -5,8 +5,8 @@
 //! on disk between these three, so that the order holds for a loss of power too.
 
 use super::ReportError;
-use super::staged::{self, Staged};
 use std::path::{Path, PathBuf};
+use stead_format::files::{self, PREFIX, Staged};
 use stead_format::input::{InputFile, sha256};
 use stead_format::manifest::{Found, MANIFEST, Manifest, ResultFile, ResultSet, RunInput};
 
@@ -186,7 +186,7 @@ impl<'a> Transaction<'a> {
         let staged = if path.is_dir() {
             Err(std::io::Error::new(std::io::ErrorKind::IsADirectory, "a folder of that name is there"))
         } else {
-            Staged::write(self.folder, bytes)
+            Staged::write(self.folder, PREFIX, bytes)
         };
         match staged {
             Ok(staged) => Ok(Step::Put(staged, path)),
@@ -197,8 +197,8 @@ impl<'a> Transaction<'a> {
     fn take(&self, step: Step) -> Result<(), ReportError> {
         let (result, path) = match step {
             Step::Put(staged, path) => (staged.put(&path), path),
-            Step::Remove(path) => (staged::remove(&path), path),
-            Step::Sync => (staged::sync(self.folder), self.folder.to_owned()),
+            Step::Remove(path) => (files::remove(&path), path),
+            Step::Sync => (files::sync(self.folder), self.folder.to_owned()),
         };
         result.map_err(|cause| ReportError::File { path, cause })
     }

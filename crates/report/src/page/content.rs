@@ -97,12 +97,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         optional.insert("depths".to_owned(), columns.collect::<Result<_, _>>()?);
     }
     if let Some(found) = bytes("certificate.json") {
-        let mut certificate = json_file("certificate.json", found)?;
-        // The same run gives the same page, however long it took.
-        if let Value::Object(entries) = &mut certificate {
-            entries.remove("wall_s");
-        }
-        optional.insert("certificate".to_owned(), certificate);
+        optional.insert("certificate".to_owned(), json_file("certificate.json", found)?);
     }
     if let Some(found) = bytes(OPEN_REGION) {
         optional.insert("open_region".to_owned(), open_region(&Table::read(OPEN_REGION, found)?)?);
@@ -128,7 +123,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
 }
 
 /// For each search the extent of all its boxes.
-fn open_region(boxes: &Table) -> Result<Value, PageError> {
+fn open_region(boxes: &Table<'_>) -> Result<Value, PageError> {
     let searches = boxes.texts("search")?;
     let mut regions = Map::new();
     for [key, from, to] in [
@@ -169,7 +164,7 @@ pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {
 }
 
 /// Of a long path evenly chosen points, with both ends of every segment and the point of every plan that deflects most.
-fn thinned(plans: &[Table]) -> Result<Option<Vec<usize>>, PageError> {
+fn thinned(plans: &[Table<'_>]) -> Result<Option<Vec<usize>>, PageError> {
     let Some(first) = plans.first().filter(|plan| plan.len() > MAX_POINTS) else { return Ok(None) };
     let step = first.len().div_ceil(MAX_POINTS);
     let segments = first.numbers("segment")?;

@@ -4,6 +4,7 @@ use super::{DATA, PageError, content, made_of};
 use crate::Files;
 use crate::output::{Folder, ReportError};
 use std::path::{Path, PathBuf};
+use stead_format::files;
 use stead_format::input::InputError;
 use stead_format::manifest::{self, Found, MANIFEST, Manifest, Unlisted};
 
@@ -56,7 +57,7 @@ pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
         if set.file(name).is_none() && !is_needed {
             continue;
         }
-        let bytes = std::fs::read(&file).map_err(|cause| InputError::new(&file, unread(&cause)).allowed(ALLOWED))?;
+        let bytes = files::read(&file).map_err(|cause| InputError::new(&file, unread(&cause)).allowed(ALLOWED))?;
         manifest::check(&file, &bytes, Unlisted::Refused)?;
         files.push((name.to_owned(), bytes));
     }

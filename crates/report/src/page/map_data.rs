@@ -63,30 +63,31 @@ fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, post
 }
 
 /// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for each (the posture,
-/// or 16 and the number of its reason), and the `scores` of the allowed ones.
-pub(super) fn content(entry: &Value, table: &Table) -> Result<Value, PageError> {
+/// or 16 and the number of its reason), and the `scores` of the allowed ones. Of the table only the rows that are shown are kept: that of a
+/// long path has millions.
+pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageError> {
     let wrong = || PageError::data("maps", "is no description of a deflection map");
     let points = entry["points"].as_array().ok_or_else(wrong)?;
     let beta_count = entry["beta_count"].as_u64().filter(|count| *count > 0).ok_or_else(wrong)? as usize;
-    let (scores, postures) = (table.numbers("score_mm")?, table.numbers("posture")?);
-    let reasons = table.texts("reason")?;
-    let (mut names, mut codes, mut packed) = (Vec::new(), Vec::new(), Varints::default());
+    let [score, posture, reason] = [table.column("score_mm")?, table.column("posture")?, table.column("reason")?];
+    let mut rows = table.rows();
+    let (mut names, mut codes, mut packed): (Vec<String>, _, _) = (Vec::new(), Vec::new(), Varints::default());
     for point in points {
         let point = point.as_u64().ok_or_else(wrong)? as usize;
         let mut sequence = SecondDifferences::default();
         for row in point * beta_count..(point + 1) * beta_count {
-            let (Some(score), Some(posture), Some(reason)) = (scores.get(row), postures.get(row), reasons.get(row))
-            else {
+            if !rows.go_to(row)? {
                 return Err(table.error("has fewer states than page-data.json says: they are of two runs"));
-            };
-            if reason.is_empty() {
-                codes.push(*posture as u8);
-                packed.push(sequence.next((score / SCORE_STEP_MM).round() as i64));
+            }
+            let why = rows.text(reason);
+            if why.is_empty() {
+                codes.push(rows.number(posture)? as u8);
+                packed.push(sequence.next((rows.number(score)? / SCORE_STEP_MM).round() as i64));
                 continue;
             }
-            let known = names.iter().position(|name| name == reason).unwrap_or(names.len());
+            let known = names.iter().position(|name| name == why).unwrap_or(names.len());
             if known == names.len() {
-                names.push(reason.clone());
+                names.push(why.to_owned());
             }
             codes.push(16 + known as u8);
             sequence.restart();
@@ -98,4 +99,28 @@ pub(super) fn content(entry: &Value, table: &Table) -> Result<Value, PageError> 
     value["score_step_mm"] = json!(SCORE_STEP_MM);
     value["scores"] = json!(packed.text());
     Ok(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_not_shown_are_not_looked_at() {
+        let (count, beta_count) = (2 * COLUMNS, 3);
+        let shown = columns(count);
+        let row = |point: usize, k: usize| match point % 2 {
+            0 => format!("{point},1,{k},0.{:04},2,\n", point + k),
+            _ => "no,row,that,is,looked,at\n".to_owned(),
+        };
+        let rows: String = (0..count).flat_map(|point| (0..beta_count).map(move |k| row(point, k))).collect();
+        let text = format!("point,segment,beta_deg,score_mm,posture,reason\n{rows}");
+        let entry = json!({ "points": shown, "beta_count": beta_count });
+        let content = |text: &str| content(&entry, &Table::read("map.csv", text.as_bytes())?);
+        assert_eq!(shown.len(), COLUMNS);
+        let codes = super::super::base64::base64(&[2; 3 * COLUMNS]);
+        assert_eq!(content(&text).unwrap()["codes"], codes.as_str());
+        let cut: String = text.lines().take(100).map(|line| format!("{line}\n")).collect();
+        assert!(content(&cut).unwrap_err().to_string().contains("has fewer states"));
+    }
 }

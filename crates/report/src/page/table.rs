@@ -4,26 +4,30 @@ use super::PageError;
 use super::packed::singles;
 use serde_json::{Map, Value, json};
 
-/// A table by its columns.
+/// A table in the bytes of its file: the rows of a long path are many times as large once they are taken apart, and few of them are shown.
 #[derive(Debug, Clone)]
-pub(super) struct Table {
+pub(super) struct Table<'a> {
     name: String,
+    bytes: &'a [u8],
     header: Vec<String>,
-    rows: Vec<csv::StringRecord>,
+    len: usize,
 }
 
-impl Table {
+impl<'a> Table<'a> {
     /// Reads the bytes of a file of this name.
-    pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Self, PageError> {
-        let fail = |cause: csv::Error| PageError::file(name, format!("is no table: {cause}"));
+    pub(super) fn read(name: &str, bytes: &'a [u8]) -> Result<Self, PageError> {
         let mut reader = csv::Reader::from_reader(bytes);
-        let header = reader.headers().map_err(fail)?.iter().map(str::to_owned).collect();
-        let rows = reader.records().collect::<Result<_, _>>().map_err(fail)?;
-        Ok(Self { name: name.to_owned(), header, rows })
+        let header = reader.headers().map_err(|cause| no_table(name, &cause))?.iter().map(str::to_owned).collect();
+        let mut table = Self { name: name.to_owned(), bytes, header, len: 0 };
+        let mut rows = table.rows();
+        while rows.next()? {}
+        let len = rows.read;
+        table.len = len;
+        Ok(table)
     }
 
     pub(super) fn len(&self) -> usize {
-        self.rows.len()
+        self.len
     }
 
     /// An error in this file.
@@ -31,50 +35,125 @@ impl Table {
         PageError::file(&self.name, problem)
     }
 
-    fn column(&self, name: &str) -> Result<usize, PageError> {
+    /// Where a column is, from 0.
+    pub(super) fn column(&self, name: &str) -> Result<usize, PageError> {
         let found = self.header.iter().position(|column| column == name);
         found.ok_or_else(|| self.error(&format!("has no column {name}")))
+    }
+
+    /// Its rows, one after the other.
+    pub(super) fn rows(&self) -> Rows<'_> {
+        let reader = csv::Reader::from_reader(self.bytes);
+        Rows { name: &self.name, header: &self.header, reader, record: csv::StringRecord::new(), read: 0 }
     }
 
     /// A column of numbers; NaN where a field is empty.
     pub(super) fn numbers(&self, name: &str) -> Result<Vec<f64>, PageError> {
         let column = self.column(name)?;
-        let number = |(index, row): (usize, &csv::StringRecord)| match row.get(column).unwrap_or("") {
-            "" => Ok(f64::NAN),
-            text => text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
-                let problem = format!("is no finite number in row {} of the column {name}, found '{text}'", index + 1);
-                self.error(&problem)
-            }),
-        };
-        self.rows.iter().enumerate().map(number).collect()
+        self.each(None, |row| row.number(column))
     }
 
     /// A column of words.
     pub(super) fn texts(&self, name: &str) -> Result<Vec<String>, PageError> {
         let column = self.column(name)?;
-        Ok(self.rows.iter().map(|row| row.get(column).unwrap_or("").to_owned()).collect())
+        self.each(None, |row| Ok(row.text(column).to_owned()))
     }
 
-    /// The columns named, of the rows chosen (all, where none are): numbers as singles, words as they are.
+    /// The columns named, of the rows chosen, in ascending order (all, where none are): numbers as singles, words as they are.
     pub(super) fn content(&self, words: &[&str], chosen: Option<&[usize]>) -> Result<Value, PageError> {
+        let is_words: Vec<bool> = self.header.iter().map(|name| words.contains(&name.as_str())).collect();
+        let mut texts = vec![Vec::new(); self.header.len()];
+        let mut numbers = vec![Vec::new(); self.header.len()];
+        self.each(chosen, |row| {
+            for (column, is_word) in is_words.iter().enumerate() {
+                match is_word {
+                    true => texts[column].push(row.text(column).to_owned()),
+                    false => numbers[column].push(row.number(column)?),
+                }
+            }
+            Ok(())
+        })?;
         let mut columns = Map::new();
-        for name in &self.header {
-            let value = if words.contains(&name.as_str()) {
-                json!(pick(&self.texts(name)?, chosen))
-            } else {
-                json!(singles(pick(&self.numbers(name)?, chosen)))
-            };
-            columns.insert(name.clone(), value);
+        let values = texts.into_iter().zip(numbers);
+        for ((name, is_word), (texts, numbers)) in self.header.iter().zip(is_words).zip(values) {
+            columns.insert(name.clone(), if is_word { json!(texts) } else { json!(singles(numbers)) });
         }
         Ok(Value::Object(columns))
     }
+
+    /// What a function makes of the rows chosen, in ascending order, or of all.
+    fn each<T>(
+        &self,
+        chosen: Option<&[usize]>,
+        mut make: impl FnMut(&Rows<'_>) -> Result<T, PageError>,
+    ) -> Result<Vec<T>, PageError> {
+        let (mut rows, mut made) = (self.rows(), Vec::new());
+        match chosen {
+            None => {
+                while rows.next()? {
+                    made.push(make(&rows)?);
+                }
+            }
+            Some(chosen) => {
+                for row in chosen {
+                    if rows.go_to(*row)? {
+                        made.push(make(&rows)?);
+                    }
+                }
+            }
+        }
+        Ok(made)
+    }
 }
 
-fn pick<T: Clone>(all: &[T], chosen: Option<&[usize]>) -> Vec<T> {
-    match chosen {
-        None => all.to_vec(),
-        Some(chosen) => chosen.iter().filter_map(|index| all.get(*index).cloned()).collect(),
+/// The rows of a table, of which one is at hand.
+pub(super) struct Rows<'a> {
+    name: &'a str,
+    header: &'a [String],
+    reader: csv::Reader<&'a [u8]>,
+    record: csv::StringRecord,
+    /// How many were read: the last of them is at hand.
+    read: usize,
+}
+
+impl Rows<'_> {
+    /// Goes on to the next row; false where there is none.
+    fn next(&mut self) -> Result<bool, PageError> {
+        let is_there = self.reader.read_record(&mut self.record).map_err(|cause| no_table(self.name, &cause))?;
+        self.read += usize::from(is_there);
+        Ok(is_there)
     }
+
+    /// Goes on to a row, from 0, which must not lie behind; false where there is none.
+    pub(super) fn go_to(&mut self, row: usize) -> Result<bool, PageError> {
+        while self.read <= row {
+            if !self.next()? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The text in a column of the row at hand.
+    pub(super) fn text(&self, column: usize) -> &str {
+        self.record.get(column).unwrap_or("")
+    }
+
+    /// The number in a column of the row at hand; NaN where the field is empty.
+    pub(super) fn number(&self, column: usize) -> Result<f64, PageError> {
+        match self.text(column) {
+            "" => Ok(f64::NAN),
+            text => text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| {
+                let name = self.header.get(column).map_or("", String::as_str);
+                let problem = format!("is no finite number in row {} of the column {name}, found '{text}'", self.read);
+                PageError::file(self.name, problem)
+            }),
+        }
+    }
+}
+
+fn no_table(name: &str, cause: &csv::Error) -> PageError {
+    PageError::file(name, format!("is no table: {cause}"))
 }
 
 #[cfg(test)]

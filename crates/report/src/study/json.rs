@@ -50,6 +50,7 @@ pub fn status_json(name: &str, status: &StudyStatus, inputs: &[InputFile]) -> Va
         "infeasible": status.infeasible,
         "failed": status.failed,
         "shards": status.shards.iter().map(shard).collect::<Value>(),
+        "stale_cases": status.stale,
     });
     Document::new(inputs).warnings(&status.problems).with(entries)
 }

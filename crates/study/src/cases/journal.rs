@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
+use stead_format::files;
 use stead_format::input::sha256;
 
 /// A finished case.
@@ -74,7 +75,7 @@ impl Entry {
 /// # Errors
 /// [`StudyError::File`] for a journal that cannot be read; one that is not there has no entries.
 pub(super) fn read(path: &Path, columns: &[Column]) -> Result<(Vec<Entry>, u64), StudyError> {
-    let bytes = match std::fs::read(path) {
+    let bytes = match files::read_own(path) {
         Ok(bytes) => bytes,
         Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => return Ok((Vec::new(), 0)),
         Err(cause) => return Err(StudyError::read(path, cause)),
@@ -103,7 +104,7 @@ impl Journal {
     /// [`StudyError::File`] where it cannot be written.
     pub fn open(path: &Path, whole: u64) -> Result<Self, StudyError> {
         let fail = |cause| StudyError::write(path, cause);
-        let mut file = File::options().create(true).truncate(false).write(true).open(path).map_err(fail)?;
+        let mut file = files::options().create(true).truncate(false).write(true).open(path).map_err(fail)?;
         file.set_len(whole).map_err(fail)?;
         file.seek(std::io::SeekFrom::End(0)).map_err(fail)?;
         Ok(Self { path: path.to_owned(), file })

@@ -1,12 +1,12 @@
-//! Locks of the system on files: gone with the process that holds them, however it ends.
+//! Locks of a study: gone with the process that holds them, however it ends.
 
 use super::StudyError;
-use std::fs::{File, TryLockError};
 use std::path::Path;
+use stead_format::files::{self, TryLock};
 
-/// A lock that is held until this is dropped.
+/// A lock that is held until this is dropped, or none where the file system knows no locks.
 #[derive(Debug)]
-pub(super) struct Lock(#[allow(dead_code, reason = "held, not used")] File);
+pub(super) struct Lock(files::Lock);
 
 impl Lock {
     /// Takes a lock.
@@ -14,11 +14,9 @@ impl Lock {
     /// # Errors
     /// [`StudyError::Locked`] where another process holds it, [`StudyError::File`] where there is none to be had.
     pub fn take(path: &Path, what: &str) -> Result<Self, StudyError> {
-        let file = open(path)?;
-        match file.try_lock() {
-            Ok(()) => Ok(Self(file)),
-            Err(TryLockError::WouldBlock) => Err(StudyError::Locked { path: path.to_owned(), what: what.to_owned() }),
-            Err(TryLockError::Error(cause)) => Err(StudyError::write(path, cause)),
+        match files::Lock::attempt(path).map_err(|cause| StudyError::write(path, cause))? {
+            TryLock::Taken(lock) => Ok(Self(lock)),
+            TryLock::Held(_) => Err(StudyError::Locked { path: path.to_owned(), what: what.to_owned() }),
         }
     }
 
@@ -27,18 +25,18 @@ impl Lock {
     /// # Errors
     /// [`StudyError::File`] where there is none to be had.
     pub fn wait(path: &Path) -> Result<Self, StudyError> {
-        let file = open(path)?;
-        file.lock().map_err(|cause| StudyError::write(path, cause))?;
-        Ok(Self(file))
+        files::Lock::wait(path).map(Self).map_err(|cause| StudyError::write(path, cause))
+    }
+
+    /// Removes the temporary files that a killed process has left, by how their names begin: whoever writes such files holds the lock.
+    pub fn clean(&self, folder: &Path, prefix: &str) {
+        if self.0.is_locked {
+            files::remove_stale(folder, prefix);
+        }
     }
 
     /// Whether somebody holds a lock.
     pub fn is_held(path: &Path) -> bool {
-        File::open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
+        files::Lock::is_held(path)
     }
-}
-
-fn open(path: &Path) -> Result<File, StudyError> {
-    let file = File::options().create(true).truncate(false).read(true).write(true).open(path);
-    file.map_err(|cause| StudyError::write(path, cause))
 }

@@ -38,6 +38,8 @@ pub struct StudyStatus {
     pub shards: Vec<ShardStatus>,
     /// What is wrong in the folder and will be done again, in sentences.
     pub problems: Vec<String>,
+    /// Kept cases that the study as it is now has not, by the names of their folders; whoever keeps cases knows them.
+    pub stale: Vec<String>,
 }
 
 /// How far a study is in a folder, which need not be there.
@@ -61,6 +63,7 @@ pub fn status(plan: &Plan, folder: &Path) -> Result<StudyStatus, StudyError> {
         failed,
         shards: shards.map(|shard| status_of(plan, &store, &rows, shard)).collect(),
         problems,
+        stale: Vec::new(),
     })
 }
 

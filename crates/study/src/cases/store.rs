@@ -8,8 +8,8 @@ use super::row::result_columns;
 use super::table::{Cell, Column, Kind, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::io::Write;
 use std::path::{Path, PathBuf};
+use stead_format::files::{self, Staged, is_full};
 
 /// One of several parts of a study: the cases I, I + N, and so on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,10 +96,13 @@ impl Store {
     pub fn begin(&self, plan: &Plan) -> Result<(), StudyError> {
         let shards = self.shards();
         self.check(plan)?;
-        std::fs::create_dir_all(&shards).map_err(|cause| StudyError::Folder {
-            path: self.folder.clone(),
-            problem: format!("results cannot be written here: {cause}"),
-            allowed: "a folder that can be made or written to".to_owned(),
+        std::fs::create_dir_all(&shards).map_err(|cause| match is_full(&cause) {
+            true => StudyError::write(&shards, cause),
+            false => StudyError::Folder {
+                path: self.folder.clone(),
+                problem: format!("results cannot be written here: {cause}"),
+                allowed: "a folder that can be made or written to".to_owned(),
+            },
         })?;
         let _lock = self.lock()?;
         self.check(plan)?;
@@ -120,7 +123,7 @@ impl Store {
             problem,
             allowed: "a folder of this study, or a new one".to_owned(),
         };
-        match std::fs::read(&path) {
+        match files::read(&path) {
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(()),
             Err(cause) if cause.kind() == std::io::ErrorKind::NotADirectory => {
                 Err(folder("is below a file".to_owned()))
@@ -142,7 +145,7 @@ impl Store {
     /// The lock of the files that shards have in common.
     pub fn lock(&self) -> Result<Lock, StudyError> {
         let lock = Lock::wait(&self.path("study.lock"))?;
-        clean(&self.folder, OF_FOLDER)?;
+        lock.clean(&self.folder, OF_FOLDER);
         Ok(lock)
     }
 
@@ -154,7 +157,7 @@ impl Store {
     /// The lock of a shard.
     pub fn lock_shard(&self, shard: Shard) -> Result<Lock, StudyError> {
         let lock = Lock::take(&self.of_shard(shard, ".lock"), &format!("shard {shard} of the study"))?;
-        clean(&self.shards(), &shard.temporary())?;
+        lock.clean(&self.shards(), &shard.temporary());
         Ok(lock)
     }
 
@@ -230,7 +233,8 @@ impl Store {
         for shard in self.found() {
             let (entries, _) = journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())?;
             timings.extend(entries.into_iter().map(|entry| (entry.id, entry.timing)));
-            let Ok(mut reader) = csv::Reader::from_path(self.of_shard(shard, "-timing.csv")) else { continue };
+            let Ok(bytes) = files::read(&self.of_shard(shard, "-timing.csv")) else { continue };
+            let mut reader = csv::Reader::from_reader(&bytes[..]);
             for row in reader.records().flatten() {
                 let at = |index: usize| row.get(index).unwrap_or_default();
                 let (seconds, threads) = (at(1).parse().unwrap_or(0.0), at(2).parse().unwrap_or(0));
@@ -265,35 +269,9 @@ fn timing_table(entries: &[Entry]) -> Table {
 
 /// Temporary files of the folder itself, which are written under its lock.
 const OF_FOLDER: &str = ".stead-study-";
-/// What temporary files end with.
-const TEMPORARY: &str = ".tmp";
-
-/// Removes the temporary files that a killed process has left, by how their names begin: whoever writes such files holds the lock.
-fn clean(folder: &Path, prefix: &str) -> Result<(), StudyError> {
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let is_ours = name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(TEMPORARY));
-        if is_ours {
-            let path = entry.path();
-            std::fs::remove_file(&path).map_err(|cause| StudyError::write(&path, cause))?;
-        }
-    }
-    Ok(())
-}
-
 /// Writes a file whole: under another name in the same folder first, and on the disk before it is renamed.
 fn write(path: &Path, bytes: &[u8], prefix: &str) -> Result<(), StudyError> {
-    let fail = |cause| StudyError::write(path, cause);
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(prefix).suffix(TEMPORARY);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(fail)?;
-    file.write_all(bytes).and_then(|()| file.as_file().sync_all()).map_err(fail)?;
-    file.persist(path).map_err(|error| fail(error.error))?;
-    Ok(())
+    let written = Staged::write(folder, prefix, bytes).and_then(|staged| staged.put(path));
+    written.map_err(|cause| StudyError::write(path, cause))
 }

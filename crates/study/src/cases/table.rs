@@ -14,6 +14,7 @@ use parquet::schema::types::Type;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
+use stead_format::files;
 use stead_format::input::sha256;
 
 /// The entry of a Parquet file's metadata that has the digest of the file, taken with [`BLANK`] in its place.
@@ -184,11 +185,11 @@ impl Table {
     pub fn from_parquet(file: &Path, columns: &[Column]) -> Result<Self, String> {
         let words = |cause: ParquetError| cause.to_string();
         // Before it is parsed: a reader need not bear bytes that no writer wrote.
-        let bytes = std::fs::read(file).map_err(|cause| cause.to_string())?;
+        let bytes = files::read(file).map_err(|cause| cause.to_string())?;
         if !is_as_written(bytes) {
             return Err("is not as it was written".to_owned());
         }
-        let opened = std::fs::File::open(file).map_err(|cause| cause.to_string())?;
+        let opened = files::open(file).map_err(|cause| cause.to_string())?;
         let reader = SerializedFileReader::new(opened).map_err(words)?;
         let fields = reader.metadata().file_metadata().schema_descr();
         let is_same = fields.num_columns() == columns.len()

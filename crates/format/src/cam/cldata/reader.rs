@@ -8,6 +8,7 @@ use super::cycle::{Cycle, FORMS};
 use super::statement::Statement;
 use super::words::is_harmless;
 use crate::input::InputError;
+use crate::quote::one_line;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 
@@ -142,7 +143,7 @@ impl<'a> Reader<'a> {
                 if word == "INSERT" {
                     self.program.note("INSERT: text for the post-processor, whatever it does");
                 }
-                *self.program.passed_over.entry(word.to_owned()).or_default() += 1;
+                *self.program.passed_over.entry(one_line(word)).or_default() += 1;
             }
             _ => {
                 return Err(self.fail(
@@ -343,7 +344,7 @@ impl<'a> Reader<'a> {
 
     fn tool(&mut self, statement: &Statement<'_>) {
         self.is_after_change = true;
-        let text = format!("{}/{}", statement.word, statement.text());
+        let text = one_line(&format!("{}/{}", statement.word, statement.text()));
         if !self.program.tools.contains(&text) {
             self.program.tools.push(text);
         }

@@ -1,6 +1,7 @@
 //! What a program says, whatever its language: moves, with the frames that they are in.
 
 use super::geometry::{Frame, Matrix};
+use crate::files;
 use crate::input::InputError;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -104,7 +105,7 @@ impl Source {
     /// [`InputError`] where it cannot be read or is no text.
     pub fn read(file: &Path) -> Result<Self, InputError> {
         let fail = |problem: String| InputError::new(file, problem).allowed("a program that `stead export` wrote");
-        let bytes = std::fs::read(file).map_err(|cause| fail(format!("cannot be read: {cause}")))?;
+        let bytes = files::read(file).map_err(|cause| fail(format!("cannot be read: {cause}")))?;
         let text = String::from_utf8(bytes).map_err(|_| fail("is not UTF-8 text".to_owned()))?;
         Ok(Self { file: file.to_owned(), text })
     }

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::sheet::COLUMNS;
 use stead_format::PlanRun;
+use stead_format::files;
 use stead_format::input::InputError;
 
 /// The name of the sheet among the files of a plan.
@@ -56,7 +57,7 @@ fn is_form(bytes: &[u8]) -> bool {
 /// [`InputError`] that names the sheet.
 pub fn keep_readings(folder: &Path) -> Result<(), InputError> {
     let sheet = folder.join(SHEET);
-    match std::fs::read(&sheet) {
+    match files::read(&sheet) {
         Ok(bytes) if !is_form(&bytes) => {
             Err(InputError::new(&sheet, "is a sheet with readings in it, which a new plan would overwrite")
                 .allowed("another folder (--out), or no sheet.csv but an empty one there"))

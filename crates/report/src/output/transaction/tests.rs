@@ -38,7 +38,7 @@ fn killed_after(count: usize, folder: &Folder, run: &Files<'_>) -> bool {
     let is_cut_short = !rest.is_empty();
     for step in rest {
         if let Step::Put(staged, _) = step {
-            staged.abandon();
+            staged.abandon().unwrap();
         }
     }
     is_cut_short

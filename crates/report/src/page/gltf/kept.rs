@@ -211,7 +211,7 @@ fn way(value: &Value, axes: &[ExternalAxis]) -> Option<Vec<MovePart>> {
 
 /// The plan at the feed that is held, with the times of its moves between segments: as long as its document says.
 pub(super) fn motion(
-    plan: &Table,
+    plan: &Table<'_>,
     driven: &Value,
     axes: &[ExternalAxis],
     positions: &[Vector3<f64>],
@@ -255,7 +255,7 @@ pub(super) fn motion(
 }
 
 /// The positions of an external axis along a plan. m or rad
-fn column_of(plan: &Table, number: usize, kind: AxisKind) -> Result<Vec<f64>, PageError> {
+fn column_of(plan: &Table<'_>, number: usize, kind: AxisKind) -> Result<Vec<f64>, PageError> {
     let mut positions = plan.numbers(&column(number, kind))?;
     positions.iter_mut().for_each(|at| *at /= unit(kind).factor);
     Ok(positions)

@@ -1,8 +1,8 @@
 //! Files that a command makes beside those of the user: they must not be there yet, or are replaced where that was asked for.
 
+use super::is_full;
+use super::staged::{PREFIX, Staged, sync};
 use crate::input::InputError;
-use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What becomes of files that are there already.
@@ -25,47 +25,72 @@ pub(crate) fn write_new(file: &Path, text: &str, existing: Existing) -> Result<(
     write_all_new(&[(file.to_owned(), text)], existing)
 }
 
-/// Writes files: all, or none where one of them is there already and to be kept, or cannot be written.
+/// Writes files: all, or none where one of them is there already and to be kept, or cannot be written. They are written under
+/// temporary names first. The first of them, which tells of the others, gets its name last: a process that is killed leaves it or nothing
+/// that looks whole.
 ///
 /// # Errors
 /// Those of [`write_new`].
 pub(crate) fn write_all_new(files: &[(PathBuf, &str)], existing: Existing) -> Result<(), InputError> {
     files.iter().try_for_each(|(file, _)| check(file, existing))?;
-    let staged = |file: &Path| match existing {
-        Existing::Kept => file.to_owned(),
-        Existing::Replaced => {
-            let name = file.file_name().unwrap_or_default().to_string_lossy();
-            file.with_file_name(format!(".{name}.{}.stead-new", std::process::id()))
-        }
-    };
-    let mut written = Vec::with_capacity(files.len());
-    let remove = |written: &[PathBuf]| written.iter().for_each(|made| drop(std::fs::remove_file(made)));
+    let mut made = MadeFolders::default();
+    let mut staged = Vec::with_capacity(files.len());
     for (file, text) in files {
-        let made = staged(file);
-        // What is removed here is what was made here.
-        create(&made, text).map_err(|error| cannot(file, &error)).inspect_err(|_| remove(&written))?;
-        written.push(made);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let written = made.make(folder).and_then(|()| Staged::write(folder, PREFIX, text.as_bytes()));
+        staged.push((written.map_err(|cause| cannot(file, &cause))?, file));
     }
-    if existing == Existing::Replaced {
-        for (made, (file, _)) in written.iter().zip(files) {
-            std::fs::rename(made, file).map_err(|error| cannot(file, &error)).inspect_err(|_| remove(&written))?;
+    let mut named: Vec<&PathBuf> = Vec::new();
+    while let Some((written, file)) = staged.pop() {
+        let put = match existing {
+            // Fails rather than replacing a file that has come in the meantime.
+            Existing::Kept => written.put_new(file),
+            Existing::Replaced => written.put(file),
+        };
+        if let Err(cause) = put {
+            // What is removed here is what was made here.
+            named.into_iter().for_each(|made| drop(std::fs::remove_file(made)));
+            return Err(cannot(file, &cause));
         }
+        if existing == Existing::Kept {
+            named.push(file);
+        }
+    }
+    made.keep();
+    if let Some(folder) = files.first().and_then(|(file, _)| file.parent()).filter(|folder| folder.is_dir()) {
+        // They are there; where the names cannot be put on the disk now, the system does it later.
+        let _ = sync(folder);
     }
     Ok(())
 }
 
-/// Makes a file, unless it is there; folders to it are made.
-fn create(file: &Path, text: &str) -> std::io::Result<()> {
-    if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder)?;
+/// Folders that were made on the way, removed when this is dropped, where they are empty and not to be kept.
+#[derive(Debug, Default)]
+struct MadeFolders(Vec<PathBuf>);
+
+impl MadeFolders {
+    /// Makes a folder and those above it.
+    fn make(&mut self, folder: &Path) -> std::io::Result<()> {
+        let missing = folder.ancestors().take_while(|above| !above.as_os_str().is_empty() && !above.exists());
+        let missing: Vec<PathBuf> = missing.map(Path::to_owned).collect();
+        self.0.extend(missing.into_iter().rev());
+        std::fs::create_dir_all(folder)
     }
-    // Fails rather than replacing a file that has come in the meantime.
-    let mut made = OpenOptions::new().write(true).create_new(true).open(file)?;
-    made.write_all(text.as_bytes()).and_then(|()| made.sync_all()).inspect_err(|_| drop(std::fs::remove_file(file)))
+
+    fn keep(mut self) {
+        self.0.clear();
+    }
 }
 
-fn cannot(file: &Path, error: &std::io::Error) -> InputError {
-    InputError::new(file, format!("cannot be written: {error}")).allowed(ALLOWED)
+impl Drop for MadeFolders {
+    fn drop(&mut self) {
+        self.0.iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
+}
+
+fn cannot(file: &Path, cause: &std::io::Error) -> InputError {
+    let error = InputError::new(file, format!("cannot be written: {cause}"));
+    if is_full(cause) { error.of_disk() } else { error.allowed(ALLOWED) }
 }
 
 /// Refuses a file that is there, where it is to be kept or is no plain file.
@@ -96,8 +121,12 @@ mod tests {
         let message = write_new(&file, "other", Existing::Kept).unwrap_err().to_string();
         assert!(message.contains("new.toml: is there already") && message.contains("; allowed: "), "{message}");
         assert_eq!(std::fs::read_to_string(&file).unwrap(), "mine");
-        let below = write_new(&file.join("below"), "other", Existing::Kept).unwrap_err().to_string();
-        assert!(below.contains("cannot be written: "), "{below}");
+        assert!(
+            write_new(&file.join("below"), "other", Existing::Kept)
+                .unwrap_err()
+                .to_string()
+                .contains("cannot be written: ")
+        );
     }
 
     #[test]
@@ -129,5 +158,10 @@ mod tests {
         // The second cannot be written, since its folder is a file.
         let files = [(folder.path().join("c.src"), "text"), (files[1].0.join("d.src"), "text")];
         assert!(write_all_new(&files, Existing::Kept).is_err() && !files[0].0.exists());
+        // Nor is a folder left, or a temporary file.
+        let files = ["new/e.src", "new/deep/f.src", "b.src/g.src"].map(|name| (folder.path().join(name), "text"));
+        assert!(write_all_new(&files, Existing::Kept).is_err());
+        let names: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(names, ["b.src"]);
     }
 }

@@ -1,0 +1,134 @@
+//! Files on the disk: how they are read, put in place and locked.
+//!
+//! The one door through which files come in ([`read`]), so that none of them is a pipe or a device or fills the memory; files written under
+//! temporary names and then renamed ([`Staged`]); locks ([`Lock`]). Files of this program beside results, which anybody may have put a
+//! link in place of, are opened by [`options`].
+
+mod lock;
+pub(crate) mod new;
+mod staged;
+
+pub use lock::{Lock, TryLock};
+pub use staged::{PREFIX, Staged, remove, remove_stale, sync};
+
+use std::fs::{File, Metadata, OpenOptions};
+use std::io::{Error, ErrorKind, Read, Result};
+use std::path::Path;
+
+/// The most bytes of a file that is read: a tool path of eight million points, a mesh of 20 million triangles.
+pub const MAX_BYTES: u64 = 1_000_000_000;
+
+/// Reads a file, whole.
+///
+/// # Errors
+/// What the system says; [`ErrorKind::InvalidInput`] for what is no file, such as a pipe or a device, [`ErrorKind::FileTooLarge`] for one
+/// of more than [`MAX_BYTES`].
+pub fn read(path: &Path) -> Result<Vec<u8>> {
+    whole(open(path)?)
+}
+
+/// Reads a file of this program's own, which is no link.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_own(path: &Path) -> Result<Vec<u8>> {
+    let file = options().read(true).open(path)?;
+    check(&file.metadata()?)?;
+    whole(file)
+}
+
+fn whole(mut file: File) -> Result<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(file.metadata()?.len() as usize);
+    // A file may grow while it is read, and some of the system do not tell their size.
+    Read::by_ref(&mut file).take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    check_size(bytes.len() as u64)?;
+    Ok(bytes)
+}
+
+/// Opens a file to be read.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn open(path: &Path) -> Result<File> {
+    // Before it is opened, too: that of a pipe waits for a writer, that of some devices does something.
+    check(&std::fs::metadata(path)?)?;
+    let file = File::open(path)?;
+    check(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn check(found: &Metadata) -> Result<()> {
+    if found.is_dir() {
+        Err(Error::new(ErrorKind::IsADirectory, "it is a folder"))
+    } else if !found.is_file() {
+        Err(Error::new(ErrorKind::InvalidInput, "it is a pipe, a socket or a device, and no file"))
+    } else {
+        check_size(found.len())
+    }
+}
+
+fn check_size(bytes: u64) -> Result<()> {
+    let (size, most) = (bytes as f64 / 1e9, MAX_BYTES / 1_000_000_000);
+    let problem = || format!("it is larger than the {most} GB of the largest file that is read: {size:.2} GB");
+    if bytes <= MAX_BYTES { Ok(()) } else { Err(Error::new(ErrorKind::FileTooLarge, problem())) }
+}
+
+/// How files of this program's own are opened: a link of their name is not followed, and no pipe is waited for.
+#[must_use]
+pub fn options() -> OpenOptions {
+    #[allow(unused_mut, reason = "as it is where there are no such links")]
+    let mut options = File::options();
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW | libc::O_NONBLOCK);
+    options
+}
+
+/// Whether a file could not be written for want of room: on the disk, in the user's share of it, or under a limit on the size of files.
+pub fn is_full(cause: &Error) -> bool {
+    matches!(cause.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_read_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.csv");
+        std::fs::write(&file, "text").unwrap();
+        assert_eq!(read(&file).unwrap(), b"text");
+        assert_eq!(read(folder.path()).unwrap_err().kind(), ErrorKind::IsADirectory);
+        assert_eq!(read(&folder.path().join("b.csv")).unwrap_err().kind(), ErrorKind::NotFound);
+        // One without content: nothing is read of it.
+        File::options().write(true).open(&file).unwrap().set_len(MAX_BYTES + 1).unwrap();
+        let problem = read(&file).unwrap_err();
+        assert_eq!(problem.to_string(), "it is larger than the 1 GB of the largest file that is read: 1.00 GB");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_and_devices_are_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for path in [pipe.as_path(), Path::new("/dev/zero"), Path::new("/dev/null")] {
+            let problem = read(path).unwrap_err();
+            assert_eq!(problem.to_string(), "it is a pipe, a socket or a device, and no file", "{}", path.display());
+        }
+        // The system's own files tell no size.
+        assert!(!read(Path::new("/proc/self/status")).unwrap().is_empty());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_of_our_own_are_no_links() {
+        let folder = tempfile::tempdir().unwrap();
+        let [own, other] = ["own", "other"].map(|name| folder.path().join(name));
+        std::fs::write(&other, "the user's own").unwrap();
+        std::os::unix::fs::symlink(&other, &own).unwrap();
+        assert!(read_own(&own).is_err() && read_own(&other).is_ok());
+        assert!(options().create(true).write(true).truncate(true).open(&own).is_err());
+        assert_eq!(std::fs::read(&other).unwrap(), b"the user's own");
+    }
+}

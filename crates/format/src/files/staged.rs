@@ -1,0 +1,154 @@
+//! Files written whole under temporary names, to be renamed when all of them are there.
+
+use std::io::{ErrorKind, Result, Write};
+use std::path::Path;
+use tempfile::{Builder, NamedTempFile};
+
+/// How the names of temporary files begin, unless whoever clears up after them knows its own by another name.
+pub const PREFIX: &str = ".stead-";
+/// What the names of temporary files end with.
+const SUFFIX: &str = ".tmp";
+/// Random characters between the two.
+const RANDOM: usize = 6;
+
+/// A file with its content on disk under a temporary name. Gone again when it is dropped.
+#[derive(Debug)]
+pub struct Staged(NamedTempFile);
+
+impl Staged {
+    /// Writes a file into a folder, under a temporary name that begins with [`PREFIX`] or one's own.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn write(folder: &Path, prefix: &str, bytes: &[u8]) -> Result<Self> {
+        let mut builder = Builder::new();
+        builder.prefix(prefix).suffix(SUFFIX).rand_bytes(RANDOM);
+        readable(&mut builder);
+        // The name of a file in this folder has no folder of its own.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let mut file = builder.tempfile_in(folder)?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        Ok(Self(file))
+    }
+
+    /// Gives it its name, over an older file of that name.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn put(self, path: &Path) -> Result<()> {
+        self.0.persist(path).map(drop).map_err(|error| error.error)
+    }
+
+    /// Gives it its name, unless there is a file of that name.
+    ///
+    /// # Errors
+    /// What the system says; [`ErrorKind::AlreadyExists`] where there is one.
+    pub fn put_new(self, path: &Path) -> Result<()> {
+        match self.0.persist_noclobber(path) {
+            Ok(_) => Ok(()),
+            // A file system that cannot do both in one: it is looked for just before.
+            Err(error) if error.error.kind() != ErrorKind::AlreadyExists && path.symlink_metadata().is_err() => {
+                Self(error.file).put(path)
+            }
+            Err(error) => Err(error.error),
+        }
+    }
+
+    /// Leaves it under its temporary name, as a process that is killed does.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn abandon(self) -> Result<()> {
+        self.0.keep().map(drop).map_err(|error| error.error)
+    }
+}
+
+/// Removes the temporary files of a process that is gone, by how their names begin. What cannot be removed stays.
+pub fn remove_stale(folder: &Path, prefix: &str) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && entry.file_name().to_str().is_some_and(|name| is_temporary(name, prefix)) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Whether a name is one that [`Staged::write`] gives.
+fn is_temporary(name: &str, prefix: &str) -> bool {
+    let random = name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(SUFFIX));
+    random.is_some_and(|random| random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric()))
+}
+
+/// Puts the names in a folder on disk, in the order in which they were given. A file system that cannot do so is none to wait for.
+///
+/// # Errors
+/// What the system says.
+#[cfg(unix)]
+pub fn sync(folder: &Path) -> Result<()> {
+    match std::fs::File::open(folder)?.sync_all() {
+        Err(cause) if matches!(cause.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
+        result => result,
+    }
+}
+
+/// Names are on disk as soon as they are given.
+///
+/// # Errors
+/// None.
+#[cfg(not(unix))]
+pub fn sync(_: &Path) -> Result<()> {
+    Ok(())
+}
+
+/// Removes a file, if it is there.
+///
+/// # Errors
+/// What the system says.
+pub fn remove(path: &Path) -> Result<()> {
+    match std::fs::remove_file(path) {
+        Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(()),
+        result => result,
+    }
+}
+
+/// Temporary files are private by default; results get the permissions of any new file.
+#[cfg(unix)]
+fn readable(builder: &mut Builder<'_, '_>) {
+    use std::os::unix::fs::PermissionsExt;
+    builder.permissions(std::fs::Permissions::from_mode(0o666));
+}
+
+#[cfg(not(unix))]
+fn readable(_: &mut Builder<'_, '_>) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_our_own_temporary_files_are_cleared_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let foreign =
+            [".stead-.tmp", ".stead-notes.tmp2", ".stead-ab cd1.tmp", "x.stead-abcdef.tmp", ".stead-abcdefg.tmp"];
+        for name in foreign {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        std::fs::create_dir(folder.path().join(".stead-folder.tmp")).unwrap();
+        Staged::write(folder.path(), PREFIX, b"stale").unwrap().abandon().unwrap();
+        remove_stale(folder.path(), PREFIX);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1 + foreign.len());
+        remove_stale(Path::new("nowhere"), PREFIX);
+    }
+
+    #[test]
+    fn a_new_file_takes_the_place_of_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let staged = || Staged::write(folder.path(), PREFIX, b"new").unwrap();
+        staged().put_new(&path).unwrap();
+        assert_eq!(staged().put_new(&path).unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}
