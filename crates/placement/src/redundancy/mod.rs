@@ -16,6 +16,7 @@
 pub mod axis_path;
 mod between;
 mod collision_free;
+mod corridor;
 mod follow;
 mod forbid;
 mod forward_pass;
