@@ -169,12 +169,19 @@ mod tests {
         };
         let of_rms = |problem: &mut Problem| problem.criterion.aggregate = Aggregate::Rms;
         let of_max = |problem: &mut Problem| problem.criterion.aggregate = Aggregate::Max;
-        let criteria: [(&str, &dyn Fn(&mut Problem)); 4] =
-            [("wall", &of_wall), ("force errors", &of_force_errors), ("rms", &of_rms), ("max", &of_max)];
-        for (name, set) in criteria {
+        let with = |set: &dyn Fn(&mut Problem)| {
             let mut problem = with_laws(five_segments(), &[(1, compensated(0.2, 3e-7))]);
             problem.redundancy.beta_count = 60;
             set(&mut problem);
+            problem
+        };
+        let criteria = [
+            ("wall", with(&of_wall)),
+            ("force errors", with(&of_force_errors)),
+            ("rms", with(&of_rms)),
+            ("max", with(&of_max)),
+        ];
+        for (name, problem) in criteria {
             let (objective, plans) = planned_objective(&problem, &placement);
             let slopes = objective_by_stiffness(&problem, &placement, &plans, Sense::Min);
             for (joint, slope) in slopes.into_iter().enumerate() {
