@@ -108,7 +108,7 @@ impl Planner<'_> {
     fn corridor_spacing(&self, span: &Span<usize>) -> f64 {
         let room = |point: usize| {
             let step = self.problem.beta_step_within(point, &self.grid);
-            self.steps[point].iter().copied().fold(step.half.clamp(0.0, PI), f64::min)
+            self.steps[point].iter().copied().fold(step.half.max(0.0).min(PI), f64::min)
         };
         let steps = span.len().saturating_sub(1).max(1) as f64;
         let mean = span.clone().skip(1).map(room).sum::<f64>() / steps;
