@@ -177,13 +177,6 @@ impl Knots {
         &self.knots[first..last]
     }
 
-    /// The middle of the changes of beta to a point from the one before that limits and joints together allow, and how far from it they
-    /// go at the most. rad
-    pub fn change_at(&self, point: usize) -> (f64, f64) {
-        let PointRoom { middle, half, .. } = self.rooms[point];
-        (middle * self.grid.beta_step(), half * self.grid.beta_step())
-    }
-
     /// Whether a segment has points between knots.
     pub fn is_spread(&self, span: &Span<usize>) -> bool {
         self.of(span).len() < span.len()

@@ -16,7 +16,6 @@
 pub mod axis_path;
 mod between;
 mod collision_free;
-mod corridor;
 mod follow;
 mod forbid;
 mod forward_pass;

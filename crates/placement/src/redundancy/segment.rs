@@ -95,7 +95,6 @@ impl Planner<'_> {
         found: &mut Vec<joint_turns::SegmentChoice>,
     ) -> bool {
         let Pass { span, placement, sense, is_by_knots, .. } = pass;
-        let forbidden = workspace.forbidden.clone();
         let mut has_all = outcome.ends.iter().any(Option::is_some);
         // The classes by rising cost; what flips and turns allow of a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
@@ -126,12 +125,6 @@ impl Planner<'_> {
             };
             let follow =
                 |path: &[f64], cost: f64| drive(&self.followed(span, placement, *postures.first()?, path)?, cost);
-            let near = |path: &[f64], cost: f64| {
-                // What the search compares is not worth the time.
-                let posture = *postures.first().filter(|_| self.checks_moves)?;
-                let path = self.within_corridor(span, (placement, sense, posture), path, &forbidden)?;
-                drive(&path, cost)
-            };
             let betas = self.trace(pass, class, outcome, workspace);
             let relaxed = path(&betas);
             let mut choice = drive(&relaxed, cost);
@@ -141,11 +134,7 @@ impl Planner<'_> {
                 let with_turns = with_turns.map(|found| (path(&found.betas), found.cost));
                 choice = with_turns.as_ref().and_then(|(path, cost)| drive(path, *cost));
                 if choice.is_none() && is_by_knots {
-                    choice = near(&relaxed, cost)
-                        .or_else(|| {
-                            with_turns.and_then(|(path, cost)| near(&path, cost).or_else(|| follow(&path, cost)))
-                        })
-                        .or_else(|| follow(&relaxed, cost));
+                    choice = with_turns.and_then(|(path, cost)| follow(&path, cost)).or_else(|| follow(&relaxed, cost));
                 }
             }
             has_all &= choice.is_some();

@@ -20,20 +20,8 @@ impl Numbers {
     }
 }
 
-/// Points closer than a millimetre, with the tool upright.
-const CLOSE: Shape = Shape { spacing: [0.2e-3, 1e-3], tilt: 0.0 };
-
-/// Of a winding path.
-#[derive(Debug, Clone, Copy)]
-struct Shape {
-    /// Smallest and largest distance of the points. m
-    spacing: [f64; 2],
-    /// Largest tilt of the tool to the side. rad
-    tilt: f64,
-}
-
 /// A winding path of one segment, with a force that turns slowly.
-fn winding(numbers: &mut Numbers, shape: Shape) -> Problem {
+fn winding(numbers: &mut Numbers) -> Problem {
     let mut problem = five_segments();
     if numbers.next() < 0.5 {
         // A second arm: with a compensator, a soft wrist, and the spindle beside the flange.
@@ -44,7 +32,7 @@ fn winding(numbers: &mut Numbers, shape: Shape) -> Problem {
         problem.spindle = Spindle::new(rotation, Vector3::new(0.0, -0.25, 0.45)).unwrap();
     }
     let count = numbers.between(100.0, 220.0) as usize;
-    let spacing = numbers.between(shape.spacing[0], shape.spacing[1]);
+    let spacing = numbers.between(0.2e-3, 1e-3);
     let bend = numbers.between(0.0, 15.0);
     let wave = numbers.between(0.02, 0.2);
     let (mut heading, mut way) = (numbers.between(-3.0, 3.0), 0.0_f64);
@@ -53,9 +41,7 @@ fn winding(numbers: &mut Numbers, shape: Shape) -> Problem {
     let (phase, pull) = (numbers.between(-3.0, 3.0), numbers.between(20.0, 200.0));
     for _ in 0..count {
         let feed = Vector3::new(libm::cos(heading), libm::sin(heading), 0.0);
-        let (sine, cosine) = libm::sincos(shape.tilt * libm::sin(phase + 30.0 * way));
-        let axis = Vector3::z() * cosine + Vector3::z().cross(&feed) * sine;
-        points.push((1, PathPoint { position, feed, axis }));
+        points.push((1, PathPoint { position, feed, axis: Vector3::z() }));
         let (sine, cosine) = libm::sincos(phase + way * 6.0 / wave);
         let force = feed * (50.0 * cosine) + Vector3::new(pull * sine, pull * cosine, 20.0);
         wrenches.push(Wrench { force, moment: Vector3::zeros() });
@@ -132,7 +118,7 @@ fn judge(problem: &Problem, placement: &Placement, tightest: f64, parts: f64) ->
 fn looser_limits_never_make_dense_plans_worse_and_a_fine_grid_finds_no_better() {
     let case = |kind: usize| {
         let mut numbers = Numbers(77 + 1000 * kind as u64);
-        let base = winding(&mut numbers, CLOSE);
+        let base = winding(&mut numbers);
         let [x, y] = [numbers.between(-0.3, 0.3), numbers.between(-1.9, -1.64)];
         let placement = Placement::from([x, y, numbers.between(-0.6, -0.2), numbers.between(-3.0, 3.0)]);
         let limits = Limits::of(kind, &mut numbers);
@@ -174,71 +160,4 @@ fn five_segments_of_dense_points_are_planned_no_worse_at_a_higher_rate() {
     assert!(fast.0 < slow.0 * (1.0 + 1e-4), "{slow:?} {fast:?}");
     // The coarse grid of the search tells the same.
     assert!((fast.1 / fast.0 - 1.0).abs() < 0.01, "{fast:?}");
-}
-
-/// A problem with speeds of the joints in deg/mm at the feed, and no limit on beta.
-fn with_speeds(problem: &Problem, speeds: [f64; 6], rate: Option<f64>) -> Problem {
-    let unit = 1f64.to_radians() * 1e3;
-    let redundancy =
-        Redundancy { max_beta_rate: rate.map(|rate| rate * unit), max_spindle_turn: None, ..problem.redundancy };
-    let mut joints = problem.robot.joints().clone();
-    for (joint, speed) in joints.iter_mut().zip(speeds) {
-        joint.max_speed = Some(speed * unit * redundancy.feed);
-    }
-    Problem { robot: Robot::new("limited", joints).unwrap(), redundancy, ..problem.clone() }
-}
-
-/// At how many points a plan has a joint at its speed.
-fn at_speed(problem: &Problem, plan: &SegmentPlan) -> usize {
-    let is_at_speed = |place: &usize| {
-        let limits = problem.joint_steps(plan.points.start + place);
-        (0..6).any(|j| (plan.joints[*place][j] - plan.joints[place - 1][j]).abs() > 0.999 * limits[j])
-    };
-    (1..plan.betas.len()).filter(is_at_speed).count()
-}
-
-/// By how much (relative) ours is worse than the fine exact plan on a random dense path whose joints are as slow as the path asks for:
-/// joint 4 alone, or all of them; upright tools, tilted ones, and points of 1 mm. Nothing where there is no plan, or none held so.
-fn excess(number: usize) -> Option<f64> {
-    let mut numbers = Numbers(4242 + 1000 * number as u64);
-    let tilt = [0.0, 20.0, 40.0, 40.0][number % 4];
-    let spacing = if number % 3 == 0 { CLOSE.spacing } else { [1e-3; 2] };
-    let base = winding(&mut numbers, Shape { spacing, tilt: f64::to_radians(tilt) });
-    let [x, y] = [numbers.between(-0.3, 0.3), numbers.between(-1.9, -1.64)];
-    let placement = Placement::from([x, y, numbers.between(-0.6, -0.2), numbers.between(-3.0, 3.0)]);
-    let slowest = numbers.between(0.7, 2.5);
-    let mut speeds: [f64; 6] = std::array::from_fn(|_| slowest * numbers.between(1.0, 3.0));
-    if number % 5 < 3 {
-        speeds = [20.0; 6];
-    }
-    speeds[3] = slowest;
-    let problem = with_speeds(&base, speeds, Some(5.0));
-    let planner = Planner::finer(&problem);
-    let plans = planner.plan_fine(&placement, Sense::Min, None, &mut planner.workspace()).ok()?;
-    assert_sound(&problem, &placement, &plans);
-    let ours = problem.objective(plans.iter().map(|plan| plan.cost));
-    let exact = judge(&problem, &placement, slowest, 7.0);
-    (at_speed(&problem, &plans[0]) >= 5).then_some(ours / exact? - 1.0)
-}
-
-/// The excesses of random paths, ascending.
-fn excesses(numbers: std::ops::Range<usize>) -> Vec<f64> {
-    let mut all: Vec<f64> = numbers.into_par_iter().filter_map(excess).collect();
-    all.sort_by(f64::total_cmp);
-    all
-}
-
-#[test]
-fn joints_at_their_speed_leave_dense_plans_near_the_best() {
-    let all = excesses(0..48);
-    let above = all.iter().filter(|excess| **excess > 3e-3).count();
-    assert!(all.len() >= 30 && above <= 1 && all.last().unwrap() < &1e-2, "{above} of {}: {all:?}", all.len());
-}
-
-#[test]
-#[ignore = "takes a minute: the counts that the guide states"]
-fn counts_of_two_hundred_dense_paths_held_by_speeds() {
-    let all = excesses(0..300);
-    let counts = [1e-3, 3e-3, 1e-2].map(|limit| all.iter().filter(|excess| **excess > limit).count());
-    println!("{} paths; above 0.1, 0.3, 1 %: {counts:?}; largest {:?}", all.len(), &all[all.len().saturating_sub(8)..]);
 }
