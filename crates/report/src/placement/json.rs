@@ -17,8 +17,8 @@ use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
-    CANCELLATION, Case, Cycle, ForceSensitivity, LookupSummary, Outcome, PathLevels, Plan, PlanPoint, Refinement,
-    SetBasin, SetOutcome, SubsetAccuracy,
+    CANCELLATION, Case, Cycle, ForceSensitivity, LookupSummary, Outcome, PathLevels, PlanPoint, Refinement, SetBasin,
+    SetOutcome, SubsetAccuracy,
 };
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Problem, Redundancy};
