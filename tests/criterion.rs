@@ -138,7 +138,7 @@ fn one_placement_for_several_stiffnesses_and_what_force_errors_do_are_stated() {
     assert!(robust <= nominal * (1.0 + 1e-6), "{sensitivity}");
     assert_eq!(document["inputs"].as_array().unwrap().len(), 5);
     for case in [0, 2] {
-        assert_eq!(document["cases"][case]["mean_by_stiffness"].as_array().unwrap().len(), 6);
+        assert_eq!(document["cases"][case]["objective_by_stiffness"].as_array().unwrap().len(), 6);
         assert!(document["cases"][case]["active_bounds"].is_array());
     }
 }

@@ -16,14 +16,16 @@ pub enum Limit {
     CellYaw,
     /// A limit of a joint, from 1.
     Joint(u8),
-    /// The step of a joint (from 1) between path points, by its speed.
+    /// The speed of a joint, from 1: what bounds its steps between path points.
     JointStep(u8),
     /// The bound on 1/kappa_F.
     Conditioning,
     /// The rate of beta along the path.
     BetaRate,
-    /// The turn of the spindle in space along the path.
+    /// The turn of the spindle in space along the path, by the length of the path.
     SpindleTurn,
+    /// The same by the time that it takes.
+    SpindleSpeed,
     /// The largest score of a point.
     MaxDeflection,
     /// The smallest distance of the path from axis 1.
@@ -56,7 +58,7 @@ pub struct ActiveBound {
     /// Of two shapes that have to keep a distance, or a point of the arm and a zone: their names.
     pub names: Option<[String; 2]>,
     /// How much the objective improves (falls for the best placement, rises for the worst) when the bound gives way by one unit,
-    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles and the limits on beta (rad of its change in a step),
-    /// m per unit of 1/kappa_F.
+    /// to first order: m per m for walls of x, y, z, distances and deflections, m per rad for angles, m per rad/m for the rate of beta
+    /// and the turn of the spindle along the path, m per rad/s for speeds of joints and spindle, m per unit of 1/kappa_F.
     pub gain: f64,
 }

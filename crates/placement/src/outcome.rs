@@ -92,10 +92,6 @@ pub struct Plan {
     pub points: Vec<PlanPoint>,
     /// Where the external axes stand at every point; empty where there are none.
     pub axes: Vec<AxisPath>,
-    /// How the mean of the scores answers to the stiffness of each joint ([`mean_by_stiffness`]): derivative by its logarithm. m
-    ///
-    /// [`mean_by_stiffness`]: super::sensitivity::mean_by_stiffness
-    pub mean_by_stiffness: [f64; 6],
     /// Posture of each segment.
     pub postures: Vec<Posture>,
     /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)); by default the mean. m
@@ -135,6 +131,11 @@ pub struct Case {
     /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima; none where
     /// they are not known.
     pub active_bounds: Option<Vec<ActiveBound>>,
+    /// How the objective answers to the stiffness of each joint ([`objective_by_stiffness`]): derivative by its logarithm, in m; none
+    /// where it was not asked for.
+    ///
+    /// [`objective_by_stiffness`]: super::sensitivity::objective_by_stiffness
+    pub objective_by_stiffness: Option<[f64; 6]>,
 }
 
 impl Case {

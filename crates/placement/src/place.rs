@@ -8,7 +8,7 @@ use super::refine::Solution;
 use super::refine::active::{active_bounds, active_walls};
 use super::search::SearchResult;
 use super::sense::Sense;
-use super::sensitivity::objective_with_force_errors;
+use super::sensitivity::{objective_by_stiffness, objective_with_force_errors};
 use super::settings::{SearchSettings, TransferSettings};
 use super::transfer::cycle;
 use basins::{best_alone, choose, leading, refine_basins};
@@ -165,6 +165,8 @@ fn stated_cases(
             plan: detailed(problem, &solution.placement, plans),
             cycle: cycle(problem, &solution.placement, transfer, plans),
             active_bounds,
+            objective_by_stiffness: (!monitor.should_stop())
+                .then(|| objective_by_stiffness(problem, &solution.placement, plans, plan_sense)),
         }
     })
 }

@@ -58,7 +58,8 @@ fn limit(limit: Limit) -> String {
         Limit::JointStep(joint) => format!("speed of joint {joint}"),
         Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),
         Limit::BetaRate => "redundancy.max_beta_rate_deg_per_mm".to_owned(),
-        Limit::SpindleTurn => "turn of the spindle".to_owned(),
+        Limit::SpindleTurn => "redundancy.max_spindle_turn_deg_per_mm".to_owned(),
+        Limit::SpindleSpeed => "redundancy.max_spindle_turn_deg_per_s".to_owned(),
         Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
         Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
         Limit::Clearance(_) => "collision.clearance_mm".to_owned(),
@@ -85,9 +86,10 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
         | Limit::BaseDistance
         | Limit::Clearance(_)
         | Limit::KeepOut(_) => (bound.gain, "mm per mm"),
-        Limit::CellYaw | Limit::Joint(_) | Limit::JointStep(_) | Limit::BetaRate | Limit::SpindleTurn => {
-            (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
-        }
+        Limit::CellYaw | Limit::Joint(_) => (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg"),
+        // One degree per millimetre is a thousand per metre.
+        Limit::BetaRate | Limit::SpindleTurn => (bound.gain * 1e6 * 1_f64.to_radians(), "mm per deg/mm"),
+        Limit::JointStep(_) | Limit::SpindleSpeed => (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg/s"),
         Limit::Conditioning => (bound.gain * 1e3 * 0.01, "mm per 0.01"),
     }
 }

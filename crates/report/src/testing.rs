@@ -168,7 +168,6 @@ impl Grid {
             deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,
             clearance: None,
-            mean_by_stiffness: [-mean, 0.0, 0.0, 0.0, 0.0, 0.0],
             axes: Vec::new(),
             points,
         };
@@ -191,7 +190,7 @@ impl Grid {
             external_axes: Vec::new(),
         };
         let cycle = Cycle { feed, cutting: 29.52, transfers: (1..5).map(transfer).collect(), unfollowed: Vec::new() };
-        let (placement, setup) = (self.placement, problem().setup.clone());
+        let (placement, setup, mean) = (self.placement, problem().setup.clone(), plan.mean);
         Case {
             placement_sense,
             plan_sense,
@@ -201,6 +200,7 @@ impl Grid {
             plan,
             cycle,
             active_bounds: Some(Vec::new()),
+            objective_by_stiffness: Some([-mean, 0.0, 0.0, 0.0, 0.0, 0.0]),
         }
     }
 

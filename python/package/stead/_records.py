@@ -193,7 +193,7 @@ class ActiveBound(Record):
 
 
 class StiffnessGain(Record):
-    """What one per cent more stiffness of a joint (from 1) does to the mean."""
+    """What one per cent more stiffness of a joint (from 1) does to the figure that is minimised, with the spindle angle planned anew."""
 
     joint: int
     mm_per_percent: float
@@ -206,14 +206,14 @@ class Case(PlanFigures):
     case: int
     placement: Placement
     placement_exact: Placement
-    mean_by_stiffness: list[StiffnessGain]
+    objective_by_stiffness: list[StiffnessGain] | None
     active_bounds: list[ActiveBound] | None
     transfers: list[Transfer]
     _made = {
         **PlanFigures._made,
         "placement": Placement._of,
         "placement_exact": Placement._of,
-        "mean_by_stiffness": StiffnessGain,
+        "objective_by_stiffness": StiffnessGain,
         "active_bounds": ActiveBound,
         "transfers": Transfer,
     }

@@ -3,6 +3,7 @@
 use super::assemble::Assembly;
 use super::equilibria::Equilibria;
 use super::error::IdentifyError;
+use super::load_point::{LoadPointTest, doubted, tested};
 use super::model::{Layout, Noise, Observation, ObservationModel, Parameter};
 use super::normal_equations::{FreeParameters, NormalEquations};
 use super::outcome::Identified;
@@ -28,9 +29,18 @@ const ROUNDS: usize = 4;
 /// # Errors
 /// [`IdentifyError`] when they are not identifiable from the sheet.
 pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
+    let (mut identified, load_point) = fitted(problem)?;
+    identified.warnings = warnings(problem, &identified);
+    let doubt = load_point.and_then(|test| doubted(problem, &identified, test, |moved| fitted(moved).ok()));
+    identified.warnings.extend(doubt);
+    Ok(identified)
+}
+
+/// All of it but the warnings, and the test of the load point.
+fn fitted(problem: &Problem) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
     if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
         // The joint keeps the law that it has in the starting arm: there is none to fit.
-        return identify(&Problem { varying: None, ..problem.clone() });
+        return fitted(&Problem { varying: None, ..problem.clone() });
     }
     let sheet = &problem.sheet;
     let layout = Layout::new(sheet, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
@@ -46,7 +56,7 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
     let (free, dropped) = free_parameters(problem, &layout, &unloaded)?;
     if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
         // Identifiable at no angle: then its law is not either, and the joint keeps the one it has.
-        return identify(&Problem { varying: None, ..problem.clone() });
+        return fitted(&Problem { varying: None, ..problem.clone() });
     }
     // A joint that is given up is held like one that is to be: at the angle of each configuration.
     let hold = std::array::from_fn(|joint| problem.hold[joint] || dropped.contains(&Parameter::Joint(joint)));
@@ -68,6 +78,7 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
         robust = equilibria.robust_estimate(&settled.observations)?;
     }
     let fit = check(sheet, &flanges, &used, &setup)?;
+    let load_point = tested(&equilibria, &setup, &settled.observations, &robust);
     let assembly = Assembly {
         problem,
         layout: &layout,
@@ -79,9 +90,7 @@ pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
         noise,
         not_at_rest: settled.not_at_rest,
     };
-    let mut identified = assembly.assemble(dropped)?;
-    identified.warnings = warnings(problem, &identified);
-    Ok(identified)
+    Ok((assembly.assemble(dropped)?, load_point))
 }
 
 /// Refuses a deflection far larger than the one predicted by the starting arm.

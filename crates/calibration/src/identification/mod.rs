@@ -9,7 +9,8 @@
 //! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters are identifiable;
 //! 4. [`outliers`]: a robust estimate, and readings that deviate from the others by more than noise;
 //! 5. [`law`]: from the compliances at distinct angles to joint stiffness, spring stiffness and free length (eq. 21, 22);
-//! 6. [`cross_validation`]: the error of predicting a configuration that was left out.
+//! 6. [`cross_validation`]: the error of predicting a configuration that was left out;
+//! 7. whether the readings agree with where the load is said to act, and their residuals with the scatter of the unloaded ones.
 //!
 //! Nothing is regularised: unidentifiable compliances are refused by name, or on request held at their value in the starting
 //! robot. [`design`] chooses the measurements.
@@ -23,6 +24,7 @@ mod equilibria;
 mod error;
 mod identify;
 pub mod law;
+mod load_point;
 pub mod model;
 pub mod normal_equations;
 pub mod outcome;

@@ -78,6 +78,10 @@ pub struct SetupFit {
     /// For each reference point the standard deviation of its place on the flange, in the direction in which it is largest,
     /// with the residuals taken for noise. m
     pub point_deviations: Vec<f64>,
+    /// Standard deviation of a coordinate by the residuals, which it is at most: they have the errors of the kinematics too. m
+    pub noise: f64,
+    /// Coordinates less unknowns.
+    pub degrees: usize,
 }
 
 /// Configurations that a start is sought from; more would not make it better.
@@ -167,7 +171,8 @@ pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup)
         libm::sqrt((own.symmetric_eigenvalues().max() * variance).max(0.0))
     };
     let point_deviations = (0..sheet.points.len()).map(deviation).collect();
-    Ok(SetupFit { worst, others_rms: mean(sum - squares[farthest], all.len() - 1), flange_rms, point_deviations })
+    let others_rms = mean(sum - squares[farthest], all.len() - 1);
+    Ok(SetupFit { worst, others_rms, flange_rms, point_deviations, noise: libm::sqrt(variance), degrees })
 }
 
 /// The unknowns. Readings and flange origins count from their centres, so that `shift` and `rotation` are hardly coupled.

@@ -1,5 +1,6 @@
 //! What may be wrong with an identification that has not failed.
 
+use super::distribution::tail;
 use super::law::{ArmParameter, Quantity};
 use super::model::{Layout, Parameter};
 use super::outcome::{Estimate, HeldReason, Identified};
@@ -23,6 +24,8 @@ const FAR: f64 = 6.0;
 const SCALE: f64 = 5.0;
 /// The stated noise is doubted where the residuals are outside this range of it.
 const NOISE_RATIO: std::ops::Range<f64> = 0.8..1.25;
+/// Residuals are held for more than noise below this probability.
+const MISFIT_PROBABILITY: f64 = 1e-3;
 /// A law is doubted below this probability.
 const LAW_PROBABILITY: f64 = 0.01;
 /// The model is doubted with more outliers than one reading in so many.
@@ -40,6 +43,7 @@ pub(super) fn warnings(problem: &Problem, result: &Identified) -> Vec<Warning> {
         let message = format!("the residuals are {ratio:.2} times as large as noise_mm lets expect");
         warnings.push(Warning::new("noise-mismatch", message));
     }
+    warnings.extend(misfit(result));
     if result.law_probability.is_some_and(|probability| probability < LAW_PROBABILITY) {
         let number = result.varying.unwrap_or_default() + 1;
         let message = format!(
@@ -174,6 +178,24 @@ fn setup(problem: &Problem, result: &Identified) -> Vec<Warning> {
         }
     }
     warnings
+}
+
+/// Whether the deflections scatter by more than the readings of which they are the differences.
+fn misfit(result: &Identified) -> Option<Warning> {
+    let fit = &result.setup_fit;
+    let ratio = result.noise.max(ROUNDING) / fit.noise.max(ROUNDING);
+    let is_doubted = result.is_noise_estimated
+        && fit.degrees > 0
+        && ratio > NOISE_RATIO.end
+        && tail(ratio * ratio, result.degrees_of_freedom.max(1), fit.degrees) < MISFIT_PROBABILITY;
+    is_doubted.then(|| {
+        let message = format!(
+            "the deflections scatter about those of the arm found as if one reading had {:.4} mm of noise, {ratio:.1} times as much as \
+             the unloaded readings show: load point, wrenches or the model are off, and the intervals do not cover that",
+            result.noise * 1e3
+        );
+        Warning::new("residual-misfit", message)
+    })
 }
 
 /// Whether all compliances are off by a common factor.

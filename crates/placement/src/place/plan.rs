@@ -8,7 +8,6 @@ use crate::problem::{Placement, Problem};
 use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use crate::refine::planned;
 use crate::sense::Sense;
-use crate::sensitivity::mean_by_stiffness;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
@@ -95,7 +94,6 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         percentiles: [0.5, 0.95].map(|share| percentile(scored.clone().map(|p| p.score), share)),
         deflection: DeflectionFigures::of(scored),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
-        mean_by_stiffness: mean_by_stiffness(problem, placement, plans),
         clearance: plan_clearance(problem, &points),
         points,
         axes: problem.axis_paths(),

@@ -50,6 +50,7 @@ impl Score {
             plan: plan.clone(),
             cycle: cycle.clone(),
             active_bounds: None,
+            objective_by_stiffness: None,
         };
         [case(Sense::Min, &self.best, of_best), case(Sense::Max, &self.worst, of_worst)]
     }

@@ -34,24 +34,72 @@ pub fn active_bounds(problem: &Problem, solution: &Solution) -> Option<Vec<Activ
         solve(problem, solution, &locals, Question { trust: NEIGHBOURHOOD, curved, pose_stays: false }).ok()
     });
     let Answer { multipliers: mut gains, .. } = { answers }.next()?;
+    gains.iter_mut().for_each(|(side, point, _)| side.limit = behind(problem, *side, *point));
     // The gains of all points that one bound holds add up.
-    gains.sort_by_key(|(side, _)| *side);
+    gains.sort_by_key(|(side, point, _)| (*side, *point));
     let mut bounds: Vec<ActiveBound> = Vec::new();
-    for (side, gain) in gains {
-        match bounds.last_mut().filter(|last| last.side == side) {
-            Some(last) => last.gain += gain,
-            None => bounds.push(ActiveBound { side, names: names(problem, side.limit), gain }),
+    for gains in gains.chunk_by(|a, b| a.0 == b.0) {
+        let (side, _, _) = gains[0];
+        if gains.iter().map(|(_, _, gain)| gain).sum::<f64>() > FLOOR * solution.objective {
+            let gain = gains.iter().map(|(_, point, gain)| gain * loosened(problem, solution, side, *point)).sum();
+            bounds.push(ActiveBound { side, names: names(problem, side.limit), gain });
         }
     }
-    bounds.retain(|bound| bound.gain > FLOOR * solution.objective);
-    for bound in &mut bounds {
-        if matches!(bound.side.limit, Limit::CellX | Limit::CellY | Limit::CellZ) {
-            bound.gain /= LENGTH_UNIT;
-        } else if bound.side.limit == Limit::MaxDeflection {
-            bound.gain /= solution.objective;
-        }
-    }
+    // A step that something else bounds than the limit has nothing to gain from that.
+    bounds.retain(|bound| bound.gain > 0.0);
     Some(sorted(bounds))
+}
+
+/// The limit behind a bound at a point: whether the turn of the spindle is bounded by length or by time.
+fn behind(problem: &Problem, side: Side, point: usize) -> Limit {
+    match side.limit {
+        Limit::SpindleTurn if loosened_turn(problem, side, point, Limit::SpindleTurn) == 0.0 => Limit::SpindleSpeed,
+        limit => limit,
+    }
+}
+
+/// By how much a bound at a point gives way, in the unit of its multiplier, when the limit does by one unit of [`ActiveBound::gain`].
+fn loosened(problem: &Problem, solution: &Solution, side: Side, point: usize) -> f64 {
+    match side.limit {
+        Limit::CellX | Limit::CellY | Limit::CellZ => 1.0 / LENGTH_UNIT,
+        Limit::MaxDeflection => 1.0 / solution.objective,
+        Limit::BetaRate | Limit::SpindleTurn | Limit::SpindleSpeed => loosened_turn(problem, side, point, side.limit),
+        Limit::JointStep(joint) => {
+            let (own, time) = (usize::from(joint) - 1, problem.step_time(point));
+            let speed = problem.robot.joints()[own].max_speed.unwrap_or(f64::INFINITY);
+            if problem.joint_steps(point)[own] < speed * time { 0.0 } else { time }
+        }
+        Limit::CellYaw
+        | Limit::Joint(_)
+        | Limit::Conditioning
+        | Limit::BaseDistance
+        | Limit::Clearance(_)
+        | Limit::KeepOut(_) => 1.0,
+    }
+}
+
+/// Relative step of the central differences of how far a limit lets beta change.
+const TURN_STEP: f64 = 1e-6;
+
+/// By how much a side of the allowed changes of beta at a point gives way with a limit. rad per its unit
+fn loosened_turn(problem: &Problem, side: Side, point: usize, limit: Limit) -> f64 {
+    let end = |factor: f64| {
+        let mut limits = problem.redundancy;
+        let own = match limit {
+            Limit::BetaRate => &mut limits.max_beta_rate,
+            Limit::SpindleSpeed => &mut limits.max_spindle_speed,
+            _ => &mut limits.max_spindle_turn,
+        };
+        let value = own.as_mut()?;
+        *value *= factor;
+        let moved = *value;
+        let step = problem.beta_step_within(point, &limits);
+        Some((moved, if side.is_upper { step.middle + step.half } else { step.half - step.middle }))
+    };
+    let (Some(wide), Some(narrow)) = (end(1.0 + TURN_STEP), end(1.0 - TURN_STEP)) else { return 0.0 };
+    let slope = (wide.1 - narrow.1) / (wide.0 - narrow.0);
+    // Rounding, where another limit decides.
+    if slope.abs() * wide.0 < TURN_STEP * wide.1.abs() { 0.0 } else { slope }
 }
 
 /// How far the difference reaches that measures the gain of a wall at a worst placement, in scaled variables.

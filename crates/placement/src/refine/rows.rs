@@ -11,8 +11,8 @@ pub(super) struct Rows {
     pub column: Vec<usize>,
     pub value: Vec<f64>,
     pub bound: Vec<f64>,
-    /// Which bound of the problem stands behind a row, ascending by row; none behind those of the model.
-    pub bounds: Vec<(usize, Side)>,
+    /// Which bound of the problem stands behind a row, and at which point; ascending by row, none behind those of the model.
+    pub bounds: Vec<(usize, (Side, usize))>,
 }
 
 impl Rows {
@@ -26,14 +26,21 @@ impl Rows {
         self.bound.push(bound);
     }
 
-    /// `low <= terms <= high`, each side only if a change of at most `swing` can reach it.
-    pub fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
+    /// `low <= terms <= high` at a point, each side only if a change of at most `swing` can reach it.
+    pub fn add_between(
+        &mut self,
+        (limit, point): (Limit, usize),
+        terms: &[(usize, f64)],
+        low: f64,
+        high: f64,
+        swing: f64,
+    ) {
         if high < swing {
-            self.bounds.push((self.bound.len(), Side { limit, is_upper: true }));
+            self.bounds.push((self.bound.len(), (Side { limit, is_upper: true }, point)));
             self.add(terms.iter().copied(), high);
         }
         if -low < swing {
-            self.bounds.push((self.bound.len(), Side { limit, is_upper: false }));
+            self.bounds.push((self.bound.len(), (Side { limit, is_upper: false }, point)));
             self.add(terms.iter().map(|(k, v)| (*k, -v)), -low);
         }
     }

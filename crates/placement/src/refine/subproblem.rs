@@ -47,8 +47,8 @@ pub struct Answer {
     /// Gradient of the model's minimum with respect to the pose, where the pose had to stay. m per scaled unit
     pub pose_gradient: [f64; 4],
     /// How much smaller the model's minimum becomes where a bound gives way, for every bound near enough to bind and every
-    /// point it holds at. m per scaled unit, or per unit of the constraint
-    pub multipliers: Vec<(Side, f64)>,
+    /// point (from 0; 0 for walls of the cell) it holds at. m per scaled unit, or per unit of the constraint
+    pub multipliers: Vec<(Side, usize, f64)>,
 }
 
 /// Solves the subproblem at a solution with its linearisation.
@@ -136,8 +136,8 @@ impl Build<'_> {
         (0..4).map(|k| (k, gradient[k])).chain([(BETA + i, gradient[4])]).collect()
     }
 
-    /// `low <= terms <= high`, each side only if a step inside the trust region can reach it, twice over for safety.
-    fn add_between(&mut self, limit: Limit, terms: &[(usize, f64)], low: f64, high: f64) {
+    /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for safety.
+    fn add_between(&mut self, limit: (Limit, usize), terms: &[(usize, f64)], low: f64, high: f64) {
         let swing = 2.0 * self.question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
         self.rows.add_between(limit, terms, low, high, swing);
     }
@@ -150,26 +150,27 @@ impl Build<'_> {
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
             let (scores, share) = (self.scores_of(i), 1.0 / self.copies() as f64);
-            self.rows.bounds.push((self.rows.bound.len(), Side { limit: Limit::MaxDeflection, is_upper: true }));
+            let side = Side { limit: Limit::MaxDeflection, is_upper: true };
+            self.rows.bounds.push((self.rows.bound.len(), (side, i)));
             self.rows.add(scores.map(|column| (column, share)), limit / unit);
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
-        self.add_between(Limit::Conditioning, &Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
+        self.add_between((Limit::Conditioning, i), &Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
         if self.problem.constraints.min_base_distance > 0.0 {
             let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
             let terms = Self::terms(i, &local.state.base_distance.gradient);
-            self.add_between(Limit::BaseDistance, &terms, -spare, f64::INFINITY);
+            self.add_between((Limit::BaseDistance, i), &terms, -spare, f64::INFINITY);
         }
         // Where the placement stays, the part and what stands in the cell stay as far apart.
         let pose_stays = self.question.pose_stays;
         for room in local.rooms.iter().filter(|room| room.is_of_joints || !pose_stays) {
-            self.add_between(room.limit, &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
+            self.add_between((room.limit, i), &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
             let terms = Self::terms(i, &local.state.joints[j].gradient);
-            self.add_between(Limit::Joint(j as u8 + 1), &terms, joint.min - q, joint.max - q);
+            self.add_between((Limit::Joint(j as u8 + 1), i), &terms, joint.min - q, joint.max - q);
         }
     }
 
@@ -202,8 +203,8 @@ impl Build<'_> {
             let off = allowed.off_middle(plan.betas[place] - plan.betas[place - 1]);
             let row = [(BETA + i, 1.0), (BETA + i - 1, -1.0)];
             let [lower, upper] = self.problem.beta_step_ends(i, &allowed);
-            self.add_between(upper, &row, f64::NEG_INFINITY, allowed.half - off);
-            self.add_between(lower, &row, -allowed.half - off, f64::INFINITY);
+            self.add_between((upper, i), &row, f64::NEG_INFINITY, allowed.half - off);
+            self.add_between((lower, i), &row, -allowed.half - off, f64::INFINITY);
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
             for j in 0..6 {
@@ -211,7 +212,7 @@ impl Build<'_> {
                 let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
                 row.extend([(BETA + i, here[4]), (BETA + i - 1, -there[4])]);
                 let step = at.joints[j] - before.joints[j];
-                self.add_between(Limit::JointStep(j as u8 + 1), &row, -limits[j] - step, limits[j] - step);
+                self.add_between((Limit::JointStep(j as u8 + 1), i), &row, -limits[j] - step, limits[j] - step);
             }
         }
     }
@@ -222,7 +223,7 @@ impl Build<'_> {
         for (k, bounds) in pose_bounds(self.problem, &self.solution.placement).into_iter().enumerate() {
             for (is_upper, sign, room) in [(true, 1.0, bounds.max), (false, -1.0, -bounds.min)] {
                 if room < trust {
-                    self.rows.bounds.push((self.rows.bound.len(), Side { limit: Limit::ALL_WALLS[k], is_upper }));
+                    self.rows.bounds.push((self.rows.bound.len(), (Side { limit: Limit::ALL_WALLS[k], is_upper }, 0)));
                 }
                 self.rows.add([(k, sign)], room.min(trust));
             }
@@ -315,7 +316,7 @@ impl Build<'_> {
             betas: found.x[BETA..BETA + n].to_vec(),
             promised: ((1.0 - value) * unit).max(0.0),
             pose_gradient,
-            multipliers: bounds.into_iter().map(|(row, side)| (side, found.z[row] * unit)).collect(),
+            multipliers: bounds.into_iter().map(|(row, (side, point))| (side, point, found.z[row] * unit)).collect(),
         })
     }
 }

@@ -17,8 +17,8 @@ use stead_placement::criterion::{Criterion, Direction};
 use stead_placement::limit::ActiveBound;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
-    CANCELLATION, Case, Cycle, ForceSensitivity, LookupSummary, Outcome, PathLevels, Plan, PlanPoint, Refinement,
-    SetBasin, SetOutcome, SubsetAccuracy,
+    CANCELLATION, Case, Cycle, ForceSensitivity, LookupSummary, Outcome, PathLevels, PlanPoint, Refinement, SetBasin,
+    SetOutcome, SubsetAccuracy,
 };
 use stead_placement::postures::PostureRules;
 use stead_placement::problem::{Problem, Redundancy};
@@ -154,7 +154,7 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "p95_mm": number(Unit::DEFLECTION_MM, case.plan.percentiles[1]),
         "deflection_mm": deflection_mm(&case.plan.deflection),
         "postures": case.plan.postures,
-        "mean_by_stiffness": mean_by_stiffness(&case.plan),
+        "objective_by_stiffness": objective_by_stiffness(case),
         "active_bounds": case.active_bounds.as_ref().map(|bounds| bounds.iter().map(active_bound).collect::<Vec<_>>()),
         "feed": cut_feed(&case.cycle.feed),
         "cutting_s": number(Unit::TIME_S, case.cycle.cutting),
@@ -173,13 +173,14 @@ fn case(case: &Case, with_plan: bool) -> Value {
     value
 }
 
-/// What one per cent more stiffness of each joint does to the mean: mm, and per cent of the mean where that is not nothing.
-fn mean_by_stiffness(plan: &Plan) -> Value {
+/// What one per cent more stiffness of each joint does to the objective: mm, and per cent of it where that is not nothing.
+fn objective_by_stiffness(case: &Case) -> Value {
+    let objective = case.plan.objective;
     let entry = |(slope, joint): (&f64, usize)| {
-        let share = if plan.mean > CANCELLATION { json!(Unit::PLAIN.number(slope / plan.mean)) } else { Value::Null };
+        let share = if objective > CANCELLATION { json!(Unit::PLAIN.number(slope / objective)) } else { Value::Null };
         json!({ "joint": joint, "mm_per_percent": number(Unit::DEFLECTION_MM, slope / 100.0), "percent_per_percent": share })
     };
-    plan.mean_by_stiffness.iter().zip(1..).map(entry).collect()
+    case.objective_by_stiffness.map_or(Value::Null, |slopes| slopes.iter().zip(1..).map(entry).collect())
 }
 
 fn active_bound(bound: &ActiveBound) -> Value {

@@ -34,7 +34,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     for case in outcome.cases.optima() {
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
-    line(&mut text, &stiffest(&outcome.cases.best.plan));
+    stiffest(&outcome.cases.best).iter().for_each(|row| line(&mut text, row));
     least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
     highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
     if let [_, ..] = &outcome.sets[..] {
@@ -115,14 +115,14 @@ fn held_by(case: &Case) -> Vec<String> {
 }
 
 /// The joint whose stiffness matters most to the best placement.
-fn stiffest(plan: &Plan) -> String {
-    let largest = plan.mean_by_stiffness.iter().zip(1..).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-    let (slope, joint): (f64, usize) = largest.map_or((0.0, 1), |(slope, joint)| (*slope, joint));
-    let share = if plan.mean > CANCELLATION { slope / plan.mean } else { 0.0 };
-    format!(
-        "joint {joint} matters most to the best placement: 1 % more stiffness changes its mean by {} % (same plan)",
+fn stiffest(case: &Case) -> Option<String> {
+    let slopes = case.objective_by_stiffness?;
+    let (slope, joint) = slopes.into_iter().zip(1..).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
+    let share = if case.plan.objective > CANCELLATION { slope / case.plan.objective } else { 0.0 };
+    Some(format!(
+        "joint {joint} matters most to the best placement: 1 % more stiffness changes what is minimised by {} %",
         figures(share)
-    )
+    ))
 }
 
 /// The least room of a plan between two shapes, where there are shapes.

@@ -189,7 +189,7 @@ fn name_of(Side { limit, is_upper }: Side) -> String {
         Limit::JointStep(joint) => format!("joint_{joint}_step"),
         Limit::Conditioning => "inverse_condition".to_owned(),
         Limit::BetaRate => "beta_rate".to_owned(),
-        Limit::SpindleTurn => "spindle_turn".to_owned(),
+        Limit::SpindleTurn | Limit::SpindleSpeed => "spindle_turn".to_owned(),
         Limit::MaxDeflection => "deflection".to_owned(),
         Limit::BaseDistance => "base_distance".to_owned(),
         Limit::Clearance(_) => "clearance".to_owned(),

@@ -60,3 +60,50 @@ fn estimates_of_few_standard_deviations_are_warned_of_by_name() {
         assert_eq!(weak.iter().any(|message| message.starts_with(&start)), is_weak, "{start}: {weak:?}");
     }
 }
+
+/// The kinds of warnings, and the whole text, of a sheet read with a load point that is stated wrongly by so much.
+fn with_load_point_off(off: Vector3<f64>, noise: Option<f64>) -> (Vec<&'static str>, String) {
+    let clean = standard(1, NOISE, 3);
+    let identified = identify(&Problem { load_point: clean.load_point + off, noise, ..clean }).unwrap();
+    (
+        identified.warnings.iter().map(|warning| warning.kind).collect(),
+        identified.warnings.iter().map(|warning| warning.message.clone()).collect::<Vec<_>>().join("\n"),
+    )
+}
+
+#[test]
+fn a_load_point_that_the_readings_contradict_is_named_with_the_place_that_they_tell() {
+    for (axis, noise) in [(0, None), (1, None), (2, None), (2, Some(NOISE))] {
+        let (found, text) = with_load_point_off(Vector3::ith(axis, 0.1), noise);
+        assert!(found.contains(&"load-point"), "{axis}: {text}");
+        let place = text.split("agree best with a load at [").nth(1).and_then(|rest| rest.split(']').next()).unwrap();
+        let place: Vec<f64> = place.split(", ").map(|value| value.parse().unwrap()).collect();
+        for (found, truth) in place.iter().zip(cell(3).load_point.iter()) {
+            assert!((found - truth * 1e3).abs() < 5.0, "{axis}: {text}");
+        }
+    }
+    let (_, text) = with_load_point_off(Vector3::new(0.0, 0.0, 0.1), None);
+    assert!(text.contains("the compliance k_5 is 3.4"), "{text}");
+}
+
+#[test]
+fn residuals_larger_than_the_unloaded_readings_scatter_are_warned_of() {
+    let (found, text) = with_load_point_off(Vector3::new(0.0, 0.0, 0.1), None);
+    assert!(found.contains(&"residual-misfit"), "{text}");
+    // Where the wrench itself is not what the arm bears, no load point explains the readings.
+    let mut problem = standard(1, NOISE, 3);
+    let mut random = ChaCha8Rng::seed_from_u64(9);
+    for configuration in &mut problem.sheet.configurations {
+        configuration.force += direction(&mut random) * 150.0;
+    }
+    assert!(kinds(&problem).contains(&"residual-misfit"));
+}
+
+#[test]
+fn sound_sheets_are_hardly_ever_suspected() {
+    let suspected = (0..300_u64).into_par_iter().filter(|seed| {
+        let problem = Problem { start: Some(cell(3).tracker_from_base.rotation), ..standard(*seed, NOISE, 3) };
+        kinds(&problem).iter().any(|kind| ["load-point", "residual-misfit"].contains(kind))
+    });
+    assert!(suspected.count() <= 3);
+}

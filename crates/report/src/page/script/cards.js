@@ -136,16 +136,16 @@ function openRegion(name) {
   ];
 }
 
-/** How the mean answers to the stiffness of each joint, and what force errors would do. */
+/** How the objective answers to the stiffness of each joint, and what force errors would do. */
 function sensitivityCard() {
-  const rows = CASES.filter((of) => of.entry.mean_by_stiffness?.length).map((of) => [
+  const rows = CASES.filter((of) => of.entry.objective_by_stiffness?.length).map((of) => [
     SHORT_NAMES[of.number - 1],
-    ...of.entry.mean_by_stiffness.map((/** @type {any} */ joint) => fixed(joint.percent_per_percent, 3)),
+    ...of.entry.objective_by_stiffness.map((/** @type {any} */ joint) => fixed(joint.percent_per_percent, 3)),
   ]);
   const force = RAW.document.sensitivity;
   if (!rows.length && !force) return null;
   const parts = [];
-  if (rows.length) parts.push(smallTable(['% of mean per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
+  if (rows.length) parts.push(smallTable(['% of the objective per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
   if (force) {
     const share_ = fixed(force.force_uncertainty * 100, 0);
     parts.push(
