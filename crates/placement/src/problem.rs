@@ -217,6 +217,12 @@ impl Problem {
         Cow::Owned(Self { postures: PostureRules { tie: 0.0, ..self.postures }, ..self.clone() })
     }
 
+    /// The arm with its own joint limits, without the margin that plans keep from them.
+    pub fn robot_to_its_limits(&self) -> Robot {
+        // An arm that could be narrowed can be widened again.
+        self.robot.with_joint_margin(-self.constraints.joint_margin).unwrap_or_else(|_| self.robot.clone())
+    }
+
     /// What looks like a wrong unit or sign though it is possible, in sentences.
     pub fn notes(&self) -> Vec<String> {
         let parts = [
