@@ -23,6 +23,7 @@ use stead_numerics::monitor::{Monitor, Progress};
 
 mod axes;
 mod basins;
+mod calmer;
 mod infeasible;
 mod long_path;
 mod long_refinement;
@@ -108,7 +109,7 @@ fn place_as_set_up(
     Ok(Outcome {
         sets: sets.outcomes(&best_case),
         set_basins: sets.basins,
-        notes: notes::of(problem, &best_case.plan, &best_case.cycle.feed),
+        notes: notes::of(problem, &best_case.placement, (&best_case.plan, &best_case.cycle.feed), monitor),
         sensitivity,
         cases: Cases { best: best_case, best_worst_plan, worst: worst_case, worst_worst_plan },
         tried_setups: Vec::new(),

@@ -137,6 +137,29 @@ pub struct Constraints {
     pub joint_margin: f64,
 }
 
+/// Where the free angle beta may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BetaPlan {
+    /// From point to point, within its limits.
+    #[default]
+    Free,
+    /// From segment to segment alone.
+    ConstantPerSegment,
+    /// Nowhere: one beta for the whole path.
+    Constant,
+}
+
+impl BetaPlan {
+    /// As files state it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::ConstantPerSegment => "constant_per_segment",
+            Self::Constant => "constant",
+        }
+    }
+}
+
 /// How the free angle beta about the tool axis is planned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Redundancy {
@@ -150,6 +173,8 @@ pub struct Redundancy {
     pub max_spindle_turn: Option<f64>,
     /// Largest angle between the tool frames at neighbouring points in time, at the feed, where one is set. rad/s
     pub max_spindle_speed: Option<f64>,
+    /// Where beta may change; what is allowed of its changes must be within the limits above all the same.
+    pub beta: BetaPlan,
 }
 
 impl Redundancy {
