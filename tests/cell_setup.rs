@@ -145,6 +145,52 @@ fn an_orientation_is_named_where_there_are_several() {
 }
 
 #[test]
+fn a_table_turns_along_the_path_beside_a_limit_on_the_turn_of_the_spindle() {
+    let bench = bench();
+    let table = TABLE.replace("'indexed'", "'continuous'");
+    bench.replace(RUN, "[constraints]", &format!("{table}[constraints]"));
+    for (from, to) in [
+        ("x_mm = [-300.0, 300.0]", "x_mm = [0.0, 0.0]"),
+        ("y_mm = [-2240.0, -1640.0]", "y_mm = [-1800.0, -1800.0]"),
+        ("z_mm = [-602.0, -214.0]", "z_mm = [-500.0, -500.0]"),
+        ("max_beta_rate_deg_per_mm = 0.9", "max_spindle_turn_deg_per_mm = 0.5"),
+    ] {
+        bench.replace(RUN, from, to);
+    }
+    let mean = number(&place(&bench)["cases"][0]["mean_mm"]);
+    let plan = bench.read("r/best.csv");
+    let of = |name: &str| columns(&plan, name).into_iter().map(number_of).collect::<Vec<f64>>();
+    let (positions, betas, segments) = (of("e1_deg"), of("beta_deg"), of("segment"));
+    // Five lines of one direction each with the tool upright: the spindle turns with the table and by beta.
+    let mut moved = 0.0_f64;
+    for i in (1..105).filter(|i| segments[*i] == segments[i - 1]) {
+        let table = positions[i] - positions[i - 1];
+        let turn = (table + betas[i] - betas[i - 1]).rem_euclid(360.0);
+        // Points are up to 10.4 mm apart.
+        assert!(turn.min(360.0 - turn) <= 0.5 * 10.4 + 3e-4, "{i}: {turn} {table}");
+        moved = moved.max(table.abs());
+    }
+    assert!(moved > 0.1, "{moved}");
+    // Better than a table that stands still for each segment.
+    bench.replace(RUN, "'continuous'", "'indexed'");
+    assert!(mean < number(&place(&bench)["cases"][0]["mean_mm"]));
+    // A table that tilts is refused beside such a limit: how the spindle turns would depend on the yaw of the part.
+    bench.replace(RUN, "'indexed'", "'continuous'");
+    bench.replace(RUN, "axis = [0, 0, 1]", "axis = [0, 1, 0]");
+    let refused = bench.stead(&["place", RUN, "--out", "never"]);
+    assert_eq!(refused.code, Some(2));
+    refused.assert_says(&["external_axis[1].use: turns the workpiece about another direction than the vertical"]);
+}
+
+fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn number_of(text: &str) -> f64 {
+    text.parse().unwrap()
+}
+
+#[test]
 fn bad_input_says_where_and_what() {
     let bench = bench();
     let good = bench.read(RUN);

@@ -130,6 +130,25 @@ fn a_corrected_path_is_followed() {
 }
 
 #[test]
+fn a_correction_may_use_up_the_margin_that_the_plan_keeps_from_joint_limits() {
+    // Joint 1 of the plan goes up to 104.2999 deg, and corrected to 104.337 deg, at point 61.
+    let bench = bench();
+    bench.replace(ROBOT, "max_deg = 185.0", "max_deg = 104.4");
+    bench.replace(RUN, "min_inverse_condition = 0.2", "min_inverse_condition = 0.2\njoint_margin_deg = 0.1");
+    bench.copy("configs/compensate-caro-2013.toml", "configs/compensate.toml");
+    bench.replace("configs/compensate.toml", "caro-2013.toml", "run.toml");
+    bench.replace("configs/compensate.toml", "../results/caro-2013/best.csv", "../plan/best.csv");
+    let ended = bench.stead(&["compensate", "configs/compensate.toml", "--all-or-nothing", "--out", "comp", "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(ended.json()["not_corrected"], serde_json::json!([]));
+    let corrected = ["--corrected", "comp/corrected-path.csv"];
+    let ended = export(&bench, &corrected);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let sound = check(&bench, &corrected);
+    assert_eq!(sound.code, Some(0), "{}{}", sound.stdout, sound.stderr);
+}
+
+#[test]
 fn what_is_refused_leaves_nothing_behind() {
     let bench = bench();
     let row = bench.read(PLAN).lines().nth(8).unwrap().to_owned();

@@ -67,6 +67,8 @@ units! {
     NewtonPerMillimetre NPerMm "N/mm" up to 1e9, = |value| value * 1e3;
     /// A pressure. MPa
     Megapascal Mpa "MPa" up to 1e7, = |value| value * 1e6;
+    /// A length per angle. mm/rad
+    MillimetrePerRadian MmPerRad "mm/rad" up to 1e6, = |value| value / 1e3;
     /// A rotational stiffness. MN m/rad
     MeganewtonMetrePerRadian MnmPerRad "MN m/rad" up to 1e6, = |value| value * 1e6;
     /// A rotational compliance. urad/(N m)

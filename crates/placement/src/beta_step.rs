@@ -8,14 +8,18 @@
 //! cos(theta / 2) = cos(tau / 2) cos((d - m) / 2)      m = atan2(P_12 - P_21, P_11 + P_22)
 //! ```
 //!
-//! where tau is the angle between the two tool axes. So a limit on theta is an interval of d about m, the change with which the
+//! Where a turntable turns the part along the path, R_2 is turned with it: the frames are those in the cell.
+//!
+//! Here tau is the angle between the two tool axes. So a limit on theta is an interval of d about m, the change with which the
 //! spindle turns no more than its axis has to: for a tool with a constant axis, the turn of the feed in the opposite sense.
 
 use crate::constraints::{Measured, STEP_ROUNDING};
 use crate::limit::Limit;
-use crate::problem::{Problem, Redundancy};
+use crate::problem::{BetaPlan, Problem, Redundancy};
+use crate::setup::AxisPositions;
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis, carried};
 use stead_model::robot::angles::wrap;
 
 /// The largest turn of the spindle between neighbouring points of the whole path, where its axis turns by less: with a larger one a
@@ -23,6 +27,9 @@ use stead_model::robot::angles::wrap;
 const MAX_TURN: f64 = PI / 2.0;
 /// How far the spindle may turn beyond what its axis has to. rad
 const BEYOND_AXIS: f64 = PI / 6.0;
+
+/// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.
+const VERTICAL: f64 = 1e-9;
 
 /// The changes of beta that are allowed from one path point to the next, modulo a turn: those within `half` of `middle`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,8 +91,39 @@ impl Turn {
 
 impl Problem {
     fn turn(&self, point: usize) -> Turn {
-        let points = self.task.points();
-        Turn::between(&points[point - 1].workpiece_from_point(), &points[point].workpiece_from_point())
+        self.turn_with(point, self.part_turn(point).as_ref())
+    }
+
+    /// The same where the part itself turns in the cell by a rotation, in the frame that is placed.
+    fn turn_with(&self, point: usize, part: Option<&Matrix3<f64>>) -> Turn {
+        let [from, to] = [point - 1, point].map(|point| self.task.points()[point].workpiece_from_point());
+        Turn::between(&from, &part.map_or(to, |part| part * to))
+    }
+
+    /// How external axes turn the part in the cell on the way to a path point from the one before, in the frame that is placed; none where they
+    /// do not. They turn it about the vertical, as the placement does ([`Self::turns_part_otherwise`]).
+    fn part_turn(&self, point: usize) -> Option<Matrix3<f64>> {
+        let AxisPositions::PerPoint(all) = &self.setup.positions else { return None };
+        self.part_turn_between(all.get(point - 1)?, all.get(point)?)
+    }
+
+    /// The same from some positions of the axes to others (m or rad).
+    pub(crate) fn part_turn_between(&self, from: &[f64], to: &[f64]) -> Option<Matrix3<f64>> {
+        let turns = |axis: &ExternalAxis| axis.kind == AxisKind::Turntable && axis.carries == Carried::Workpiece;
+        if from == to || !self.external_axes.iter().any(turns) {
+            return None;
+        }
+        let [from, to] = [from, to].map(|at| carried(&self.external_axes, at, Carried::Workpiece).rotation);
+        Some(from.tr_mul(&to))
+    }
+
+    /// Whether an external axis that moves along the path can turn the part about another direction than the vertical, so that how the spindle
+    /// turns in the cell would depend on the yaw of the placement.
+    pub fn turns_part_otherwise(&self) -> bool {
+        let of_part = self.external_axes.iter().filter(|axis| axis.carries == Carried::Workpiece);
+        let turntables = of_part.filter(|axis| axis.kind == AxisKind::Turntable);
+        let moving = turntables.skip_while(|axis| axis.axis_use != AxisUse::Continuous);
+        moving.into_iter().any(|axis| libm::hypot(axis.direction.x, axis.direction.y) > VERTICAL)
     }
 
     /// The largest angle between the tool frames at path points `point - 1` and `point`, where one is set; not more than a quarter turn, or
@@ -95,8 +133,12 @@ impl Problem {
     }
 
     fn turn_limit(&self, point: usize, limits: &Redundancy) -> Option<f64> {
+        self.turn_limit_with(point, limits, self.part_turn(point).as_ref())
+    }
+
+    fn turn_limit_with(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> Option<f64> {
         let is_set = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
-        let most = || MAX_TURN.max(self.turn(point).tilt + BEYOND_AXIS);
+        let most = || MAX_TURN.max(self.turn_with(point, part).tilt + BEYOND_AXIS);
         if self.task.path().turns_in_place(point) {
             return is_set.then(most);
         }
@@ -131,12 +173,28 @@ impl Problem {
         self.beta_step_within(point, &self.redundancy)
     }
 
-    /// The same with the limits of another planning.
+    /// The same with the limits of another planning. Where beta stays, it may change by nothing, if that is within its limits.
     pub(crate) fn beta_step_within(&self, point: usize, limits: &Redundancy) -> BetaStep {
+        self.beta_step_with(point, limits, self.part_turn(point).as_ref())
+    }
+
+    /// The same where the part itself turns in the cell by a rotation, in the frame that is placed.
+    pub(crate) fn beta_step_with(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> BetaStep {
+        let free = self.free_beta_step(point, limits, part);
+        match limits.beta {
+            BetaPlan::Free => free,
+            BetaPlan::ConstantPerSegment | BetaPlan::Constant => {
+                BetaStep { middle: 0.0, half: if free.half >= 0.0 && free.allows(0.0) { 0.0 } else { -1.0 } }
+            }
+        }
+    }
+
+    /// The same where beta may change.
+    fn free_beta_step(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> BetaStep {
         let rate = limits.max_beta_rate.map_or(f64::INFINITY, |rate| rate * self.step_length(point));
         let by_rate = BetaStep { middle: 0.0, half: rate };
-        let Some(limit) = self.turn_limit(point, limits) else { return by_rate };
-        let turn = self.turn(point);
+        let Some(limit) = self.turn_limit_with(point, limits, part) else { return by_rate };
+        let turn = self.turn_with(point, part);
         let half = turn.half(limit);
         if half >= PI {
             return by_rate;

@@ -107,6 +107,11 @@ impl Aggregate {
         }
     }
 
+    /// Whether joint travel can be weighed beside it: plans are made of steps that add up.
+    pub fn weighs_joint_travel(self) -> bool {
+        self == Self::Mean
+    }
+
     /// What a point of this weight and score (m) adds to the cost of a plan.
     pub fn point_cost(self, weight: f64, score: f64) -> f64 {
         match self {
@@ -181,6 +186,9 @@ pub struct Criterion {
     /// adds `confidence sigma_i` to the score, beside what force errors add. Zero leaves it out, and so does a robot whose
     /// uncertainty is not known.
     pub confidence: f64,
+    /// What a radian of joint travel in every [`STRETCH`](super::joint_travel::STRETCH) of the path adds to the objective, beside the mean of
+    /// the scores; zero where the largest score or the root of the mean of squares is minimised, which planning cannot add it to. m/rad
+    pub joint_travel_weight: f64,
     /// The stiffness sets that a score covers; none where it is that of the problem's robot.
     pub stiffness: Option<StiffnessSets>,
 }
@@ -201,6 +209,7 @@ impl Default for Criterion {
             segment_weights: Vec::new(),
             force_uncertainty: 0.0,
             confidence: 0.0,
+            joint_travel_weight: 0.0,
             stiffness: None,
         }
     }

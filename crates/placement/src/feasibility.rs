@@ -2,7 +2,7 @@
 
 use super::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
 use super::evaluate::reference::{State, state};
-use super::problem::{Placement, Problem};
+use super::problem::{BetaPlan, Placement, Problem};
 use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
 use std::fmt;
@@ -171,6 +171,8 @@ pub struct Finding {
     /// Where no one posture gets through: sets of limits between neighbouring points of which each, left out, lets one past the
     /// last point. None where the limits and turns of the joints stop every posture.
     pub stopped_by: Vec<Vec<ConstraintKind>>,
+    /// Where beta may change.
+    pub beta: BetaPlan,
 }
 
 /// The state of a blocked point that comes nearest to being allowed.
@@ -196,6 +198,9 @@ impl fmt::Display for Finding {
                     "point {point}: every point has allowed states, but no posture gets here from the segment's start"
                 )?;
                 match &self.stopped_by[..] {
+                    [] if self.beta != BetaPlan::Free => {
+                        write!(f, " with one beta all along (redundancy.beta = \"{}\")", self.beta.name())
+                    }
                     [] => write!(f, ", whatever the steps between points: limits and turns of the joints stop it"),
                     sets => {
                         let sets = sets.iter().map(|kinds| format!("without {}", describe(kinds).join(" and ")));
@@ -268,7 +273,13 @@ pub fn diagnose(
         } else {
             findings.push((
                 severity,
-                Finding { segment, points: (point, point), nearest: Some(nearest), stopped_by: Vec::new() },
+                Finding {
+                    segment,
+                    points: (point, point),
+                    nearest: Some(nearest),
+                    stopped_by: Vec::new(),
+                    beta: problem.redundancy.beta,
+                },
             ));
         }
     }
@@ -287,6 +298,7 @@ pub fn diagnose(
                         .as_ref()
                         .map(|o| o.at(placement, *segment, *point, only))
                         .unwrap_or_default(),
+                    beta: problem.redundancy.beta,
                 }
             })
             .collect::<Vec<_>>(),

@@ -9,7 +9,7 @@
 //!   planner.
 //! - [`candidate`]: a placement with its objective value; [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`sensitivity`]: how a result answers to the stiffness of the joints and to errors of the force.
-//! - [`feed`]: the feed that the arm holds; [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not
+//! - [`joint_travel`]: how much the joints turn within the cut; [`feed`]: the feed that the arm holds; [`transfer`]: times of the moves between segments; [`feasibility`]: why something is not
 //!   allowed.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`sense`]: minimise or maximise.
 //!
@@ -31,6 +31,7 @@ pub mod evaluate;
 pub mod evaluator;
 pub mod feasibility;
 pub mod feed;
+pub mod joint_travel;
 pub mod limit;
 pub mod lookup;
 pub mod objective;
@@ -94,6 +95,7 @@ pub mod testing {
                 max_beta_rate: Some(0.9_f64.to_radians() * 1e3),
                 max_spindle_turn: None,
                 max_spindle_speed: None,
+                beta: BetaPlan::Free,
             },
             postures: PostureRules::NONE,
             scene: None,

@@ -2,6 +2,7 @@
 
 use super::collision::PlanClearance;
 use super::feasibility::{DeflectionMap, deflection_map};
+use super::joint_travel::JointTravel;
 use super::limit::ActiveBound;
 use super::lookup::{Accuracy, Shape};
 use super::problem::{Placement, Problem};
@@ -94,12 +95,15 @@ pub struct Plan {
     pub axes: Vec<AxisPath>,
     /// Posture of each segment.
     pub postures: Vec<Posture>,
-    /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)); by default the mean. m
+    /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)), with what joint travel counts in it; by
+    /// default the mean. m
     pub objective: f64,
     /// Mean of the scores: f_MQC (Caro 2013, eq. 13). m
     pub mean: f64,
     /// Largest score. m
     pub max: f64,
+    /// How much the joints turn within the cut.
+    pub travel: JointTravel,
     /// The scores that half of the points, and 95 of 100, do not exceed. m
     pub percentiles: [f64; 2],
     /// The deflection itself.

@@ -23,6 +23,7 @@ use stead_numerics::monitor::{Monitor, Progress};
 
 mod axes;
 mod basins;
+mod calmer;
 mod infeasible;
 mod long_path;
 mod long_refinement;
@@ -106,7 +107,8 @@ fn place_as_set_up(
     };
     let named = cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
     let of_moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>());
-    let mut notes = notes::of(problem, &cases.best.plan, &cases.best.cycle.feed);
+    let stated = (&cases.best.plan, &cases.best.cycle.feed);
+    let mut notes = notes::of(problem, &cases.best.placement, stated, monitor);
     notes.extend((!settings.worst).then(notes::best_alone));
     Ok(Outcome {
         sets: sets.outcomes(&cases.best),

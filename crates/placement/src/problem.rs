@@ -137,6 +137,29 @@ pub struct Constraints {
     pub joint_margin: f64,
 }
 
+/// Where the free angle beta may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BetaPlan {
+    /// From point to point, within its limits.
+    #[default]
+    Free,
+    /// From segment to segment alone.
+    ConstantPerSegment,
+    /// Nowhere: one beta for the whole path.
+    Constant,
+}
+
+impl BetaPlan {
+    /// As files state it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::ConstantPerSegment => "constant_per_segment",
+            Self::Constant => "constant",
+        }
+    }
+}
+
 /// How the free angle beta about the tool axis is planned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Redundancy {
@@ -150,6 +173,8 @@ pub struct Redundancy {
     pub max_spindle_turn: Option<f64>,
     /// Largest angle between the tool frames at neighbouring points in time, at the feed, where one is set. rad/s
     pub max_spindle_speed: Option<f64>,
+    /// Where beta may change; what is allowed of its changes must be within the limits above all the same.
+    pub beta: BetaPlan,
 }
 
 impl Redundancy {
@@ -215,6 +240,12 @@ impl Problem {
             return Cow::Borrowed(self);
         }
         Cow::Owned(Self { postures: PostureRules { tie: 0.0, ..self.postures }, ..self.clone() })
+    }
+
+    /// The arm with its own joint limits, without the margin that plans keep from them.
+    pub fn robot_to_its_limits(&self) -> Robot {
+        // An arm that could be narrowed can be widened again.
+        self.robot.with_joint_margin(-self.constraints.joint_margin).unwrap_or_else(|_| self.robot.clone())
     }
 
     /// What looks like a wrong unit or sign though it is possible, in sentences.

@@ -135,10 +135,11 @@ pub fn mean_by(problem: &Problem, placement: &Placement, plan: &Plan) -> f64 {
 pub fn objective_with_force_errors(problem: &Problem, placement: &Placement, plan: &Plan, size: f64) -> f64 {
     let mut changed = problem.clone();
     changed.criterion.force_uncertainty = size;
-    problem.objective(plan.points.iter().map(|p| {
+    let scores = problem.objective(plan.points.iter().map(|p| {
         let score = state(&changed, p.point, placement, p.beta, p.posture).map_or(p.score, |state| state.score());
         problem.point_cost(p.point, score)
-    }))
+    }));
+    scores + problem.travel_weight() * plan.travel.total
 }
 
 #[cfg(test)]

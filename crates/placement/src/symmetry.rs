@@ -6,7 +6,7 @@
 //! ([`super::lookup`]) and the certificate ([`super::certify`]) rest on this.
 
 use super::criterion::{Aggregate, Criterion, Weights};
-use super::problem::{Placement, Problem};
+use super::problem::{BetaPlan, Placement, Problem};
 use nalgebra::Vector3;
 use stead_model::robot::{Compliance, angles::wrap};
 
@@ -63,6 +63,15 @@ pub enum Unsupported {
     /// Scores cover errors of the compliances.
     #[error("scores cover errors of the compliances (criterion.confidence)")]
     UncertainCompliances,
+    /// The objective has the travel of the joints in it.
+    #[error("the objective has the travel of the joints in it (criterion.joint_travel_weight_mm_per_rad)")]
+    JointTravel,
+    /// Beta stays along the path.
+    #[error("beta stays (redundancy.beta = \"{}\")", beta.name())]
+    ConstantBeta {
+        /// Where it may change.
+        beta: BetaPlan,
+    },
     /// Something else than the mean deflection normal to the wall is minimised.
     #[error("it covers the mean of the deflection normal to the wall alone, and not another {key}")]
     OtherCriterion {
@@ -153,7 +162,7 @@ pub(super) fn require_constant(problem: &Problem, joints: &[usize]) -> Result<()
 /// Requires that the mean of the deflection normal to the wall is minimised, whatever the weights of the segments.
 ///
 /// # Errors
-/// [`Unsupported::OtherCriterion`] where it is not.
+/// [`Unsupported::OtherCriterion`] where it is not, and [`Unsupported::JointTravel`] where joint travel counts too.
 pub(super) fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
     let Criterion { weights, aggregate, .. } = &problem.criterion;
     if *weights != Weights::WALL {
@@ -162,8 +171,21 @@ pub(super) fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
         Err(Unsupported::OtherCriterion { key: "criterion.robots" })
     } else if *aggregate != Aggregate::Mean {
         Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
+    } else if problem.criterion.joint_travel_weight != 0.0 {
+        Err(Unsupported::JointTravel)
     } else {
         Ok(())
+    }
+}
+
+/// Requires that beta may change along the path.
+///
+/// # Errors
+/// [`Unsupported::ConstantBeta`] where it may not.
+pub(super) fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
+    match problem.redundancy.beta {
+        BetaPlan::Free => Ok(()),
+        beta => Err(Unsupported::ConstantBeta { beta }),
     }
 }
 

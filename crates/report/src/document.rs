@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use stead_format::input::InputFile;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_placement::feed::{CutFeed, FeedLimit};
+use stead_placement::joint_travel::{JointTravel, Swing};
 use stead_placement::outcome::DeflectionFigures;
 use stead_placement::problem::Placement;
 
@@ -143,6 +144,20 @@ pub fn cut_feed(feed: &CutFeed) -> Value {
         "highest_mm_per_s": highest.map(|limit| speed(limit.feed)),
         "decided_by": decided_by,
         "segments_mm_per_s": feed.segments.iter().map(|limit| limit.map(|limit| speed(limit.feed))).collect::<Vec<_>>(),
+    })
+}
+
+/// How much the joints turn in the cut.
+pub fn joint_travel(travel: &JointTravel) -> Value {
+    let angle = |angle: f64| Unit::ANGLE_DEG.number(angle);
+    let swing = travel.swing.map(|Swing { joint, angle: turned, length, points }| {
+        json!({ "joint": joint, "turn_deg": angle(turned), "length_mm": Unit::PLACE_MM.number(length), "points": points })
+    });
+    json!({
+        "total_deg": angle(travel.total),
+        "length_mm": Unit::PLACE_MM.number(travel.length),
+        "max_step_deg": angle(travel.largest_step),
+        "largest_turn": swing,
     })
 }
 

@@ -11,6 +11,7 @@ use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
 use stead_placement::evaluate::reference::{State, state};
 use stead_placement::feasibility::{DeflectionMap, MapCell, MapReason};
 use stead_placement::feed::{CutFeed, FeedLimit, FeedLimitKind};
+use stead_placement::joint_travel::JointTravel;
 use stead_placement::outcome::*;
 use stead_placement::problem::{Placement, Problem};
 use stead_placement::sense::Sense;
@@ -164,6 +165,7 @@ impl Grid {
             objective: mean,
             mean,
             max,
+            travel: JointTravel::of(problem().task.path(), &points),
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,

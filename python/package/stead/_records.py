@@ -142,6 +142,25 @@ class CutFeed(Record):
     _made = {"decided_by": FeedLimit}
 
 
+class JointTurn(Record):
+    """The largest turn of a joint (from 1) along 25 mm of the cut or less."""
+
+    joint: int
+    turn_deg: float
+    length_mm: float
+    points: list[int]
+
+
+class JointTravel(Record):
+    """How much the joints turn in the cut: all together, and at the most from one point to the next."""
+
+    total_deg: float
+    length_mm: float
+    max_step_deg: float
+    largest_turn: JointTurn | None
+    _made = {"largest_turn": JointTurn}
+
+
 class PlanFigures(Record):
     """What a plan of the spindle angle gives, in mm and s: what was minimised, mean and largest score, percentiles, times."""
 
@@ -153,11 +172,16 @@ class PlanFigures(Record):
     mean_std_mm: float | None
     deflection_mm: Deflections
     postures: list[int]
+    joint_travel: JointTravel
     feed: CutFeed
     cutting_s: float
     cycle_s: float | None
     unfollowed_moves: list[Any]
-    _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {"deflection_mm": Deflections, "feed": CutFeed}
+    _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
+        "deflection_mm": Deflections,
+        "joint_travel": JointTravel,
+        "feed": CutFeed,
+    }
 
     def __init__(self, entries: Mapping[str, Any], plan: Callable[[], Table] | None = None) -> None:
         super().__init__(entries)

@@ -55,6 +55,8 @@ pub const FACTORS: &[Factor] = &[
     factor("force errors", &["0", "0.1"]),
     factor("segment weights", &["none", "one"]),
     factor("turns", &["beta", "per mm", "per s", "all"]),
+    factor("beta", &["free", "constant_per_segment", "constant"]),
+    factor("travel weight", &["0", "0.05"]),
     factor("postures", &["free", "some", "never", "weighed moves"]),
     factor("tie", &["0", "default", "2"]),
     factor("bounds", &["none", "deflection", "base distance"]),
@@ -72,18 +74,11 @@ pub type Choice = Vec<usize>;
 
 /// Pairs of values that no run can have, and why.
 const IMPOSSIBLE: &[([&str; 4], &str)] = &[
-    (
-        ["axes", "table continuous", "turns", "per mm"],
-        "refused: a turning part beside a limit on the turn of the spindle",
-    ),
-    (
-        ["axes", "table continuous", "turns", "per s"],
-        "refused: a turning part beside a limit on the turn of the spindle",
-    ),
-    (["axes", "table continuous", "turns", "all"], "refused: a turning part beside a limit on the turn of the spindle"),
     (["speeds", "none", "postures", "weighed moves"], "refused: moves are weighed by their time"),
     (["postures", "weighed moves", "aggregate", "rms"], "refused: moves are weighed beside a mean"),
     (["postures", "weighed moves", "aggregate", "max"], "refused: moves are weighed beside a mean"),
+    (["travel weight", "0.05", "aggregate", "rms"], "refused: joint travel is weighed beside a mean"),
+    (["travel weight", "0.05", "aggregate", "max"], "refused: joint travel is weighed beside a mean"),
     (["load", "conventional", "tool", "none"], "the cutter gives the force"),
     (["load", "climb", "tool", "none"], "the cutter gives the force"),
     (["search", "genetic", "postures", "never"], "refused: it searches for a posture of each segment"),

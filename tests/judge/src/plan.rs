@@ -7,7 +7,7 @@ pub(crate) use distances::SHAPE_SLACK;
 use crate::cell::{Cell, Placement, Stand};
 use crate::path::Point;
 use crate::score::{Criterion, Loaded};
-use crate::values::{Answer, angle_between, section};
+use crate::values::{Answer, angle_between, section, text};
 use crate::verdict::Verdict;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Vector3};
 use serde_json::Value;
@@ -163,6 +163,7 @@ impl Plan<'_> {
             self.clear(verdict, i, &stand);
         }
         self.axes(verdict);
+        self.stays(verdict);
         self.cell_bounds(verdict);
         self.figures(verdict, case, &criterion, (&scores, &slacks));
         let told: Vec<u64> = case
@@ -325,10 +326,11 @@ impl Plan<'_> {
                 );
             }
         }
-        let turn = angle_between(&self.wanted(i - 1), &self.wanted(i));
+        let parts = [i - 1, i].map(|i| self.stand(i).part);
+        let turn = angle_between(&(parts[0] * self.wanted(i - 1)), &(parts[1] * self.wanted(i)));
         if self.is_in_place(i) {
             if of("max_spindle_turn_deg_per_mm").or(of("max_spindle_turn_deg_per_s")).is_some() {
-                let [from, to] = [i - 1, i].map(|i| self.point(i).axes.column(2).into_owned());
+                let [from, to] = [0, 1].map(|k| parts[k].rotation * self.point(i - 1 + k).axes.column(2));
                 let tilt = from.cross(&to).norm().atan2(from.dot(&to));
                 let limit = std::f64::consts::FRAC_PI_2.max(tilt + std::f64::consts::FRAC_PI_6);
                 verdict.within("turn in place (rad)", || self.at(i), turn, limit + 2.02 * HALF_ANGLE);
@@ -345,6 +347,16 @@ impl Plan<'_> {
         let by_time = of("max_spindle_turn_deg_per_s").map(|limit| (limit * time).to_radians());
         if let Some(limit) = by_length.into_iter().chain(by_time).reduce(f64::min) {
             verdict.within("turn of the spindle (rad)", || self.at(i), turn, limit + 2.02 * HALF_ANGLE);
+        }
+    }
+
+    /// Beta, where it may not change.
+    fn stays(&self, verdict: &mut Verdict) {
+        let beta = section(&self.cell.run, "redundancy").and_then(|table| text(table, "beta")).unwrap_or("free");
+        for i in (1..self.rows.len()).filter(|i| beta == "constant" || (beta != "free" && self.follows(*i))) {
+            let change = self.rows[i].beta - self.rows[i - 1].beta;
+            let change = change.sin().atan2(change.cos()).abs();
+            verdict.within("beta that stays (rad)", || self.at(i), change, 2.02 * HALF_ANGLE);
         }
     }
 
@@ -389,10 +401,22 @@ impl Plan<'_> {
     fn figures(&self, verdict: &mut Verdict, case: &Value, criterion: &Criterion, (scores, slacks): (&[f64], &[f64])) {
         let points = &self.cell.points;
         let mm = |key: &str| case.get(key).and_then(Value::as_f64).map(|mm| mm * 1e-3);
-        let objective = criterion.objective(points, scores);
+        // Joint travel, and the largest step of a joint.
+        let pairs = || self.rows.windows(2).filter(|pair| pair[0].segment == pair[1].segment);
+        let steps = || pairs().flat_map(|pair| (0..6).map(|j| (pair[1].joints[j] - pair[0].joints[j]).abs()));
+        let (travel, largest) = (steps().sum::<f64>(), steps().fold(0.0, f64::max));
+        let of_digits = 2.0 * HALF_ANGLE * steps().count() as f64;
+        let per_radian = criterion.per_radian(points);
+        let objective = criterion.objective(points, scores) + per_radian * travel;
+        for (key, found, slack) in [("total_deg", travel, of_digits), ("max_step_deg", largest, 2.0 * HALF_ANGLE)] {
+            let stated = case.pointer(&format!("/joint_travel/{key}")).and_then(Value::as_f64).unwrap_or(f64::NAN);
+            let place = || format!("{} {key}", self.name);
+            verdict.close("joint travel (rad)", place, stated.to_radians(), found, slack + 1.01 * HALF_ANGLE);
+        }
         // No aggregate changes by more than the largest change of a score, with a weight where the largest is taken.
         let heaviest = points.iter().map(|point| criterion.weight(point)).fold(1.0, f64::max);
         let slack = 0.6e-10
+            + per_radian * of_digits
             + slacks.iter().copied().fold(0.0, f64::max) * if criterion.aggregate == "max" { heaviest } else { 1.0 };
         let told = |key: &str| format!("{} {key}", self.name);
         verdict.close(

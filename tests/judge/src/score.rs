@@ -13,6 +13,8 @@ pub(crate) struct Criterion {
     pub aggregate: String,
     force_uncertainty: f64,
     confidence: f64,
+    /// What a radian of joint travel counts in every 10 mm of the cut. m/rad
+    travel_weight: f64,
     is_worst_of_sets: bool,
     /// Numbers and weights of segments.
     segments: Vec<(usize, f64)>,
@@ -53,6 +55,7 @@ impl Criterion {
             aggregate: word("aggregate").unwrap_or("mean").to_owned(),
             force_uncertainty: of("force_uncertainty"),
             confidence: of("confidence"),
+            travel_weight: of("joint_travel_weight_mm_per_rad") * 1e-3,
             is_worst_of_sets: word("over") == Some("worst"),
             segments,
         }
@@ -150,6 +153,15 @@ impl Criterion {
             "max" => weights.iter().zip(scores).map(|(w, s)| w * s).fold(0.0, f64::max),
             _ => sum(&|s| s) / total,
         }
+    }
+}
+
+impl Criterion {
+    /// What a radian of joint travel along these points adds to the objective. m/rad
+    pub(crate) fn per_radian(&self, points: &[Point]) -> f64 {
+        let pairs = points.windows(2).filter(|pair| pair[0].segment == pair[1].segment);
+        let length: f64 = pairs.map(|pair| (pair[1].place - pair[0].place).norm()).sum();
+        self.travel_weight / (length / 0.01).max(1.0)
     }
 }
 

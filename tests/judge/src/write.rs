@@ -350,6 +350,9 @@ impl Writer<'_> {
         };
         let _ =
             writeln!(text, "aggregate = \"{}\"\nforce_uncertainty = {}", self.of("aggregate"), self.of("force errors"));
+        if self.of("travel weight") != "0" {
+            let _ = writeln!(text, "joint_travel_weight_mm_per_rad = {}", self.of("travel weight"));
+        }
         if self.of("confidence") != "none" {
             let _ = writeln!(text, "confidence = {}", self.of("confidence"));
         }
@@ -369,6 +372,9 @@ impl Writer<'_> {
             if turns == word || turns == "all" {
                 let _ = writeln!(text, "{line}");
             }
+        }
+        if self.of("beta") != "free" {
+            let _ = writeln!(text, "beta = \"{}\"", self.of("beta"));
         }
         text.push_str("\n[postures]\n");
         match self.of("postures") {

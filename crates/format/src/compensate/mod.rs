@@ -72,7 +72,8 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
     };
     let has_reality = real.is_some();
     let notes = run.problem.notes().into_iter().chain(plan.notes).collect();
-    let robot = run.problem.robot;
+    // The margin is one of the plan: a correction may use it up.
+    let robot = run.problem.robot_to_its_limits();
     let reality = match real {
         None => robot.clone(),
         Some((source, input)) => {

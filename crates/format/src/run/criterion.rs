@@ -5,7 +5,7 @@ use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::robot::robot_from;
 use crate::scalars::{Whole, Word, words};
-use crate::units::{Number, ZeroToTen, ranges};
+use crate::units::{MmPerRad, Number, ZeroToTen, ranges};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
@@ -42,6 +42,9 @@ pub struct CriterionTable {
     /// How many standard deviations of the compliances are added to the deflection; 0 where left out. Above 0 the robot
     /// file needs a table `[covariance]`.
     pub confidence: Option<Number<ZeroToTen>>,
+    /// What a radian of joint travel, the sum over all joints of what they turn, counts in every 10 mm of the cut, beside the mean of the
+    /// scores; 0 where left out.
+    pub joint_travel_weight_mm_per_rad: Option<MmPerRad<ZeroToTen>>,
     /// Robot files of the same geometry, relative to the folder of this file: the sets of joint stiffness that a score covers.
     pub robots: Option<Vec<String>>,
     /// With `robots`, what is scored: the `mean` over the sets, or the `worst` of them at each point; with `regret` the mean, and
@@ -75,8 +78,8 @@ pub struct SegmentTable {
 
 impl CriterionTable {
     /// # Errors
-    /// [`InputError`] for stiffness sets of another geometry or without a word on what is scored, a direction beside weights, weights that are all zero, a surface that the task does not state, and a
-    /// confidence where nothing is known of the errors of the compliances.
+    /// [`InputError`] for stiffness sets of another geometry or without a word on what is scored, a direction beside weights, weights that are all zero, a surface that the task does not state, joint travel
+    /// weighed beside another figure than the mean, and a confidence where nothing is known of the errors of the compliances.
     pub(super) fn criterion(
         &self,
         segments: &[SegmentTable],
@@ -119,9 +122,16 @@ impl CriterionTable {
                 "0, or a robot file that says how well its compliances are known",
             ));
         }
+        let aggregate = self.aggregate.map_or(Aggregate::Mean, |word| word.0);
+        let joint_travel_weight = self.joint_travel_weight_mm_per_rad.map_or(0.0, Quantity::si);
+        if joint_travel_weight > 0.0 && !aggregate.weighs_joint_travel() {
+            let allowed = "0, or criterion.aggregate = \"mean\"";
+            return Err(at.key("joint_travel_weight_mm_per_rad").error("is for the mean of the scores alone", allowed));
+        }
         Ok(Criterion {
             weights,
-            aggregate: self.aggregate.map_or(Aggregate::Mean, |word| word.0),
+            aggregate,
+            joint_travel_weight,
             segment_weights: segment_weights(segments, task.segments().len(), &root.key("segment"))?,
             force_uncertainty,
             confidence,

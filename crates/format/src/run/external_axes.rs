@@ -129,8 +129,8 @@ pub(super) fn external_axes(tables: &[ExternalAxisTable], at: &Place<'_>) -> Res
 /// Refuses axes that move along the path where that cannot be planned.
 ///
 /// # Errors
-/// [`InputError`] for a second such axis, one without a speed, a path of too many points, a turntable beside a limit on the turn of the
-/// spindle.
+/// [`InputError`] for a second such axis, one without a speed, a path of too many points, a turntable whose axis is not vertical beside a
+/// limit on the turn of the spindle.
 pub(super) fn check_axes(problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
     let mut moving = problem.external_axes.iter().zip(1..).filter(|(axis, _)| axis.axis_use == AxisUse::Continuous);
     let Some((axis, number)) = moving.next() else { return Ok(()) };
@@ -150,9 +150,10 @@ pub(super) fn check_axes(problem: &Problem, at: &Place<'_>) -> Result<(), InputE
     }
     let redundancy = &problem.redundancy;
     let has_turn_limit = redundancy.max_spindle_turn.is_some() || redundancy.max_spindle_speed.is_some();
-    if axis.kind == AxisKind::Turntable && has_turn_limit {
-        let problem = "turns the workpiece along the path, beside a limit on the turn of the spindle in [redundancy]";
-        return Err(key.error(problem, "fixed or indexed, or max_beta_rate_deg_per_mm as the only limit on beta"));
+    if has_turn_limit && problem.turns_part_otherwise() {
+        let what = "turns the workpiece about another direction than the vertical along the path, beside a limit on the turn of the spindle \
+                    in [redundancy]";
+        return Err(key.error(what, "fixed or indexed, or max_beta_rate_deg_per_mm as the only limit on beta"));
     }
     Ok(())
 }

@@ -3,12 +3,16 @@
 use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
+use crate::scalars::{Word, words};
 use crate::units::{Deg, DegPerMm, DegPerS, MmPerS, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_placement::problem::{Problem, Redundancy};
+use stead_placement::problem::{BetaPlan, Problem, Redundancy};
 
-/// The free rotation of the spindle about the tool axis, beta, along the path. At least one of its three limits is needed.
+words!(BetaPlan: "free" => BetaPlan::Free, "constant_per_segment" => BetaPlan::ConstantPerSegment,
+    "constant" => BetaPlan::Constant);
+
+/// The free rotation of the spindle about the tool axis, beta, along the path. At least one of its three limits is needed where it may change.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RedundancyTable {
@@ -22,6 +26,9 @@ pub struct RedundancyTable {
     pub max_spindle_turn_deg_per_mm: Option<DegPerMm<Positive>>,
     /// The same in time, at the feed.
     pub max_spindle_turn_deg_per_s: Option<DegPerS<Positive>>,
+    /// Where beta, the angle of the spindle against the feed, may change: `free` (where left out) from point to point,
+    /// `constant_per_segment` from segment to segment alone, `constant` nowhere.
+    pub beta: Option<Word<BetaPlan>>,
 }
 
 /// Bounds of the number of grid values of beta over a full turn.
@@ -51,9 +58,10 @@ impl RedundancyTable {
             max_beta_rate: self.max_beta_rate_deg_per_mm.map(Quantity::si),
             max_spindle_turn: self.max_spindle_turn_deg_per_mm.map(Quantity::si),
             max_spindle_speed: self.max_spindle_turn_deg_per_s.map(Quantity::si),
+            beta: self.beta.map_or(BetaPlan::Free, |word| word.0),
         };
         let limits = [redundancy.max_beta_rate, redundancy.max_spindle_turn, redundancy.max_spindle_speed];
-        if limits.iter().all(Option::is_none) {
+        if limits.iter().all(Option::is_none) && redundancy.beta == BetaPlan::Free {
             return Err(at.error("sets no limit to the rotation of the spindle", LIMITS));
         }
         Ok(redundancy)

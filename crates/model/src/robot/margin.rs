@@ -5,8 +5,8 @@ use super::{Compliance, Joint, Robot, RobotError};
 use nalgebra::DMatrix;
 
 impl Robot {
-    /// The same arm with every joint limit `margin` (rad, not negative) further inside, and the same compliance at every angle
-    /// that is left.
+    /// The same arm with every joint limit `margin` (rad) further inside, and the same compliance at every angle that is left; with the
+    /// margin negated, the arm before that again.
     ///
     /// # Errors
     /// [`RobotError::Limits`] for the first joint of which nothing is left.
@@ -97,6 +97,13 @@ mod tests {
             assert!((a - b).norm() < 1e-12 * a.norm(), "{a} {b}");
         }
         assert_eq!(robot.with_joint_margin(0.0).unwrap().joints(), robot.joints());
+        let again = narrow.with_joint_margin(-margin).unwrap();
+        for (own, again) in robot.joints().iter().zip(again.joints()) {
+            assert!((own.min - again.min).abs() < 1e-15 && (own.max - again.max).abs() < 1e-15);
+        }
+        let theta = [0.3, 0.01, -1.0, 0.2, 0.4, 0.1];
+        let pairs = robot.compliances_at(&theta).into_iter().zip(again.compliances_at(&theta));
+        pairs.for_each(|(own, again)| assert!((own / again - 1.0).abs() < 1e-12));
         assert!(matches!(robot.with_joint_margin(1.3), Err(RobotError::Limits { joint: 2, .. })));
     }
 }

@@ -102,3 +102,15 @@ fn an_axis_that_turns_too_fast_leaves_no_change() {
     problem.redundancy.max_spindle_turn = Some(20.0);
     assert!(problem.beta_step(1).allows(0.0) && problem.beta_step(1).half < 1e-4);
 }
+
+#[test]
+fn a_beta_that_stays_is_held_against_the_limits_on_its_changes() {
+    // The spindle turns with the feed, over 10 mm.
+    let mut problem = two_points([Rotation3::identity(), turned([0.0, 0.0, 1.0], 0.2)]);
+    problem.redundancy.beta = BetaPlan::ConstantPerSegment;
+    for (limit, is_allowed) in [(0.21, true), (0.19, false)] {
+        (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, Some(limit / 0.01));
+        assert_eq!(problem.beta_step(1).allows(0.0), is_allowed, "{limit}");
+        assert!(!problem.beta_step(1).allows(0.01) && !problem.beta_step(1).allows(-0.2));
+    }
+}

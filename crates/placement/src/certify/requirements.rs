@@ -6,7 +6,9 @@ use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
 use super::model::{LEVELS, STEPS};
 use crate::problem::Problem;
-use crate::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
+use crate::symmetry::{
+    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
+};
 
 /// Whether a problem can be certified with tables of at most `memory` bytes when they are empty, found without work.
 ///
@@ -18,6 +20,7 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     }
     Upright::of(problem)?;
     require_mean_wall(problem)?;
+    require_free_beta(problem)?;
     if !problem.criterion.segment_weights.is_empty() {
         return Err(Unsupported::OtherCriterion { key: "weight of a segment" });
     }

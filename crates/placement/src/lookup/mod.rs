@@ -31,7 +31,9 @@ pub use shape::{Axis, Shape};
 use super::constraints::{ConstraintKind, relaxed};
 use super::problem::{Problem, Redundancy};
 use super::redundancy::{BetaChange, Planner, StateSet, saved_changes};
-use super::symmetry::{Unsupported, Upright, require_certain_compliances, require_constant, require_mean_wall};
+use super::symmetry::{
+    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
+};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use std::f64::consts::PI;
@@ -116,6 +118,7 @@ impl<'a> LookupTable<'a> {
     pub fn shape_for(problem: &Problem) -> Result<Shape, Unsupported> {
         Upright::of(problem)?;
         require_mean_wall(problem)?;
+        require_free_beta(problem)?;
         require_constant(problem, &[0, 3, 4, 5])?;
         require_certain_compliances(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0

@@ -286,8 +286,11 @@ fn stride(problem: &Problem, axis: &ExternalAxis) -> Vec<usize> {
             span.clone().skip(1).map(|point| problem.step_time(point)).filter(|time| time.is_finite()).sum();
         let length: f64 = span.clone().skip(1).map(|point| problem.step_length(point)).sum();
         let by_axis = grid / (axis.max_speed.unwrap_or(f64::INFINITY) * time / steps);
-        let rate = problem.redundancy.max_beta_rate.unwrap_or(f64::INFINITY);
-        let by_beta = problem.redundancy.beta_step() / (rate * length / steps);
+        let limits = &problem.redundancy;
+        let by_length = [limits.max_beta_rate, limits.max_spindle_turn].into_iter().flatten().map(|rate| rate * length);
+        let by_time = limits.max_spindle_speed.map(|speed| speed * time);
+        let change = by_length.chain(by_time).fold(f64::INFINITY, f64::min) / steps;
+        let by_beta = limits.beta_step() / change;
         let wanted = by_axis.max(by_beta).ceil();
         let most = (span.len() / KEPT).max(1);
         let stride = if wanted.is_finite() { (wanted.max(1.0) as usize).min(most) } else { most };

@@ -1,13 +1,15 @@
 //! What should be known about a result.
 
+use super::calmer::{calmer, swing};
 use crate::criterion::Criterion;
 use crate::feed::CutFeed;
 use crate::outcome::{CANCELLATION, Cycle, Plan};
-use crate::problem::Problem;
+use crate::problem::{Placement, Problem};
 use crate::way::{ShortLine, Way};
 use stead_model::plausibility;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
+use stead_numerics::monitor::Monitor;
 
 /// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
 pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
@@ -19,9 +21,15 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
 }
 
 /// What should be known about a best plan though nothing is wrong with it.
-pub(super) fn of(problem: &Problem, plan: &Plan, feed: &CutFeed) -> Vec<String> {
+pub(super) fn of(
+    problem: &Problem,
+    placement: &Placement,
+    (plan, feed): (&Plan, &CutFeed),
+    monitor: &Monitor,
+) -> Vec<String> {
     let large = plausibility::deflection(plan.deflection.total.max);
-    small_part(problem, plan).into_iter().chain(large).chain(slowed(feed)).collect()
+    let of_travel = [swing(plan), calmer(problem, placement, plan, monitor)].into_iter().flatten();
+    small_part(problem, plan).into_iter().chain(large).chain(slowed(feed)).chain(of_travel).collect()
 }
 
 /// A note that there is no worst placement to compare with.

@@ -3,6 +3,7 @@
 use super::refined::Refined;
 use crate::collision::PlanClearance;
 use crate::evaluate::reference::{scored_part_by_parameters, state};
+use crate::joint_travel::JointTravel;
 use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
 use crate::problem::{Placement, Problem};
 use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
@@ -86,15 +87,18 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
     let path = problem.task.path();
     let scored = points.iter().filter(|p| path.is_scored(p.point));
     let count = path.scored_count() as f64;
+    let travel = JointTravel::of(path, &points);
+    let scores = problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score)));
     Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),
-        objective: problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score))),
+        objective: scores + problem.travel_weight() * travel.total,
         mean: scored.clone().map(|p| p.score).sum::<f64>() / count,
         max: scored.clone().map(|p| p.score).fold(0.0, f64::max),
         percentiles: [0.5, 0.95].map(|share| percentile(scored.clone().map(|p| p.score), share)),
         deflection: DeflectionFigures::of(scored),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         clearance: plan_clearance(problem, &points),
+        travel,
         points,
         axes: problem.axis_paths(),
     }

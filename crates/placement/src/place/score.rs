@@ -81,7 +81,7 @@ pub fn score(
         placement: *placement,
         setup: problem.setup.clone(),
         orientation: problem.orientation().map(|orientation| orientation.name.clone()),
-        notes: notes::of(problem, &plan, &cycles[0].feed),
+        notes: notes::of(problem, placement, (&plan, &cycles[0].feed), monitor),
         best: plan,
         worst: detailed(problem, placement, &worst),
         cycles,

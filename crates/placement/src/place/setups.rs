@@ -7,6 +7,7 @@ use super::axes::{GRID, improved};
 use super::infeasible::Infeasible;
 use super::refined::Refined;
 use super::{notes, place_as_set_up, stated_cases};
+use crate::joint_travel::joint_distance;
 use crate::outcome::{Case, Outcome};
 use crate::problem::{Cell, Placement, Problem};
 use crate::redundancy::{Planner, SegmentPlan};
@@ -153,7 +154,8 @@ impl Job<'_> {
         let planners = (&*problem, &Planner::finer(&untied));
         let [best, worst_plan] = stated_cases(planners, self.transfer, Sense::Min, &refined, self.monitor);
         if best.plan.objective < outcome.cases.best.plan.objective {
-            outcome.notes = notes::of(&problem, &best.plan, &best.cycle.feed);
+            let stated = (&best.plan, &best.cycle.feed);
+            outcome.notes = notes::of(&problem, &best.placement, stated, self.monitor);
             outcome.notes.extend((!self.settings.worst).then(notes::best_alone));
             (outcome.cases.best, outcome.cases.best_worst_plan) = (best, worst_plan);
         }
@@ -194,15 +196,17 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
 /// The plans of a case, segment by segment.
 fn plans_of(case: &Case, problem: &Problem) -> Vec<SegmentPlan> {
     let segments = problem.task.segments().iter().zip(&case.plan.postures);
+    let travel = problem.travel_cost(Sense::Min);
     let plan = |(span, posture): (&Range<usize>, &Posture)| {
         let points = &case.plan.points[span.clone()];
         let costs = points.iter().map(|point| problem.point_cost(point.point, point.score));
+        let travelled: f64 = points.windows(2).map(|pair| joint_distance(&pair[0].joints, &pair[1].joints)).sum();
         SegmentPlan {
             points: span.clone(),
             posture: *posture,
             betas: unwrapped(points.iter().map(|point| point.beta)),
             joints: points.iter().map(|point| point.joints).collect(),
-            cost: costs.fold(0.0, |sum, cost| problem.criterion.aggregate.join(sum, cost)),
+            cost: costs.fold(travel * travelled, |sum, cost| problem.criterion.aggregate.join(sum, cost)),
         }
     };
     segments.map(plan).collect()

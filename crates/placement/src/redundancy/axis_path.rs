@@ -9,9 +9,11 @@
 //! [`AxisPositions::PerPoint`]: crate::setup::AxisPositions::PerPoint
 
 use super::joint_turns::is_allowed;
+use super::rate_limit::BetaChange;
 use super::{Planner, SEARCH_ROOM, Workspace};
 use crate::constraints::joint_steps_hold;
 use crate::evaluate::reference;
+use crate::joint_travel::joint_distance;
 use crate::problem::{Placement, Problem};
 use crate::sense::Sense;
 use crate::setup::{AxisPositions, Setup};
@@ -179,18 +181,21 @@ impl Search<'_, '_> {
             starts[place] += starts[place - 1];
         }
         let (step, limits) = (self.grid.step(point), &planner.steps[point]);
+        let travel = planner.travel_cost(Sense::Min);
         let [from, to] = [point - 1, point].map(|point| &self.grid.positions[point]);
+        let changes = self.changes(point);
         for node in layer {
             for (number, position) in from.iter().enumerate() {
                 if (to[node.position] - position).abs() > step {
                     continue;
                 }
-                for shift in planner.changes[point].shifts() {
+                for shift in changes[number * positions + node.position].shifts() {
                     let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
                     let place = number * count + beta;
                     for (index, old) in before.iter().enumerate().take(starts[place + 1]).skip(starts[place]) {
-                        if old.cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {
-                            node.cost = old.cost;
+                        let cost = old.cost + travel * joint_distance(&old.joints, &node.joints);
+                        if cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {
+                            node.cost = cost;
                             node.from = index;
                         }
                     }
@@ -201,6 +206,24 @@ impl Search<'_, '_> {
                 node.cost = aggregate.join_signed(Sense::Min, node.cost, node.score);
             }
         }
+    }
+}
+
+impl Search<'_, '_> {
+    /// The allowed changes of the beta number to a point from the one before, for each position of the axis there and each here.
+    fn changes(&self, point: usize) -> Vec<BetaChange> {
+        let (problem, axis) = (self.grid.problem, self.grid.axis);
+        let grid = &problem.redundancy;
+        let mut rows = problem.setup.positions.spread_at(&problem.task, [point - 1, point]);
+        let mut changes = Vec::with_capacity(self.planners.len() * self.planners.len());
+        for from in &self.grid.positions[point - 1] {
+            for to in &self.grid.positions[point] {
+                (rows[0][axis], rows[1][axis]) = (*from, *to);
+                let part = problem.part_turn_between(&rows[0], &rows[1]);
+                changes.push(BetaChange::of(problem.beta_step_with(point, grid, part.as_ref()), grid));
+            }
+        }
+        changes
     }
 }
 

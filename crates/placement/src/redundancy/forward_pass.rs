@@ -141,6 +141,7 @@ impl Planner<'_> {
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
             sense,
             aggregate: self.problem.criterion.aggregate,
+            travel: self.travel_cost(sense),
             instructions: self.instructions,
         }
     }
@@ -207,12 +208,15 @@ impl Planner<'_> {
 
     /// Evaluates a path point in some posture classes, without the states in which something hits.
     pub(super) fn evaluate(&self, pass: Pass<'_>, point: usize, classes: [bool; 4], workspace: &mut Workspace) {
-        let Workspace { now, forbidden, .. } = workspace;
+        let Workspace { now, forbidden, only_beta, .. } = workspace;
         pass.evaluator.evaluate_classes(point, pass.placement, classes, now);
         if let Some(hits) = &self.tool_hits {
             hits.apply(point, now);
         }
         forbidden.apply(point, now);
+        if let Some(only) = *only_beta {
+            now.keep_beta(only);
+        }
     }
 
     /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one posture. With

@@ -3,13 +3,14 @@
 //! A knot is a point far enough from the knot before it that the limits on beta and on the joints together allow some steps of
 //! the grid. The dynamic programming goes from knot to knot, and beta in between follows the middle of what is allowed, the rest
 //! of the change spread in proportion to the room that each point has. So the plans are those with beta piecewise linear, which
-//! [`super::off_grid`] then improves point by point. A point with room enough is a knot by itself, and the planning the usual one.
+//! [`super::off_grid`] then improves point by point. A point with room enough is a knot by itself, and the planning the usual one; so is
+//! every point where beta stays.
 //!
 //! Joint steps are held against the limits of a run taken together; what they are in between is seen when the plan is spread.
 
 use super::rate_limit::BetaChange;
 use crate::constraints::STEP_ROUNDING;
-use crate::problem::{MAX_JOINT_STEP, Problem, Redundancy};
+use crate::problem::{BetaPlan, MAX_JOINT_STEP, Problem, Redundancy};
 use std::f64::consts::PI;
 use std::ops::Range as Span;
 use stead_model::robot::angles::wrap;
@@ -115,7 +116,8 @@ impl Knots {
             for point in span.clone().skip(1) {
                 let own = PointRoom::new(problem, grid, point, &joints[point]);
                 found.rooms[point] = own;
-                if points == 0 && (own.half < 0.0 || own.sure + STEP_ROUNDING >= room.neighbours) {
+                let has_room = grid.beta != BetaPlan::Free || own.sure + STEP_ROUNDING >= room.neighbours;
+                if points == 0 && (own.half < 0.0 || has_room) {
                     let knot = Knot { number, change: direct[point], points: 1, middle: 0.0 };
                     found.places[point] = Place::Knot(knot);
                     found.knots.push(point);

@@ -16,6 +16,7 @@
 pub mod axis_path;
 mod between;
 mod collision_free;
+mod common;
 mod follow;
 mod forbid;
 mod forward_pass;
@@ -35,6 +36,7 @@ mod unchanging;
 
 pub use collision_free::Collisions;
 pub(crate) use collision_free::{Kept, settled_among_free};
+pub(crate) use common::settled_together;
 pub(crate) use forbid::forbid;
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
@@ -43,7 +45,7 @@ pub(crate) use state_set::kinds_left;
 
 use super::candidate::{Objective, best_of};
 use super::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use super::problem::{Placement, Problem, Redundancy};
+use super::problem::{BetaPlan, Placement, Problem, Redundancy};
 pub use super::segment_plan::SegmentPlan;
 use super::sense::Sense;
 use grid::finer;
@@ -91,6 +93,8 @@ pub struct Planner<'a> {
     tool_hits: Option<Arc<StateSet>>,
     /// Whether the moves between the points of plans are checked too.
     checks_moves: bool,
+    /// What a radian of joint travel costs.
+    travel: f64,
 }
 
 /// Space of one thread to plan in.
@@ -102,6 +106,8 @@ pub struct Workspace {
     run_costs: between::RunCosts,
     /// States that hit, of the placement that is planned.
     forbidden: StateSet,
+    /// The number of beta that is planned with, where one for the whole path has been chosen.
+    only_beta: Option<usize>,
 }
 
 impl<'a> Planner<'a> {
@@ -141,6 +147,7 @@ impl<'a> Planner<'a> {
             instructions: Instructions::best(),
             tool_hits: StateSet::of_tool(problem, &grid).map(Arc::new),
             checks_moves: room.neighbours == FINAL_ROOM.neighbours,
+            travel: problem.travel_cost(Sense::Min),
         }
     }
 
@@ -159,6 +166,11 @@ impl<'a> Planner<'a> {
     /// The problem that is planned.
     pub fn problem(&self) -> &'a Problem {
         self.problem
+    }
+
+    /// What a radian of joint travel costs in the plans of a sense.
+    fn travel_cost(&self, sense: Sense) -> f64 {
+        if sense == Sense::Min { self.travel } else { 0.0 }
     }
 
     /// The grid of beta that is planned on.
@@ -189,6 +201,7 @@ impl<'a> Planner<'a> {
             record: forward_pass::Record::new(longest, count),
             run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
             forbidden: StateSet::default(),
+            only_beta: None,
         }
     }
 
@@ -205,6 +218,9 @@ impl<'a> Planner<'a> {
         if !schemes.is_empty() {
             let of = |scheme: Vec<Posture>| self.objective(placement, sense, Some(&scheme), workspace);
             return best_of(sense, schemes.into_iter().map(of));
+        }
+        if self.chooses_common_beta(workspace) {
+            return self.common_objective(placement, sense, scheme, workspace);
         }
         if self.problem.scene.is_some() {
             return self.free_objective(placement, sense, scheme, workspace);
@@ -253,9 +269,11 @@ impl<'a> Planner<'a> {
         let rules = &self.problem.postures;
         let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
         self.unchanging(scheme, sense, |scheme| {
-            self.until_free(placement, sense, workspace, |workspace, asked| {
-                let choices = self.choices(placement, sense, scheme, workspace, (asked, margin))?;
-                Ok(self.without_hitting_ways(placement, choices))
+            self.with_common_beta((placement, sense), scheme, workspace, |workspace| {
+                self.until_free(placement, sense, workspace, |workspace, asked| {
+                    let choices = self.choices(placement, sense, scheme, workspace, (asked, margin))?;
+                    Ok(self.without_hitting_ways(placement, choices))
+                })
             })
         })
     }
@@ -274,6 +292,10 @@ impl<'a> Planner<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
+        if self.problem.redundancy.beta == BetaPlan::Constant {
+            let plans = self.plan(placement, sense, scheme, workspace)?;
+            return Ok(settled_together(self.problem, placement, sense, self.spacing, &plans).unwrap_or(plans));
+        }
         let rules = &self.problem.postures;
         let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
         let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
@@ -343,7 +365,8 @@ impl<'a> Planner<'a> {
         };
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
             true => {
-                let space = || Workspace { forbidden: workspace.forbidden.clone(), ..self.workspace() };
+                let (forbidden, only_beta) = (workspace.forbidden.clone(), workspace.only_beta);
+                let space = || Workspace { forbidden: forbidden.clone(), only_beta, ..self.workspace() };
                 asked.par_iter().map_init(space, of).collect()
             }
             false => asked.iter().map(|index| of(workspace, index)).collect(),

@@ -10,6 +10,7 @@ use super::super::way::{AtPoint, Space};
 use super::joint_turns::{inside_limits, is_allowed};
 use super::{SegmentPlan, Sense};
 use crate::constraints::joint_steps_hold;
+use crate::joint_travel::joint_distance;
 use rayon::prelude::*;
 use stead_model::robot::angles::nearest_turns;
 
@@ -19,7 +20,7 @@ const VALUES: usize = 5;
 const REPEATS: usize = 8;
 
 /// A pass that gains less than this share of the cost ends its level.
-const MIN_GAIN: f64 = 1e-9;
+pub(super) const MIN_GAIN: f64 = 1e-9;
 
 /// Points that one thread lays at least.
 const MIN_SHARE: usize = 500;
@@ -118,6 +119,7 @@ pub fn refine(
         ((!collisions || is_free()) && (!line || is_whole())).then_some(state)
     };
     let mut better = false;
+    let travel = problem.travel_cost(sense);
     let mut spacing = range.first;
     let unknown = Value { beta: f64::NAN, state: None, node: None };
     let mut layers = vec![Layer { values: [unknown; VALUES], is_fresh: false }; plan.points.len()];
@@ -125,7 +127,7 @@ pub fn refine(
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
             lay(problem, &allowed, spacing, plan, &mut layers);
-            if !level(problem, sense, plan, &mut layers) {
+            if !level(problem, (sense, travel), plan, &mut layers) {
                 break;
             }
             better = true;
@@ -143,9 +145,10 @@ struct Layer {
     is_fresh: bool,
 }
 
-/// The sum of scores and the real joint angles of fixed betas at `placement`, or `None` when they break a constraint there.
-pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> Option<SegmentPlan> {
+/// The cost and the real joint angles of fixed betas at `placement`, or `None` when they break a constraint there.
+pub fn replay(problem: &Problem, placement: &Placement, sense: Sense, plan: &SegmentPlan) -> Option<SegmentPlan> {
     let mut replayed = plan.clone();
+    let travel = problem.travel_cost(sense);
     let aggregate = problem.criterion.aggregate;
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
@@ -158,6 +161,7 @@ pub fn replay(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> O
             if !problem.beta_step(point).allows(plan.betas[place] - plan.betas[place - 1]) || !steps {
                 return None;
             }
+            replayed.cost += travel * joint_distance(&replayed.joints[place - 1], &node.joints);
         }
     }
     Some(replayed)
@@ -215,8 +219,8 @@ fn lay(
     });
 }
 
-/// One pass over what was laid; whether the plan got better by more than rounding.
-fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [Layer]) -> bool {
+/// One pass over what was laid, a radian of joint travel costing so much; whether the plan got better by more than rounding.
+fn level(problem: &Problem, (sense, travel): (Sense, f64), plan: &mut SegmentPlan, layers: &mut [Layer]) -> bool {
     let sign = sense.sign();
     for (place, point) in plan.points.clone().enumerate() {
         let (done, open) = layers.split_at_mut(place);
@@ -236,7 +240,7 @@ fn level(problem: &Problem, sense: Sense, plan: &mut SegmentPlan, layers: &mut [
                             && beta_step.is_none_or(|step| step.allows(beta - old_beta))
                             && joint_steps_hold(&old.joints, &node.joints, &joint_limits)
                     })
-                    .map(|(index, _, old)| (old.cost, index))
+                    .map(|(index, _, old)| (old.cost + travel * joint_distance(&old.joints, &node.joints), index))
                     .min_by(|a, b| a.0.total_cmp(&b.0)),
             };
             let own = sign * problem.point_cost(point, node.score);

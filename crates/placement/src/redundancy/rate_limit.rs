@@ -6,6 +6,7 @@
 //! only estimates, goes from point to point there too: beta follows the middle of the intervals on the grid, to the nearest step,
 //! for as many points as it takes to save up a step, and then makes one of those that the intervals together allow.
 
+use super::super::beta_step::BetaStep;
 use super::super::problem::{Problem, Redundancy};
 use crate::constraints::STEP_ROUNDING;
 
@@ -70,6 +71,11 @@ impl BetaChange {
         Self { min: min.ceil() as i32, max: max.floor() as i32 }
     }
 
+    /// Those that a step allows on a grid.
+    pub(super) fn of(step: BetaStep, grid: &Redundancy) -> Self {
+        Self::within(step.middle / grid.beta_step(), step.half / grid.beta_step(), grid.beta_count)
+    }
+
     /// The changes left when some of them was made before, on a cyclic grid.
     pub(super) fn after(self, taken: i32, count: usize) -> Self {
         let turns = (f64::from(self.min - taken + self.max - taken) / (2.0 * count as f64)).round() as i32;
@@ -112,10 +118,7 @@ impl Run {
 
 /// Allowed changes of the beta number at every path point from the one before, on a grid.
 pub(super) fn direct_changes(problem: &Problem, grid: &Redundancy) -> Vec<BetaChange> {
-    let change = |point: usize| {
-        let step = problem.beta_step_within(point, grid);
-        BetaChange::within(step.middle / grid.beta_step(), step.half / grid.beta_step(), grid.beta_count)
-    };
+    let change = |point: usize| BetaChange::of(problem.beta_step_within(point, grid), grid);
     let mut changes = vec![BetaChange::only(0); problem.task.points().len()];
     for point in problem.task.segments().iter().flat_map(|span| span.clone().skip(1)) {
         changes[point] = change(point);

@@ -7,6 +7,7 @@ use super::super::evaluate::reference;
 use super::joint_turns::{JointPath, SegmentChoice, is_allowed};
 use super::{BetaChange, Planner, Sense, Workspace};
 use crate::constraints::joint_steps_hold;
+use crate::joint_travel::joint_distance;
 use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
@@ -126,7 +127,8 @@ impl Search<'_> {
         let point = self.span.start + place;
         let planner = self.planner;
         let mut layer = nodes(planner, point, self.placement, self.posture, workspace);
-        connect(before, &mut layer, planner.changes[point], planner.grid.beta_count, &planner.steps[point]);
+        let step = (planner.changes[point], planner.grid.beta_count, &planner.steps[point]);
+        connect(before, &mut layer, step, planner.travel_cost(self.sense));
         layer.retain(|node| node.cost.is_finite());
         let join = |node: &Node| {
             let own = node.score * self.sense.sign();
@@ -188,7 +190,7 @@ fn nodes(
 }
 
 /// Gives each node its cheapest predecessor.
-fn connect(before: &[Node], layer: &mut [Node], change: BetaChange, count: usize, limits: &[f64; 6]) {
+fn connect(before: &[Node], layer: &mut [Node], (change, count, limits): (BetaChange, usize, &[f64; 6]), travel: f64) {
     let mut starts = vec![before.len(); count + 1];
     for (index, node) in before.iter().enumerate().rev() {
         starts[node.beta] = index;
@@ -200,8 +202,9 @@ fn connect(before: &[Node], layer: &mut [Node], change: BetaChange, count: usize
         for shift in change.shifts() {
             let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
             for (index, old) in before.iter().enumerate().take(starts[beta + 1]).skip(starts[beta]) {
-                if old.cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {
-                    node.cost = old.cost;
+                let cost = old.cost + travel * joint_distance(&old.joints, &node.joints);
+                if cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {
+                    node.cost = cost;
                     node.from = index;
                 }
             }

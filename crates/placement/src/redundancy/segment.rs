@@ -3,6 +3,7 @@
 use super::super::evaluate::reference;
 use super::forward_pass::{ForwardPass, Pass};
 use super::{Planner, Workspace, joint_turns};
+use crate::joint_travel::joint_distance;
 use crate::problem::Placement;
 use crate::sense::Sense;
 use std::ops::Range as Span;
@@ -46,6 +47,7 @@ impl Planner<'_> {
                 if (is_by_knots && !has_knots) || (number == 2 && !found.choices.is_empty()) {
                     continue;
                 }
+                let asked = sense;
                 let sense = if number == 2 { sense.other() } else { sense };
                 let pass = Pass { evaluator, span: &span, placement, sense, is_by_knots };
                 let forward_pass = self.forward_pass(pass, only, workspace, margin.is_none());
@@ -53,7 +55,12 @@ impl Planner<'_> {
                 let Some(margin) = margin else { break };
                 found.farthest = found.farthest.max(forward_pass.farthest(&span));
                 has_knots &= !is_by_knots || forward_pass.ends.iter().any(Option::is_some);
-                if self.choose(pass, postures, &forward_pass, workspace, margin, &mut found.choices) {
+                let has_all = self.choose(pass, postures, &forward_pass, workspace, margin, &mut found.choices);
+                let travel = self.travel_cost(asked) - self.travel_cost(sense);
+                if number == 2 && travel != 0.0 {
+                    found.choices.iter_mut().for_each(|choice| choice.cost += travel * travelled(choice));
+                }
+                if has_all {
                     break;
                 }
             }
@@ -121,7 +128,7 @@ impl Planner<'_> {
             let drive = |path: &[f64], cost: f64| {
                 let choice =
                     joint_turns::unwind(self.problem, span, placement, path, &postures, cost * sign, &self.steps)?;
-                if is_by_knots { self.recosted(placement, choice) } else { Some(choice) }
+                if is_by_knots { self.recosted(placement, sense, choice) } else { Some(choice) }
             };
             let follow =
                 |path: &[f64], cost: f64| drive(&self.followed(span, placement, *postures.first()?, path)?, cost);
@@ -152,10 +159,12 @@ impl Planner<'_> {
     fn recosted(
         &self,
         placement: &Placement,
+        sense: Sense,
         mut choice: joint_turns::SegmentChoice,
     ) -> Option<joint_turns::SegmentChoice> {
         let posture = choice.joint_paths.first()?.posture;
-        choice.cost = 0.0;
+        let travel = self.travel_cost(sense);
+        choice.cost = if travel > 0.0 { travel * travelled(&choice) } else { 0.0 };
         for (point, beta) in choice.points.clone().zip(&choice.betas) {
             let state = reference::state(self.problem, point, placement, *beta, posture).ok()?;
             if !joint_turns::is_allowed(self.problem, &state) {
@@ -166,4 +175,10 @@ impl Planner<'_> {
         }
         Some(choice)
     }
+}
+
+/// The joint travel of a plan, which is the same in every flip and turn. rad
+fn travelled(choice: &joint_turns::SegmentChoice) -> f64 {
+    let steps = choice.joint_paths.iter().take(1).flat_map(|path| path.joints.windows(2));
+    steps.map(|pair| joint_distance(&pair[0], &pair[1])).sum()
 }

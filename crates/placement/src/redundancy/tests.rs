@@ -9,6 +9,7 @@ use stead_model::robot::angles::{wrap, yaw_from_q4};
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 
+mod calm;
 mod dense;
 mod spindle_turn;
 
@@ -231,7 +232,7 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
             let (full, unwatched) =
                 (off_grid::Spacing::full(&problem.redundancy), vec![off_grid::Watch::default(); plan.points.len()]);
             off_grid::refine(&problem, &placement, sense, full, &unwatched, plan);
-            let replayed = off_grid::replay(&problem, &placement, plan).unwrap();
+            let replayed = off_grid::replay(&problem, &placement, sense, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
         }
         assert_sound(&problem, &placement, &plans);

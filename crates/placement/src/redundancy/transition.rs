@@ -27,6 +27,8 @@ pub struct Step {
     pub sense: Sense,
     /// How the costs of points make up that of a path.
     pub aggregate: Aggregate,
+    /// What a radian of joint travel costs.
+    pub travel: f64,
     /// What the processor is to use.
     pub instructions: Instructions,
 }
@@ -207,9 +209,12 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
             if !allowed.any() {
                 continue;
             }
-            let (mut best, mut from) = band.cheapest(simd, here);
+            let (mut best, mut from) = match step.travel > 0.0 {
+                true => band.calmest(simd, here, &joints, step.travel),
+                false => band.cheapest(simd, here),
+            };
             let mut known = allowed & best.less(infinity);
-            if R::STEPS_COUNT && known.any() {
+            if R::STEPS_COUNT && step.travel == 0.0 && known.any() {
                 let far = joints.too_far(simd, here, known, from);
                 if far.any() {
                     if R::LOOKS_AGAIN {
@@ -308,6 +313,27 @@ impl<R: Rules> Band<'_, R> {
     }
 }
 
+impl<R: Rules> Band<'_, R> {
+    /// The same with the joint travel from each predecessor.
+    #[inline(always)]
+    fn calmest<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>, travel: f64) -> (Lanes<S>, Lanes<S>) {
+        let mut best = Lanes::splat(simd, f64::INFINITY);
+        let mut from = Lanes::splat(simd, 0.0);
+        for shift in self.change.shifts() {
+            let there = here.wrapping_add_signed(shift);
+            let cost = self.cost(simd, here, shift);
+            if !cost.less(best).any() {
+                continue;
+            }
+            let cost = cost + joints.distance(simd, here, there) * travel;
+            let better = cost.less(best) & joints.within(simd, here, there);
+            best = better.select(cost, best);
+            from = better.select(Lanes::splat(simd, shift as f64), from);
+        }
+        (best, from)
+    }
+}
+
 /// Joint angles at the point before and at this one, and how far each joint may step.
 struct Joints<'s, R> {
     /// See [`StateGrid::all_directions`].
@@ -351,6 +377,19 @@ impl<'s, R: Rules> Joints<'s, R> {
             far = far | same.and_not(self.within(simd, here, here.wrapping_add_signed(isize::from(shift))));
             open = open.and_not(same);
         }
+    }
+
+    /// The joint travel to the states from `here` from those from `there`. rad
+    #[inline(always)]
+    fn distance<S: Simd>(&self, simd: S, here: usize, there: usize) -> Lanes<S> {
+        let stride = self.stride;
+        let rows = self.old.chunks_exact(2 * stride).zip(self.new.chunks_exact(2 * stride));
+        rows.take(6).fold(Lanes::splat(simd, 0.0), |sum, (old, new)| {
+            let ((old_sines, old_cosines), (sines, cosines)) = (old.split_at(stride), new.split_at(stride));
+            let [s0, c0] = [Lanes::load(simd, old_sines, there), Lanes::load(simd, old_cosines, there)];
+            let [s1, c1] = [Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here)];
+            sum + (s1 * c0 - c1 * s0).atan2(c1 * c0 + s1 * s0).abs()
+        })
     }
 
     /// Which of the states from `here` are within every joint's step of those from `there`.

@@ -323,6 +323,7 @@ impl Search<'_> {
         let reached = workspace.record.reached(number, self.class);
         let joining = planner.joining(self.pass);
         let between = (knot.points > 1).then(|| workspace.run_costs.of(self.class, knot.change.min, joining));
+        let travel = planner.travel_cost(self.pass.sense);
         let cheapest = |beta| after.costs[after.ways.of(beta)].iter().copied().fold(f64::INFINITY, f64::min);
         let cheapest: Vec<f64> = (0..count).map(cheapest).collect();
         for beta in 0..count {
@@ -345,11 +346,14 @@ impl Search<'_> {
                 if reached.is_some_and(|reached| self.join(reached[beta], join(cheapest[later])) > self.most) {
                     continue;
                 }
-                let Some(turns) = crossings(&layer.angles[beta], &after.angles[later], &limits) else { continue };
+                let Some((turns, distance)) = crossings(&layer.angles[beta], &after.angles[later], &limits) else {
+                    continue;
+                };
+                let joined = |rest: f64| join(rest) + travel * distance;
                 let known = after.ways.of(later);
                 let (known_costs, known_numbers) = (&after.costs[known.clone()], &after.numbers[known.clone()]);
                 let mut take = |node: usize, next: usize| {
-                    let cost = join(known_costs[next]);
+                    let cost = joined(known_costs[next]);
                     if cost < costs[node] {
                         (costs[node], to[node]) = (cost, (known.start + next) as u32);
                     }
@@ -374,18 +378,20 @@ impl Search<'_> {
     }
 }
 
-/// By how many turns each joint goes on in a step from some angles to others (rad, from -pi to pi), none where one steps by more
-/// than its limit.
-fn crossings(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> Option<[i32; 6]> {
-    let mut turns = [0; 6];
+/// By how many turns each joint goes on in a step from some angles to others (rad, from -pi to pi), and the joint travel (rad); none where one
+/// steps by more than its limit.
+fn crossings(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> Option<([i32; 6], f64)> {
+    let (mut turns, mut distance) = ([0; 6], 0.0);
     for j in 0..6 {
         let apart = to[j] - from[j];
         turns[j] = i32::from(apart < -PI) - i32::from(apart > PI);
-        if (apart + TAU * f64::from(turns[j])).abs() > limits[j] {
+        let step = (apart + TAU * f64::from(turns[j])).abs();
+        if step > limits[j] {
             return None;
         }
+        distance += step;
     }
-    Some(turns)
+    Some((turns, distance))
 }
 
 #[cfg(test)]

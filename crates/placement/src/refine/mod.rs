@@ -33,8 +33,8 @@ pub use agreement::found_again;
 use super::evaluator::{self, Evaluator};
 use super::lookup::Look;
 use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
-use super::problem::{Placement, Problem};
-use super::redundancy::{Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free};
+use super::problem::{BetaPlan, Placement, Problem};
+use super::redundancy::{Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free, settled_together};
 use super::sense::Sense;
 use super::way::whole_lines;
 use rayon::prelude::*;
@@ -254,9 +254,17 @@ fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
 /// narrow spacing around their step (a second-order correction).
 fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[f64]) -> Option<Solution> {
     let mut plans = Vec::with_capacity(solution.plans.len());
-    for plan in &solution.plans {
+    let stepped = |plan: &SegmentPlan| {
         let betas = betas[plan.points.clone()].to_vec();
-        let shifted = SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() };
+        SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() }
+    };
+    if problem.redundancy.beta == BetaPlan::Constant {
+        let stepped: Vec<SegmentPlan> = solution.plans.iter().map(stepped).collect();
+        let plans = settled_together(problem, &placement, Sense::Min, SETTLING, &stepped)?;
+        return problem.is_free(&placement, &plans).then(|| Solution::new(problem, placement, plans));
+    }
+    for plan in &solution.plans {
+        let shifted = stepped(plan);
         let kept = Kept { lines: whole_lines(problem, &solution.placement, plan), moves: false };
         let shifted = settled_among_free(problem, &placement, Sense::Min, (SETTLING, kept), &shifted);
         if !shifted.cost.is_finite() {

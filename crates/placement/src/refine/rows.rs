@@ -66,9 +66,9 @@ impl Triplets {
     }
 }
 
-/// The curvature of the objective, each point's by its share of `whole`: an arrow of the pose block, its coupling with every
-/// beta, and the diagonal.
-pub(super) fn curvature(locals: &[Local], shares: &[f64], whole: f64) -> Triplets {
+/// The curvature of the objective, each point's by its share of `whole`, its beta being in the column given: an arrow of the pose block, its
+/// coupling with every beta, and the diagonal.
+pub(super) fn curvature(locals: &[Local], betas: &[usize], shares: &[f64], whole: f64) -> Triplets {
     let mut entries = Triplets::default();
     let mut pose = [[0.0; 4]; 4];
     for (i, local) in locals.iter().enumerate() {
@@ -77,9 +77,9 @@ pub(super) fn curvature(locals: &[Local], shares: &[f64], whole: f64) -> Triplet
             for j in 0..=k {
                 pose[j][k] += local.curvature[(j, k)] * share;
             }
-            entries.add(k, 4 + i, local.curvature[(k, 4)] * share);
+            entries.add(k, betas[i], local.curvature[(k, 4)] * share);
         }
-        entries.add(4 + i, 4 + i, local.curvature[(4, 4)] * share);
+        entries.add(betas[i], betas[i], local.curvature[(4, 4)] * share);
     }
     for (j, row) in pose.iter().enumerate() {
         (j..4).for_each(|k| entries.add(j, k, row[k]));

@@ -17,7 +17,7 @@ use super::rows::{Rows, Triplets, curvature};
 use super::{LOCAL, Solution, UNITS};
 use crate::criterion::Aggregate;
 use crate::limit::{Limit, Side};
-use crate::problem::Problem;
+use crate::problem::{BetaPlan, Problem};
 use crate::redundancy::SegmentPlan;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, SupportedConeT, ZeroConeT};
@@ -67,7 +67,17 @@ pub fn solve<'p>(
     };
     let kinked = locals.iter().enumerate().flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
     let rows = Rows::default();
-    let mut build = Build { problem, solution, locals, question, kinked, unit: solution.objective, rows };
+    let mut build = Build {
+        problem,
+        solution,
+        locals,
+        question,
+        kinked,
+        unit: solution.objective,
+        rows,
+        betas: beta_columns(problem),
+        travel: Travel::new(problem, solution.objective),
+    };
     if question.pose_stays {
         (0..4).for_each(|k| build.rows.add([(k, 1.0)], 0.0));
     }
@@ -95,10 +105,43 @@ struct Build<'a> {
     /// Scores are in this unit. m
     unit: f64,
     rows: Rows,
+    /// Column of the change of beta at each point.
+    betas: Vec<usize>,
+    travel: Travel,
 }
 
 /// Column of the first change of beta.
 const BETA: usize = 4;
+
+/// Column of the change of beta at each point: its own, or where beta stays that of the first point with the same.
+fn beta_columns(problem: &Problem) -> Vec<usize> {
+    let of_segment = |span: &Range<usize>| match problem.redundancy.beta {
+        BetaPlan::Free => span.clone().map(|i| BETA + i).collect(),
+        BetaPlan::ConstantPerSegment => vec![BETA + span.start; span.len()],
+        BetaPlan::Constant => vec![BETA; span.len()],
+    };
+    problem.task.segments().iter().flat_map(of_segment).collect()
+}
+
+/// The joint travel in the objective. Where a step of a joint may change its direction inside the trust region, one more variable is not less
+/// than its size; elsewhere it is linear.
+#[derive(Debug, Default)]
+struct Travel {
+    /// What a radian of it counts. Units of the objective
+    weight: f64,
+    /// What it is at the solution, but for steps with a variable. Units of the objective
+    here: f64,
+    /// How that changes with the variables.
+    slopes: Vec<(usize, f64)>,
+    /// Variables that are sizes of steps.
+    sizes: usize,
+}
+
+impl Travel {
+    fn new(problem: &Problem, unit: f64) -> Self {
+        Self { weight: problem.travel_weight() / unit, ..Self::default() }
+    }
+}
 
 impl Build<'_> {
     /// Column of the first score.
@@ -122,9 +165,14 @@ impl Build<'_> {
         self.epigraph() + self.copies() * self.locals.len()
     }
 
+    /// Column of the first size of a joint's step.
+    fn sizes(&self) -> usize {
+        self.norms() + self.kinked.len()
+    }
+
     /// Number of variables; the largest score is the last.
     fn variables(&self) -> usize {
-        self.norms() + self.kinked.len() + usize::from(self.aggregate() == Aggregate::Max)
+        self.sizes() + self.travel.sizes + usize::from(self.aggregate() == Aggregate::Max)
     }
 
     fn aggregate(&self) -> Aggregate {
@@ -132,8 +180,8 @@ impl Build<'_> {
     }
 
     /// A gradient by placement and beta as entries of the columns of point `i`.
-    fn terms(i: usize, gradient: &[f64; LOCAL]) -> Vec<(usize, f64)> {
-        (0..4).map(|k| (k, gradient[k])).chain([(BETA + i, gradient[4])]).collect()
+    fn terms(&self, i: usize, gradient: &[f64; LOCAL]) -> Vec<(usize, f64)> {
+        (0..4).map(|k| (k, gradient[k])).chain([(self.betas[i], gradient[4])]).collect()
     }
 
     /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for safety.
@@ -156,20 +204,20 @@ impl Build<'_> {
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
-        self.add_between((Limit::Conditioning, i), &Self::terms(i, &condition.gradient), -spare, f64::INFINITY);
+        self.add_between((Limit::Conditioning, i), &self.terms(i, &condition.gradient), -spare, f64::INFINITY);
         if self.problem.constraints.min_base_distance > 0.0 {
             let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
-            let terms = Self::terms(i, &local.state.base_distance.gradient);
+            let terms = self.terms(i, &local.state.base_distance.gradient);
             self.add_between((Limit::BaseDistance, i), &terms, -spare, f64::INFINITY);
         }
         // Where the placement stays, the part and what stands in the cell stay as far apart.
         let pose_stays = self.question.pose_stays;
         for room in local.rooms.iter().filter(|room| room.is_of_joints || !pose_stays) {
-            self.add_between((room.limit, i), &Self::terms(i, &room.slopes), -room.spare(), f64::INFINITY);
+            self.add_between((room.limit, i), &self.terms(i, &room.slopes), -room.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
-            let terms = Self::terms(i, &local.state.joints[j].gradient);
+            let terms = self.terms(i, &local.state.joints[j].gradient);
             self.add_between((Limit::Joint(j as u8 + 1), i), &terms, joint.min - q, joint.max - q);
         }
     }
@@ -191,7 +239,7 @@ impl Build<'_> {
         };
         for sign in signs {
             let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let row = Self::terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
+            let row = self.terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
             self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
     }
@@ -199,21 +247,49 @@ impl Build<'_> {
     /// What holds between the points of a segment: the limits on the change of beta and the steps of the joints.
     fn steps(&mut self, plan: &SegmentPlan) {
         for (place, i) in plan.points.clone().enumerate().skip(1) {
-            let allowed = self.problem.beta_step(i);
-            let off = allowed.off_middle(plan.betas[place] - plan.betas[place - 1]);
-            let row = [(BETA + i, 1.0), (BETA + i - 1, -1.0)];
-            let [lower, upper] = self.problem.beta_step_ends(i, &allowed);
-            self.add_between((upper, i), &row, f64::NEG_INFINITY, allowed.half - off);
-            self.add_between((lower, i), &row, -allowed.half - off, f64::INFINITY);
+            let [column, last] = [self.betas[i], self.betas[i - 1]];
+            if column != last {
+                let allowed = self.problem.beta_step(i);
+                let off = allowed.off_middle(plan.betas[place] - plan.betas[place - 1]);
+                let row = [(column, 1.0), (last, -1.0)];
+                let [lower, upper] = self.problem.beta_step_ends(i, &allowed);
+                self.add_between((upper, i), &row, f64::NEG_INFINITY, allowed.half - off);
+                self.add_between((lower, i), &row, -allowed.half - off, f64::INFINITY);
+            }
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
             for j in 0..6 {
                 let (here, there) = (&at.state.joints[j].gradient, &before.state.joints[j].gradient);
                 let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
-                row.extend([(BETA + i, here[4]), (BETA + i - 1, -there[4])]);
+                match column == last {
+                    true => row.push((column, here[4] - there[4])),
+                    false => row.extend([(column, here[4]), (last, -there[4])]),
+                }
                 let step = at.joints[j] - before.joints[j];
+                self.step_size(step, &row);
                 self.add_between((Limit::JointStep(j as u8 + 1), i), &row, -limits[j] - step, limits[j] - step);
             }
+        }
+    }
+
+    /// Counts the size of a joint's step (rad), where joint travel counts.
+    fn step_size(&mut self, step: f64, row: &[(usize, f64)]) {
+        if self.travel.weight == 0.0 {
+            return;
+        }
+        let swing = self.question.trust * row.iter().map(|(_, v)| v.abs()).sum::<f64>();
+        if step.abs() > swing {
+            let weight = self.travel.weight * step.signum();
+            self.travel.here += weight * step;
+            self.travel.slopes.extend(row.iter().map(|(column, slope)| (*column, weight * slope)));
+            return;
+        }
+        let size = self.sizes() + self.travel.sizes;
+        self.travel.sizes += 1;
+        self.travel.slopes.push((size, self.travel.weight));
+        for sign in [1.0, -1.0] {
+            let terms = row.iter().map(|(column, slope)| (*column, sign * slope)).chain([(size, -1.0)]);
+            self.rows.add(terms, -sign * step);
         }
     }
 
@@ -254,7 +330,7 @@ impl Build<'_> {
             self.rows.add([(norms + place, -1.0)], 0.0);
             for entry in *vector {
                 let slopes = entry.gradient.map(|slope| -slope / unit);
-                self.rows.add(Self::terms(*i, &slopes), entry.value / unit);
+                self.rows.add(self.terms(*i, &slopes), entry.value / unit);
             }
             cones.push(SecondOrderConeT(1 + vector.len()));
         }
@@ -280,7 +356,7 @@ impl Build<'_> {
         let copies = self.copies() as f64;
         let (shares, total) = (self.shares(), self.problem.total_weight());
         let mut quadratic = match question.curved {
-            true => curvature(self.locals, &shares, unit * total),
+            true => curvature(self.locals, &self.betas, &shares, unit * total),
             false => Triplets::default(),
         };
         match self.aggregate() {
@@ -295,13 +371,14 @@ impl Build<'_> {
             }),
             Aggregate::Max => linear[variables - 1] = 1.0,
         }
+        self.travel.slopes.iter().for_each(|(column, slope)| linear[*column] += slope);
         let curvature = quadratic.matrix(variables);
         let Rows { row, column, value, bound, bounds } = self.rows;
         let matrix = CscMatrix::new_from_triplets(bound.len(), variables, row, column, value);
         let found = programme(&curvature, &linear, &matrix, &bound, cones)?;
         let value = match self.problem.criterion.aggregate {
             Aggregate::Rms => libm::sqrt((2.0 * found.obj_val).max(0.0)),
-            Aggregate::Mean | Aggregate::Max => found.obj_val,
+            Aggregate::Mean | Aggregate::Max => found.obj_val + self.travel.here,
         };
         let mut pose = [0.0; 4];
         let mut pose_gradient = [0.0; 4];
@@ -313,7 +390,7 @@ impl Build<'_> {
         }
         Ok(Answer {
             placement: pose,
-            betas: found.x[BETA..BETA + n].to_vec(),
+            betas: self.betas.iter().map(|column| found.x[*column]).collect(),
             promised: ((1.0 - value) * unit).max(0.0),
             pose_gradient,
             multipliers: bounds.into_iter().map(|(row, (side, point))| (side, point, found.z[row] * unit)).collect(),

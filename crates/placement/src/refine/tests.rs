@@ -2,7 +2,7 @@
 
 use super::rooms::NEAR_STEPS;
 use super::*;
-use crate::problem::Interval;
+use crate::problem::{BetaPlan, Interval};
 use crate::testing::{five_segments, five_segments_compensated};
 use nalgebra::DMatrix;
 use stead_model::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
@@ -21,7 +21,7 @@ fn refined(planner: &Planner<'_>, start: &Placement, sense: Sense) -> Option<(So
 fn assert_allowed(problem: &Problem, solution: &Solution) {
     assert!(problem.cell.contains(&solution.placement), "{:?}", solution.placement);
     for plan in &solution.plans {
-        let replayed = off_grid::replay(problem, &solution.placement, plan).unwrap();
+        let replayed = off_grid::replay(problem, &solution.placement, Sense::Min, plan).unwrap();
         assert!((replayed.cost - plan.cost).abs() < 1e-10 * plan.cost);
         for (a, b) in replayed.joints.iter().flatten().zip(plan.joints.iter().flatten()) {
             assert!((a - b).abs() < 1e-9);
@@ -219,4 +219,48 @@ fn argmin_observers_see_every_iteration() {
     assert!(costs.len() > 2 && costs.windows(2).all(|pair| pair[1] <= pair[0]));
     assert_eq!(costs.last().copied(), Some(run.solution.objective));
     assert_ne!(run.status, RefinementStatus::MaxIterations);
+}
+
+#[test]
+fn joint_travel_and_betas_that_stay_are_refined_with_the_placement() {
+    let start = published_optimum();
+    let mut problem = five_segments();
+    problem.criterion.joint_travel_weight = 2e-4;
+    let weighed = problem.clone();
+    problem.criterion.joint_travel_weight = 0.0;
+    let stays = [BetaPlan::ConstantPerSegment, BetaPlan::Constant].map(|beta| {
+        let mut problem = problem.clone();
+        problem.redundancy.beta = beta;
+        problem
+    });
+    for problem in [weighed].iter().chain(&stays) {
+        let planner = Planner::finer(problem);
+        let (solution, report) = refined(&planner, &start, Sense::Min).unwrap();
+        assert_allowed(problem, &solution);
+        assert!(report.end_mean < 0.9 * report.start_mean, "{report:?}");
+        assert!(report.kkt_residual.unwrap() < 3e-3 * report.end_mean, "{report:?}");
+        assert!(report.iterations > 2, "{report:?}");
+        let stays = |plan: &SegmentPlan| plan.betas.iter().all(|beta| *beta == plan.betas[0]);
+        let is_one = solution.plans.iter().all(|plan| plan.betas[0] == solution.plans[0].betas[0]);
+        match problem.redundancy.beta {
+            BetaPlan::Free => {}
+            BetaPlan::ConstantPerSegment => assert!(solution.plans.iter().all(stays)),
+            BetaPlan::Constant => assert!(solution.plans.iter().all(stays) && is_one),
+        }
+        // The gradient by which a worst placement is refined is that of the replanned optimum.
+        let placement = Placement::from([0.05, -1.75, -0.45, 0.5]);
+        let plan = |placement: &Placement| planned(&planner, placement, None, &mut planner.workspace()).unwrap();
+        let gradient = ascent::pose_gradient(problem, &plan(&placement)).unwrap();
+        let step = 2e-4;
+        for k in 0..3 {
+            let [after, before] = [step, -step].map(|by| {
+                let mut moved = placement;
+                moved[k] += by * LENGTH_UNIT;
+                plan(&moved).objective
+            });
+            let slope = (after - before) / (2.0 * step);
+            let size = gradient.norm();
+            assert!((slope - gradient[k]).abs() < 0.1 * size, "{k} {slope} {gradient:?} {:?}", problem.redundancy.beta);
+        }
+    }
 }

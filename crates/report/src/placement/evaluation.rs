@@ -5,7 +5,9 @@ use super::json::{plan_clearance, unfollowed_moves};
 use super::setup::{lines, put_setup};
 use super::text::least_room;
 use crate::columns::{aligned, line};
-use crate::document::{cut_feed, deflection_mm, placement as placement_json, placement_exact, put_deviation};
+use crate::document::{
+    cut_feed, deflection_mm, joint_travel, placement as placement_json, placement_exact, put_deviation,
+};
 use crate::names;
 use crate::units::{Unit, fixed};
 use serde_json::{Value, json};
@@ -30,6 +32,7 @@ pub fn score_json(score: &Score, context: &Context) -> Value {
             "p95_mm": Unit::DEFLECTION_MM.number(plan.percentiles[1]),
             "deflection_mm": deflection_mm(&plan.deflection),
             "postures": plan.postures,
+            "joint_travel": joint_travel(&plan.travel),
             "feed": cut_feed(&cycle.feed),
             "cutting_s": Unit::TIME_S.number(cycle.cutting),
             "cycle_s": cycle.total().map(|time| Unit::TIME_S.number(time)),
@@ -107,7 +110,8 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         least_room(plan, name).iter().for_each(|row| line(&mut feed, row));
     }
     super::text::highest_feed(&score.cycles[0].feed).iter().for_each(|row| line(&mut feed, row));
-    let feed = if feed.is_empty() { feed } else { format!("\n{feed}") };
+    line(&mut feed, &super::text::joint_travel(&score.best));
+    let feed = format!("\n{feed}");
     let stability = stability.unwrap_or_default();
     let setup: String = lines("this placement", score.orientation.as_ref(), &score.best.axes)
         .iter()

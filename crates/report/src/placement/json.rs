@@ -6,7 +6,7 @@
 use super::Context;
 use super::cell_json::{cell, mount};
 use super::setup::{put_setup, tried};
-use crate::document::{Timing, cut_feed, deflection_mm, placement, placement_exact, put_deviation};
+use crate::document::{Timing, cut_feed, deflection_mm, joint_travel, placement, placement_exact, put_deviation};
 use crate::names;
 use crate::units::Unit;
 use serde_json::{Map, Value, json};
@@ -21,7 +21,7 @@ use stead_placement::outcome::{
     SetOutcome, SubsetAccuracy,
 };
 use stead_placement::postures::PostureRules;
-use stead_placement::problem::{Problem, Redundancy};
+use stead_placement::problem::{BetaPlan, Problem, Redundancy};
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_placement::symmetry::Unsupported;
 use stead_placement::transfer::Transfer;
@@ -154,6 +154,7 @@ fn case(case: &Case, with_plan: bool) -> Value {
         "p95_mm": number(Unit::DEFLECTION_MM, case.plan.percentiles[1]),
         "deflection_mm": deflection_mm(&case.plan.deflection),
         "postures": case.plan.postures,
+        "joint_travel": joint_travel(&case.plan.travel),
         "objective_by_stiffness": objective_by_stiffness(case),
         "active_bounds": case.active_bounds.as_ref().map(|bounds| bounds.iter().map(active_bound).collect::<Vec<_>>()),
         "feed": cut_feed(&case.cycle.feed),
@@ -354,6 +355,10 @@ fn criterion(problem: &Problem) -> Value {
         "segment_weights": segment_weights,
         "force_uncertainty": force_uncertainty,
     });
+    let weight = problem.criterion.joint_travel_weight;
+    if let (true, Value::Object(map)) = (weight > 0.0, &mut value) {
+        map.insert("joint_travel_weight_mm_per_rad".to_owned(), number(Unit::DEFLECTION_MM, weight));
+    }
     if let (Some(sets), Value::Object(map)) = (&problem.criterion.stiffness, &mut value) {
         map.insert("over".to_owned(), json!(sets.over.name()));
     }
@@ -387,7 +392,7 @@ fn postures(problem: &Problem) -> Option<Value> {
 }
 
 fn redundancy(problem: &Problem) -> Value {
-    let Redundancy { beta_count, feed, max_beta_rate, max_spindle_turn, max_spindle_speed } = problem.redundancy;
+    let Redundancy { beta_count, feed, max_beta_rate, max_spindle_turn, max_spindle_speed, beta } = problem.redundancy;
     let mut value = json!({ "beta_count": beta_count, "feed_mm_per_s": number(Unit::SPEED_MM_PER_S, feed) });
     for (key, unit, limit) in [
         ("max_beta_rate_deg_per_mm", Unit::RATE_DEG_PER_MM, max_beta_rate),
@@ -397,6 +402,9 @@ fn redundancy(problem: &Problem) -> Value {
         if let (Some(limit), Value::Object(map)) = (limit, &mut value) {
             map.insert(key.to_owned(), number(unit, limit));
         }
+    }
+    if let (BetaPlan::ConstantPerSegment | BetaPlan::Constant, Value::Object(map)) = (beta, &mut value) {
+        map.insert("beta".to_owned(), json!(beta.name()));
     }
     value
 }

@@ -93,7 +93,8 @@ fn plan_row(point: &PlanPoint) -> Vec<String> {
 /// the ratio where case 1 is a cancellation. `mean_mm` and `max_mm` are of the scores, `objective_mm` is what was minimised. The
 /// last column, `mean_std_mm`, is there where the robot's uncertainty is known: the standard deviation of the mean of the
 /// scored part; behind it the orientation of the part and the positions of external axes that stand still along the path, where a run has
-/// such. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known.
+/// such. `max_feed_mm_per_s` is the highest feed that the plan holds, empty where no limit of the joints is known; `joint_travel_deg`
+/// is what all joints turn in the cut, `max_joint_step_deg` the largest turn of one from a point to the next.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
@@ -121,6 +122,8 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         "mean_total_mm",
         "max_total_mm",
         "max_feed_mm_per_s",
+        "joint_travel_deg",
+        "max_joint_step_deg",
     ];
     header.extend(cases.best.plan.deflection.surface.iter().flat_map(|_| ["mean_surface_mm", "max_surface_mm"]));
     header.extend(cases.best.plan.mean_deviation.map(|_| "mean_std_mm"));
@@ -143,6 +146,8 @@ pub fn placements(cases: &Cases, reference: Option<&Published<[f64; 4]>>) -> Res
         let pair = |figures: MeanAndMax| [figures.mean, figures.max].map(|value| Unit::DEFLECTION_MM.text(value));
         row.extend([wall, axis, total].into_iter().flat_map(pair));
         row.push(Unit::SPEED_MM_PER_S.text_or_empty(case.cycle.feed.highest().map(|limit| limit.feed)));
+        let travel = &case.plan.travel;
+        row.extend([travel.total, travel.largest_step].map(|angle| Unit::ANGLE_DEG.text(angle)));
         row.extend(surface.into_iter().flat_map(pair));
         row.extend(case.plan.mean_deviation.map(|deviation| Unit::DEFLECTION_MM.text(deviation)));
         row.extend(case.orientation.clone());

@@ -49,7 +49,7 @@ fn placements_state_ratios_references_and_times() {
     let table = rows(&tables::placements(&outcome().cases, context().reference.as_ref()).unwrap());
     assert_eq!(
         table[0].join(","),
-        "case,x_mm,y_mm,z_mm,yaw_deg,q4,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm,max_feed_mm_per_s"
+        "case,x_mm,y_mm,z_mm,yaw_deg,q4,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm,max_feed_mm_per_s,joint_travel_deg,max_joint_step_deg"
     );
     assert_eq!(column(&table, "reference_mm"), ["0.083", "0.35", "0.82", "1.2"]);
     assert_eq!(column(&table, "ratio_to_case_1")[0], "1.000000");
@@ -59,6 +59,11 @@ fn placements_state_ratios_references_and_times() {
     assert_eq!(column(&table, "cycle_s")[3], "");
     assert_eq!(column(&table, "max_feed_mm_per_s"), ["60.0000", "60.0000", "", ""]);
     assert_eq!(column(&table, "objective_mm"), column(&table, "mean_mm"));
+    let steps = outcome().cases.best.plan.points.windows(2).filter(|pair| pair[0].segment == pair[1].segment);
+    let steps = steps.flat_map(|pair| (0..6).map(|j| (pair[1].joints[j] - pair[0].joints[j]).abs().to_degrees()));
+    let (sum, most) = steps.fold((0.0, 0.0_f64), |(sum, most), step| (sum + step, most.max(step)));
+    assert_eq!(column(&table, "joint_travel_deg")[0], format!("{sum:.4}"));
+    assert_eq!(column(&table, "max_joint_step_deg")[0], format!("{most:.4}"));
     let total = outcome().cases.best.plan.points.iter().map(|point| point.deflection.norm()).sum::<f64>() / 105.0;
     assert_eq!(column(&table, "mean_total_mm")[0], format!("{:.7}", total * 1e3));
     let without = rows(&tables::placements(&outcome().cases, None).unwrap());

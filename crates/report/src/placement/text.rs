@@ -8,6 +8,7 @@ use stead_model::published::Published;
 use stead_placement::collision::PlanClearance;
 use stead_placement::criterion::Over;
 use stead_placement::feed::{CutFeed, FeedLimit};
+use stead_placement::joint_travel::Swing;
 use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
 use stead_placement::problem::Problem;
 use stead_placement::symmetry::Unsupported;
@@ -37,6 +38,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     stiffest(&outcome.cases.best).iter().for_each(|row| line(&mut text, row));
     least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
     highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
+    line(&mut text, &joint_travel(&outcome.cases.best.plan));
     if let [_, ..] = &outcome.sets[..] {
         text.push('\n');
         text.push_str(&aligned(&set_rows(outcome, context), &[0]));
@@ -145,6 +147,15 @@ pub(super) fn highest_feed(feed: &CutFeed) -> Vec<String> {
         ]
     };
     feed.highest().map_or_else(Vec::new, lines)
+}
+
+/// How much a best plan turns the joints.
+pub(super) fn joint_travel(plan: &Plan) -> String {
+    let degrees = |angle: f64| fixed(angle.to_degrees(), 0);
+    let swing = plan.travel.swing.map_or(String::new(), |Swing { joint, angle, length, .. }| {
+        format!(", joint {joint} by {} deg within {} mm", degrees(angle), figures(length * 1e3))
+    });
+    format!("the best plan turns the joints by {} deg in all{swing}", degrees(plan.travel.total))
 }
 
 /// What each stiffness set makes of the best placement.

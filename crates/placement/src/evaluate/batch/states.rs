@@ -64,6 +64,13 @@ impl StateGrid {
         }
     }
 
+    /// Marks all states but those of one number of beta as not allowed.
+    pub fn keep_beta(&mut self, only: usize) {
+        for class in PostureClass::ALL.into_iter().filter(|class| self.alive[class.index()]).collect::<Vec<_>>() {
+            self.forbid(class, (0..self.count).filter(|beta| *beta != only));
+        }
+    }
+
     /// Scores with their cyclic continuation. m, infinite where not allowed
     pub fn scores(&self, class: PostureClass) -> &[f64] {
         self.row(class, 0)

@@ -101,8 +101,14 @@ fn agrees_whatever_is_scored() {
             for aggregate in [Aggregate::Mean, Aggregate::Rms] {
                 let mut problem = with_uncertainty(plain.clone(), 0.1);
                 let segment_weights = vec![1.0, 2.0, 0.5, 3.0, 1.0];
-                problem.criterion =
-                    Criterion { weights, aggregate, segment_weights, force_uncertainty, confidence, stiffness: None };
+                problem.criterion = Criterion {
+                    weights,
+                    aggregate,
+                    segment_weights,
+                    force_uncertainty,
+                    confidence,
+                    ..Criterion::default()
+                };
                 problem.constraints.max_deflection = Some(2.5e-3);
                 problem.constraints.min_base_distance = 1.9;
                 let mut allowed = 0;

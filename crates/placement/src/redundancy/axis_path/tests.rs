@@ -6,8 +6,10 @@ use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
+use stead_model::robot::angles::wrap;
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::{Task, ToolPath};
+use stead_numerics::rotation::rotation_vector;
 
 /// The cheapest cost of a segment over all postures: every state against every state of the point before.
 fn reference(grid: &AxisGrid<'_>, placement: &Placement, span: &Span<usize>) -> Option<f64> {
@@ -33,8 +35,24 @@ fn reference(grid: &AxisGrid<'_>, placement: &Placement, span: &Span<usize>) -> 
                 let at = |point: usize, node: &Node| grid.positions[point][node.position];
                 let is_edge = |old: &&Node| {
                     let change = redundancy.beta(node.beta) - redundancy.beta(old.beta);
+                    if let Some(limit) = redundancy.max_spindle_turn {
+                        // In the cell, by matrices.
+                        let frame = |point: usize, of: &Node| {
+                            let problem = &problems[of.position];
+                            let flange = problem.base_from_flange(point, placement, redundancy.beta(of.beta));
+                            problem.cell_from_carriage(point).then(&flange).rotation
+                        };
+                        let [from, to] = [frame(point - 1, old), frame(point, node)];
+                        let turned = rotation_vector(&(from.transpose() * to)).norm();
+                        if turned > limit * grid.problem.step_length(point) + 1e-9 {
+                            return false;
+                        }
+                    }
+                    let is_allowed = redundancy
+                        .max_beta_rate
+                        .is_none_or(|rate| wrap(change).abs() <= rate * grid.problem.step_length(point) + 1e-9);
                     let speed = (at(point, node) - at(point - 1, old)).abs() / time;
-                    grid.problem.beta_step_within(point, redundancy).allows(change)
+                    is_allowed
                         && speed <= axis.max_speed.unwrap() * (1.0 + 1e-9)
                         && joint_steps_hold(&old.joints, &node.joints, &grid.problem.joint_steps(point))
                 };
@@ -86,6 +104,36 @@ fn drawn(seed: u64) -> (Problem, Placement, Vec<Vec<f64>>) {
         yaw: random.random_range(-3.0..3.0),
     };
     (problem, placement, vec![grid; 5])
+}
+
+#[test]
+fn equal_to_the_reference_beside_a_limit_on_the_turn_of_the_spindle() {
+    let (mut feasible, mut bound) = (0, 0);
+    for seed in 0..60 {
+        let (mut problem, placement, positions) = drawn(seed);
+        let step_time = problem.step_time(1);
+        let axis = &mut problem.external_axes[0];
+        (axis.kind, axis.direction) = (AxisKind::Turntable, Vector3::z() * if seed % 4 < 2 { 1.0 } else { -1.0 });
+        axis.max_speed = Some(2.2 * (axis.max - axis.min) / 3.0 / step_time);
+        // Less than a step of the grid of beta: against a part that stands still beta cannot change.
+        let limit = Some(1.2_f64.to_radians() * 1e3);
+        (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, limit);
+        assert!(!problem.turns_part_otherwise());
+        let found = AxisGrid { problem: &problem, axis: 0, positions: positions.clone() }.paths(&placement);
+        let grid = AxisGrid { problem: &problem, axis: 0, positions };
+        let expected = reference(&grid, &placement, &(0..5));
+        let cost = found.as_ref().map(|found| found[0].cost);
+        assert_eq!(cost.is_some(), expected.is_some(), "{seed}: {found:?} {expected:?}");
+        let (Some(cost), Some(expected)) = (cost, expected) else { continue };
+        assert!((cost - expected).abs() <= 1e-12 * expected, "{seed}: {cost} {expected}");
+        feasible += 1;
+        // The part that turns changes what beta has to do.
+        let mut still = problem.clone();
+        (still.redundancy.max_beta_rate, still.redundancy.max_spindle_turn) = (limit, None);
+        let other = AxisGrid { problem: &still, ..grid }.paths(&placement).map(|found| found[0].cost);
+        bound += usize::from(other.is_none_or(|other| (other - cost).abs() > 1e-9 * cost));
+    }
+    assert!(feasible > 20 && bound > 0, "{feasible} {bound}");
 }
 
 #[test]

@@ -105,7 +105,14 @@ impl Case {
     /// What is wrong with a step under the given rules, if anything is.
     fn fault<R: Rules>(&self, instructions: Instructions, wrap_around: fn(&mut StateGrid)) -> Option<String> {
         let joints = std::array::from_fn(|j| JointStep::new(self.limits[j], self.ranges[j]));
-        let step = Step { change: self.change, joints, sense: self.sense, aggregate: self.aggregate, instructions };
+        let step = Step {
+            change: self.change,
+            joints,
+            sense: self.sense,
+            aggregate: self.aggregate,
+            travel: 0.0,
+            instructions,
+        };
         let before = self.states(0, wrap_around);
         let mut now = self.states(1, wrap_around);
         let mut way = vec![0; self.count];
@@ -132,6 +139,47 @@ impl Case {
         }
         None
     }
+}
+
+#[test]
+fn joint_travel_counts_in_a_step() {
+    let mut others = 0;
+    for seed in 0..CASES {
+        let case = Case::random(seed);
+        let limits = case.limits.map(|limit| limit.min(3.0));
+        let case = Case { sense: Sense::Min, aggregate: Aggregate::Mean, limits, ..case };
+        let travel = 0.05;
+        let cost = |here: usize, change: isize| {
+            let (score, joints) = case.points[1][here]?;
+            let (cost, old) =
+                case.points[0][case.turned(here, -change)].filter(|(_, old)| case.is_within(old, &joints))?;
+            let distance: f64 = (0..6).map(|j| wrap(joints[j] - old[j]).abs()).sum();
+            Some(cost + travel * distance + score)
+        };
+        let (least, most) = (case.change.min as isize, case.change.max as isize);
+        for instructions in Instructions::all() {
+            let joints = std::array::from_fn(|j| JointStep::new(case.limits[j], case.ranges[j]));
+            let (change, sense, aggregate) = (case.change, case.sense, case.aggregate);
+            let step = Step { change, joints, sense, aggregate, travel, instructions };
+            let before = case.states(0, wrap_around);
+            let mut now = case.states(1, wrap_around);
+            let mut way = vec![0; case.count];
+            advance(&before, &mut now, CLASS, &step, &mut way);
+            for here in 0..case.count {
+                let found = now.inner_scores(CLASS)[here];
+                let costs = (least..=most).filter_map(|change| cost(here, change));
+                let expected = costs.fold(f64::INFINITY, f64::min);
+                if expected.is_finite() {
+                    let told = cost(here, -isize::from(way[here])).unwrap();
+                    assert!((found - expected).abs() < 1e-12 && (told - expected).abs() < 1e-12, "{found} {expected}");
+                    others += usize::from((expected - case.expected(here)).abs() > 1e-3);
+                } else {
+                    assert_eq!(found, expected);
+                }
+            }
+        }
+    }
+    assert!(others > 1000, "{others}");
 }
 
 fn wrap_around(states: &mut StateGrid) {

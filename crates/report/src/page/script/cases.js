@@ -36,6 +36,7 @@ function casesCard() {
     ...(PART_TURNS ? ['Part'] : []),
     ...AXES.map((axis) => `${axis.name} ${axis.isRail ? 'mm' : 'deg'}`),
     'Postures',
+    ...(CASES[0].travel === null ? [] : ['Joint travel', 'Largest step']),
     'Cycle',
   ];
   const rows = CASES.map((of, k) => {
@@ -55,6 +56,7 @@ function casesCard() {
       ...(PART_TURNS ? [el('td', {}, of.entry.orientation || '–')] : []),
       ...AXES.map((axis) => el('td', {}, positionsText(of, axis))),
       el('td', {}, posturesText(of.postures)),
+      ...(of.travel === null ? [] : [of.travel.total_deg, of.travel.max_step_deg].map((angle) => el('td', {}, `${fixed(angle, 0)}°`))),
       el('td', {}, of.cycle === null ? '–' : `${fixed(of.cycle, 1)} s`),
     ];
     return el('tr', { 'data-case': k + 1, onclick: () => set({ case: k }) }, ...cells);

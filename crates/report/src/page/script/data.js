@@ -7,7 +7,7 @@
  * @typedef {{ x: number, y: number, z: number, yaw: number }} Place
  * @typedef {{
  *   number: number, place: number, plan: number, name: string, at: Place, mean: number, max: number, columns: Columns,
- *   joints: number[][], postures: string[], cycle: number | null, cutting: number, moves: (number | null)[], ways: (Way | null)[],
+ *   joints: number[][], postures: string[], travel: any, cycle: number | null, cutting: number, moves: (number | null)[], ways: (Way | null)[],
  *   entry: any
  * }} Case one placement with one plan
  * @typedef {{ joints: number[][], axes: number[][], parts: { first: number, steps: number, from: number, until: number }[] }} Way how a
@@ -166,6 +166,8 @@ const CASES = caseEntries().map((entry, k) => {
     columns,
     joints,
     postures: entry.postures.map(String),
+    // Of runs of older versions not known.
+    travel: entry.joint_travel || null,
     cycle: entry.cycle_s,
     cutting: entry.cutting_s,
     moves: (entry.transfers || []).map((/** @type {any} */ move) => move.duration_s),
