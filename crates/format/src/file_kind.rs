@@ -38,7 +38,9 @@ impl FileKind {
         } else if any(is_cldata) {
             Some(Self::Cldata)
         } else {
-            any(is_gcode).then_some(Self::GCode)
+            // What comes before the first block of a program: its end marks, its name, remarks.
+            let first = lines().find(|line| !line.starts_with(['%', '(', ';', ':']))?;
+            (begins_with_word(first, &['O', 'N', 'G', 'T', 'M', 'S', 'F', '#']) && any(is_gcode)).then_some(Self::GCode)
         }
     }
 
@@ -62,7 +64,7 @@ impl FileKind {
                 ("is a robot file", "a run file that names it: `stead init place --robot FILE --task TASK` writes one")
             }
         };
-        InputError::new(file, is).allowed(allowed)
+        InputError::new(file, is).at_line(1).allowed(allowed)
     }
 }
 
@@ -74,13 +76,16 @@ fn is_cldata(line: &str) -> bool {
 
 /// A block with a preparatory function, with or without its number.
 fn is_gcode(line: &str) -> bool {
-    let is_word = |text: &str, letter: char| {
-        let mut rest = text.chars();
-        rest.next().is_some_and(|first| first.eq_ignore_ascii_case(&letter))
-            && rest.next().is_some_and(|c| c.is_ascii_digit())
-    };
-    let numbered = is_word(line, 'N').then(|| line[1..].trim_start_matches(|c: char| c.is_ascii_digit()).trim_start());
-    is_word(numbered.unwrap_or(line), 'G')
+    let is_numbered = begins_with_word(line, &['N']);
+    let numbered = is_numbered.then(|| line[1..].trim_start_matches(|c: char| c.is_ascii_digit()).trim_start());
+    begins_with_word(numbered.unwrap_or(line), &['G'])
+}
+
+/// Whether a line begins with one of these letters and a digit.
+fn begins_with_word(line: &str, letters: &[char]) -> bool {
+    let mut rest = line.chars();
+    rest.next().is_some_and(|first| letters.contains(&first.to_ascii_uppercase()))
+        && rest.next().is_some_and(|c| c.is_ascii_digit())
 }
 
 #[cfg(test)]
@@ -101,6 +106,8 @@ mod tests {
             ("segment,x_mm\n1,0\n", None),
             ("robot = 'name:kuka-kr500'\n[spindle]\n", None),
             ("gain = 3\nN\nG\n", None),
+            ("robot = 'name:kuka-kr\nG500'\n", None),
+            ("T1 M6\nG0 X0\n", Some(FileKind::GCode)),
             ("", None),
         ] {
             assert_eq!(FileKind::of(text.as_bytes()), kind, "{text}");

@@ -151,7 +151,7 @@ fn results_of_another_cell_are_found() {
         ("tie_percent = 0.0", "tie_percent = 0.0\nchanges = \"never\"", "one posture"),
         ("force_uncertainty = 0.0", "force_uncertainty = 0.001", "score (m)"),
         ("beta_step_deg = 3.0", "beta_step_deg = 3.0\nbeta = \"constant_per_segment\"", "beta that stays (rad)"),
-        ("force_uncertainty = 0.0", "joint_travel_weight_mm_per_rad = 0.001", "objective (m)"),
+        ("force_uncertainty = 0.0", "joint_travel_weight_mm_per_rad = 0.5", "objective (m)"),
         ("force_uncertainty = 0.0", "direction = \"total\"", "score (m)"),
         ("force_uncertainty = 0.0", "aggregate = \"rms\"", "objective (m)"),
     ] {

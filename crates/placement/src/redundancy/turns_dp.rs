@@ -28,7 +28,8 @@ const MAX_NODES: usize = 1 << 22;
 #[derive(Debug, Clone)]
 struct Numbering {
     ranges: [turns::Range; 6],
-    /// The lowest turn of each joint, and how many there are.
+    /// The turn before the lowest of each joint, and how many there are from that to the one after the highest: a joint that goes on by a
+    /// turn from a state that is allowed keeps to its own numbers.
     lowest: [i32; 6],
     counts: [i32; 6],
 }
@@ -37,8 +38,8 @@ impl Numbering {
     fn new(robot: &Robot) -> Self {
         let ranges: [turns::Range; 6] = std::array::from_fn(|j| turns::Range::of(&robot.joints()[j]));
         // Real angles are counted from those of the flip with theta_5 not negative, half a turn off in joints 4 and 6.
-        let lowest = ranges.map(|range| ((range.min - ANGLE_ROUNDING - TAU) / TAU).ceil() as i32);
-        let highest = ranges.map(|range| ((range.max + ANGLE_ROUNDING + PI) / TAU).floor() as i32);
+        let lowest = ranges.map(|range| ((range.min - ANGLE_ROUNDING - TAU) / TAU).ceil() as i32 - 1);
+        let highest = ranges.map(|range| ((range.max + ANGLE_ROUNDING + PI) / TAU).floor() as i32 + 1);
         Self { ranges, lowest, counts: std::array::from_fn(|j| (highest[j] - lowest[j] + 1).max(1)) }
     }
 
@@ -73,19 +74,9 @@ impl Numbering {
         }
     }
 
-    /// The number with so many turns more in each joint, none where that leaves the numbering.
-    fn shifted(&self, number: u32, more: &[i32; 6]) -> Option<u32> {
-        let (mut rest, mut shifted, mut unit) = (number as i32, 0, 1);
-        for j in (0..6).rev() {
-            let turn = rest % self.counts[j] + more[j];
-            if turn < 0 || turn >= self.counts[j] {
-                return None;
-            }
-            shifted += turn * unit;
-            unit *= self.counts[j];
-            rest /= self.counts[j];
-        }
-        Some((shifted + rest * unit) as u32)
+    /// By how much the number rises where each joint goes on by so many turns, at most one.
+    fn rise(&self, more: &[i32; 6]) -> i32 {
+        (0..6).fold(0, |rise, j| rise * self.counts[j] + more[j])
     }
 }
 
@@ -358,14 +349,16 @@ impl Search<'_> {
                         (costs[node], to[node]) = (cost, (known.start + next) as u32);
                     }
                 };
-                let is_same_turn = turns == [0; 6];
-                if is_same_turn && known_numbers == numbers {
-                    (0..numbers.len()).for_each(|node| take(node, node));
-                } else {
-                    for (node, number) in numbers.iter().enumerate() {
-                        let number = if is_same_turn { Some(*number) } else { self.numbering.shifted(*number, &turns) };
-                        let next = number.and_then(|number| known_numbers.iter().position(|known| *known == number));
-                        next.into_iter().for_each(|next| take(node, next));
+                // Both ascend, so that they are gone through together.
+                let rise = self.numbering.rise(&turns);
+                let mut next = 0;
+                for (node, number) in numbers.iter().enumerate() {
+                    let number = number.wrapping_add_signed(rise);
+                    while known_numbers.get(next).is_some_and(|known| *known < number) {
+                        next += 1;
+                    }
+                    if known_numbers.get(next) == Some(&number) {
+                        take(node, next);
                     }
                 }
                 most = costs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
