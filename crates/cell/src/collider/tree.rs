@@ -71,11 +71,8 @@ impl Tree {
 
     /// Adds what contains the triangles of these numbers, at least one.
     fn grow(&mut self, triangles: &[Triangle], numbers: &mut [u32]) {
-        let corners = |numbers: &[u32]| {
-            let corners = numbers.iter().flat_map(|number| triangles[*number as usize].vertices().iter().copied());
-            corners.collect::<Vec<Vector>>()
-        };
-        let corners = corners(numbers);
+        let corners = numbers.iter().flat_map(|number| *triangles[*number as usize].vertices());
+        let corners: Vec<Vector> = corners.collect();
         let (low, high) = corners.iter().fold((corners[0], corners[0]), |(low, high), v| (low.min(*v), high.max(*v)));
         let (centre, half) = ((low + high) / 2.0, (high - low) / 2.0);
         let radius = corners.iter().map(|corner| (*corner - centre).length()).fold(0.0, f64::max) + MARGIN;
