@@ -1,9 +1,11 @@
 //! Meshes of triangles, and their distance from other solids.
 //!
 //! A mesh is descended through its tree of boxes with the distance of each triangle from the other solid, so that a distance costs
-//! hardly more than an intersection: the library's own distance of meshes does not prune both sides.
+//! hardly more than an intersection; two meshes through the trees of both: the library's own distance of meshes does not prune both
+//! sides.
 
 use super::convex::{Convex, core_distance, nearest_core_points};
+use super::tree::{MARGIN, Tree};
 use super::vector;
 use crate::solid::TriangleMesh;
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
@@ -16,6 +18,8 @@ use parry3d_f64::shape::{Shape as ParryShape, SupportMap, TriMesh, TriMeshFlags,
 #[derive(Clone)]
 pub struct Mesh {
     triangles: TriMesh,
+    /// What other meshes are held against.
+    tree: Tree,
     /// Whether it is the surface of a solid.
     is_closed: bool,
     /// The solids that it is made of, where there are several.
@@ -63,20 +67,18 @@ impl Mesh {
         let formed = |flags: TriMeshFlags| TriMesh::with_flags(vertices.clone(), mesh.triangles().to_vec(), flags).ok();
         // What is inside of a closed surface is told by the normals of its edges and vertices; of several, of each by itself.
         let hull = Convex::around(vertices.clone())?;
+        let of = |triangles: TriMesh, solids: Option<Vec<Part>>, is_closed: bool| {
+            let tree = Tree::new(&triangles.triangles().collect::<Vec<Triangle>>());
+            Self { triangles, tree, is_closed, solids: solids.unwrap_or_default(), hull }
+        };
         if !mesh.solids().is_empty() {
             let solids = parts(mesh);
             let is_closed = solids.is_some();
-            return Some(Self {
-                triangles: formed(TriMeshFlags::empty())?,
-                is_closed,
-                solids: solids.unwrap_or_default(),
-                hull,
-            });
+            return Some(of(formed(TriMeshFlags::empty())?, solids, is_closed));
         }
         let solid = mesh.is_closed().then(|| formed(TriMeshFlags::ORIENTED)).flatten();
         let is_closed = solid.is_some();
-        let triangles = solid.or_else(|| formed(TriMeshFlags::empty()))?;
-        Some(Self { triangles, is_closed, solids: Vec::new(), hull })
+        Some(of(solid.or_else(|| formed(TriMeshFlags::empty()))?, None, is_closed))
     }
 
     /// How far it extends along a direction. m
@@ -105,47 +107,33 @@ impl Mesh {
         (!self.is_inside(other.sphere.center)).then_some((found.1, points))
     }
 
-    /// The same of another mesh: the triangles of the smaller one, each against the tree of the other.
+    /// The same of another mesh.
     pub fn nearest_of_mesh(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(f64, [Vector; 2])> {
-        if self.triangles.num_triangles() < other.triangles.num_triangles() {
-            let (distance, [on_other, on_self]) = other.nearest_of_mesh(&pose.inverse(), self, limit)?;
-            return Some((distance, [pose * on_self, pose * on_other]));
-        }
-        let (triangle, found) = self.nearest_triangles(pose, other, limit)?;
-        let points = self.points_of(&Other::triangle(&triangle, pose), found)?;
-        (!self.is_within_or_around(pose, other)).then_some((found.1, points))
+        let (on_self, on_other, distance) = self.nearest_triangles(pose, other, limit)?;
+        let triangle = other.triangles.triangle(on_other);
+        let points = self.points_of(&Other::triangle(&triangle, pose), (on_self, distance))?;
+        (!self.is_within_or_around(pose, other)).then_some((distance, points))
     }
 
     /// The same of another mesh.
     pub fn distance_to_mesh(&self, pose: &ParryPose, other: &Self, limit: f64) -> (f64, Option<Vector>) {
-        let by_hulls = self.hull.distance(pose, &other.hull, limit);
-        unless_by_hulls(by_hulls, limit, || match self.triangles.num_triangles() < other.triangles.num_triangles() {
-            true => other.distance_to_triangles(&pose.inverse(), self, limit),
-            false => self.distance_to_triangles(pose, other, limit),
+        unless_by_hulls(self.hull.distance(pose, &other.hull, limit), limit, || {
+            let limit = limit.max(f64::MIN_POSITIVE);
+            let nearest = self.nearest_triangles(pose, other, limit).map_or(limit, |(_, _, distance)| distance);
+            if nearest > 0.0 && self.is_within_or_around(pose, other) { 0.0 } else { nearest }
         })
     }
 
-    /// The triangles of the other mesh, each against the tree of this one.
-    fn distance_to_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> f64 {
-        let limit = limit.max(f64::MIN_POSITIVE);
-        let nearest = self.nearest_triangles(pose, other, limit).map_or(limit, |(_, (_, distance))| distance);
-        if nearest > 0.0 && self.is_within_or_around(pose, other) { 0.0 } else { nearest }
-    }
-
-    /// The triangle of the other mesh that is nearest, the number of the one that it is nearest to, and their distance, where that is
-    /// below `limit`, a positive number; the first that touch, where any do.
-    fn nearest_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(Triangle, (u32, f64))> {
-        let mut nearest = None;
-        let mut limit = limit;
-        for triangle in other.triangles.triangles() {
-            if let Some(found) = self.nearest_triangle(&Other::triangle(&triangle, pose), limit) {
-                (nearest, limit) = (Some((triangle, found)), found.1);
-                if limit <= 0.0 {
-                    break;
-                }
-            }
-        }
-        nearest
+    /// The numbers of the triangles of this mesh and of the other that are nearest to each other, and their distance, where that is below
+    /// `limit`, a positive number; the first that touch, where any do.
+    fn nearest_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(u32, u32, f64)> {
+        let from_mesh = pose.inverse();
+        self.tree.nearest(pose, &other.tree, limit, |on_self, on_other, known| {
+            let [own, others] = [self.triangles.triangle(on_self), other.triangles.triangle(on_other)];
+            // Most pairs are told apart by a direction that is easily found.
+            let gap = gap_of_triangles(own.vertices(), &others.vertices().map(|vertex| pose * vertex));
+            if gap >= known { gap } else { core_distance(&others, &from_mesh, &own, known).0 }
+        })
     }
 
     /// Whether one of two meshes whose surfaces do not meet is inside of the other.
@@ -254,6 +242,19 @@ fn unless_by_hulls(
     }
     let distance = distance();
     (distance, axis.filter(|_| apart > 0.0 && (distance - apart).abs() <= SAME))
+}
+
+/// How far two triangles are apart at the least: along the normals of both, and along the line between their middles. m
+fn gap_of_triangles(a: &[Vector; 3], b: &[Vector; 3]) -> f64 {
+    let normal = |[a, b, c]: &[Vector; 3]| (*b - *a).cross(*c - *a);
+    let middles = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
+    let along = |direction: Vector| {
+        let [a, b] = [a, b].map(|corners| corners.map(|corner| corner.dot(direction)));
+        let (low, high) = (|[a, b, c]: [f64; 3]| a.min(b).min(c), |[a, b, c]: [f64; 3]| a.max(b).max(c));
+        (low(b) - high(a)).max(low(a) - high(b)) / direction.length().max(f64::MIN_POSITIVE)
+    };
+    // Less what rounding makes of it.
+    [normal(a), normal(b), middles].map(along).into_iter().fold(0.0, f64::max) - MARGIN
 }
 
 /// The distance of a box of the tree from a point, less a radius.

@@ -1,11 +1,12 @@
 //! Distances between solids: the one adapter around the library of shapes (parry3d).
 //!
-//! Convex pairs are decided by GJK (`convex`); meshes by their trees of boxes (`mesh`).
+//! Convex pairs are decided by GJK (`convex`); meshes by their trees of boxes (`mesh`), two of them by both trees at once (`tree`).
 //!
 //! The orientation goes to the library as a unit quaternion, so distances agree with the matrices of the arm to about 1e-12 m.
 
 mod convex;
 mod mesh;
+mod tree;
 
 use crate::solid::Solid;
 use convex::Convex;
