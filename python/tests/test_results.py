@@ -134,7 +134,7 @@ def test_a_placement_found_can_be_scored_again(out: stead.Placements, small_run:
     assert again.best.mean_mm == out.best.mean_mm
     assert again.best.to_pandas().equals(out.best.to_pandas())
     assert run.score(out.best.placement_exact).best.mean_mm == pytest.approx(out.best.mean_mm, abs=2e-7)
-    assert str(run.explain(tmp_path, 30, 40.0)) == str(run.explain(run.placement_of(tmp_path), 30, 40.0))
+    assert str(run.explain(tmp_path, 3, 40.0)) == str(run.explain(run.placement_of(tmp_path), 3, 40.0))
     assert run.placement_of(tmp_path, 3).x_mm == pytest.approx(out.worst.placement_exact.x_mm)
     at = out.best.placement_exact
     assert stead.Placement.from_q4(at.x_mm, at.y_mm, at.z_mm, at.q4).yaw_deg == pytest.approx(at.yaw_deg)

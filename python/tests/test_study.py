@@ -61,7 +61,7 @@ def done(study_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     assert first.values == {"robot.joints[1].stiffness_mnm_per_rad": 0.2, "height": "1"}
     assert len(first.id) == 64 and first.task.endswith(".csv") and first.weight == 1.0
 
-    assert study.status(folder / "none") == stead.StudyStatus(6, 0, 0, 0, [], [])
+    assert study.status(folder / "none") == stead.StudyStatus(6, 0, 0, 0, [], [], [])
     told: list[tuple[str, int, int]] = []
     some = study.run(folder, (2, 2), threads=1, progress=lambda *progress: told.append(progress))
     assert (some.planned, some.before, some.now) == (3, 0, 3) and not some.is_complete and not some.interrupted
