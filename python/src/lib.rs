@@ -24,7 +24,9 @@ fn init(py: Python<'_>, kind: &str, folder: PathBuf, force: bool) -> PyResult<Ve
         "study" => stead::StarterSet::Study,
         "compensate" => stead::StarterSet::Compensate,
         _ => {
-            let problem = format!("no such starter set, found {kind}; allowed: place, assess, identify, simulate, study, compensate");
+            let problem = format!(
+                "no such starter set, found {kind}; allowed: place, assess, identify, simulate, study, compensate"
+            );
             return Err(raised(py, stead::Error::Argument(problem)));
         }
     };
