@@ -64,7 +64,7 @@ impl FileKind {
                 ("is a robot file", "a run file that names it: `stead init place --robot FILE --task TASK` writes one")
             }
         };
-        InputError::new(file, is).at_line(1).allowed(allowed)
+        InputError::new(file, is).allowed(allowed)
     }
 }
 
