@@ -6,7 +6,6 @@
 //!
 //! [`Criterion::joint_travel_weight`]: crate::criterion::Criterion::joint_travel_weight
 
-use crate::outcome::PlanPoint;
 use crate::problem::Problem;
 use crate::sense::Sense;
 use std::collections::VecDeque;
@@ -45,27 +44,28 @@ pub struct Swing {
 }
 
 impl JointTravel {
-    /// That of all points of a plan, in order.
-    pub fn of(path: &ToolPath, points: &[PlanPoint]) -> Self {
+    /// That of a plan, from the joint angles (rad) at all points of the path.
+    pub fn of(path: &ToolPath, joints: &[[f64; 6]]) -> Self {
         let mut found = Self::default();
-        for segment in points.chunk_by(|a, b| a.segment == b.segment) {
+        for span in path.segments() {
+            let Some(segment) = joints.get(span.clone()) else { continue };
             for pair in segment.windows(2) {
-                found.total += joint_distance(&pair[0].joints, &pair[1].joints);
-                let steps = (0..6).map(|j| (pair[1].joints[j] - pair[0].joints[j]).abs());
+                found.total += joint_distance(&pair[0], &pair[1]);
+                let steps = (0..6).map(|j| (pair[1][j] - pair[0][j]).abs());
                 found.largest_step = steps.fold(found.largest_step, f64::max);
             }
-            let lengths = segment.iter().scan(0.0, |sum, point| {
-                *sum += if point.point == segment[0].point { 0.0 } else { path.step_length(point.point) };
+            let lengths = span.clone().scan(0.0, |sum, point| {
+                *sum += if point == span.start { 0.0 } else { path.step_length(point) };
                 Some(*sum)
             });
             let lengths: Vec<f64> = lengths.collect();
             found.length += lengths.last().copied().unwrap_or(0.0);
             for joint in 0..6 {
-                let angles: Vec<f64> = segment.iter().map(|point| point.joints[joint]).collect();
+                let angles: Vec<f64> = segment.iter().map(|joints| joints[joint]).collect();
                 let Some((from, to)) = widest(&angles, &lengths) else { continue };
                 let angle = (angles[to] - angles[from]).abs();
                 if found.swing.is_none_or(|known| angle > known.angle) {
-                    let points = [from, to].map(|place| segment[place].point);
+                    let points = [from, to].map(|place| span.start + place);
                     found.swing = Some(Swing { joint: joint + 1, angle, length: lengths[to] - lengths[from], points });
                 }
             }
@@ -104,6 +104,11 @@ fn widest(angles: &[f64], lengths: &[f64]) -> Option<(usize, usize)> {
 /// The joint travel from some joint angles (rad) to others. rad
 pub fn joint_distance(from: &[f64; 6], to: &[f64; 6]) -> f64 {
     (0..6).map(|j| (to[j] - from[j]).abs()).sum()
+}
+
+/// The joint travel along a segment, from the joint angles (rad) at its points. rad
+pub fn joint_travel(joints: &[[f64; 6]]) -> f64 {
+    joints.windows(2).map(|pair| joint_distance(&pair[0], &pair[1])).sum()
 }
 
 impl Problem {

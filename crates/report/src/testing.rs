@@ -165,7 +165,10 @@ impl Grid {
             objective: mean,
             mean,
             max,
-            travel: JointTravel::of(problem().task.path(), &points),
+            travel: JointTravel::of(
+                problem().task.path(),
+                &points.iter().map(|point| point.joints).collect::<Vec<_>>(),
+            ),
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(points.iter()),
             mean_deviation: None,

@@ -82,7 +82,8 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
                 problem.criterion.weights = direction.weights();
                 problem.criterion.aggregate = [Aggregate::Mean, Aggregate::Rms, Aggregate::Max][(k + arm + path) % 3];
                 let Ok(outcome) = place(&problem, &settings, &transfer, &silent) else { continue };
-                let [best, worst] = [0, 1].map(|k| outcome.cases.optima()[k].plan.objective);
+                let optima = outcome.cases.optima();
+                let [best, worst] = [0, 1].map(|k| optima[k].plan.objective);
                 for cell in 0..81 {
                     let share = |axis: u32| f64::from(cell / 3_i32.pow(axis) % 3) / 2.0;
                     let [x, y, z] = problem.cell.position;

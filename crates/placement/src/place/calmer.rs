@@ -1,9 +1,9 @@
 //! Whether a plan that turns the joints much less costs little.
 
-use crate::joint_travel::joint_distance;
+use crate::joint_travel::joint_travel;
 use crate::outcome::{CANCELLATION, Plan};
 use crate::problem::{BetaPlan, Placement, Problem};
-use crate::redundancy::{Planner, SegmentPlan};
+use crate::redundancy::Planner;
 use crate::sense::Sense;
 use stead_numerics::digits::figures;
 use stead_numerics::monitor::Monitor;
@@ -38,7 +38,7 @@ pub(super) fn calmer(problem: &Problem, placement: &Placement, best: &Plan, moni
         }
         let planner = Planner::new(&calm);
         let plans = planner.plan(placement, Sense::Min, None, &mut planner.workspace()).ok()?;
-        let travel: f64 = plans.iter().map(travelled).sum();
+        let travel: f64 = plans.iter().map(|plan| joint_travel(&plan.joints)).sum();
         let objective = calm.objective(plans.iter().map(|plan| plan.cost)) - calm.travel_weight() * travel;
         let cost = objective / best.objective - 1.0;
         (cost < COST && travel <= TRAVEL * best.travel.total).then(|| {
@@ -53,11 +53,6 @@ pub(super) fn calmer(problem: &Problem, placement: &Placement, best: &Plan, moni
             )
         })
     })
-}
-
-/// The joint travel of a segment's plan. rad
-fn travelled(plan: &SegmentPlan) -> f64 {
-    plan.joints.windows(2).map(|pair| joint_distance(&pair[0], &pair[1])).sum()
 }
 
 /// A number of two digits that is no larger.

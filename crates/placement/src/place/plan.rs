@@ -87,7 +87,8 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
     let path = problem.task.path();
     let scored = points.iter().filter(|p| path.is_scored(p.point));
     let count = path.scored_count() as f64;
-    let travel = JointTravel::of(path, &points);
+    let joints: Vec<[f64; 6]> = plans.iter().flat_map(|plan| plan.joints.iter().copied()).collect();
+    let travel = JointTravel::of(path, &joints);
     let scores = problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score)));
     Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),

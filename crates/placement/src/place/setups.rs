@@ -7,7 +7,7 @@ use super::axes::{GRID, improved};
 use super::infeasible::Infeasible;
 use super::refined::Refined;
 use super::{notes, place_as_set_up, stated_cases};
-use crate::joint_travel::joint_distance;
+use crate::joint_travel::joint_travel;
 use crate::outcome::{Case, Outcome};
 use crate::problem::{Cell, Placement, Problem};
 use crate::redundancy::{Planner, SegmentPlan};
@@ -200,13 +200,13 @@ fn plans_of(case: &Case, problem: &Problem) -> Vec<SegmentPlan> {
     let plan = |(span, posture): (&Range<usize>, &Posture)| {
         let points = &case.plan.points[span.clone()];
         let costs = points.iter().map(|point| problem.point_cost(point.point, point.score));
-        let travelled: f64 = points.windows(2).map(|pair| joint_distance(&pair[0].joints, &pair[1].joints)).sum();
+        let joints: Vec<[f64; 6]> = points.iter().map(|point| point.joints).collect();
         SegmentPlan {
             points: span.clone(),
             posture: *posture,
             betas: unwrapped(points.iter().map(|point| point.beta)),
-            joints: points.iter().map(|point| point.joints).collect(),
-            cost: costs.fold(travel * travelled, |sum, cost| problem.criterion.aggregate.join(sum, cost)),
+            cost: costs.fold(travel * joint_travel(&joints), |sum, cost| problem.criterion.aggregate.join(sum, cost)),
+            joints,
         }
     };
     segments.map(plan).collect()

@@ -3,7 +3,7 @@
 use super::super::evaluate::reference;
 use super::forward_pass::{ForwardPass, Pass};
 use super::{Planner, Workspace, joint_turns};
-use crate::joint_travel::joint_distance;
+use crate::joint_travel::joint_travel;
 use crate::problem::Placement;
 use crate::sense::Sense;
 use std::ops::Range as Span;
@@ -179,6 +179,5 @@ impl Planner<'_> {
 
 /// The joint travel of a plan, which is the same in every flip and turn. rad
 fn travelled(choice: &joint_turns::SegmentChoice) -> f64 {
-    let steps = choice.joint_paths.iter().take(1).flat_map(|path| path.joints.windows(2));
-    steps.map(|pair| joint_distance(&pair[0], &pair[1])).sum()
+    choice.joint_paths.first().map_or(0.0, |path| joint_travel(&path.joints))
 }
