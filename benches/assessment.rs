@@ -7,8 +7,8 @@ use divan::{Bencher, black_box};
 use std::path::Path;
 use stead_assessment::comparison::{Comparison, assess};
 use stead_assessment::map::{Elbow, Map};
-use stead_format::read_assessment;
 use stead_numerics::monitor::Monitor;
+use stead_run_files::read_assessment;
 
 fn main() {
     divan::main();
@@ -19,8 +19,8 @@ fn published() -> Comparison {
     read_assessment(&file).map(|run| run.comparison).expect("the shipped study is good")
 }
 
-/// All maps of the paper with everything that is read off them: five robots, both elbows, both loads, 25 mm grid, on all
-/// processors.
+/// All maps of the paper with everything that is read off them: five robots, both elbows, both loads, 25 mm grid, on
+/// all processors.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_maps(bencher: Bencher) {
     let comparison = published();

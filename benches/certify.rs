@@ -1,5 +1,5 @@
-//! How long certificates of the shipped runs take, beside what they may take on two cores: `cargo bench --bench certify` (about
-//! three minutes), or `-- NAME` for the runs whose name holds NAME.
+//! How long certificates of the shipped runs take, beside what they may take on two cores:
+//! `cargo bench --bench certify` (about three minutes), or `-- NAME` for the runs whose name holds NAME.
 //!
 //! Each run is placed first, and its own mean deflection is then certified with the rate of beta.
 
@@ -9,11 +9,11 @@ use std::error::Error;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
-use stead_format::read_run;
+use stead_certify::best;
+use stead_certify::settings::CertificateSettings;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_placement::certify::best;
 use stead_placement::place::place;
-use stead_placement::settings::CertificateSettings;
+use stead_run_files::read_run;
 
 /// Run, gap in per cent, and the time allowed for the certificate on two cores. s
 const FLOORS: [(&str, f64, f64); 4] = [

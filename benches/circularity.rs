@@ -1,7 +1,7 @@
 //! Speed of the four reference circles: `cargo bench --bench circularity`.
 //!
-//! A million points near a circle, with noise of 1 um and of 0.1 mm, lobed, and scattered over a disc; then the least-squares
-//! circle of 72 points as a map of circularity computes it at every place.
+//! A million points near a circle, with noise of 1 um and of 0.1 mm, lobed, and scattered over a disc; then the
+//! least-squares circle of 72 points as a map of circularity computes it at every place.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

@@ -1,5 +1,5 @@
-//! What shapes cost: the whole job of a shipped cell, with its shapes and without, for the published path and for a robot on a rail:
-//! `cargo bench --bench collision`.
+//! What shapes cost: the whole job of a shipped cell, with its shapes and without, for the published path and for a
+//! robot on a rail: `cargo bench --bench collision`.
 //!
 //! The two jobs of a cell are the same but for the surroundings: quote their ratio.
 
@@ -7,10 +7,9 @@
 
 use divan::{Bencher, black_box};
 use std::path::Path;
-use stead_format::read_run;
 use stead_numerics::monitor::Monitor;
 use stead_placement::place::place;
-use stead_placement::problem::Problem;
+use stead_run_files::read_run;
 
 fn main() {
     divan::main();
@@ -29,6 +28,6 @@ fn rail_job(bencher: Bencher, with_shapes: bool) {
 fn bench_job(bencher: Bencher, file: &str, with_shapes: bool) {
     let run = read_run(&Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).expect("the shipped run is valid");
     let scene = run.problem.scene.clone().filter(|_| with_shapes);
-    let problem = Problem { scene, ..run.problem };
+    let problem = run.problem.changed(|parts| parts.scene = scene).expect("shapes left out");
     bencher.bench_local(|| place(black_box(&problem), &run.search, &run.transfer, &Monitor::silent()));
 }

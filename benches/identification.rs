@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::{Request, design_experiment};
 use stead_calibration::identification::synthetic::{MeasuringCell, sheet};
 use stead_calibration::identification::{LoadCase, Problem, identify};
-use stead_format::{read_identification, read_plan};
 use stead_model::robot::Pose;
 use stead_numerics::monitor::Monitor;
+use stead_run_files::{read_identification, read_plan};
 
 fn main() {
     divan::main();
@@ -26,7 +26,7 @@ fn shipped(name: &str) -> PathBuf {
 /// The shipped identification with so many configurations of three points, joint 2 at as many angles, noise of 0.03 mm.
 fn problem(configurations: usize) -> Problem {
     let problem = read_identification(&shipped("identify-example.toml")).expect("the shipped file is good").problem;
-    let found = identify(&problem).expect("the shipped sheet tells everything");
+    let found = identify(&problem, &Monitor::silent()).expect("the shipped sheet tells everything");
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let load_case = |_| {
         let theta = std::array::from_fn(|joint| {
@@ -55,7 +55,7 @@ fn problem(configurations: usize) -> Problem {
 #[divan::bench(args = [100, 1000, 10_000], sample_count = 3, sample_size = 1)]
 fn fit_of_configurations(bencher: Bencher, configurations: usize) {
     let problem = problem(configurations);
-    bencher.bench_local(|| identify(black_box(&problem)).expect("the sheet tells everything"));
+    bencher.bench_local(|| identify(black_box(&problem), &Monitor::silent()).expect("the sheet tells everything"));
 }
 
 fn request(candidates: usize) -> Request {
@@ -63,7 +63,8 @@ fn request(candidates: usize) -> Request {
     Request { candidates, ..run.request }
 }
 
-/// `identify plan` of 20 configurations from so many candidates on all processors, with eight starts and 1000 random sets.
+/// `identify plan` of 20 configurations from so many candidates on all processors, with eight starts and 1000 random
+/// sets.
 #[divan::bench(args = [500, 2000, 8000], sample_count = 3, sample_size = 1)]
 fn plan_from_candidates(bencher: Bencher, candidates: usize) {
     let request = request(candidates);

@@ -5,8 +5,9 @@
 use divan::{Bencher, black_box};
 use nalgebra::{SMatrix, SVector, Vector3};
 use std::path::Path;
-use stead_format::{Overrides, SimulationRun, read_simulation};
 use stead_model::cutting::CutFrame;
+use stead_numerics::monitor::Monitor;
+use stead_run_files::{Overrides, SimulationRun, read_simulation};
 use stead_simulation::arm::{AnyArm, Arm, Compensation, Variant};
 use stead_simulation::integrator::{MotionState, Newmark, Settings, System, Tangent};
 use stead_simulation::stability_analysis::{analyse, cut_stability, linear_at};
@@ -87,5 +88,5 @@ fn depths_at_one_speed(bencher: Bencher<'_, '_>, variant: Variant) {
 #[divan::bench(sample_count = 3)]
 fn a_survey(bencher: Bencher<'_, '_>) {
     let run = shipped(Variant::Springs);
-    bencher.bench_local(|| analyse(&run.setup, &run.cutter, black_box(&run.cut), &run.analysis));
+    bencher.bench_local(|| analyse(&run.setup, &run.cutter, black_box(&run.cut), &run.analysis, &Monitor::silent()));
 }

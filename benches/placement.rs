@@ -2,9 +2,9 @@
 //!
 //! The number after a name is the kind of instructions: 0 plain, then what else the processor has (AVX2, AVX-512).
 //!
-//! `evaluator` counts poses: path point x beta, all posture classes, with joint angles, limits, 1/kappa and score. `planner`
-//! counts edges: for each allowed state every predecessor within the band of beta, with the joint steps checked. `worth` is
-//! both together, once per placement.
+//! `evaluator` counts poses: path point x beta, all posture classes, with joint angles, limits, 1/kappa and score.
+//! `planner` counts edges: for each allowed state every predecessor within the band of beta, with the joint steps
+//! checked. `worth` is both together, once per placement.
 
 #![allow(clippy::expect_used, reason = "a benchmark of shipped files")]
 
@@ -15,11 +15,11 @@ use divan::{Bencher, black_box};
 use published::{poses, problem};
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::Instructions;
-use stead_placement::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use stead_placement::problem::Placement;
-use stead_placement::redundancy::Planner;
-use stead_placement::redundancy::transition::{self, Step};
-use stead_placement::sense::Sense;
+use stead_planning::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::Planner;
+use stead_planning::redundancy::transition::{self, Step};
+use stead_planning::sense::Sense;
 
 fn main() {
     divan::main();

@@ -1,14 +1,15 @@
 //! Speed of simulated passes: `cargo bench --bench simulation`.
 //!
-//! Prints first, for each variant of the shipped aluminium pass at 90 steps a turn, how long the full and the condensed model take
-//! on one core, and how many times as fast as the pass that is (the fastest of seven runs).
+//! Prints first, for each variant of the shipped aluminium pass at 90 steps a turn, how long the full and the condensed
+//! model take on one core, and how many times as fast as the pass that is (the fastest of seven runs).
 
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a benchmark of shipped files that prints its figures")]
 
 use divan::{Bencher, black_box};
 use std::path::Path;
 use std::time::Instant;
-use stead_format::{Overrides, SimulationRun, read_simulation};
+use stead_numerics::monitor::Monitor;
+use stead_run_files::{Overrides, SimulationRun, read_simulation};
 use stead_simulation::arm::Variant;
 use stead_simulation::coupled::{Job, Run};
 use stead_simulation::milling::MaterialRemoval;
@@ -42,7 +43,8 @@ fn shipped(variant: Variant) -> SimulationRun {
 
 fn simulated(run: &SimulationRun, is_fast: bool) -> Run {
     let job = Job { setup: &run.setup, cutter: &run.cutter, cut: &run.cut, gap: run.gap };
-    if is_fast { job.run_fast() } else { job.run() }.expect("the shipped pass can be started")
+    let silent = &Monitor::silent();
+    if is_fast { job.run_fast(silent) } else { job.run(silent) }.expect("the shipped pass can be started")
 }
 
 /// The milling alone, with a tool that does not yield: 32 slices, 90 steps a turn, a thousand turns in the work.

@@ -1,7 +1,7 @@
 //! The table for upright tools on the published case: `cargo bench --bench table`.
 //!
-//! First how far it is from the ordinary evaluator and from the planner; then what it takes to build, and what a placement takes
-//! through it and without it.
+//! First how far it is from the ordinary evaluator and from the planner; then what it takes to build, and what a
+//! placement takes through it and without it.
 
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a benchmark of shipped files")]
 
@@ -10,9 +10,9 @@ mod published;
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use published::{poses, problem};
-use stead_placement::lookup::{BetaGrid, Look, LookupTable};
-use stead_placement::redundancy::Planner;
-use stead_placement::sense::Sense;
+use stead_placement::lookup::{BetaGrid, CollisionEffort, LookupTable};
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
 
 fn main() {
     let problem = problem();
@@ -24,7 +24,7 @@ fn main() {
     let mut errors: Vec<f64> = poses(40)
         .iter()
         .filter_map(|pose| {
-            let looked = table.objective(pose, &grid, None, Look::ALL, &mut looking).mean()?;
+            let looked = table.objective(pose, &grid, None, CollisionEffort::ALL, &mut looking).mean()?;
             Some((looked / planner.objective(pose, Sense::Min, None, &mut space).mean()? - 1.0).abs())
         })
         .collect();
@@ -54,7 +54,7 @@ fn objective(bencher: Bencher, count: usize) {
     let poses = poses(40);
     bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
         for pose in &poses {
-            black_box(table.objective(black_box(pose), &grid, None, Look::ALL, &mut workspace));
+            black_box(table.objective(black_box(pose), &grid, None, CollisionEffort::ALL, &mut workspace));
         }
     });
 }

@@ -1,21 +1,24 @@
 //! How good robots are for machining.
 
+pub use stead_assessment::{comparison, map, published, ranking, zone};
+
+use crate::monitor::Warning;
 use crate::result::{Report, result};
-use crate::{Error, Monitor, Warning};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use stead_assessment::comparison::{self, Assessment};
-use stead_format as format;
+use stead_assessment::comparison::Assessment;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text, write_assessment};
 use stead_report::document::Timing;
 use stead_report::{Files, Folder};
+use stead_run_files as run_files;
 
 /// An assessment file with the robots that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct AssessmentRun {
-    run: Arc<format::AssessRun>,
+    run: Arc<run_files::AssessRun>,
 }
 
 impl AssessmentRun {
@@ -24,10 +27,11 @@ impl AssessmentRun {
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_assessment(file.as_ref())?) })
+        Ok(Self { run: Arc::new(run_files::read_assessment(file.as_ref())?) })
     }
 
-    /// The same run, to rank robots by the accuracy (m) and the cutting force (N) wanted; either left out is the file's.
+    /// The same run, to rank robots by the accuracy (m) and the cutting force (N) wanted; either left out is the
+    /// file's.
     ///
     /// # Errors
     /// [`Error::Argument`] when only one of the two is known.
@@ -79,7 +83,7 @@ impl AssessmentRun {
 /// Circularity maps, zones and rankings of robots.
 #[derive(Debug, Clone)]
 pub struct RobotAssessment {
-    run: Arc<format::AssessRun>,
+    run: Arc<run_files::AssessRun>,
     assessment: Assessment,
     context: AssessmentContext,
     timing: Timing,

@@ -1,15 +1,15 @@
 //! What was understood of a run or a robot file.
 
 use crate::result::{Report, result};
-use crate::{Arm, Error, Run};
+use crate::robot::Arm;
+use crate::{Error, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use stead_format::input::InputFile;
 use stead_format::robot::says_stiffness;
 use stead_placement::overview::Overview;
-use stead_placement::problem::Problem;
+use stead_planning::problem::Problem;
 use stead_report::check::{CheckedRun, robot_json, robot_lines, run_json, run_text};
-use stead_report::document::Document;
 use stead_report::picture::{arm_alone, arm_of_run};
 use stead_report::{Files, Folder};
 
@@ -51,10 +51,9 @@ impl Checked {
     fn of_arm(arm: &Arm, has_stiffness: bool) -> Self {
         let robot = arm.robot();
         let notes = stead_model::plausibility::arm(robot);
-        let result = serde_json::json!({ "robot": robot_json(robot), "has_stiffness": has_stiffness });
         Self {
             text: robot_lines(robot, Some(has_stiffness)),
-            document: Document::new(arm.inputs()).notes(&notes).with(result),
+            document: robot_json(robot, has_stiffness, &notes, arm.inputs()),
             picture: arm_alone(robot),
             notes,
         }

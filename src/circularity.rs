@@ -1,14 +1,17 @@
 //! Roundness of measured points.
 
+pub use stead_assessment::roundness::Sector;
+
+use crate::Error;
+use crate::monitor::Warning;
 use crate::result::{Report, result};
-use crate::{Error, Warning};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stead_assessment::roundness::{Roundness, Sector, assess};
-use stead_format::{PointFile, read_points};
+use stead_assessment::roundness::{Roundness, assess};
 use stead_report::circularity::{circularity_files, circularity_json, circularity_text, write_circularity};
 use stead_report::{Files, Folder};
+use stead_run_files::{PointFile, read_points};
 
 /// Measured points of a circular profile.
 #[derive(Debug, Clone)]

@@ -1,21 +1,22 @@
 //! Paths corrected so that the loaded tool follows the path that is wanted.
 
+use crate::monitor::Warning;
 use crate::result::{Report, result};
-use crate::{Error, Warning};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
-use stead_format as format;
 use stead_report::compensation::{
     compensation_files, compensation_json, compensation_text, not_compensated_json, write_compensation,
 };
 use stead_report::{Files, Folder};
+use stead_run_files as run_files;
 
 /// A compensation file with the run and the plan that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct CompensationRun {
-    run: Arc<format::CompensateRun>,
+    run: Arc<run_files::CompensateRun>,
 }
 
 impl CompensationRun {
@@ -32,7 +33,7 @@ impl CompensationRun {
     /// # Errors
     /// As [`CompensationRun::read`].
     pub fn read_with(file: impl AsRef<Path>, reality: Option<&Path>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_compensation(file.as_ref(), reality)?) })
+        Ok(Self { run: Arc::new(run_files::read_compensation(file.as_ref(), reality)?) })
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
@@ -45,12 +46,14 @@ impl CompensationRun {
         not_compensated_json(&self.run, failure)
     }
 
-    /// Finds for every point the pose to command. A point that cannot be compensated keeps its target, and a warning says so.
+    /// Finds for every point the pose to command. A point that cannot be compensated keeps its target, and a warning
+    /// says so.
     ///
     /// # Errors
-    /// [`Error::NotCompensated`] where not one point can be compensated, with the reasons.
-    pub fn compensate(&self) -> Result<CompensatedPath, Error> {
-        let outcome = compensation::compensate(&self.run.job);
+    /// [`Error::NotCompensated`] where not one point can be compensated, with the reasons;
+    /// [`Error::Stopped`] when the monitor asked to stop before the last.
+    pub fn compensate(&self, monitor: &Monitor) -> Result<CompensatedPath, Error> {
+        let outcome = compensation::compensate(&self.run.job, monitor)?;
         match outcome.not_corrected().filter(NotCompensated::is_all) {
             Some(all) => Err(all.into()),
             None => Ok(self.path(outcome)),
@@ -60,9 +63,10 @@ impl CompensationRun {
     /// As [`CompensationRun::compensate`], but every point or none.
     ///
     /// # Errors
-    /// [`Error::NotCompensated`] with the points that cannot be compensated, and why.
-    pub fn compensate_all(&self) -> Result<CompensatedPath, Error> {
-        let outcome = compensation::compensate(&self.run.job).complete()?;
+    /// [`Error::NotCompensated`] with the points that cannot be compensated, and why; [`Error::Stopped`] when the
+    /// monitor asked to stop before the last.
+    pub fn compensate_all(&self, monitor: &Monitor) -> Result<CompensatedPath, Error> {
+        let outcome = compensation::compensate(&self.run.job, monitor)?.complete()?;
         Ok(self.path(outcome))
     }
 
@@ -75,7 +79,7 @@ impl CompensationRun {
 /// A corrected path, with what remains of the deflection.
 #[derive(Debug, Clone)]
 pub struct CompensatedPath {
-    run: Arc<format::CompensateRun>,
+    run: Arc<run_files::CompensateRun>,
     outcome: Outcome,
     notes: Vec<String>,
 }

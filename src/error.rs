@@ -3,6 +3,7 @@
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
 use stead_format::input::InputError;
+use stead_numerics::monitor::Stop;
 use stead_placement::place::Infeasible;
 use stead_report::ReportError;
 use stead_study::cases::StudyError;
@@ -32,6 +33,9 @@ pub enum Error {
     /// A study cannot go on; finished cases are kept.
     #[error(transparent)]
     Study(StudyError),
+    /// The caller stopped a job that has nothing to return before it is done.
+    #[error(transparent)]
+    Stopped(#[from] Stop),
     /// The job itself failed.
     #[error("{0}")]
     Failed(String),
@@ -49,7 +53,11 @@ impl Error {
 
     /// Whether the caller stopped the job before it had a result.
     pub fn is_interrupted(&self) -> bool {
-        matches!(self, Self::Infeasible(nothing) if nothing.interrupted)
+        match self {
+            Self::Stopped(_) | Self::Assessment(AssessError::Interrupted) => true,
+            Self::Infeasible(nothing) => nothing.interrupted,
+            _ => false,
+        }
     }
 
     /// A job that failed, in its own words.
@@ -58,11 +66,11 @@ impl Error {
     }
 }
 
-impl From<stead_format::LocatedError> for Error {
-    fn from(error: stead_format::LocatedError) -> Self {
+impl From<stead_run_files::LocatedError> for Error {
+    fn from(error: stead_run_files::LocatedError) -> Self {
         match error {
-            stead_format::LocatedError::Input(error) => Self::Input(error),
-            stead_format::LocatedError::Job(error) => Self::Failed(error),
+            stead_run_files::LocatedError::Input(error) => Self::Input(error),
+            stead_run_files::LocatedError::Job(error) => Self::Failed(error),
         }
     }
 }

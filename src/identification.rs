@@ -1,27 +1,28 @@
 //! Joint compliances from measurements, and which measurements to take.
 
+use crate::monitor::{Stop, Warning};
 use crate::result::{Report, result};
-use crate::{Error, Monitor, Warning};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stead_calibration::identification::design::{Design, design_experiment};
-use stead_calibration::identification::{Identified, identify};
-use stead_format as format;
+use stead_calibration::identification::design::{Design, DesignError, design_experiment};
+use stead_calibration::identification::{Identified, IdentifyError, identify};
 use stead_report::identification::plan::{keep_readings, plan_files, plan_json, plan_text, write_plan};
 use stead_report::identification::{identified_files, identify_json, identify_text, write_identified};
 use stead_report::{Files, Folder};
+use stead_run_files as run_files;
 
 /// An identification file with the robot and the filled measurement sheet that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct FitRun {
-    run: Arc<format::IdentifyRun>,
+    run: Arc<run_files::IdentifyRun>,
 }
 
 /// An identification file with a table `[plan]` and the robot that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct DesignRun {
-    run: Arc<format::PlanRun>,
+    run: Arc<run_files::PlanRun>,
 }
 
 impl FitRun {
@@ -30,7 +31,7 @@ impl FitRun {
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_identification(file.as_ref())?) })
+        Ok(Self { run: Arc::new(run_files::read_identification(file.as_ref())?) })
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
@@ -41,9 +42,13 @@ impl FitRun {
     /// Fits compliances, gravity compensator and their covariance to the sheet.
     ///
     /// # Errors
-    /// [`Error::Input`] at the line of the sheet that is at fault; [`Error::Failed`] where a sound sheet gives no robot.
-    pub fn fit(&self) -> Result<IdentifiedRobot, Error> {
-        let identified = identify(&self.run.problem).map_err(|error| self.run.locate(error))?;
+    /// [`Error::Input`] at the line of the sheet that is at fault; [`Error::Failed`] where a sound sheet gives no
+    /// robot; [`Error::Stopped`] when the monitor asked to stop.
+    pub fn fit(&self, monitor: &Monitor) -> Result<IdentifiedRobot, Error> {
+        let identified = identify(&self.run.problem, monitor).map_err(|error| match error {
+            IdentifyError::Stopped(stop) => Error::Stopped(stop),
+            error => self.run.locate(error).into(),
+        })?;
         Ok(IdentifiedRobot { run: Arc::clone(&self.run), identified })
     }
 }
@@ -62,7 +67,7 @@ impl DesignRun {
     /// # Errors
     /// As [`DesignRun::read`].
     pub fn read_with(file: impl AsRef<Path>, seed: Option<u64>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_plan(file.as_ref(), seed)?) })
+        Ok(Self { run: Arc::new(run_files::read_plan(file.as_ref(), seed)?) })
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
@@ -70,7 +75,8 @@ impl DesignRun {
         &self.run.notes
     }
 
-    /// Refuses a folder whose measurement sheet has readings in it, which [`MeasurementPlan::write`] would not write over either.
+    /// Refuses a folder whose measurement sheet has readings in it, which [`MeasurementPlan::write`] would not write
+    /// over either.
     ///
     /// # Errors
     /// [`Error::Input`] naming the sheet.
@@ -81,9 +87,13 @@ impl DesignRun {
     /// Chooses the configurations and loads to measure.
     ///
     /// # Errors
-    /// [`Error::Input`] where too little was asked for; [`Error::Failed`] where nothing was found.
+    /// [`Error::Input`] where too little was requested; [`Error::Failed`] where nothing was found;
+    /// [`Error::Stopped`] when the monitor asked to stop before that.
     pub fn plan(&self, monitor: &Monitor) -> Result<MeasurementPlan, Error> {
-        let design = design_experiment(&self.run.request, monitor).map_err(|error| self.run.locate(error))?;
+        let design = design_experiment(&self.run.request, monitor).map_err(|error| match error {
+            DesignError::Stopped => Error::Stopped(monitor.stop().unwrap_or(Stop::Asked)),
+            error => self.run.locate(error).into(),
+        })?;
         Ok(MeasurementPlan { run: Arc::clone(&self.run), design })
     }
 }
@@ -91,14 +101,14 @@ impl DesignRun {
 /// Joint compliances with their covariance, and the robot file that states them.
 #[derive(Debug, Clone)]
 pub struct IdentifiedRobot {
-    run: Arc<format::IdentifyRun>,
+    run: Arc<run_files::IdentifyRun>,
     identified: Identified,
 }
 
 /// Configurations and loads to measure, and what they will tell.
 #[derive(Debug, Clone)]
 pub struct MeasurementPlan {
-    run: Arc<format::PlanRun>,
+    run: Arc<run_files::PlanRun>,
     design: Design,
 }
 

@@ -34,12 +34,12 @@ pub(crate) trait Report {
 macro_rules! result {
     ($($name:ident),+) => { $(
         impl $name {
-            /// Writes the files that the command of the same name leaves, byte for byte, into a folder that is made where it is
-            /// missing, and `manifest.json` with their digests. Returns the paths of the files.
+            /// Writes the files that the command of the same name leaves, byte for byte, into a folder that is made
+            /// where it is missing, and `manifest.json` with their digests. Returns the paths of the files.
             ///
             /// # Errors
-            /// [`Error::Output`](crate::Error::Output): the folder or a file cannot be written, or another run writes to it; no file is
-            /// left half written.
+            /// [`Error::Output`](crate::Error::Output): the folder or a file cannot be written, or another run writes
+            /// to it; no file is left half written.
             pub fn write(
                 &self,
                 folder: impl AsRef<std::path::Path>,
@@ -47,8 +47,8 @@ macro_rules! result {
                 self.write_in(&stead_report::Folder::create(folder.as_ref())?)
             }
 
-            /// As [`write`](Self::write), into a folder that this process holds already: taken before a long job, no other run can
-            /// take it in the meantime.
+            /// As [`write`](Self::write), into a folder that this process holds already: taken before a long job, no
+            /// other run can take it in the meantime.
             ///
             /// # Errors
             /// As [`write`](Self::write).
@@ -56,8 +56,8 @@ macro_rules! result {
                 crate::result::Report::write_files(self, folder)
             }
 
-            /// The names and contents of the files that [`write`](Self::write) leaves, without `manifest.json`: tables as CSV,
-            /// pictures as SVG.
+            /// The names and contents of the files that [`write`](Self::write) leaves, without `manifest.json`: tables
+            /// as CSV, pictures as SVG.
             ///
             /// # Errors
             /// [`Error::Output`](crate::Error::Output): a file cannot be made.
@@ -70,14 +70,14 @@ macro_rules! result {
                 crate::result::Report::document(self)
             }
 
-            /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values left at their
-            /// defaults.
+            /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values
+            /// left at their defaults.
             pub fn notes(&self) -> &[String] {
                 crate::result::Report::notes(self)
             }
 
             /// Why the result may not be what was wanted.
-            pub fn warnings(&self) -> &[crate::Warning] {
+            pub fn warnings(&self) -> &[crate::monitor::Warning] {
                 crate::result::Report::warnings(self)
             }
         }

@@ -1,10 +1,12 @@
 //! Arms alone: the poses of joint angles, and the arms that stead ships with.
 
+pub use stead_format::catalogue::ShippedArm;
+
 use crate::Error;
 use crate::result::{Report, result};
 use serde_json::Value;
 use std::path::Path;
-use stead_format::catalogue::{self, ShippedArm};
+use stead_format::catalogue::{self};
 use stead_format::input::{InputFile, input_file};
 use stead_format::robot::geometry_file;
 use stead_format::spindle::read_spindle;
@@ -14,7 +16,7 @@ use stead_report::robot::{ArmPose, pose_json, pose_text, robots_json, robots_tex
 /// A robot file of which only geometry, limits and controller count: its stiffness need not be known.
 ///
 /// ```
-/// let arm = stead::Arm::read("name:kuka-kr210-r2700")?;
+/// let arm = stead::robot::Arm::read("name:kuka-kr210-r2700")?;
 /// let pose = arm.pose_of_controller([0.0, -90.0, 90.0, 0.0, 0.0, 0.0])?;
 /// // The home pose that every KUKA arm has: the flange looks forwards, its x axis down.
 /// assert_eq!(pose.to_json()["frames"][1]["abc_deg"], serde_json::json!([0.0, 90.0, 0.0]));
@@ -70,7 +72,8 @@ impl Arm {
     /// The same at angles of the controller. deg
     ///
     /// # Errors
-    /// [`Error::Argument`] for an angle that is not finite, and where the robot file does not say how the controller counts.
+    /// [`Error::Argument`] for an angle that is not finite, and where the robot file does not say how the controller
+    /// counts.
     pub fn pose_of_controller(&self, angles_deg: [f64; 6]) -> Result<PoseOfArm, Error> {
         let controller = self.robot.controller().ok_or_else(|| {
             Error::Argument(

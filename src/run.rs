@@ -1,21 +1,22 @@
 //! Placement runs: a robot, a spindle, a tool path and a cell, read from a run file.
 
+use crate::monitor::Warning;
 use crate::result::{Report, result};
 use crate::score::{Explanations, PlacementScore};
-use crate::{Error, Monitor, Warning};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
-use stead_format as format;
+use stead_certify as certify;
+use stead_certify::settings::CertificateSettings;
+use stead_certify::{self, Certificate};
 use stead_format::field::{FieldOverride, FieldOverrides};
-use stead_placement::certify::{self, Certificate};
-use stead_placement::feasibility;
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::place::{Infeasible, setup_at};
-use stead_placement::problem::{Placement, Problem};
-use stead_placement::settings::CertificateSettings;
-use stead_placement::setup::Setup;
+use stead_planning::feasibility;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::setup::Setup;
 use stead_report::certificate::{
     certificate_files, certificate_json, certificate_text, has_certificate, write_certificate,
 };
@@ -23,6 +24,7 @@ use stead_report::document::Timing;
 use stead_report::page::put_page;
 use stead_report::placement::{Context, evaluation, place_json, placement_files, placement_text, write_placement};
 use stead_report::{Files, Folder};
+use stead_run_files as run_files;
 use stead_study::{self as study, Placed, Scored};
 
 /// A run file with the robot and the task that it names, read and checked.
@@ -35,7 +37,7 @@ use stead_study::{self as study, Placed, Scored};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Run {
-    pub(crate) run: Arc<format::Run>,
+    pub(crate) run: Arc<run_files::Run>,
     /// Whether the positions of the external axes are those of a result, and not to be looked for.
     is_set_up: bool,
 }
@@ -44,7 +46,7 @@ impl Run {
     /// The relative size of the force error of `stead place --sensitivity`.
     pub const FORCE_ERROR: f64 = stead_placement::settings::SearchSettings::FORCE_ERROR;
 
-    fn of(run: format::Run) -> Self {
+    pub(crate) fn of(run: run_files::Run) -> Self {
         Self { run: Arc::new(run), is_set_up: false }
     }
 
@@ -53,17 +55,17 @@ impl Run {
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self::of(format::read_run(file.as_ref())?))
+        Ok(Self::of(run_files::read_run(file.as_ref())?))
     }
 
-    /// Reads a run file with values that take the place of its own, or of those of the files that it names: each by its path from the
-    /// run file on.
+    /// Reads a run file with values that take the place of its own, or of those of the files that it names: each by its
+    /// path from the run file on.
     ///
     /// # Errors
     /// As [`Run::read`]; an error in such a value says which it is.
     ///
     /// ```
-    /// use stead::FieldOverride;
+    /// use stead::files::FieldOverride;
     /// let values = ["cell.z_mm=[-602, -402]", "robot.joints[1].stiffness_mnm_per_rad=0.8"];
     /// let values = values.map(FieldOverride::parse).into_iter().collect::<Result<Vec<_>, _>>()?;
     /// let run = stead::Run::read_with("configs/caro-2013.toml", values)?;
@@ -71,7 +73,7 @@ impl Run {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn read_with(file: impl AsRef<Path>, values: Vec<FieldOverride>) -> Result<Self, Error> {
-        Ok(Self::of(format::read_run_with(file.as_ref(), &FieldOverrides(values))?))
+        Ok(Self::of(run_files::read_run_with(file.as_ref(), &FieldOverrides(values))?))
     }
 
     /// The same run with a certificate of this gap (relative), whatever the file says of one.
@@ -83,20 +85,13 @@ impl Run {
         self
     }
 
-    /// Reads a run file to be placed with a certificate of this gap (relative), whatever the file says of one.
-    ///
-    /// # Errors
-    /// As [`Run::read`].
-    pub fn read_to_certify(file: impl AsRef<Path>, gap: f64) -> Result<Self, Error> {
-        Ok(Self::of(format::read_run_to_certify(file.as_ref(), Some(gap))?))
-    }
-
-    /// The gap of a certificate from per cent, for [`Run::read_to_certify`].
+    /// The gap of a certificate from per cent, for [`Run::with_certificate`].
     ///
     /// # Errors
     /// [`Error::Argument`] with the gaps that are allowed.
     pub fn gap(per_cent: f64) -> Result<f64, Error> {
-        let wrong = || Error::Argument(format!("no such gap, found {per_cent} %; allowed: {}", format::GAPS_ALLOWED));
+        let wrong =
+            || Error::Argument(format!("no such gap, found {per_cent} %; allowed: {}", run_files::GAPS_ALLOWED));
         CertificateSettings::gap(per_cent).ok_or_else(wrong)
     }
 
@@ -107,8 +102,8 @@ impl Run {
         self
     }
 
-    /// The same run with the basins of the best placement refined once more where scores have to cover force errors of a
-    /// relative size, to see how far the optimum moves.
+    /// The same run with the basins of the best placement refined once more where scores have to cover force errors of
+    /// a relative size, to see how far the optimum moves.
     #[must_use]
     pub fn with_sensitivity(mut self, force_error: f64) -> Self {
         Arc::make_mut(&mut self.run).search.sensitivity = Some(force_error);
@@ -140,14 +135,14 @@ impl Run {
         self
     }
 
-    /// The same run with part and external axes set up as for case 1 (the best) or 3 (the worst) in a results folder that `stead place` has
-    /// written from the same files; with the exact placement of the case. A search that was interrupted, and a run file that has changed
-    /// since in keys on which no score depends, are notes of the run.
+    /// The same run with part and external axes set up as for case 1 (the best) or 3 (the worst) in a results folder
+    /// that `stead place` has written from the same files; with the exact placement of the case. A search that was
+    /// interrupted, and a run file that has changed since in keys on which no score depends, are notes of the run.
     ///
     /// # Errors
     /// [`Error::Input`] for a folder that is no such result, or one of other files.
     pub fn set_up_as_in(mut self, results: impl AsRef<Path>, case: u8) -> Result<(Self, Placement), Error> {
-        let (placement, setup, notes) = format::read_setup_of(results.as_ref(), case, &self.run)?;
+        let (placement, setup, notes) = run_files::read_setup_of(results.as_ref(), case, &self.run)?;
         let problem = self.run.problem.in_setup(&setup).into_owned();
         let run = Arc::make_mut(&mut self.run);
         run.problem = problem;
@@ -157,13 +152,13 @@ impl Run {
     }
 
     /// The run with the external axes where a given placement is best, unless they are set up already.
-    fn set_up_at(&self, placement: &Placement, monitor: &Monitor) -> Arc<format::Run> {
+    fn set_up_at(&self, placement: &Placement, monitor: &Monitor) -> Arc<run_files::Run> {
         let problem = &self.run.problem;
         if self.is_set_up || problem.external_axes.is_empty() {
             return Arc::clone(&self.run);
         }
         let problem = problem.in_setup(&setup_at(problem, placement, monitor)).into_owned();
-        Arc::new(format::Run { problem, ..(*self.run).clone() })
+        Arc::new(run_files::Run { problem, ..(*self.run).clone() })
     }
 
     /// The same run without a page among its files, whatever the file says of one.
@@ -190,9 +185,9 @@ impl Run {
 }
 
 impl Run {
-    /// Searches for the best and the worst placement ([`Run::without_worst`]: the best alone), each with its best and its worst
-    /// redundancy plan; with the certificate, where the run file asks for one. A stop that the monitor asks for leaves the best found
-    /// so far.
+    /// Searches for the best and the worst placement ([`Run::without_worst`]: the best alone), each with its best and
+    /// its worst redundancy plan; with the certificate, where the run file asks for one. A stop that the monitor asks
+    /// for leaves the best found so far.
     ///
     /// # Errors
     /// [`Error::Infeasible`] when no placement met satisfies the constraints.
@@ -216,7 +211,8 @@ impl Run {
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
     }
 
-    /// Why the run cannot be certified, where it asks for a certificate and that is so: to be said before a long search.
+    /// Why the run cannot be certified, where it asks for a certificate and that is so: to be said before a long
+    /// search.
     pub fn certificate_warning(&self) -> Option<Warning> {
         let settings = self.run.certificate?;
         certify::certifiable(self.problem(), settings.memory).err().map(|reason| certify::no_certificate(&reason))
@@ -227,33 +223,27 @@ impl Run {
         study::outside_cell(&self.run, placement)
     }
 
-    /// The JSON document in place of a result where no placement satisfies the constraints: which constraint fails at which
-    /// points.
+    /// The JSON document in place of a result where no placement satisfies the constraints: which constraint fails at
+    /// which points.
     pub fn infeasible_json(&self, nothing: &Infeasible) -> Value {
         evaluation::infeasible_json(nothing, &Context::new(&self.run, self.run.search))
     }
 
-    /// The exact placement of case 1 (the best) or 3 (the worst) in a results folder that `stead place` has written from the same files.
+    /// The exact placement of case 1 (the best) or 3 (the worst) in a results folder that `stead place` has written
+    /// from the same files.
     ///
     /// # Errors
     /// [`Error::Input`] for a folder that is no such result, or one of other files.
     pub fn placement_of(&self, results: impl AsRef<Path>, case: u8) -> Result<Placement, Error> {
-        Ok(format::read_placement_of(results.as_ref(), case, &self.run)?)
+        Ok(run_files::read_placement_of(results.as_ref(), case, &self.run)?)
     }
 
-    /// Plans a given placement, best and worst.
+    /// Plans a given placement, best and worst: external axes stand where it is best, unless a result says where
+    /// ([`Run::set_up_as_in`]). A stop that the monitor asks for leaves out the critical depths.
     ///
     /// # Errors
     /// [`Error::Infeasible`] with the constraint that fails at which points.
-    pub fn score(&self, placement: &Placement) -> Result<PlacementScore, Error> {
-        self.score_with(placement, &Monitor::silent())
-    }
-
-    /// As [`Run::score`]: external axes stand where the placement is best, unless a result says where ([`Run::set_up_as_in`]). A stop that the monitor asks for leaves out the critical depths.
-    ///
-    /// # Errors
-    /// As [`Run::score`].
-    pub fn score_with(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
+    pub fn score(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
         let run = self.set_up_at(placement, monitor);
         let Scored { score, stability, notes } = study::score(&run, placement, monitor)?;
         let warnings = score.warnings.clone();
@@ -284,7 +274,7 @@ impl Run {
 /// The best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
 #[derive(Debug, Clone)]
 pub struct Placements {
-    run: Arc<format::Run>,
+    run: Arc<run_files::Run>,
     outcome: Outcome,
     context: Context,
     timing: Timing,
@@ -297,8 +287,8 @@ impl Placements {
         &self.outcome
     }
 
-    /// The four cases: best placement with best and worst plan, worst placement with best and worst plan; the first two where the worst
-    /// placement was not looked for.
+    /// The four cases: best placement with best and worst plan, worst placement with best and worst plan; the first two
+    /// where the worst placement was not looked for.
     pub fn cases(&self) -> &Cases {
         &self.outcome.cases
     }
@@ -308,14 +298,15 @@ impl Placements {
         self.timing
     }
 
-    /// Bounds how far these placements are from the best and the worst possible, as the run file asks, or within the gap given when
-    /// it was read; does nothing where neither asks for it. What falls short is among the certificate's warnings.
+    /// Bounds how far these placements are from the best and the worst possible, as the run file asks, or within the
+    /// gap given when it was read; does nothing where neither asks for it. What falls short is among the certificate's
+    /// warnings.
     pub fn certify(&mut self, monitor: &Monitor) -> Option<&Certificate> {
         let settings = self.run.certificate?;
         let Cases { best, worst, .. } = &self.outcome.cases;
-        let found = (&best.placement, best.plan.mean);
-        let worst = worst.as_ref().map(|[case, _]| &case.placement);
-        self.certificate = Some(certify::certify(&self.run.problem, found, worst, settings, monitor));
+        let worst = worst.as_ref().map(|worst| &worst.best.placement);
+        self.certificate =
+            Some(certify::certify(&self.run.problem, &best.placement, best.plan.mean, worst, settings, monitor));
         self.certificate.as_ref()
     }
 
@@ -324,7 +315,8 @@ impl Placements {
         self.certificate.as_ref().map(certificate_text)
     }
 
-    /// Writes the files of the certificate alone, if there is one, to the files of these placements or where there are no results.
+    /// Writes the files of the certificate alone, if there is one, to the files of these placements or where there are
+    /// no results.
     ///
     /// # Errors
     /// [`Error::Output`]: the folder or a file cannot be written, or has results of another run.
@@ -343,8 +335,9 @@ impl Placements {
         Ok(write_certificate(folder, problem, certificate, &self.run.inputs, (files, self.outcome.interrupted))?)
     }
 
-    /// Whether a certificate is asked for and a folder has finished results with one, which stay there until the new one is there, too: then
-    /// nothing is to be written before [`certify`](Self::certify), and all with [`write_in`](Self::write_in) after it.
+    /// Whether a certificate is requested and a folder has finished results with one, which stay there until the new
+    /// one is there, too: then nothing is to be written before [`certify`](Self::certify), and all with
+    /// [`write_in`](Self::write_in) after it.
     ///
     /// # Errors
     /// [`Error::Output`]: the manifest of the folder cannot be read.
@@ -352,7 +345,7 @@ impl Placements {
         Ok(self.run.certificate.is_some() && has_certificate(folder)?)
     }
 
-    /// How far from the best and the worst possible these placements are, where that was asked for.
+    /// How far from the best and the worst possible these placements are, where that was requested.
     pub fn certificate(&self) -> Option<&Certificate> {
         self.certificate.as_ref()
     }

@@ -1,22 +1,23 @@
 //! What a given placement comes to, and what the postures give at one state.
 
+use crate::monitor::Warning;
 use crate::result::{Report, result};
-use crate::{Error, Monitor, Warning};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
-use stead_format as format;
-use stead_placement::feasibility::{self, DeflectionMap, Explanation};
 use stead_placement::outcome::left_out;
 use stead_placement::place::Score;
-use stead_placement::problem::Placement;
+use stead_planning::feasibility::{self, DeflectionMap, Explanation};
+use stead_planning::problem::Placement;
 use stead_report::placement::{Context, evaluation, score_files, write_score};
 use stead_report::{Files, Folder};
+use stead_run_files as run_files;
 
 /// A given placement with its best and its worst plan.
 #[derive(Debug, Clone)]
 pub struct PlacementScore {
-    pub(crate) run: Arc<format::Run>,
+    pub(crate) run: Arc<run_files::Run>,
     pub(crate) score: Score,
     pub(crate) map: Option<DeflectionMap>,
     pub(crate) context: Context,
@@ -38,8 +39,8 @@ impl PlacementScore {
         &self.score
     }
 
-    /// Makes the deflection map of the placement, to be written with the plans; does nothing where the run file does without. A stop that
-    /// the monitor asks for leaves out the map of a long path.
+    /// Makes the deflection map of the placement, to be written with the plans; does nothing where the run file does
+    /// without. A stop that the monitor asks for leaves out the map of a long path.
     pub fn map(&mut self, monitor: &Monitor) {
         if !self.run.maps {
             return;

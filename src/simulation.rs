@@ -1,34 +1,39 @@
 //! One milling pass of an arm that yields: simulated in time, and whether small motions die out.
 
+pub use stead_run_files::Overrides;
+pub use stead_simulation::arm::Variant;
+pub use stead_simulation::{outcome, stability_analysis};
+
+use crate::monitor::Warning;
 use crate::result::{Report, result};
-use crate::{Error, Warning};
+use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
-use stead_format::Overrides;
 use stead_report::simulation::{Making, simulation_files, simulation_text, timed_json, write_simulation};
 use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
 use stead_report::{Files, Folder};
-use stead_simulation::arm::Variant;
-use stead_simulation::coupled::Job;
+use stead_run_files as run_files;
+use stead_simulation::coupled::{Job, JobError};
 use stead_simulation::outcome::Simulation;
-use stead_simulation::stability_analysis::{self, StabilityAnalysis as Analysis};
+use stead_simulation::stability_analysis::{StabilityAnalysis as Analysis, StabilityError};
 
 /// A simulation file with its robot, read and checked for a simulation in time.
 #[derive(Debug, Clone)]
 pub struct SimulationRun {
-    run: Arc<format::SimulationRun>,
+    run: Arc<run_files::SimulationRun>,
 }
 
 /// A simulation file with its robot, read and checked for an analysis of stability, which takes no time steps.
 #[derive(Debug, Clone)]
 pub struct StabilityRun {
-    run: Arc<format::SimulationRun>,
+    run: Arc<run_files::SimulationRun>,
 }
 
-/// Values in place of a simulation file's: the variant of the arm by its name, the factor on all damping and the spindle speed in rev/min.
+/// Values in place of a simulation file's: the variant of the arm by its name, the factor on all damping and the
+/// spindle speed in rev/min.
 ///
 /// # Errors
 /// [`Error::Argument`] with the values that are allowed.
@@ -43,8 +48,8 @@ pub fn overrides(
     let named = |name: &str| Variant::ALL.into_iter().find(|variant| variant.word() == name);
     let known = || Variant::ALL.map(Variant::word).join(", ");
     let variant = variant.map(|name| named(name).ok_or_else(|| wrong("variant", name.to_owned(), known())));
-    if let Some(scale) = damping_scale.filter(|scale| !(0.0..=format::MAX_DAMPING_SCALE).contains(scale)) {
-        let allowed = format!("a number from 0 to {}", format::MAX_DAMPING_SCALE);
+    if let Some(scale) = damping_scale.filter(|scale| !(0.0..=run_files::MAX_DAMPING_SCALE).contains(scale)) {
+        let allowed = format!("a number from 0 to {}", run_files::MAX_DAMPING_SCALE);
         return Err(wrong("factor on damping", scale.to_string(), allowed));
     }
     if let Some(rpm) = spindle_rpm.filter(|rpm| !(*rpm > 0.0 && *rpm <= format::MAX_SPINDLE_SPEED_RPM)) {
@@ -69,35 +74,36 @@ impl SimulationRun {
     /// # Errors
     /// As [`SimulationRun::read`].
     pub fn read_with(file: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_simulation(file.as_ref(), overrides)?) })
+        Ok(Self { run: Arc::new(run_files::read_simulation(file.as_ref(), overrides)?) })
     }
 
     /// Simulates the pass with the whole kinematic chain.
     ///
     /// # Errors
-    /// [`Error::Failed`] for a pass too short to be judged.
-    pub fn simulate(&self) -> Result<SimulatedPass, Error> {
-        self.run_with(false)
+    /// [`Error::Failed`] for a pass too short to be judged; [`Error::Stopped`] when the monitor asked to stop.
+    pub fn simulate(&self, monitor: &Monitor) -> Result<SimulatedPass, Error> {
+        self.run_with(false, monitor)
     }
 
     /// Simulates the pass with the condensed model: mass matrix and Jacobian frozen every few millimetres.
     ///
     /// # Errors
     /// As [`SimulationRun::simulate`].
-    pub fn simulate_condensed(&self) -> Result<SimulatedPass, Error> {
-        self.run_with(true)
+    pub fn simulate_condensed(&self, monitor: &Monitor) -> Result<SimulatedPass, Error> {
+        self.run_with(true, monitor)
     }
 
-    fn run_with(&self, is_fast: bool) -> Result<SimulatedPass, Error> {
+    fn run_with(&self, is_fast: bool, monitor: &Monitor) -> Result<SimulatedPass, Error> {
         let run = &self.run;
         let job = Job { setup: &run.setup, cutter: &run.cutter, cut: &run.cut, gap: run.gap };
         let start = Instant::now();
-        let pass = if is_fast { job.run_fast() } else { job.run() };
+        let pass = if is_fast { job.run_fast(monitor) } else { job.run(monitor) };
         let making = Making { is_fast, wall: start.elapsed().as_secs_f64() };
-        let simulation = pass
-            .map_err(Into::into)
-            .and_then(|pass| Simulation::of(&job, &run.evaluation, pass))
-            .map_err(Error::failed)?;
+        let pass = pass.map_err(|error| match error {
+            JobError::Stopped(stop) => Error::Stopped(stop),
+            error => Error::failed(error),
+        })?;
+        let simulation = Simulation::of(&job, &run.evaluation, pass).map_err(Error::failed)?;
         Ok(SimulatedPass { run: Arc::clone(run), simulation, making })
     }
 }
@@ -116,17 +122,21 @@ impl StabilityRun {
     /// # Errors
     /// As [`StabilityRun::read`].
     pub fn read_with(file: impl AsRef<Path>, overrides: &Overrides) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(format::read_stability(file.as_ref(), overrides)?) })
+        Ok(Self { run: Arc::new(run_files::read_stability(file.as_ref(), overrides)?) })
     }
 
     /// Modes of the arm, frequency response at the tip, critical depth and stability lobes.
     ///
     /// # Errors
-    /// [`Error::Failed`] for an arm that says too little, or a cut without width.
-    pub fn analyse(&self) -> Result<StabilityAnalysis, Error> {
+    /// [`Error::Failed`] for an arm that says too little, or a cut without width; [`Error::Stopped`] when the monitor
+    /// asked to stop.
+    pub fn analyse(&self, monitor: &Monitor) -> Result<StabilityAnalysis, Error> {
         let run = &self.run;
-        let analysis =
-            stability_analysis::analyse(&run.setup, &run.cutter, &run.cut, &run.analysis).map_err(Error::failed)?;
+        let analysis = stability_analysis::analyse(&run.setup, &run.cutter, &run.cut, &run.analysis, monitor);
+        let analysis = analysis.map_err(|error| match error {
+            StabilityError::Stopped(stop) => Error::Stopped(stop),
+            error => Error::failed(error),
+        })?;
         Ok(StabilityAnalysis { run: Arc::clone(run), analysis })
     }
 }
@@ -134,7 +144,7 @@ impl StabilityRun {
 /// A simulated pass: forces, the wall that is left, and whether the cut stayed calm.
 #[derive(Debug, Clone)]
 pub struct SimulatedPass {
-    run: Arc<format::SimulationRun>,
+    run: Arc<run_files::SimulationRun>,
     simulation: Simulation,
     making: Making,
 }
@@ -142,7 +152,7 @@ pub struct SimulatedPass {
 /// Whether a cut chatters.
 #[derive(Debug, Clone)]
 pub struct StabilityAnalysis {
-    run: Arc<format::SimulationRun>,
+    run: Arc<run_files::SimulationRun>,
     analysis: Analysis,
 }
 

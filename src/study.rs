@@ -1,5 +1,12 @@
 //! Studies: many cases of one run.
 
+pub use stead_run_files::study::{AxisValue, StudyCase};
+pub use stead_study::analysis::{Analysis as StudyAnalysis, Question as StudyQuestion, SEARCH_NOISE};
+pub use stead_study::cases::{
+    Cell, Column, Finished, Kind as ColumnKind, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table,
+    slurm_script,
+};
+
 use crate::result::{Report, result};
 use crate::{Error, Monitor};
 use serde_json::Value;
@@ -7,20 +14,18 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
-use stead_format as format;
+use stead_certify::Certificate;
 use stead_format::files;
 use stead_format::input::{InputFile, input_file};
 use stead_format::manifest::{self, Unlisted};
-use stead_placement::certify::Certificate;
 use stead_report::certificate::write_certificate;
 use stead_report::placement::{Context, placement_files, write_placement};
 use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
 use stead_report::{Files, Folder};
+use stead_run_files as run_files;
 use stead_study::Placed;
 use stead_study::analysis::{Analysis, Question};
-use stead_study::cases::{
-    self, Finished, Keeping, Plan, PlannedCase, RunSettings, Shard, StudyError, StudyStatus, Table,
-};
+use stead_study::cases::{self, Keeping, Plan, RunSettings};
 
 /// A study file with all its cases, read and checked.
 ///
@@ -38,10 +43,10 @@ impl Study {
     /// Reads a study file, the run file that it varies, and every case once.
     ///
     /// # Errors
-    /// [`Error::Input`] with file, line, field, value found and what is allowed, and where a case is wrong with its combination of
-    /// values.
+    /// [`Error::Input`] with file, line, field, value found and what is allowed, and where a case is wrong with its
+    /// combination of values.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self { plan: Arc::new(Plan::of(format::read_study(file.as_ref())?)?) })
+        Ok(Self { plan: Arc::new(Plan::of(run_files::read_study(file.as_ref())?)?) })
     }
 
     /// All cases, in the order of their numbers.
@@ -54,15 +59,17 @@ impl Study {
         &self.plan.study.axes
     }
 
-    /// Does what is left to do of a shard, on the threads of the rayon pool that it is called in, and writes the table of results once
-    /// every case is done. It may be killed at any moment and goes on where it was; a stop that the monitor asks for is answered soon.
+    /// Does what is left to do of a shard, on the threads of the rayon pool that it is called in, and writes the table
+    /// of results once every case is done. It may be killed at any moment and goes on where it was; a stop that the
+    /// monitor asks for is answered soon.
     ///
     /// # Errors
-    /// [`Error::Study`]: the folder of another study, a shard that another process works on, a disk that is full; finished cases are
-    /// kept.
+    /// [`Error::Study`]: the folder of another study, a shard that another process works on, a disk that is full;
+    /// finished cases are kept.
     ///
     /// ```no_run
-    /// use stead::{Monitor, Shard, Study};
+    /// use stead::{Monitor, Study};
+    /// use stead::study::Shard;
     /// let study = Study::read("configs/study-example.toml")?;
     /// let finished = study.run("results/study-example", Shard::WHOLE, &Monitor::silent())?;
     /// assert!(finished.is_complete);
@@ -84,11 +91,13 @@ impl Study {
         Ok(StudyStatus { stale: self.folder(folder).stale(&self.plan), ..cases::status(&self.plan, folder)? })
     }
 
-    /// Removes the kept cases in a folder that the study as it is now has not: those of values that an edit has changed. Only what
-    /// `manifest.json` lists is removed; a folder that something else is in stays. Returns the folders that are gone.
+    /// Removes the kept cases in a folder that the study as it is now has not: those of values that an edit has
+    /// changed. Only what `manifest.json` lists is removed; a folder that something else is in stays. Returns the
+    /// folders that are gone.
     ///
     /// # Errors
-    /// As [`Study::status`], and [`Error::Output`] for a case that another process writes, or one that cannot be removed.
+    /// As [`Study::status`], and [`Error::Output`] for a case that another process writes, or one that cannot be
+    /// removed.
     pub fn prune(&self, folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
         let folder = folder.as_ref();
         let stale = self.status(folder)?.stale;
@@ -111,8 +120,8 @@ impl Study {
     /// The table of results, one row for each case; nothing as long as cases are missing.
     ///
     /// # Errors
-    /// As [`Study::status`]; [`Error::Input`] too where `study.csv` or `study.parquet` is there and not as its run has left it, by
-    /// `manifest.json`: cut short, changed, or of two runs.
+    /// As [`Study::status`]; [`Error::Input`] too where `study.csv` or `study.parquet` is there and not as its run has
+    /// left it, by `manifest.json`: cut short, changed, or of two runs.
     pub fn results(&self, folder: impl AsRef<Path>) -> Result<Option<Table>, Error> {
         let folder = folder.as_ref();
         for file in cases::TABLES.map(|name| folder.join(name)) {
@@ -123,7 +132,8 @@ impl Study {
         Ok(cases::merged(&self.plan, folder)?)
     }
 
-    /// Writes `study.csv`, `study.parquet` and `study-timing.csv` from the shards where every case is done, and says whether it is so.
+    /// Writes `study.csv`, `study.parquet` and `study-timing.csv` from the shards where every case is done, and says
+    /// whether it is so.
     ///
     /// # Errors
     /// As [`Study::status`], and where a file cannot be written.
@@ -132,14 +142,16 @@ impl Study {
         Ok(cases::merge(&self.plan, folder, &self.folder(folder))?)
     }
 
-    /// What a study that is done says: which layout is best, which compromises there are, what each axis does, and what failed and why.
+    /// What a study that is done says: which layout is best, which compromises there are, what each axis does, and what
+    /// failed and why.
     ///
     /// # Errors
-    /// As [`Study::results`]; [`Error::Study`] too where cases are missing; [`Error::Argument`] for a column or an axis that is not there,
-    /// or a column without numbers.
+    /// As [`Study::results`]; [`Error::Study`] too where cases are missing; [`Error::Argument`] for a column or an axis
+    /// that is not there, or a column without numbers.
     ///
     /// ```no_run
-    /// use stead::{Study, StudyQuestion};
+    /// use stead::Study;
+    /// use stead::study::StudyQuestion;
     /// let study = Study::read("configs/study-example.toml")?;
     /// let question = StudyQuestion { by: Some("best_max_total_mm".to_owned()), ..StudyQuestion::default() };
     /// let report = study.report("results/study-example", &question)?;
@@ -281,7 +293,7 @@ impl Keeping for StudyFolder<'_> {
     fn keep(
         &self,
         case: &PlannedCase,
-        run: &format::Run,
+        run: &run_files::Run,
         placed: Placed,
         certificate: Option<Certificate>,
     ) -> Result<(), String> {

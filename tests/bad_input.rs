@@ -1,5 +1,5 @@
-//! Bad input from outside: exit code 2, a message that says what and where, nothing on standard output, and every file of
-//! the user as it was.
+//! Bad input from outside: exit code 2, a message that says what and where, nothing on standard output, and every file
+//! of the user as it was.
 
 use crate::common::{Bench, Ended, RUN};
 

@@ -235,7 +235,7 @@ fn a_time_limit_ends_long_stages() {
     assert!((0.5..6.0).contains(&wall), "{wall} s");
 }
 
-/// A gap finer than the tables can tell apart.
+/// A gap finer than the tables can distinguish.
 #[test]
 fn a_gap_too_fine_leaves_what_is_reached_and_says_so() {
     let bench = bench();

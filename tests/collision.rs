@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::Posture;
-use stead_placement::problem::{Placement, Problem};
+use stead_planning::problem::{Placement, Problem};
 
 /// What is drawn from each cell.
 const STATES: usize = 300;
@@ -20,7 +20,7 @@ fn drawn(problem: &Problem, random: &mut ChaCha8Rng) -> (usize, Placement, Optio
     let point = random.random_range(0..problem.task.points().len());
     let beta = std::f64::consts::TAU * random.random::<f64>();
     let posture = Posture::ALL[random.random_range(0..8)];
-    let joints = problem.robot.inverse(&problem.base_from_flange(point, &placement, beta), posture).ok();
+    let joints = problem.robot.inverse(&problem.at(&placement).base_from_flange(point, beta), posture).ok();
     (point, placement, joints)
 }
 

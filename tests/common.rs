@@ -121,8 +121,8 @@ impl From<std::process::Output> for Ended {
 }
 
 impl Ended {
-    /// Standard error but for notes that the published case may have: that the scored part is small beside the whole deflection, that collisions were
-    /// not checked, and how calm its plan is.
+    /// Standard error but for notes that the published case may have: that the scored part is small beside the whole
+    /// deflection, that collisions were not checked, and how calm its plan is.
     pub fn said(&self) -> String {
         let expected = [
             "note: the scored part of the deflection, ",
@@ -150,7 +150,8 @@ impl Ended {
     }
 }
 
-/// Asserts that a JSON document has the layout's number, the version, the inputs with their digests, and notes and warnings.
+/// Asserts that a JSON document has the layout's number, the version, the inputs with their digests, and notes and
+/// warnings.
 pub fn assert_states_its_origin(document: &serde_json::Value) {
     assert_eq!(document["format"], 1, "{document}");
     assert_eq!(document["version"], env!("CARGO_PKG_VERSION"));
@@ -162,4 +163,23 @@ pub fn assert_states_its_origin(document: &serde_json::Value) {
     for key in ["notes", "warnings"] {
         assert!(document[key].as_array().unwrap().iter().all(|message| message.is_string()), "{key}");
     }
+}
+
+/// The files of the repository whose names end so, without what is built or fetched.
+pub fn files_with(ending: &str) -> Vec<PathBuf> {
+    let (mut folders, mut found) = (vec![PathBuf::from(env!("CARGO_MANIFEST_DIR"))], Vec::new());
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()) {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            if path.is_dir()
+                && !name.starts_with('.')
+                && !["target", "node_modules", "results"].contains(&name.as_str())
+            {
+                folders.push(path);
+            } else if name.ends_with(ending) {
+                found.push(path);
+            }
+        }
+    }
+    found
 }

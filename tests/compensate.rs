@@ -1,12 +1,14 @@
-//! `stead compensate` from outside: the corrected path of the shipped plan, what remains of it in reality, and what is refused.
+//! `stead compensate` from outside: the corrected path of the shipped plan, what remains of it in reality, and what is
+//! refused.
 
 use crate::common::{Bench, Ended};
 use nalgebra::Vector3;
 use std::path::Path;
-use stead_format::{read_robot, read_run};
+use stead_format::read_robot;
 use stead_model::robot::angles::wrap;
 use stead_model::stiffness::equilibrium::{Load, equilibrium};
-use stead_placement::problem::{Placement, Problem};
+use stead_planning::problem::{Placement, Problem};
+use stead_run_files::read_run;
 
 const CONFIG: &str = "configs/compensate.toml";
 const PLAN: &str = "plan/best.csv";
@@ -129,7 +131,7 @@ fn the_corrected_path_brings_the_loaded_tool_to_the_plan() {
     assert!((sum / 105.0 - number(&document, "/before/mean_mm")).abs() < 1e-6);
 
     let picture = bench.read("out/compensation.svg");
-    for part in ["Deflection before and after compensation", "path point", "normal part (mm)", "100.0 % less"] {
+    for part in ["Deflection before and after", "path point", "Normal to the feed before and after", "100.0 % less"] {
         assert!(picture.contains(part), "{part}");
     }
     bench.stead(&["compensate", CONFIG, "--out", "again"]);

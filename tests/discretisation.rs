@@ -2,10 +2,10 @@
 
 use serde_json::Value;
 use std::path::Path;
-use stead_format::read_run;
-use stead_placement::problem::{Placement, Problem};
-use stead_placement::redundancy::Planner;
-use stead_placement::sense::Sense;
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
+use stead_run_files::read_run;
 
 /// The mean of the final plan at a placement, m.
 fn mean(planner: &Planner<'_>, placement: &Placement, sense: Sense) -> f64 {
@@ -31,7 +31,7 @@ fn cost_of_the_grid(run: &str, case: usize) -> f64 {
     let planner = Planner::finer(&problem);
     let own = mean(&planner, &placement, sense);
     let step = planner.grid().beta_step() / 4.0;
-    let finer = Problem { redundancy: problem.redundancy.divided(step), ..problem.clone() };
+    let finer = problem.changed(|parts| parts.redundancy = parts.redundancy.divided(step)).unwrap();
     let planner_of_finer = Planner::finer(&finer);
     assert_eq!(planner_of_finer.grid().beta_count, 4 * planner.grid().beta_count);
     let better = mean(&planner_of_finer, &placement, sense);

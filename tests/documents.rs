@@ -1,6 +1,6 @@
 //! The figures in the documents are those of the results that are shipped with them.
 
-use crate::common::assert_states_its_origin;
+use crate::common::{assert_states_its_origin, files_with};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -144,4 +144,34 @@ fn every_shipped_document_states_its_origin() {
         let document = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
         assert_states_its_origin(&document);
     }
+}
+
+/// Lines of guide, README and ARCHITECTURE and of comments in Rust files are within 120 columns, but for rows of tables
+/// and for what cannot be broken, as a link.
+#[test]
+fn comments_and_pages_are_within_120_columns() {
+    let (mut long, mut lines) = (Vec::new(), 0);
+    let is_page = |path: &PathBuf| {
+        let of_the_guide = path.parent().is_some_and(|folder| folder.ends_with("src/guide"));
+        of_the_guide || ["README.md", "ARCHITECTURE.md"].iter().any(|name| *path == root().join(name))
+    };
+    let pages = files_with(".md").into_iter().filter(is_page);
+    for (path, is_code) in files_with(".rs").into_iter().map(|path| (path, true)).chain(pages.map(|path| (path, false)))
+    {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (number, line) in text.lines().enumerate() {
+            let words = line.trim_start();
+            if is_code && !words.starts_with("//") {
+                continue;
+            }
+            lines += 1;
+            let words =
+                if is_code { words.trim_start_matches('/').trim_start_matches('!').trim_start() } else { words };
+            if line.chars().count() > 120 && !words.starts_with('|') && words.contains(' ') {
+                long.push(format!("{}:{}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(long.is_empty(), "{} lines: {long:#?}", long.len());
+    assert!(lines > 10_000, "{lines}");
 }

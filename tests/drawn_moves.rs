@@ -4,7 +4,7 @@ use crate::collision::{RUN, shipped};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use stead_cell::Scene;
-use stead_placement::problem::{Placement, Problem};
+use stead_planning::problem::{Placement, Problem};
 
 type Joints = [f64; 6];
 
@@ -37,7 +37,8 @@ fn drawn(file: &[u8]) -> Vec<Joints> {
     (0..all[0].len()).map(|key| std::array::from_fn(|j| all[j][key])).collect()
 }
 
-/// The least distance of two shapes on joint moves from each of these places to the next, in steps of 0.02 rad at the most. m
+/// The least distance of two shapes on joint moves from each of these places to the next, in steps of 0.02 rad at the
+/// most. m
 fn least(problem: &Problem, placement: &Placement, places: &[Joints]) -> f64 {
     let scene: &Scene = problem.scene.as_deref().unwrap();
     let mut least = f64::INFINITY;

@@ -3,10 +3,11 @@
 use crate::common::{Bench, RUN};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use stead::{
-    AssessmentRun, CompensationRun, DesignRun, FitRun, Monitor, Placement, Profile, Run, Sector, SimulationRun,
-    StabilityRun,
-};
+use std::time::Instant;
+use stead::circularity::{Profile, Sector};
+use stead::files::Existing;
+use stead::program::{ExportOptions, ProgramFormat, ReadBackOptions};
+use stead::{AssessmentRun, CompensationRun, DesignRun, FitRun, Monitor, Placement, Run, SimulationRun, StabilityRun};
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -35,7 +36,7 @@ fn results_write_what_the_commands_left() {
     let configs = root().join("configs");
     let monitor = Monitor::silent();
     assert_writes_the_results("identify-example", |folder| {
-        FitRun::read(configs.join("identify-example.toml")).unwrap().fit().unwrap().write(folder).unwrap();
+        FitRun::read(configs.join("identify-example.toml")).unwrap().fit(&monitor).unwrap().write(folder).unwrap();
     });
     assert_writes_the_results("identify-plan-example", |folder| {
         let run = DesignRun::read(configs.join("identify-plan-example.toml")).unwrap();
@@ -43,23 +44,68 @@ fn results_write_what_the_commands_left() {
     });
     assert_writes_the_results("compensate-caro-2013", |folder| {
         let run = CompensationRun::read(configs.join("compensate-caro-2013.toml")).unwrap();
-        run.compensate().unwrap().write(folder).unwrap();
+        run.compensate(&monitor).unwrap().write(folder).unwrap();
     });
     assert_writes_the_results("horizontal-slot", |folder| {
         let run = AssessmentRun::read(configs.join("horizontal-slot.toml")).unwrap();
         run.assess(&monitor).unwrap().write(folder).unwrap();
     });
     assert_writes_the_results("umons-aluminium", |folder| {
-        SimulationRun::read(configs.join("umons-aluminium.toml")).unwrap().simulate().unwrap().write(folder).unwrap();
+        SimulationRun::read(configs.join("umons-aluminium.toml"))
+            .unwrap()
+            .simulate(&monitor)
+            .unwrap()
+            .write(folder)
+            .unwrap();
     });
     assert_writes_the_results("umons-aluminium-stability", |folder| {
-        StabilityRun::read(configs.join("umons-aluminium.toml")).unwrap().analyse().unwrap().write(folder).unwrap();
+        StabilityRun::read(configs.join("umons-aluminium.toml"))
+            .unwrap()
+            .analyse(&monitor)
+            .unwrap()
+            .write(folder)
+            .unwrap();
     });
     assert_writes_the_results("measured-groove", |folder| {
         let burr = Sector { start: 354_f64.to_radians(), width: 13_f64.to_radians() };
         let profile = Profile::read(root().join("tasks/measured-groove.csv")).unwrap();
         profile.circularity(&[burr]).unwrap().write(folder).unwrap();
     });
+}
+
+#[test]
+fn a_job_that_is_stopped_says_so_and_is_no_bad_input() {
+    let configs = root().join("configs");
+    let run = Run::read(configs.join("caro-2013.toml")).unwrap();
+    let plan = root().join("results/caro-2013/best.csv");
+    let folder = tempfile::tempdir().unwrap();
+    let program = run.export(&plan, &ExportOptions::new(ProgramFormat::Csv, "PART"), &Monitor::silent()).unwrap();
+    let main = program.write(folder.path(), Existing::Kept).unwrap().files.remove(0);
+    let compensation = CompensationRun::read(configs.join("compensate-caro-2013.toml")).unwrap();
+    let simulation = SimulationRun::read(configs.join("umons-aluminium.toml")).unwrap();
+    let stability = StabilityRun::read(configs.join("umons-aluminium.toml")).unwrap();
+    let (fit, design) = (configs.join("identify-example.toml"), configs.join("identify-plan-example.toml"));
+    let (fit, design) = (FitRun::read(fit).unwrap(), DesignRun::read(design).unwrap());
+    let requested = Monitor::silent();
+    requested.stop_handle().stop();
+    let late = Monitor::silent().with_deadline(Some(Instant::now()));
+    for (monitor, words) in [(&requested, "stopped before it was done"), (&late, "stopped at its deadline before")] {
+        let errors = [
+            fit.fit(monitor).unwrap_err(),
+            design.plan(monitor).unwrap_err(),
+            compensation.compensate(monitor).unwrap_err(),
+            compensation.compensate_all(monitor).unwrap_err(),
+            simulation.simulate(monitor).unwrap_err(),
+            simulation.simulate_condensed(monitor).unwrap_err(),
+            stability.analyse(monitor).unwrap_err(),
+            run.export(&plan, &ExportOptions::new(ProgramFormat::Csv, "PART"), monitor).unwrap_err(),
+            run.check_program(&plan, &main, &ReadBackOptions::default(), monitor).unwrap_err(),
+        ];
+        for error in errors {
+            assert!(error.is_interrupted() && !error.is_bad_input(), "{error:?}");
+            assert!(error.to_string().starts_with(words), "{error}");
+        }
+    }
 }
 
 #[test]
@@ -81,7 +127,7 @@ fn placements_are_those_of_the_command_files_and_document() {
 fn a_score_outside_the_cell_notes_it_and_an_unknown_point_is_refused() {
     let run = Run::read(root().join("configs/caro-2013.toml")).unwrap();
     let outside = Placement { x: 0.0, y: -1.6, z: -0.214, yaw: 79_f64.to_radians() };
-    let score = run.score(&outside).unwrap();
+    let score = run.score(&outside, &Monitor::silent()).unwrap();
     assert!(score.notes().iter().any(|note| note.contains("outside the cell")), "{:?}", score.notes());
     assert_eq!(score.to_json()["notes"].as_array().unwrap().len(), score.notes().len());
     let error = run.explain(&outside, 105, 0.0).unwrap_err();

@@ -1,4 +1,5 @@
-//! Files as the system gives them: disks that are full, pipes, devices, links, and names that garble what they stand in.
+//! Files as the system gives them: disks that are full, pipes, devices, links, and names that garble the text around
+//! them.
 
 use crate::common::{Bench, Ended, RUN};
 use std::os::unix::fs::symlink;
@@ -6,7 +7,7 @@ use std::process::Command;
 
 const ROBOT: &str = "configs/robots/kuka-kr270-2.toml";
 
-/// Runs a command under a limit of so many blocks on the size of files, which stands for a disk without room.
+/// Runs a command under a limit of so many blocks on the size of files, in place of a full disk.
 fn limited(bench: &Bench, arguments: &[&str], blocks: u64) -> Ended {
     let mut command = Command::new("sh");
     command.arg("-c").arg(format!("ulimit -f {blocks}; exec \"$0\" \"$@\""));
@@ -130,7 +131,7 @@ fn pipes_devices_and_very_large_files_are_refused() {
     }
 }
 
-/// Whoever can write to a folder of results cannot have files elsewhere written by putting a link there.
+/// A user who can write to a folder of results cannot have files elsewhere written by putting a link there.
 #[test]
 fn links_in_place_of_locks_and_journals_are_not_followed() {
     let bench = crate::study::bench();

@@ -1,6 +1,7 @@
 //! What the command line says of itself: long help, the overview, completion scripts, manual pages.
 
-use crate::common::Bench;
+use crate::common::{Bench, files_with};
+use std::path::Path;
 
 /// Every command that does something, as it is typed.
 fn commands(bench: &Bench) -> Vec<Vec<String>> {
@@ -37,7 +38,7 @@ fn the_overview_groups_every_command_by_its_question() {
     for heading in [
         "Where to put the workpiece:",
         "How good a robot is",
-        "What the loaded tool does:",
+        "What the cut does to the tool, and the tool to the part:",
         "What the robot is to run:",
         "Exit codes:",
     ] {
@@ -51,6 +52,7 @@ fn the_overview_groups_every_command_by_its_question() {
         ["place", "score", "explain", "assess", "fit", "plan", "compensate", "simulate", "stability", "page"];
     for name in expected.into_iter().chain([
         "circularity",
+        "forces",
         "export",
         "robot",
         "robots",
@@ -122,41 +124,32 @@ fn a_manual_that_cannot_be_written_is_refused_at_its_folder() {
     assert_eq!(bench.read("pages"), "a file");
 }
 
-/// The paths that ARCHITECTURE.md names: those in its tables below a heading that is a folder, and all with a slash in them.
+/// What ARCHITECTURE.md names is there: paths, tests, and all crates.
 #[test]
-fn the_paths_that_the_architecture_names_exist() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+fn the_architecture_names_what_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap();
-    let (mut base, mut checked, mut missing) = (root.to_owned(), 0, Vec::new());
-    for line in text.lines() {
-        let quoted = |text: &str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>();
-        if line.starts_with("## ") {
-            base = quoted(line).first().map_or(root.to_owned(), |folder| root.join(folder));
-            if !base.exists() {
-                missing.push(line.to_owned());
-            }
-            continue;
-        }
-        let first_cell = line.strip_prefix('|').and_then(|row| row.split('|').next()).map(quoted).unwrap_or_default();
-        for name in quoted(line) {
-            let is_path = name.ends_with('/') || name.ends_with(".rs") || name.ends_with(".toml");
-            if is_path && !name.contains(' ') {
-                checked += 1;
-                let from = if first_cell.contains(&name) { base.as_path() } else { root };
-                if !from.join(&name).exists() {
-                    missing.push(format!("{name}, in: {line}"));
-                }
-            }
-        }
+    let code: String = files_with(".rs").iter().map(|file| std::fs::read_to_string(file).unwrap()).collect();
+    let names: Vec<&str> = text.split('`').skip(1).step_by(2).filter(|name| !name.contains([' ', '\n', '!'])).collect();
+    let (paths, others): (Vec<&str>, Vec<&str>) =
+        names.into_iter().partition(|name| name.contains('/') || name.ends_with(".toml"));
+    let is_test = |name: &&str| name.matches('_').count() >= 2 && !name.contains([':', '.']);
+    let tests: Vec<&str> = others.into_iter().filter(is_test).collect();
+    let missing: Vec<&&str> = (paths.iter().filter(|path| !root.join(path).exists()))
+        .chain(tests.iter().filter(|name| !code.contains(&format!("fn {name}("))))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    assert!(paths.len() >= 10 && tests.len() >= 20, "{} paths, {} tests", paths.len(), tests.len());
+    for entry in std::fs::read_dir(root.join("crates")).unwrap() {
+        let name = entry.unwrap().file_name().to_string_lossy().into_owned();
+        assert!(text.contains(&format!("\n| `{name}` |")), "{name} has no row in the table of crates");
     }
-    assert!(missing.is_empty(), "{missing:#?}");
-    assert!(checked > 40, "{checked}");
 }
 
 /// Every key of every input file, as the kept schemas have them, has its place in the guide.
 #[test]
 fn the_guide_names_every_key_of_every_input_file() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let files = |folder: &str, ending: &str| -> Vec<String> {
         let entries = std::fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
         entries

@@ -74,8 +74,8 @@ fn the_example_is_identified_and_its_robot_file_keeps_the_rest() {
     assert_eq!(bench.read("out/compliances.csv").lines().count(), 19);
     assert!(bench.read("out/deflections.svg").contains("</svg>"));
 
-    // Every line of the user's file is there, in order, but those of compliances and the one that names the schema, which is true
-    // in the folder of that file alone.
+    // Every line of the user's file is there, in order, but those of compliances and the one that names the schema,
+    // which is true in the folder of that file alone.
     let (old, new) = (bench.read(ROBOT), bench.read("out/robot-identified.toml"));
     assert!(old.starts_with("#:schema ") && !new.contains("#:schema"));
     let mut lines = new.lines();

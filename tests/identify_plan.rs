@@ -1,4 +1,5 @@
-//! `stead identify plan` from outside: the plan, the sheet, the way from it to an identified robot, and what it refuses.
+//! `stead identify plan` from outside: the plan, the sheet, the way from it to an identified robot, and what it
+//! refuses.
 
 use crate::common::{Bench, Ended};
 use nalgebra::{Matrix3, Vector3};

@@ -230,7 +230,7 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
         "z_mm = [500.0, ",
         "on \"table\" of the surroundings, 500 mm",
         "\ncutter_diameter_mm = 16.0 ",
-        "\n# corner radius 2.0 mm ",
+        "\ncorner_radius_mm = 2.0 ",
         "\n# spindle_rpm = 9000.0 ",
         "feed_mm_per_s = 30.0 ",
         "whose own feeds count: 5.0 to 30.0 mm/s",
@@ -242,7 +242,7 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     let small = ["--set", "search.population=12", "--set", "search.generations=1", "--set", "search.basins=1"];
     run(&[&["place", "my/run.toml", "--out", "out"][..], &small].concat());
     assert!(bench.path("out/best.csv").is_file());
-    // Nothing is written over, unless that is asked for.
+    // Nothing is written over without --force.
     let kept = bench.tree("my");
     for command in [&robot[..], &path, &init] {
         let ended = bench.stead(command);
@@ -264,4 +264,25 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     bench.write("my/PART.csv", "mine");
     run(&[&export[..], &["--force"]].concat());
     assert!(bench.read("my/PART.csv").lines().count() > 10);
+}
+
+#[test]
+fn init_allows_the_spindle_what_the_tool_axis_itself_turns() {
+    let bench = bench();
+    // 0.78 deg/mm about the feed.
+    let rows = (0..12).map(|k| {
+        let (sine, cosine) = libm::sincos((0.78 * 10.0 * f64::from(k)).to_radians());
+        format!("1,{},0,0,1,0,0,0,{sine},{cosine}\n", 10 * k)
+    });
+    let head = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z\n";
+    bench.write("turning.csv", &(head.to_owned() + &rows.collect::<String>()));
+    let init = ["init", "place", "--robot", "name:kuka-kr270-r2700", "--task", "turning.csv", "--out", "run.toml"];
+    assert_eq!(bench.stead(&init).code, Some(0));
+    let text = bench.read("run.toml");
+    for part in ["max_spindle_turn_deg_per_mm = 1.0 ", "guess: the tool axis alone turns by up to 0.78 along the path"]
+    {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    let checked = bench.stead(&["check", "run.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
 }

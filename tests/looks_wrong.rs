@@ -134,7 +134,8 @@ fn simulation_and_stability_note_it_too() {
     assert!(ended.json()["notes"][0].as_str().unwrap().contains("joint 1"));
 }
 
-/// What no machine has: a stiffness and a damping with which the analysis of stability ran without end, and as much elsewhere.
+/// What no machine has: a stiffness and a damping with which the analysis of stability ran without end, and as much
+/// elsewhere.
 #[test]
 fn what_no_machine_has_is_refused_at_its_line() {
     for (file, from, to, key) in [

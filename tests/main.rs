@@ -21,6 +21,8 @@ mod facade;
 mod feed;
 #[cfg(unix)]
 mod files;
+mod forces_from_path;
+mod from_code;
 mod help;
 mod identify;
 mod identify_plan;

@@ -1,7 +1,7 @@
 //! The closed-form inverse kinematics against rs-opw-kinematics, on the shipped arm.
 //!
-//! That crate counts joint angles 2 and 3 from the arm pointing straight up, and tilting forward; the flange frame is the
-//! same.
+//! That crate counts joint angles 2 and 3 from the arm pointing straight up, and tilting forward; the flange frame is
+//! the same.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -80,7 +80,7 @@ fn all_files_are_there_and_nothing_else() {
     }
 }
 
-/// The worst placement is neither searched nor planned nor written, and whoever reads the results is told; the best is the same.
+/// The worst placement is neither searched nor planned nor written, and the results say so; the best is the same.
 #[test]
 fn the_worst_placement_can_be_left_out() {
     let (with_both, _) = placed();
@@ -203,15 +203,14 @@ fn summary_says_what_it_comes_from_and_nothing_of_time() {
 fn a_task_that_no_table_holds_is_placed_without_one_and_says_why() {
     let bench = Bench::new();
     let task = bench.read(TASK);
-    // A moment at one point.
-    let mut lines = task.lines().map(|line| format!("{line},0,0,0")).collect::<Vec<_>>();
-    lines[0] = format!("{},moment_x_nm,moment_y_nm,moment_z_nm", task.lines().next().unwrap());
-    lines[5] = format!("{},0,0,0.1", task.lines().nth(5).unwrap());
+    // The tool leans at one point, along the feed's wall.
+    let mut lines = task.lines().map(str::to_owned).collect::<Vec<_>>();
+    lines[5] = lines[5].replace(",0,0,1,", ",0.01,0,1,");
     bench.write(TASK, &(lines.join("\n") + "\n"));
     let ended = bench.stead(&["place", RUN, "--out", "out"]);
     assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
     assert!(
-        ended.stdout.contains("none of them from a lookup table: a moment acts on the tool at point 4"),
+        ended.stdout.contains("none of them from a lookup table: the tool is not upright: its axis is 0.573 deg"),
         "{}",
         ended.stdout
     );
@@ -221,6 +220,21 @@ fn a_task_that_no_table_holds_is_placed_without_one_and_says_why() {
     let refused = bench.stead(&["place", RUN, "--out", "out"]);
     assert_eq!(refused.code, Some(2), "{}", refused.stderr);
     refused.assert_says(&[&format!("run.toml:{line}: search.tables: "), "point 4", "allowed: \"auto\" or \"never\""]);
+}
+
+#[test]
+fn a_task_with_moments_that_differ_at_every_point_is_placed_by_a_table() {
+    let bench = Bench::new();
+    let task = bench.read(TASK);
+    let moment = |k: usize| format!("{},{},{}", k % 7, k % 5, k % 3);
+    let mut lines: Vec<_> = task.lines().enumerate().map(|(k, line)| format!("{line},{}", moment(k))).collect();
+    lines[0] = format!("{},moment_x_nm,moment_y_nm,moment_z_nm", task.lines().next().unwrap());
+    bench.write(TASK, &(lines.join("\n") + "\n"));
+    let ended = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!((ended.code, ended.said().as_str()), (Some(0), ""));
+    let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!(summary["table"]["used"], true);
+    assert!(summary["table"]["rms_error"].as_f64().unwrap() < 1e-3, "{}", summary["table"]);
 }
 
 #[test]
@@ -303,8 +317,8 @@ fn plans_are_at_the_placement() {
     }
 }
 
-/// Where `place` and `score` plan alike they agree. The best plan is refined together with the placement, so that on this
-/// coarse grid of beta it may be somewhat better than one for the given placement, and no worse.
+/// Where `place` and `score` plan alike they agree. The best plan is refined together with the placement, so that on
+/// this coarse grid of beta it may be somewhat better than one for the given placement, and no worse.
 #[test]
 fn score_agrees_with_the_cases() {
     let (bench, ended) = placed();

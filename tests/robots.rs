@@ -132,7 +132,7 @@ fn shapes_hits_and_the_feeds_of_the_task_are_checked() {
     let checked = bench.stead(&["check", RUN, "--out", "check"]);
     assert_eq!(checked.code, Some(0), "{}", checked.stderr);
     for part in [
-        "feed      20.0 to 35.5 mm/s, as the task states; the 66.7 mm/s of redundancy.feed_mm_per_s stand for none",
+        "feed      20.0 to 35.5 mm/s, as the task states; the 66.7 mm/s of redundancy.feed_mm_per_s apply to none",
         "wall (moves with base): x -100.0 to 100.0, y 2950.0 to 3050.0, z 0.0 to 300.0",
         "table (moves with workpiece): x -",
         "spindle (moves with flange): x -",

@@ -266,7 +266,8 @@ fn a_line_that_the_arm_cannot_follow_is_warned_of() {
     assert_eq!(fine["best"]["unfollowed_moves"], Value::Array(Vec::new()));
 }
 
-/// On a rail the shapes of the cell come nearer as the robot drives towards them: of two pairs that touch the deeper one is named.
+/// On a rail the shapes of the cell come nearer as the robot drives towards them: of two pairs that touch the deeper
+/// one is named.
 #[test]
 fn explain_names_the_deepest_pair_of_a_robot_on_a_rail() {
     let bench = bench();

@@ -6,7 +6,8 @@ use serde_json::Value;
 const PASS: &str = "configs/pass.toml";
 const ROBOT: &str = "configs/robots/staubli-tx200.toml";
 
-/// A bench with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8 slices.
+/// A bench with the shipped aluminium pass, shortened so that it takes little time: 20 mm of work, 90 steps a turn, 8
+/// slices.
 fn bench() -> Bench {
     let bench = Bench::new();
     bench.copy("configs/umons-aluminium.toml", PASS);
@@ -113,7 +114,8 @@ fn forces_and_deflections_have_one_sense() {
     assert!(forces < 0.0 && work > 0.0, "{forces} {work}");
 }
 
-/// Steel without runout, at depths of 0.55, 0.62, 0.75 and 1.0 mm: a flip of two teeth repeats every turn, and is told all the same.
+/// Steel without runout, at depths of 0.55, 0.62, 0.75 and 1.0 mm: a flip of two teeth repeats every turn, and is told
+/// all the same.
 #[test]
 fn simulate_and_stability_agree_on_calm_and_flip() {
     let steel = "configs/umons-steel.toml";

@@ -89,12 +89,14 @@ fn a_study_and_a_compensation_begin_from_the_run_that_is_there() {
 fn schemas_are_printed_as_they_are_kept() {
     let bench = Bench::new();
     let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/schema");
-    for entry in std::fs::read_dir(kept).unwrap() {
-        let path = entry.unwrap().path();
+    let files = |folder| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files: Vec<_> = files(kept.join("results")).chain(files(kept)).filter(|path| path.is_file()).collect();
+    assert!(files.len() > 28);
+    for path in files {
         let ended = bench.stead(&["schema", path.file_stem().unwrap().to_str().unwrap()]);
         assert_eq!((ended.code, ended.stdout), (Some(0), std::fs::read_to_string(&path).unwrap()));
     }
     let ended = bench.stead(&["schema", "robbot"]);
     assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
-    ended.assert_says(&["no schema 'robbot'", "nearest known one: robot", "; allowed: run, robot"]);
+    ended.assert_says(&["no schema 'robbot'", "nearest known one: robot", "; allowed: run, robot", "place-summary"]);
 }

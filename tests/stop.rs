@@ -164,7 +164,8 @@ mod interrupt {
         assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     }
 
-    /// Waits until a process has worked for so long, or has ended. What a clock shows says nothing on a machine that does other things.
+    /// Waits until a process has worked for so long, or has ended. What a clock shows says nothing on a machine that
+    /// does other things.
     fn wait_for_work(child: &Child, work: Duration) {
         let begun = Instant::now();
         while begun.elapsed() < Duration::from_secs(120) {
@@ -178,8 +179,9 @@ mod interrupt {
         panic!("it does not work");
     }
 
-    /// Processor time of a process, of all its threads, where the system tells it: user and system time in hundredths of a second are the
-    /// 14th and the 15th field of its state; its name, the second, is between brackets. A process that has ended has done all.
+    /// Processor time of a process, of all its threads, where the system tells it: user and system time in hundredths
+    /// of a second are the 14th and the 15th field of its state; its name, the second, is between brackets. A process
+    /// that has ended has done all.
     fn worked(child: &Child) -> Option<Duration> {
         let state = std::fs::read_to_string(format!("/proc/{}/stat", child.id())).ok()?;
         let fields: Vec<&str> = state.rsplit_once(')')?.1.split_whitespace().collect();
@@ -195,6 +197,22 @@ mod interrupt {
         wait_for_work(&child, after);
         interrupt(&child);
         Ended::from(child.wait_with_output().unwrap())
+    }
+
+    #[test]
+    fn a_job_without_a_partial_result_leaves_earlier_results_alone() {
+        let bench = Bench::new();
+        bench.copy_all(&["configs/umons-aluminium.toml", "configs/robots/staubli-tx200.toml"]);
+        let pass = "configs/umons-aluminium.toml";
+        bench.replace(pass, "window_s = [0.4, 1.4]", "steps_per_turn = 3600\nslices = 256\nwindow_s = [0.3, 0.4]");
+        bench.write("out/wall.csv", "an earlier result\n");
+        for more in [&[][..], &["--fast"]] {
+            let arguments = [&["simulate", pass, "--out", "out", "--json"], more].concat();
+            let ended = interrupted(started(&bench, &arguments), Duration::from_millis(800));
+            assert_eq!((ended.code, ended.stdout.as_str()), (Some(130), ""), "{}", ended.stderr);
+            assert_eq!(ended.said(), format!("{STOPPED}error: stopped before it was done\n"));
+            assert_eq!(bench.names("out"), ["wall.csv"]);
+        }
     }
 
     const STOPPED: &str = "interrupted: ending with what there is; Ctrl-C again ends at once\n";

@@ -388,6 +388,6 @@ fn ctrl_c_keeps_what_is_done() {
     assert!(std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
     let ended = Ended::from(child.wait_with_output().unwrap());
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-    ended.assert_says(&["interrupted: finished cases are kept; the same command goes on"]);
+    ended.assert_says(&["interrupted: finished cases are kept; the same command continues"]);
     assert!(bench.path("out/shards/0001-of-0001.jsonl").exists());
 }

@@ -1,7 +1,7 @@
 //! Studies that are killed at any moment, and disks that fill up.
 //!
-//! A process ends inside a write where it meets a limit on the size of files: the system writes up to the limit, at a byte that the test
-//! chooses and however fast the machine is, and what is torn there stays.
+//! A process ends inside a write where it meets a limit on the size of files: the system writes up to the limit, at a
+//! byte that the test chooses and however fast the machine is, and what is torn there stays.
 
 use crate::common::{Bench, Ended};
 use crate::study::{STUDY, bench, results, run};
@@ -71,8 +71,8 @@ impl Study {
         Self { bench, expected, whole, blocks: largest as u64 / BLOCK, random: ChaCha8Rng::seed_from_u64(15) }
     }
 
-    /// Runs a shard, which is killed at a moment uniform over the time of the whole study or at a byte uniform over its largest file,
-    /// unless it ends before. Says whether it came to its end.
+    /// Runs a shard, which is killed at a moment uniform over the time of the whole study or at a byte uniform over its
+    /// largest file, unless it ends before. Says whether it came to its end.
     fn attempt(&mut self, out: &str, shard: &str, killed: &mut Killed) -> bool {
         let threads = ["1", "2"][self.random.random_range(0..2)];
         let arguments = ["study", "run", STUDY, "--out", out, "--shard", shard, "--threads", threads];

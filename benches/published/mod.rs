@@ -1,8 +1,8 @@
 //! The published case, for the benchmarks of the placement.
 
 use std::path::Path;
-use stead_format::read_run;
-use stead_placement::problem::{Placement, Problem};
+use stead_planning::problem::{Placement, Problem};
+use stead_run_files::read_run;
 
 /// The problem of the shipped run.
 pub fn problem() -> Problem {

@@ -1,7 +1,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use stead_format::fuzzing::Reader;
+use stead_run_files::fuzzing::Reader;
 
 fuzz_target!(|bytes: &[u8]| {
     if let Err(broken) = Reader::Gcode.check(bytes) {

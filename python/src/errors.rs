@@ -2,7 +2,9 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use stead::{Error, ReportError, StudyError};
+use stead::Error;
+use stead::report::ReportError;
+use stead::study::StudyError;
 
 /// The exception for an error.
 pub fn raised(py: Python<'_>, error: Error) -> PyErr {

@@ -1,11 +1,13 @@
-//! Inputs: one class for each kind of file, with its jobs. A job returns its result; one that can be stopped also whether Ctrl-C did that.
+//! Inputs: one class for each kind of file, with its jobs. A job returns its result; one that can be stopped also
+//! whether Ctrl-C did that.
 
 use crate::errors::{raised, raised_with};
-use crate::jobs::{Options, run, run_stoppable};
+use crate::jobs::{Options, run_stoppable};
 use crate::results::{Kind, Outcome};
 use pyo3::prelude::*;
 use std::path::PathBuf;
-use stead::{Error, Placement, Sector};
+use stead::circularity::Sector;
+use stead::{Error, Placement};
 
 /// A result, and whether Ctrl-C stopped its job.
 type Done = PyResult<(Option<Outcome>, bool)>;
@@ -53,10 +55,9 @@ impl Run {
         sensitivity: bool,
     ) -> PyResult<Self> {
         let read = || {
-            let run = match certify {
-                Some(per_cent) => stead::Run::read_to_certify(&file, stead::Run::gap(per_cent)?)?,
-                None => stead::Run::read(&file)?,
-            };
+            let gap = certify.map(stead::Run::gap).transpose()?;
+            let run = stead::Run::read(&file)?;
+            let run = if let Some(gap) = gap { run.with_certificate(gap) } else { run };
             let run = if let Some(seed) = seed { run.with_seed(seed) } else { run };
             Ok(if sensitivity { run.with_sensitivity(stead::Run::FORCE_ERROR) } else { run })
         };
@@ -110,7 +111,7 @@ impl Run {
 
     fn score(&self, py: Python<'_>, place: PlaceMm, options: Options) -> Done {
         let (run, place) = (self.0.clone(), placement(place));
-        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score_with(&place, monitor))?;
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score(&place, monitor))?;
         let raise = |error| raised_with(py, error, |error| infeasible(&self.0, error));
         done(result, was_stopped, Kind::Score, raise)
     }
@@ -118,7 +119,7 @@ impl Run {
     /// As `score`, of the exact placement of a case in a results folder.
     fn score_of(&self, py: Python<'_>, results: PathBuf, case: u8, options: Options) -> Done {
         let (run, place) = self.0.clone().set_up_as_in(results, case).map_err(|error| raised(py, error))?;
-        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score_with(&place, monitor))?;
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| run.score(&place, monitor))?;
         let raise = |error| raised_with(py, error, |error| infeasible(&self.0, error));
         done(result, was_stopped, Kind::Score, raise)
     }
@@ -172,10 +173,10 @@ impl FitRun {
         self.0.notes().to_vec()
     }
 
-    fn fit(&self, py: Python<'_>, options: Options) -> PyResult<Outcome> {
+    fn fit(&self, py: Python<'_>, options: Options) -> Done {
         let input = self.0.clone();
-        let result = run(py, &options, move || input.fit())?;
-        result.map(|result| Outcome(Kind::Identified(result))).map_err(|error| raised(py, error))
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| input.fit(monitor))?;
+        done(result, was_stopped, Kind::Identified, |error| raised(py, error))
     }
 }
 
@@ -219,15 +220,17 @@ impl CompensationRun {
         self.0.notes().to_vec()
     }
 
-    fn compensate(&self, py: Python<'_>, all_or_nothing: bool, options: Options) -> PyResult<Outcome> {
+    fn compensate(&self, py: Python<'_>, all_or_nothing: bool, options: Options) -> Done {
         let input = self.0.clone();
-        let job = move || if all_or_nothing { input.compensate_all() } else { input.compensate() };
+        let job = move |monitor: &stead::Monitor| {
+            if all_or_nothing { input.compensate_all(monitor) } else { input.compensate(monitor) }
+        };
         let document = |error: &Error| match error {
             Error::NotCompensated(failure) => Some(self.0.not_compensated_json(failure).to_string()),
             _ => None,
         };
-        let result = run(py, &options, job)?;
-        result.map(|result| Outcome(Kind::Compensated(result))).map_err(|error| raised_with(py, error, document))
+        let (result, was_stopped) = run_stoppable(py, &options, job)?;
+        done(result, was_stopped, Kind::Compensated, |error| raised_with(py, error, document))
     }
 }
 
@@ -244,16 +247,18 @@ impl SimulationRun {
         damping_scale: Option<f64>,
         spindle_rpm: Option<f64>,
     ) -> PyResult<Self> {
-        let overrides = stead::overrides(variant, damping_scale, spindle_rpm);
+        let overrides = stead::simulation::overrides(variant, damping_scale, spindle_rpm);
         let read = overrides.and_then(|overrides| stead::SimulationRun::read_with(&file, &overrides));
         read.map(Self).map_err(|error| raised(py, error))
     }
 
-    fn simulate(&self, py: Python<'_>, condensed: bool, options: Options) -> PyResult<Outcome> {
+    fn simulate(&self, py: Python<'_>, condensed: bool, options: Options) -> Done {
         let input = self.0.clone();
-        let job = move || if condensed { input.simulate_condensed() } else { input.simulate() };
-        let result = run(py, &options, job)?;
-        result.map(|result| Outcome(Kind::Simulated(result))).map_err(|error| raised(py, error))
+        let job = move |monitor: &stead::Monitor| {
+            if condensed { input.simulate_condensed(monitor) } else { input.simulate(monitor) }
+        };
+        let (result, was_stopped) = run_stoppable(py, &options, job)?;
+        done(result, was_stopped, Kind::Simulated, |error| raised(py, error))
     }
 }
 
@@ -270,26 +275,26 @@ impl StabilityRun {
         damping_scale: Option<f64>,
         spindle_rpm: Option<f64>,
     ) -> PyResult<Self> {
-        let overrides = stead::overrides(variant, damping_scale, spindle_rpm);
+        let overrides = stead::simulation::overrides(variant, damping_scale, spindle_rpm);
         let read = overrides.and_then(|overrides| stead::StabilityRun::read_with(&file, &overrides));
         read.map(Self).map_err(|error| raised(py, error))
     }
 
-    fn analyse(&self, py: Python<'_>, options: Options) -> PyResult<Outcome> {
+    fn analyse(&self, py: Python<'_>, options: Options) -> Done {
         let input = self.0.clone();
-        let result = run(py, &options, move || input.analyse())?;
-        result.map(|result| Outcome(Kind::Stability(result))).map_err(|error| raised(py, error))
+        let (result, was_stopped) = run_stoppable(py, &options, move |monitor| input.analyse(monitor))?;
+        done(result, was_stopped, Kind::Stability, |error| raised(py, error))
     }
 }
 
 #[pyclass(frozen, module = "stead._stead")]
-pub struct Profile(stead::Profile);
+pub struct Profile(stead::circularity::Profile);
 
 #[pymethods]
 impl Profile {
     #[staticmethod]
     fn read(py: Python<'_>, file: PathBuf) -> PyResult<Self> {
-        py.detach(|| stead::Profile::read(&file)).map(Self).map_err(|error| raised(py, error))
+        py.detach(|| stead::circularity::Profile::read(&file)).map(Self).map_err(|error| raised(py, error))
     }
 
     fn circularity(&self, py: Python<'_>, exclude_deg: Vec<(f64, f64)>) -> PyResult<Outcome> {

@@ -1,5 +1,5 @@
-//! Long jobs: on threads of their own, while the calling thread waits without the global interpreter lock (GIL), hands on the progress
-//! and listens to Ctrl-C.
+//! Long jobs: on threads of their own, while the calling thread waits without the global interpreter lock (GIL), hands
+//! on the progress and listens to Ctrl-C.
 
 use crate::errors::raised;
 use pyo3::exceptions::PyKeyboardInterrupt;
@@ -50,8 +50,8 @@ impl Latest {
     }
 }
 
-/// Runs a job that looks at its monitor. Returns its result, and whether Ctrl-C asked it to end before its time. The second Ctrl-C does not
-/// wait for the job any more.
+/// Runs a job that looks at its monitor. Returns its result, and whether Ctrl-C asked it to end before its time. The
+/// second Ctrl-C does not wait for the job any more.
 ///
 /// # Errors
 /// Those of the job; what the callback raises, for which the job is stopped; `KeyboardInterrupt` at the second Ctrl-C.
@@ -79,11 +79,9 @@ pub fn run_stoppable<T: Send + 'static>(
             raised = Some(error);
         }
     };
-    match raised {
-        None => {
-            latest.hand_on(py, options.progress.as_ref())?;
-            Ok((result, false))
-        }
+    // Ctrl-C may come while the last report is handed on, too: the result is there all the same.
+    match raised.or_else(|| latest.hand_on(py, options.progress.as_ref()).err()) {
+        None => Ok((result, false)),
         Some(error) if error.is_instance_of::<PyKeyboardInterrupt>(py) => Ok((result, true)),
         Some(error) => Err(error),
     }

@@ -1,7 +1,8 @@
-//! The compiled half of the Python package `stead`: the facade of the crate `stead`, input by input and result by result.
+//! The compiled half of the Python package `stead`: the facade of the crate `stead`, input by input and result by
+//! result.
 //!
-//! Nothing is computed here. Documents cross over as JSON, tables and pictures as the bytes of their files; the package `stead` beside it
-//! (`package/stead/`) makes typed objects of them, and is what users see.
+//! Nothing is computed here. Documents cross over as JSON, tables and pictures as the bytes of their files; the package
+//! `stead` beside it (`package/stead/`) makes typed objects of them, and is what users see.
 
 mod errors;
 mod inputs;
@@ -17,27 +18,28 @@ use std::path::PathBuf;
 #[pyfunction]
 fn init(py: Python<'_>, kind: &str, folder: PathBuf, force: bool) -> PyResult<Vec<PathBuf>> {
     let set = match kind {
-        "place" => stead::StarterSet::Place,
-        "assess" => stead::StarterSet::Assess,
-        "identify" => stead::StarterSet::Identify,
-        "simulate" => stead::StarterSet::Simulate,
-        "study" => stead::StarterSet::Study,
-        "compensate" => stead::StarterSet::Compensate,
+        "place" => stead::files::StarterSet::Place,
+        "assess" => stead::files::StarterSet::Assess,
+        "identify" => stead::files::StarterSet::Identify,
+        "simulate" => stead::files::StarterSet::Simulate,
+        "study" => stead::files::StarterSet::Study,
+        "compensate" => stead::files::StarterSet::Compensate,
+        "forces" => stead::files::StarterSet::Forces,
         _ => {
             let problem = format!(
-                "no such starter set, found {kind}; allowed: place, assess, identify, simulate, study, compensate"
+                "no such starter set, found {kind}; allowed: place, assess, identify, simulate, study, compensate, forces"
             );
             return Err(raised(py, stead::Error::Argument(problem)));
         }
     };
-    let existing = if force { stead::Existing::Replaced } else { stead::Existing::Kept };
-    stead::init(set, &folder, existing).map_err(|error| raised(py, error.into()))
+    let existing = if force { stead::files::Existing::Replaced } else { stead::files::Existing::Kept };
+    stead::files::init(set, &folder, existing).map_err(|error| raised(py, error.into()))
 }
 
 /// The JSON Schema of a kind of file.
 #[pyfunction]
 fn schema(py: Python<'_>, kind: &str) -> PyResult<String> {
-    stead::schema(kind).map_err(|error| raised(py, stead::Error::Argument(error.to_string())))
+    stead::files::schema(kind).map_err(|error| raised(py, stead::Error::Argument(error.to_string())))
 }
 
 /// The native classes and functions, see `_stead.pyi`.

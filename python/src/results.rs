@@ -19,8 +19,8 @@ pub enum Kind {
     Compensated(stead::CompensatedPath),
     Simulated(stead::SimulatedPass),
     Stability(stead::StabilityAnalysis),
-    Circularity(stead::Circularity),
-    Study(stead::StudyReport),
+    Circularity(stead::circularity::Circularity),
+    Study(stead::study::StudyReport),
 }
 
 /// The same expression for whichever result it is: they have their methods in common.
@@ -86,7 +86,8 @@ impl Outcome {
         written.map_err(|error| raised(py, error))
     }
 
-    /// Placements with the certificate that their run asks for; everything else as it is. And whether Ctrl-C stopped it.
+    /// Placements with the certificate that their run asks for; everything else as it is. And whether Ctrl-C stopped
+    /// it.
     fn certified(&self, py: Python<'_>, options: Options) -> PyResult<(Self, bool)> {
         self.extended(py, &options, |kind, monitor| {
             if let Kind::Placements(placements) = kind {
@@ -123,14 +124,14 @@ impl Outcome {
 
 /// A results folder, held until it is released.
 #[pyclass(frozen, module = "stead._stead")]
-pub struct Folder(Mutex<Option<stead::Folder>>);
+pub struct Folder(Mutex<Option<stead::report::Folder>>);
 
 #[pymethods]
 impl Folder {
     /// Takes a folder.
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let folder = stead::Folder::create(&path).map_err(|error| raised(py, error.into()))?;
+        let folder = stead::report::Folder::create(&path).map_err(|error| raised(py, error.into()))?;
         Ok(Self(Mutex::new(Some(folder))))
     }
 
@@ -141,7 +142,10 @@ impl Folder {
 }
 
 impl Folder {
-    fn with<T>(&self, write: impl FnOnce(&stead::Folder) -> Result<T, stead::Error>) -> Result<T, stead::Error> {
+    fn with<T>(
+        &self,
+        write: impl FnOnce(&stead::report::Folder) -> Result<T, stead::Error>,
+    ) -> Result<T, stead::Error> {
         match &*self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner) {
             Some(folder) => write(folder),
             None => Err(stead::Error::Argument("the folder has been released".to_owned())),

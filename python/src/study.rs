@@ -6,7 +6,8 @@ use crate::results::{Kind, Outcome};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
-use stead::{AxisValue, ColumnKind, Error, Finished, Shard, StudyQuestion, StudyStatus};
+use stead::Error;
+use stead::study::{AxisValue, ColumnKind, Finished, Shard, StudyQuestion, StudyStatus};
 
 /// A case: the values of its axes in their order, each a number or a text.
 #[derive(IntoPyObject)]
@@ -80,9 +81,9 @@ impl From<StudyStatus> for Status {
     }
 }
 
-impl From<stead::ShardStatus> for ShardStatus {
-    fn from(status: stead::ShardStatus) -> Self {
-        let stead::ShardStatus { shard, planned, done, without, is_running } = status;
+impl From<stead::study::ShardStatus> for ShardStatus {
+    fn from(status: stead::study::ShardStatus) -> Self {
+        let stead::study::ShardStatus { shard, planned, done, without, is_running } = status;
         Self { shard: (shard.index, shard.count), planned, done, without_placement: without, is_running }
     }
 }
@@ -102,7 +103,7 @@ impl Study {
     }
 
     fn cases(&self) -> Vec<Case> {
-        let case = |planned: &stead::PlannedCase| Case {
+        let case = |planned: &stead::study::PlannedCase| Case {
             number: planned.case.number,
             id: planned.id.clone(),
             task: planned.task.clone(),

@@ -1,6 +1,7 @@
 //! `stead check`: what was understood of a file, and what looks wrong.
 
-use super::{Failure, files_written, print, print_json, say_notes};
+use super::manual::Manual;
+use super::{Failure, files_written, say_notes, show};
 use clap::Args;
 use std::path::PathBuf;
 use stead::Checked;
@@ -18,6 +19,21 @@ pub(super) struct CheckOptions {
     json: bool,
 }
 
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead check my/run.toml",
+        "stead check my/run.toml --out results/check",
+        "stead check my/kr210.toml --json",
+    ],
+    written: "with --out",
+    files: &[("check.svg", "the arm from its rows, from the side and from above, with cell and tool path")],
+    done: "done; what looks wrong is noted",
+    failed: "the picture could not be written",
+    refused: "wrong usage, bad input, or a folder that cannot be written to",
+    ..Manual::NEW
+};
+
 pub(super) fn run(options: &CheckOptions) -> Result<(), Failure> {
     let checked = Checked::read(&options.file)?;
     say_notes(checked.notes());
@@ -25,5 +41,5 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), Failure> {
         let folder = Folder::create(out).map_err(Failure::Output)?;
         files_written(checked.write_in(&folder))?;
     }
-    if options.json { print_json(&checked) } else { print(checked.to_string().as_bytes()) }
+    show(&checked, options.json)
 }

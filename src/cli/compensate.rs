@@ -1,16 +1,55 @@
 //! `stead compensate`: correct a path, then files, then a table.
 
-use super::arguments::CompensateOptions;
+use super::manual::{Manual, STOPPED};
 use super::progress::Terminal;
 use super::{Failure, out_folder, print_json, say_notes, say_warnings};
+use clap::Args;
+use std::path::PathBuf;
 use stead::{CompensationRun, Error};
+
+#[derive(Debug, Args)]
+pub(super) struct CompensateOptions {
+    /// Compensation file (TOML)
+    pub config: PathBuf,
+    /// Robot file (TOML) of the same geometry on which the corrected path is evaluated, instead of the file's `reality`
+    #[arg(long, value_name = "ROBOT")]
+    pub reality: Option<PathBuf>,
+    /// Fail where a point cannot be corrected, instead of keeping its target
+    #[arg(long)]
+    pub all_or_nothing: bool,
+    /// Folder for the results [default: results/<name of the compensation file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead compensate configs/compensate-caro-2013.toml",
+        "stead compensate configs/compensate-caro-2013.toml --reality configs/robots/kuka-kr270-2-k1-0.8.toml --out results/check",
+    ],
+    files: &[
+        ("corrected-path.csv", "target and commanded pose, joint angles, deflection before and after, status"),
+        ("compensation.svg", "deflection before and after along the path"),
+        ("summary.json", "all of it for programs"),
+        ("report.html", "a page whose charts answer to the pointer"),
+    ],
+    done: "done; points that cannot be compensated keep their target, and a warning says so",
+    failed: "no point can be compensated, or with --all-or-nothing some cannot; nothing is written, the message names them with the reason",
+    refused: "wrong usage, bad input, a plan that does not fit its run, or a results folder that cannot be written to",
+    interrupted: STOPPED,
+    ..Manual::NEW
+};
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let run = CompensationRun::read_with(&options.config, options.reality.as_deref())?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
     say_notes(run.notes());
-    let shown = Terminal::unstoppable().show(None);
-    let path = if options.all_or_nothing { run.compensate_all() } else { run.compensate() };
+    let shown = Terminal::start(Some(&out.folder)).show(None);
+    let path = if options.all_or_nothing { run.compensate_all(&shown.monitor) } else { run.compensate(&shown.monitor) };
     drop(shown);
     let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {

@@ -1,17 +1,44 @@
 //! `stead explain`: one placement, one path point, one beta, eight postures.
 
-use super::arguments::ExplainOptions;
-use super::{Failure, print, print_json, say_notes};
-use stead::Run;
+use super::given::{GivenPlacement, GivenRun};
+use super::manual::Manual;
+use super::values::{finite, point};
+use super::{Failure, say_notes, show};
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainOptions {
+    #[command(flatten)]
+    pub run: GivenRun,
+    #[command(flatten)]
+    pub place: GivenPlacement,
+    /// Path point, counted from 0 in the order of the task file
+    #[arg(long, value_name = "I", value_parser = point, allow_negative_numbers = true)]
+    pub point: usize,
+    /// Free angle beta about the tool axis in degrees
+    #[arg(long, value_name = "B", value_parser = finite, allow_hyphen_values = true)]
+    pub beta_deg: f64,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead explain configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258 --point 30 --beta-deg 40",
+        "stead explain configs/caro-2013.toml --placement-of results/caro-2013 --point 30 --beta-deg 40",
+    ],
+    written: "none",
+    done: "done, whether or not any posture is feasible",
+    ..Manual::NEW
+};
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
-    let run = Run::read_with(&options.config, options.set.clone())?;
-    let (run, placement) = options.place.of(run, options.orientation.as_deref())?;
+    let run = options.run.read()?;
+    let (run, placement) = options.place.of(run)?;
     let beta = options.beta_deg.to_radians();
     let explanations = run.explain(&placement, options.point, beta).map_err(|error| Failure::at("--point", error))?;
     say_notes(explanations.notes());
-    if options.json {
-        return print_json(&explanations);
-    }
-    print(explanations.to_string().as_bytes())
+    show(&explanations, options.json)
 }

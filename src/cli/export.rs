@@ -1,12 +1,15 @@
 //! `stead export`: a robot program from a plan, or a program read back.
 
 use super::given::Force;
+use super::manual::{Manual, STOPPED};
+use super::progress::Terminal;
 use super::values::finite;
-use super::{Failure, print, print_json, say_notes, say_warnings};
+use super::{Failure, print, print_json, say_notes, say_warnings, show};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
-use stead::{CorrectedPath, Error, ExportOptions, ProgramFormat, ReadBackOptions, Run};
+use stead::program::{CorrectedPath, ExportOptions, ProgramFormat, ReadBackOptions};
+use stead::{Error, Run};
 
 #[derive(Debug, Args)]
 pub(super) struct ExportCommand {
@@ -26,10 +29,11 @@ pub(super) struct ExportCommand {
     /// Command points that could not be corrected as planned, instead of refusing the path
     #[arg(long, requires = "corrected")]
     pub uncorrected_as_planned: bool,
-    /// How far the tool is retracted along its axis before and after a segment, where no free way is planned; 0 for not at all
+    /// How far the tool is retracted along its axis before and after a segment, where no free way is planned; 0 for not
+    /// at all
     #[arg(long, value_name = "D", value_parser = finite, default_value = "50", allow_hyphen_values = true)]
     pub approach_mm: f64,
-    /// Write moves between segments that hit too, marked NOT FREE, instead of refusing the program
+    /// Write moves that hit or that the arm cannot follow too, marked NOT FREE, instead of refusing the program
     #[arg(long)]
     pub allow_blocked_moves: bool,
     /// Distance from a corner at which blending begins; 0 for exact stops
@@ -38,7 +42,8 @@ pub(super) struct ExportCommand {
     /// Most moves in a part
     #[arg(long, value_name = "N", default_value = "5000", allow_hyphen_values = true)]
     pub max_moves: usize,
-    /// KUKA, where an external axis carries the workpiece: number n of that mechanism at the controller, MACHINE_DEF[n]
+    /// KUKA, where an external axis carries the workpiece: number n of that mechanism at the controller,
+    /// MACHINE_DEF[n]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub mechanism: Option<usize>,
     /// ABB, where an external axis carries the workpiece: name of that mechanical unit at the controller, as STN1
@@ -52,7 +57,8 @@ pub(super) struct ExportCommand {
     pub spindle_off: Option<String>,
     #[command(flatten)]
     pub force: Force,
-    /// Read this program back (its main file) and compare every pose, feed and blending with the plan, instead of writing one
+    /// Read this program back (its main file) and compare every pose, feed and blending with the plan, instead of
+    /// writing one
     #[arg(long, value_name = "FILE", conflicts_with_all = ["format", "out", "allow_blocked_moves", "max_moves", "mechanism", "unit", "spindle_on", "spindle_off", "force"])]
     pub check: Option<PathBuf>,
     /// Print one JSON document instead of a text
@@ -60,40 +66,42 @@ pub(super) struct ExportCommand {
     pub json: bool,
 }
 
-/// Examples, files and exit codes, for the long help.
-pub(super) const HELP: &str = "\
-Examples:
-  stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART
-  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART
-  stead export my/table.toml results/table/best.csv --format rapid --unit STN1 --out my/program/TABLE
-  stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv
-  stead export my/run.toml results/run/best.csv --check my/program/PART.src
-
-Files written, none of which may be there yet without --force:
-  NAME.src, NAME_01.src, ..          krl: a main program that calls the parts
-  NAME.mod, NAME_01.mod, ..          rapid, likewise
-  NAME.ls, NAME_01.ls, ..            fanuc, likewise
-  NAME.csv                           csv: one row for each move
-The frames to enter at the controller are printed. A part on a turntable needs --mechanism (krl) or --unit (rapid).
-Programs need [controller] and [root] in the robot file; csv does not.
-With surroundings, moves between segments are the free ways of `stead place`; a plan with a move that has none is refused, or
-written with --allow-blocked-moves and the move marked NOT FREE. Without, collisions are not checked. Run a program slowly and
-without a cut first. --check writes nothing.
-
-Exit codes:
-  0  done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, feeds and blending too, and no move between
-     segments hits
-  1  a move hits, the arm does not reach a retracted point, a file could not be written; with --check: not the program of the
-     plan, or it hits
-  2  wrong usage, bad input, a plan that is not of this run, or a file that is there already (--force replaces it): nothing is
-     written";
-
 fn formats() -> impl TypedValueParser<Value = ProgramFormat> {
     PossibleValuesParser::new(ProgramFormat::ALL.map(ProgramFormat::word)).try_map(|word| {
         let found = ProgramFormat::ALL.into_iter().find(|format| format.word() == word);
         found.ok_or("no such format")
     })
 }
+
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead export configs/caro-2013.toml results/caro-2013/best.csv --format csv --out my/program/PART",
+        "stead export my/run.toml results/run/best.csv --format krl --out my/program/PART",
+        "stead export my/table.toml results/table/best.csv --format rapid --unit STN1 --out my/program/TABLE",
+        "stead export my/run.toml results/run/best.csv --format krl --out my/program/PART2 --corrected results/comp/corrected-path.csv",
+        "stead export my/run.toml results/run/best.csv --check my/program/PART.src",
+    ],
+    written: "with --out, none of which may be there yet without --force",
+    files: &[
+        ("NAME.src, NAME_01.src, ..", "krl (KUKA): a main program that calls the parts"),
+        ("NAME.mod, NAME_01.mod, ..", "rapid (ABB, IRC5 and OmniCore), likewise"),
+        (
+            "NAME.ls, NAME_01.ls, ..",
+            "fanuc, likewise: TP programs as text, which the controller or its maker's tools translate",
+        ),
+        ("NAME.csv", "csv, for a post of your own: one row for each move"),
+    ],
+    remarks: "The frames to enter at the controller are printed. A part on a turntable needs --mechanism (krl) or \
+              --unit (rapid). Programs need [controller] and [root] in the robot file; csv does not. With \
+              surroundings, moves between segments are the free ways of `stead place`; a plan with a move that has \
+              none is refused, or written with --allow-blocked-moves and the move marked NOT FREE. Without, collisions \
+              are not checked. Run a program slowly and without a cut first. --check writes nothing.",
+    done: "done; with --check: every pose is that of the plan within 0.01 mm and 0.01 deg, feeds and blending too, and no move between segments hits",
+    failed: "a move hits, the arm does not reach a retracted point, a file could not be written; with --check: not the program of the plan, or it hits",
+    refused: "wrong usage, bad input, a plan that is not of this run, or a file that is there already (--force replaces it): nothing is written",
+    interrupted: STOPPED,
+};
 
 pub(super) fn run(options: &ExportCommand) -> Result<(), Failure> {
     let run = Run::read(&options.config)?;
@@ -114,7 +122,7 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
         return Err(Failure::Usage("--format and --out are needed to write a program".to_owned()));
     };
     let name = out.file_name().unwrap_or_default().to_string_lossy();
-    let asked = ExportOptions {
+    let requested = ExportOptions {
         corrected: corrected(options),
         approach: options.approach_mm / 1e3,
         blend: options.blend_mm / 1e3,
@@ -126,14 +134,18 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
         spindle_off: options.spindle_off.as_deref(),
         ..ExportOptions::new(format, &name)
     };
-    let program = run.export(&options.plan, &asked)?;
+    let shown = Terminal::start(None).show(None);
+    let program = run.export(&options.plan, &requested, &shown.monitor);
+    drop(shown);
+    let program = program?;
     let written = program.write(out.parent().unwrap_or(Path::new("")), options.force.existing())?;
     say_notes(program.notes());
+    say_notes(&written.notes);
     say_warnings(program.warnings());
     if options.json {
         return print_json(&program);
     }
-    let files: String = written.iter().map(|file| format!("  {}\n", file.display())).collect();
+    let files: String = written.files.iter().map(|file| format!("  {}\n", file.display())).collect();
     print(format!("{program}\nwritten:\n{files}").as_bytes())
 }
 
@@ -151,11 +163,10 @@ fn check(options: &ExportCommand, run: &Run, program: &Path) -> Result<(), Failu
         approach: options.approach_mm / 1e3,
         blend: options.blend_mm / 1e3,
     };
-    let checked = run.check_program(&options.plan, program, &exported)?;
-    if options.json {
-        print_json(&checked)?;
-    } else {
-        print(checked.to_string().as_bytes())?;
-    }
+    let shown = Terminal::start(None).show(None);
+    let checked = run.check_program(&options.plan, program, &exported, &shown.monitor);
+    drop(shown);
+    let checked = checked?;
+    show(&checked, options.json)?;
     Ok(checked.sound()?)
 }

@@ -1,13 +1,33 @@
-//! The arguments that several commands share: those that give a placement, and those of a simulation's model.
+//! The arguments that several commands share: a run file, those that give a placement, and those of a simulation's
+//! model.
 
 use super::Failure;
-use super::values::{case, damping_scale, finite, quaternion, rpm, variant};
+use super::values::{case, damping_scale, field, finite, quaternion, rpm, variant};
 use clap::Args;
 use std::path::PathBuf;
 use stead::{Error, Run};
-use stead_format::{Existing, Overrides};
-use stead_placement::problem::Placement;
+use stead_format::Existing;
+use stead_format::field::FieldOverride;
+use stead_planning::problem::Placement;
+use stead_run_files::Overrides;
 use stead_simulation::arm::Variant;
+
+/// A run file, and values in place of its own.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub(super) struct GivenRun {
+    /// Run file (TOML)
+    pub config: PathBuf,
+    /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = field)]
+    set: Vec<FieldOverride>,
+}
+
+impl GivenRun {
+    pub fn read(&self) -> Result<Run, Failure> {
+        Ok(Run::read_with(&self.config, self.set.clone())?)
+    }
+}
 
 /// A placement in numbers, or that of a result.
 #[derive(Debug, Args)]
@@ -27,6 +47,9 @@ pub(super) struct GivenPlacement {
     /// Case of the results: 1, the best placement, or 3, the worst [default: 1]
     #[arg(long, value_name = "N", value_parser = case, allow_hyphen_values = true, requires = "placement_of")]
     case: Option<u8>,
+    /// Orientation of the part by its name, where the run file has several
+    #[arg(long, value_name = "NAME", conflicts_with = "placement_of")]
+    orientation: Option<String>,
 }
 
 /// The yaw, in one of two ways, or all of a placement.
@@ -54,12 +77,12 @@ impl GivenPlacement {
         }
     }
 
-    /// A run with its placement: as in the results folder, or in numbers and with the part in an orientation that has to be named where
-    /// there are several.
-    pub fn of(&self, run: Run, orientation: Option<&str>) -> Result<(Run, Placement), Failure> {
+    /// A run with its placement: as in the results folder, or in numbers and with the part in an orientation that has
+    /// to be named where there are several.
+    pub fn of(&self, run: Run) -> Result<(Run, Placement), Failure> {
         match &self.turn.placement_of {
             Some(results) => Ok(run.set_up_as_in(results, self.case.unwrap_or(1))?),
-            None => Ok((in_orientation(run, orientation)?, self.placement())),
+            None => Ok((in_orientation(run, self.orientation.as_deref())?, self.placement())),
         }
     }
 }

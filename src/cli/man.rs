@@ -1,9 +1,28 @@
 //! `stead man`: the manual, one page for the command line and one for each command.
 
-use super::arguments::ManOptions;
+use super::manual::Manual;
 use super::{Failure, files_written, print};
+use clap::Args;
 use clap_mangen::Man;
+use std::path::PathBuf;
 use stead_report::output::Folder;
+
+#[derive(Debug, Args)]
+pub(super) struct ManOptions {
+    /// Folder for the pages; it is created where it is missing
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &["stead man ~/.local/share/man/man1", "man stead-place"],
+    written: "to the folder",
+    files: &[("stead.1", "the overview"), ("stead-COMMAND.1", "one page for every command")],
+    failed: "a page could not be written",
+    refused: "wrong usage, or a folder that cannot be written to",
+    ..Manual::NEW
+};
 
 pub(super) fn run(options: &ManOptions) -> Result<(), Failure> {
     let mut command = super::command();

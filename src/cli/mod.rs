@@ -1,8 +1,8 @@
 //! The command line: one file per subcommand, no physics.
 //!
 //! Tables for people, or with `--json` one JSON document, go to standard output; progress and diagnostics to standard
-//! error, progress bars only to a terminal and else as a line now and then. Exit code 0: done. 1: the job failed, or nothing is
-//! feasible. 2: wrong usage or bad input. 130: Ctrl-C ended it early.
+//! error, progress bars only to a terminal and else as a line now and then. Exit code 0: done. 1: the job failed, or
+//! nothing is feasible. 2: wrong usage or bad input. 130: Ctrl-C ended it early.
 
 mod arguments;
 mod assess;
@@ -12,12 +12,13 @@ mod compensate;
 mod completions;
 mod explain;
 mod export;
+mod forces;
 mod given;
-mod help;
 mod identify;
 mod import;
 mod init;
 mod man;
+mod manual;
 mod page;
 mod place;
 mod pose;
@@ -37,7 +38,7 @@ use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use stead::Warning;
+use stead::monitor::Warning;
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
 
@@ -85,8 +86,8 @@ impl Failure {
 
 /// The command line with its overview. Every command is described by its own one-line summary.
 fn command() -> clap::Command {
-    let command = Arguments::command();
-    let overview = help::overview(&command);
+    let command = manual::documented(Arguments::command(), "");
+    let overview = manual::overview(&command);
     // The texts are laid out by hand: no wrapping.
     command.term_width(0).help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{overview}Options:\n{{options}}{{after-help}}"
@@ -110,6 +111,7 @@ pub fn main() -> ExitCode {
         Command::Study(command) => study::run(&command),
         Command::Assess(options) => assess::run(&options),
         Command::Compensate(options) => compensate::run(&options),
+        Command::Forces(options) => forces::run(&options),
         Command::Identify(command) => identify::run(&command),
         Command::Circularity(options) => circularity::run(&options),
         Command::Simulate(options) => simulate::run(&options),
@@ -133,14 +135,16 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// A limit on the size of files is a disk that is full, and no reason to die in mid-write, which the signal that comes with it would be.
+/// A limit on the size of files is a disk that is full, and no reason to die in mid-write, which the signal that comes
+/// with it would be.
 fn outlive_file_limits() {
     #[cfg(unix)]
-    // Where it cannot be caught, the limit is as deadly as before. Nobody looks whether it came: the write itself fails.
+    // Where it cannot be caught, the limit is as deadly as before. Nobody looks whether it came: the write itself
+    // fails.
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
-/// Shows the help or the version that was asked for, or what is wrong with the command line.
+/// Shows the help or the version that was requested, or what is wrong with the command line.
 fn show_usage(shown: &clap::Error) -> ExitCode {
     let code = u8::try_from(shown.exit_code()).unwrap_or(2);
     match shown.print() {
@@ -152,7 +156,8 @@ fn show_usage(shown: &clap::Error) -> ExitCode {
     }
 }
 
-/// Writes to standard output. A reader that has gone away is no error: there is nobody left to tell. A disk that is full is one.
+/// Writes to standard output. A reader that has gone away is no error: there is nobody left to tell. A disk that is
+/// full is one.
 fn print(text: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text).and_then(|()| out.flush()) {
@@ -211,8 +216,9 @@ impl OutFolder {
         self.folder.path().display().to_string()
     }
 
-    /// Writes the files of a result and shows it, as a JSON document or as text with what `ending` says of the folder that its files
-    /// are in; only then says what went wrong with the files: whatever happened to them, the result of a long job is shown.
+    /// Writes the files of a result and shows it, as a JSON document or as text with what `ending` says of the folder
+    /// that its files are in; only then says what went wrong with the files: whatever happened to them, the result of a
+    /// long job is shown.
     fn show<T>(
         &self,
         written: Result<T, stead::Error>,
@@ -230,11 +236,12 @@ impl OutFolder {
     }
 }
 
-/// Says that a run that was interrupted has left its results beside finished ones, where that is so; returns the folder that they are in.
-fn left_in(asked: &Folder, written: &[PathBuf]) -> PathBuf {
-    let folder = written.first().and_then(|file| file.parent()).unwrap_or(asked.path());
-    if folder != asked.path() {
-        let (kept, left) = (asked.path().display(), folder.display());
+/// Says that a run that was interrupted has left its results beside finished ones, where that is so; returns the folder
+/// that they are in.
+fn left_in(requested: &Folder, written: &[PathBuf]) -> PathBuf {
+    let folder = written.first().and_then(|file| file.parent()).unwrap_or(requested.path());
+    if folder != requested.path() {
+        let (kept, left) = (requested.path().display(), folder.display());
         say(&format!(
             "note: {kept} has finished results and is left as it is; those of this run are in {left} (--keep-partial puts them in their place)"
         ));
@@ -253,22 +260,27 @@ fn print_json(result: &impl Serialize) -> Result<(), Failure> {
     print(&document::bytes(&document))
 }
 
+/// Prints a result, as one JSON document or as text.
+fn show(result: &(impl Serialize + Display), is_json: bool) -> Result<(), Failure> {
+    if is_json { print_json(result) } else { print(result.to_string().as_bytes()) }
+}
+
 /// Where results are, as the last line of a text, where they could be written.
 fn results_in(folder: String) -> String {
     if folder.is_empty() { folder } else { format!("\nresults in {folder}\n") }
 }
 
-/// The folder asked for, or `results/` and the name of the config; taken before the long work, so that one that cannot be
-/// written to is found out now, and that no other run takes it.
-fn out_folder(asked: Option<&Path>, config: &Path) -> Result<OutFolder, Failure> {
-    out_folder_named(asked, config, "")
+/// The folder requested, or `results/` and the name of the config; taken before the long work, so that one that cannot
+/// be written to is found out now, and that no other run takes it.
+fn out_folder(requested: Option<&Path>, config: &Path) -> Result<OutFolder, Failure> {
+    out_folder_named(requested, config, "")
 }
 
 /// As [`out_folder`], with an ending to the name, for a command that shares its config with another.
-fn out_folder_named(asked: Option<&Path>, config: &Path, ending: &str) -> Result<OutFolder, Failure> {
+fn out_folder_named(requested: Option<&Path>, config: &Path, ending: &str) -> Result<OutFolder, Failure> {
     let mut name = config.file_stem().unwrap_or_default().to_owned();
     name.push(ending);
-    let path = asked.map_or_else(|| Path::new("results").join(name), Path::to_owned);
+    let path = requested.map_or_else(|| Path::new("results").join(name), Path::to_owned);
     let is_new = !path.exists();
     let folder = Folder::create(&path).map_err(Failure::Output)?;
     Ok(OutFolder { folder, _made: is_new.then_some(MadeFolder(path)) })

@@ -1,12 +1,91 @@
-//! `stead place`: search, then files, then a table, and then, where it is asked for, a certificate with its own files.
+//! `stead place`: search, then files, then a table, and then, where it is requested, a certificate with its own files.
 
-use super::arguments::PlaceOptions;
+use super::given::GivenRun;
+use super::manual::Manual;
 use super::progress::Terminal;
+use super::values::{gap, seed, threads};
 use super::{Failure, files_written, left_in, on_threads, out_folder, print, print_json, say, say_notes, say_warnings};
-use stead::{Error, Folder, Placements, Run};
+use clap::Args;
+use std::path::PathBuf;
+use stead::report::Folder;
+use stead::{Error, Placements, Run};
+
+#[derive(Debug, Args)]
+pub(super) struct PlaceOptions {
+    #[command(flatten)]
+    pub run: GivenRun,
+    /// Folder for the results [default: results/<name of the run file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of the random numbers, instead of the run file's
+    #[arg(long, value_name = "S", value_parser = seed, allow_negative_numbers = true)]
+    pub seed: Option<u64>,
+    /// Continue until it is proved that no placement is better, or worse, by more than G per cent
+    #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
+    pub certify: Option<f64>,
+    /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
+    #[arg(long)]
+    pub sensitivity: bool,
+    /// Look for the best placement alone, in half of the time, whatever the run file says
+    #[arg(long)]
+    pub no_worst: bool,
+    /// Leave no page for the browser, whatever the run file says
+    #[arg(long)]
+    pub no_page: bool,
+    /// If it is interrupted, let its results take the place of finished ones, instead of leaving them in
+    /// <DIR>.interrupted
+    #[arg(long)]
+    pub keep_partial: bool,
+    /// Number of threads; it does not change the result [default: number of processors]
+    #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
+    pub threads: Option<usize>,
+    /// Print one JSON document instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead place configs/caro-2013.toml",
+        "stead place configs/caro-2013.toml --seed 7 --out results/seed-7",
+        "stead place configs/caro-2013.toml --certify 0.5 --no-worst",
+        "stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8",
+    ],
+    files: &[
+        ("placements.csv", "the four cases: pose, postures, mean and largest deflection, times, highest feed"),
+        ("best.csv, worst.csv", "plan of the best and of the worst placement, point by point"),
+        ("best-worst-plan.csv, worst-worst-plan.csv", "the same placements with the worst plan of the spindle angle"),
+        (
+            "deflection-map-{best,worst}.{csv,svg}",
+            "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
+        ),
+        ("convergence.{csv,svg}", "the genetic searches, generation by generation"),
+        ("refinements.csv", "the gradient refinement of each basin: start, end, optimality residual, status"),
+        ("transfers.csv", "joint moves between segments: duration and largest travel"),
+        ("cell.svg", "the cell from above: reach, limits, placements"),
+        ("summary.json", "all of it for programs, with the keys of the run file and their values"),
+        (
+            "report.html, cell.glb, page-data.json",
+            "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false or --no-page",
+        ),
+        ("stability-{best,worst}.csv, stability.svg", "with a table [stability]: critical depth along the path"),
+        ("certificate.json", "with --certify or a table [certificate]: bounds and gaps, and why where there are none"),
+        (
+            "open-region.{csv,svg}, open-region-worst.svg",
+            "with --certify or a table [certificate]: where a placement may be better, or worse, by more than the gap",
+        ),
+    ],
+    remarks: "With --no-worst no file of the worst placement is written.",
+    done: "done; also when a certificate did not reach its gap or was ended by Ctrl-C",
+    failed: "no feasible placement was found, or a file could not be written after the search",
+    refused: "wrong usage, bad input, or a results folder that cannot be written to",
+    interrupted: "Ctrl-C ended the search: results are the best found so far, maps of a long path are left out",
+    ..Manual::NEW
+};
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let mut run = Run::read_with(&options.config, options.set.clone())?;
+    let mut run = options.run.read()?;
     if let Some(gap) = options.certify {
         run = run.with_certificate(gap);
     }
@@ -22,7 +101,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.no_page {
         run = run.without_page();
     }
-    let mut out = out_folder(options.out.as_deref(), &options.config)?;
+    let mut out = out_folder(options.out.as_deref(), &options.run.config)?;
     out.folder = out.folder.keeping_partial(options.keep_partial);
     say_notes(run.notes());
     say_warnings(run.certificate_warning().as_slice());

@@ -1,10 +1,11 @@
 //! `stead pose`: where joint angles bring flange and tool.
 
+use super::manual::Manual;
 use super::values::six;
-use super::{Failure, print, print_json, say_notes};
+use super::{Failure, say_notes, show};
 use clap::Args;
 use std::path::PathBuf;
-use stead::Arm;
+use stead::robot::Arm;
 
 #[derive(Debug, Args)]
 pub(super) struct PoseOptions {
@@ -31,6 +32,19 @@ struct Angles {
     controller_deg: Option<[f64; 6]>,
 }
 
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead pose name:kuka-kr210-r2700 --controller-deg 0,-90,90,0,30,0",
+        "stead pose my/kr210.toml --joints-deg 10,80,-160,5,30,-20 --tool-of my/run.toml --json",
+    ],
+    written: "none",
+    remarks: "Frames are printed in the base frame of the rows, and in the controller's robot root where the robot \
+              file has the tables [controller] and [root]. A robot file without stiffness will do.",
+    done: "done; also where an angle is beyond its limits, which is noted",
+    ..Manual::NEW
+};
+
 pub(super) fn run(options: &PoseOptions) -> Result<(), Failure> {
     let mut arm = Arm::read(&options.robot)?;
     if let Some(file) = &options.tool_of {
@@ -42,5 +56,5 @@ pub(super) fn run(options: &PoseOptions) -> Result<(), Failure> {
     };
     let pose = pose.map_err(|error| Failure::at(&options.robot.display().to_string(), error))?;
     say_notes(pose.notes());
-    if options.json { print_json(&pose) } else { print(pose.to_string().as_bytes()) }
+    show(&pose, options.json)
 }

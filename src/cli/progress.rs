@@ -5,8 +5,8 @@ use std::io::IsTerminal;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+use stead_certify::MAX_GAP_PERCENT;
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
-use stead_placement::certify::MAX_GAP_PERCENT;
 use stead_report::output::Folder;
 use stead_report::units::figures;
 
@@ -36,10 +36,10 @@ impl Drop for Shown {
 }
 
 impl Terminal {
-    /// Takes over Ctrl-C: the first asks the jobs to stop and keep what they have, the second ends the process and with it the hold on
-    /// the folder of the results.
+    /// Takes over Ctrl-C: the first asks the jobs to stop and keep what they have, the second ends the process and with
+    /// it the hold on the folder of the results.
     pub fn start(out: Option<&Folder>) -> Self {
-        let terminal = Self::unstoppable();
+        let terminal = Self { stop: StopHandle::default(), bar: Arc::new(Mutex::new(ProgressBar::hidden())) };
         let lock = out.map(|out| out.lock_file().to_owned());
         let (stop, bar) = (terminal.stop.clone(), Arc::clone(&terminal.bar));
         // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
@@ -56,11 +56,6 @@ impl Terminal {
         terminal
     }
 
-    /// Leaves Ctrl-C as it is: it ends the process.
-    pub fn unstoppable() -> Self {
-        Self { stop: StopHandle::default(), bar: Arc::new(Mutex::new(ProgressBar::hidden())) }
-    }
-
     /// A monitor of one job, stopped by Ctrl-C, or at a deadline.
     pub fn show(&self, deadline: Option<Instant>) -> Shown {
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
@@ -70,7 +65,7 @@ impl Terminal {
             if let Ok(style) = ProgressStyle::with_template(STARTING) {
                 bar.set_style(style);
             }
-            // Between two reports, and before the first, the time that has passed shows that the job goes on.
+            // Between two reports, and before the first, the time that has passed shows that the job is running.
             bar.enable_steady_tick(TICK);
             (Monitor::new(move |progress| draw(&drawn, progress)), None)
         } else {
@@ -166,8 +161,8 @@ impl Described {
                 } else {
                     "no gap yet".to_owned()
                 };
-                let asked = figures(100.0 * gap);
-                (stage, None, format!("{reached} (asked {asked} %), {open} boxes open, {nodes} evaluated"))
+                let requested = figures(100.0 * gap);
+                (stage, None, format!("{reached} (asked {requested} %), {open} boxes open, {nodes} evaluated"))
             }
         };
         Self { stage, steps, message }

@@ -1,8 +1,9 @@
 //! `stead robots`: the arms that stead ships with.
 
-use super::{Failure, print, print_json};
+use super::manual::Manual;
+use super::{Failure, print, show};
 use clap::Args;
-use stead::ShippedArms;
+use stead::robot::ShippedArms;
 
 #[derive(Debug, Args)]
 pub(super) struct RobotsOptions {
@@ -13,10 +14,18 @@ pub(super) struct RobotsOptions {
     json: bool,
 }
 
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &["stead robots", "stead robots --json", "stead robots abb-irb6640-235 > my/arm.toml"],
+    written: "none; a robot file goes to standard output",
+    remarks: "A shipped arm takes the place of a robot file by its name: robot = \"name:kuka-kr270-2\".",
+    refused: "wrong usage",
+    ..Manual::NEW
+};
+
 pub(super) fn run(options: &RobotsOptions) -> Result<(), Failure> {
     if let Some(name) = &options.name {
         return print(ShippedArms::file(name)?.as_bytes());
     }
-    let arms = ShippedArms::all()?;
-    if options.json { print_json(&arms) } else { print(arms.to_string().as_bytes()) }
+    show(&ShippedArms::all()?, options.json)
 }

@@ -1,14 +1,64 @@
 //! `stead score`: one given placement.
 
-use super::arguments::ScoreOptions;
+use super::given::{GivenPlacement, GivenRun};
+use super::manual::Manual;
 use super::progress::Terminal;
-use super::{Failure, files_written, left_in, on_threads, print, print_json, say_notes, say_warnings};
-use stead::{Error, Run};
+use super::{Failure, files_written, left_in, on_threads, print_json, say_notes, say_warnings, show};
+use clap::Args;
+use std::path::PathBuf;
+use stead::Error;
 use stead_report::Folder;
 
+#[derive(Debug, Args)]
+pub(super) struct ScoreOptions {
+    #[command(flatten)]
+    pub run: GivenRun,
+    #[command(flatten)]
+    pub place: GivenPlacement,
+    /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// If it is interrupted, let its results take the place of finished ones, instead of leaving them in
+    /// <DIR>.interrupted
+    #[arg(long, requires = "out")]
+    pub keep_partial: bool,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the help and the guide say of it.
+pub(super) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead score configs/caro-2013.toml --x-mm 2.2 --y-mm -1643.5 --z-mm -556.4 --q4 0.9258",
+        "stead score configs/caro-2013.toml --x-mm 0 --y-mm -1640 --z-mm -214 --yaw-deg 79 --json",
+        "stead score configs/caro-2013.toml --placement-of results/caro-2013 --case 3 --out results/worst",
+        "stead score configs/tilting-table.toml --x-mm 1700 --y-mm 0 --z-mm 700 --yaw-deg 0 --orientation flat",
+    ],
+    written: "with --out",
+    files: &[
+        ("best-plan.csv, worst-plan.csv", "the two plans, point by point"),
+        (
+            "deflection-map.{csv,svg}",
+            "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
+        ),
+        ("placement.svg", "the cell from above with the placement"),
+        (
+            "report.html, cell.glb, page-data.json",
+            "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false",
+        ),
+        ("score.json", "what --json prints"),
+        ("stability-{best,worst}-plan.csv, stability.svg", "with a table [stability]: critical depth along the path"),
+    ],
+    failed: "the placement is infeasible, with the violated constraints and the path points, or a file could not be written",
+    refused: "wrong usage, bad input, or a results folder that cannot be written to",
+    interrupted: "ended early by Ctrl-C: both plans are there, critical depths and the map of a long path may be left out",
+    ..Manual::NEW
+};
+
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
-    let run = Run::read_with(&options.config, options.set.clone())?;
-    let (run, placement) = options.place.of(run, options.orientation.as_deref())?;
+    let run = options.run.read()?;
+    let (run, placement) = options.place.of(run)?;
     // Taken before the work is done.
     let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
@@ -17,7 +67,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     say_notes(outside_cell.as_slice());
     let shown = Terminal::start(out.as_ref()).show(None);
     let score = on_threads(None, || {
-        let mut score = run.score_with(&placement, &shown.monitor)?;
+        let mut score = run.score(&placement, &shown.monitor)?;
         if options.out.is_some() {
             score.map(&shown.monitor);
         }
@@ -36,11 +86,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let written = out
         .as_ref()
         .map_or(Ok(()), |out| files_written(score.write_in(out).inspect(|files| drop(left_in(out, files)))));
-    if options.json {
-        print_json(&score)?;
-    } else {
-        print(score.to_string().as_bytes())?;
-    }
+    show(&score, options.json)?;
     written?;
     if score.score().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | How do I begin with my own cell? | [`your_cell`], [`starting`] |
 //! | How do I get a tool path from my CAM system? | [`import_path`] |
+//! | How large are the forces of the cut, from the path and the stock? | [`forces`] |
 //! | How do I get a robot file from a URDF? | [`import_robot`] |
 //! | Which arms are there, and does my file agree with the controller? | [`robots`] |
 //! | What must the robot not hit? | [`surroundings`] |
@@ -22,7 +23,7 @@
 //! | How round is a measured profile? | [`circularity`] |
 //! | How do I use stead from Rust, from Python? | [`library`], [`python`] |
 //! | Which direction is positive? | [`conventions`] |
-//! | What stands in which file? | [`files`], [`run_file`], [`surroundings`], [`robot_file`], [`tables`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`] |
+//! | What stands in which file? | [`files`], [`run_file`], [`surroundings`], [`robot_file`], [`tables`], results [`columns`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`], [`forces_file`] |
 //! | How does it work, and how far can it be trusted? | [`method`], [`validation`] |
 //! | What does this message mean? | [`troubleshooting`], [`glossary`] |
 //!
@@ -38,6 +39,8 @@ pub mod cell_setup {}
 pub mod certify {}
 #[doc = include_str!("circularity.md")]
 pub mod circularity {}
+#[doc = include_str!("columns.md")]
+pub mod columns {}
 #[doc = include_str!("compensate.md")]
 pub mod compensate {}
 #[doc = include_str!("compensation_file.md")]
@@ -50,6 +53,10 @@ pub mod explain {}
 pub mod export {}
 #[doc = include_str!("files.md")]
 pub mod files {}
+#[doc = include_str!("forces.md")]
+pub mod forces {}
+#[doc = include_str!("forces_file.md")]
+pub mod forces_file {}
 #[doc = include_str!("glossary.md")]
 pub mod glossary {}
 #[doc = include_str!("identification_file.md")]

@@ -1,7 +1,9 @@
 //! Runs drawn over all options, placed and exported in this process, and held against the judge.
 
 use std::path::Path;
-use stead::{Existing, ExportOptions, Monitor, ProgramFormat, Run};
+use stead::files::Existing;
+use stead::program::{ExportOptions, ProgramFormat};
+use stead::{Monitor, Run};
 use stead_judge::Verdict;
 use stead_judge::cover::{Choice, words};
 
@@ -23,7 +25,9 @@ pub fn drive(choice: &Choice, seed: u64, folder: &Path) -> Outcome {
 
 fn run(choice: &Choice, seed: u64, folder: &Path) -> Result<Outcome, String> {
     let told = |error: stead::Error| error.to_string();
-    let robots = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/robots");
+    // From the root and from experiments/.
+    let mut above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("configs/robots"));
+    let robots = above.find(|folder| folder.exists()).ok_or("there is no configs/robots")?;
     let files = stead_judge::write::write(choice, seed, &robots, folder)?;
     let run = Run::read(&files.run).map_err(told)?;
     let placements = match run.place(&Monitor::silent()) {
@@ -46,14 +50,14 @@ fn run(choice: &Choice, seed: u64, folder: &Path) -> Result<Outcome, String> {
         options.unit = (files.part_moves && format == ProgramFormat::Rapid).then_some("STN1");
         let plan = results.join("best.csv");
         // An arm that cannot be drawn back so far is refused: then without.
-        let export = run.export(&plan, &options).or_else(|_| {
+        let export = run.export(&plan, &options, &Monitor::silent()).or_else(|_| {
             options.approach = 0.0;
-            run.export(&plan, &options)
+            run.export(&plan, &options, &Monitor::silent())
         });
         match export {
             Ok(program) => {
                 let written = program.write(&results, Existing::Kept).map_err(told)?;
-                verdict.join(stead_judge::judge_program(&files.run, &results, &written[0])?);
+                verdict.join(stead_judge::judge_program(&files.run, &results, &written.files[0])?);
             }
             // A move that hits is refused by name.
             Err(error) => verdict.not_exported.push(error.to_string()),

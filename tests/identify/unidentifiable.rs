@@ -14,7 +14,7 @@ fn hang_loads(bench: &Bench) {
 
 /// The example's sheet without noise, of an arm whose spring stands at this angle, under loads for each configuration.
 fn write_sheet(bench: &Bench, alpha_deg: f64, force: impl Fn(&Configuration) -> Vector3<f64>) {
-    let run = stead_format::read_identification(&bench.path(CONFIG)).unwrap();
+    let run = stead_run_files::read_identification(&bench.path(CONFIG)).unwrap();
     let alpha = alpha_deg.to_radians();
     let compensator = Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha, free_length: 0.6 };
     let mut laws = TRUTH.map(|urad| Compliance::from(urad / 1e6));
@@ -31,7 +31,8 @@ fn write_sheet(bench: &Bench, alpha_deg: f64, force: impl Fn(&Configuration) -> 
     bench.write(SHEET, &sheet(&robot, &cell, &load_cases, || 0.0, || 0.0).csv(9));
 }
 
-/// A spring that stands elsewhere than the file says, so that one there would have to push: everything else is identified, and the robot file has no spring.
+/// A spring that stands elsewhere than the file says, so that one there would have to push: everything else is
+/// identified, and the robot file has no spring.
 #[test]
 fn a_spring_that_the_readings_contradict_does_not_lose_the_rest() {
     let bench = bench();

@@ -254,11 +254,11 @@ const corrected = table(join(out('compensate'), 'corrected-path.csv'));
 await must('compensate: before and after along the path', join(out('compensate'), 'report.html'), async (page) => {
   const title = 'Normal to the feed before and after';
   const before = await pointWith(page, title, 'target commanded');
-  const [, value] = before.match(/mm (\S+)$/);
+  const [, value] = before.match(/mm\) (\S+)$/);
   assert.ok(Math.abs(value - Math.abs(corrected[0].before_normal_mm)) < 1e-4 * value, before);
   await plot(page, title).press('End');
   const after = await tip(page, title);
-  const [, least] = after.match(/mm (\S+)$/);
+  const [, least] = after.match(/mm\) (\S+)$/);
   assert.ok(after.startsWith('corrected command') && Math.abs(least - Math.abs(corrected.at(-1).after_normal_mm)) < 1e-7, after);
   await zooms(page, title);
 });
@@ -303,7 +303,7 @@ for (const width of [380, 800, 2200]) {
 
 // A page whose residuals are drawn and read from the wrong column must fail.
 const html = readFileSync(join(out('identify'), 'report.html'), 'utf8');
-writeFileSync(out('broken.html'), withScript(html, (script) => script.replace('place(card, x, series.y[k])', 'place(card, x, series.x[k])')));
+writeFileSync(out('broken.html'), withScript(html, (script) => script.replace('series.x[k] : k, y))', 'series.x[k] : k, series.x[k]))')));
 const wrong = await check(out('broken.html'), identify);
 const isOwn = wrong?.startsWith('x of the base frame');
 console.log(`${isOwn ? 'ok   ' : 'FAIL '} with the residuals read from the wrong column their test fails: ${wrong ?? 'nothing fails'}`);

@@ -211,6 +211,7 @@ export function tests(folder, others) {
       const first = await view(page);
       // A state among allowed ones and away from both plans is painted all over.
       const isClear = (row, k) =>
+        k > 1 && k < count - 2 &&
         [-2, 0, 2].every((by) => states[90 * count + k + by]?.reason === '') &&
         plans.slice(0, 2).every((plan) => Math.abs(plan[90].beta_deg - row.beta_deg) > 20);
       const clear = states.slice(90 * count, 91 * count).findIndex(isClear);

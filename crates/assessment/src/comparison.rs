@@ -111,8 +111,8 @@ pub struct RobotResult {
     pub working_radius: f64,
     /// Load of [`Load::Rated`] in multiples of the benchmark's wrench, where the payload is known.
     pub rated_load: Option<f64>,
-    /// Elbow up, then elbow down, by the names of the comparison: circularity under the test load and, where there is one, under
-    /// the rated load (else that of the test load again).
+    /// Elbow up, then elbow down, by the names of the comparison: circularity under the test load and, where there is
+    /// one, under the rated load (else that of the test load again).
     pub maps: [(Elbow, Map<2>); 2],
     /// Both elbows under the test load, then both under the rated load where there is one.
     pub configurations: Vec<Configuration>,

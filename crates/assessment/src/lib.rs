@@ -1,7 +1,7 @@
 //! Machining accuracy of robots (circularity of a milled circle over the cell), and roundness of measured profiles.
 //!
-//! The measure is the circularity of a milled circle (ISO 12181), after Klimchik, Ambiehl, Garnier, Furet and Pashkevich,
-//! "Efficiency evaluation of robots in machining applications using industrial performance measure", 2017:
+//! The measure is the circularity of a milled circle (ISO 12181), after Klimchik, Ambiehl, Garnier, Furet and
+//! Pashkevich, "Efficiency evaluation of robots in machining applications using industrial performance measure", 2017:
 //!
 //! - [`circle`]: the four reference circles of the standard and the circularity about each.
 //! - [`roundness`]: the same for measured points, in the plane or in space, with sectors left out.
@@ -11,6 +11,21 @@
 //! - [`ranking`]: which robot reaches which accuracy at which force.
 //! - [`comparison`]: all of it for several robots.
 //! - [`published`]: published tables, and their agreement with computed ones.
+//!
+//! ```
+//! use stead_assessment::roundness::{Measured, assess};
+//! use std::f64::consts::TAU;
+//! // A groove of 30 mm radius with three lobes of 10 um.
+//! let points = (0..90).map(|k| {
+//!     let angle = TAU * f64::from(k) / 90.0;
+//!     let radius = 30.0 + 0.01 * libm::cos(3.0 * angle);
+//!     [radius * libm::cos(angle), radius * libm::sin(angle)]
+//! });
+//! let groove = assess(&Measured::Planar(points.collect()), &[])?;
+//! assert!((groove.circles.lsc.circularity - 0.02).abs() < 1e-6);
+//! assert!(groove.circles.mzc.circularity <= groove.circles.lsc.circularity);
+//! # Ok::<(), stead_assessment::roundness::RoundnessError>(())
+//! ```
 
 pub mod benchmark;
 pub mod circle;

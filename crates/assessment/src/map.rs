@@ -84,15 +84,15 @@ impl Elbow {
 pub struct Map<const N: usize> {
     /// The centres.
     pub grid: Grid,
-    /// Circularity under each load in m (infinite where the arm is too soft for that load, but not for another), or why there
-    /// is none; in the order of [`Grid::place`].
+    /// Circularity under each load in m (infinite where the arm is too soft for that load, but not for another), or why
+    /// there is none; in the order of [`Grid::place`].
     pub nodes: Vec<Result<[f64; N], Obstacle>>,
 }
 
 impl<const N: usize> Map<N> {
-    /// Mills every circle of the grid in one posture class. `row_done` is called after each row. Once the monitor asks to
-    /// stop, the rest is left undone and the map is of no use. Rows of the grid are shared among the threads of rayon's pool;
-    /// the result does not depend on their number.
+    /// Mills every circle of the grid in one posture class. `row_done` is called after each row. Once the monitor asks
+    /// to stop, the rest is left undone and the map is of no use. Rows of the grid are shared among the threads of
+    /// rayon's pool; the result does not depend on their number.
     pub fn new(
         benchmark: &Benchmark,
         robot: &Robot,

@@ -49,8 +49,8 @@ pub struct Reading {
 /// How far our results and the published ones agree.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Root mean square of computed / published - 1 over the smallest and largest circularities and the optimal zones under the test
-    /// load.
+    /// Root mean square of computed / published - 1 over the smallest and largest circularities and the optimal zones
+    /// under the test load.
     pub rms: f64,
     /// Number of readings behind it.
     pub readings: usize,
@@ -66,8 +66,8 @@ pub struct Agreement {
     pub same_order: bool,
     /// Cells of the published table of accuracies, and how many of the computed ones round to the same.
     pub accuracies: (usize, usize),
-    /// Cells of the published table of capable robots, and in how many of them the computed one names the same robots, those apart
-    /// that are not printed.
+    /// Cells of the published table of capable robots, and in how many of them the computed one names the same robots,
+    /// those apart that are not printed.
     pub capable: (usize, usize),
 }
 

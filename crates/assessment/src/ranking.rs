@@ -1,13 +1,13 @@
-//! Which robot for which task: accuracy at a force, and the robots that reach a wanted accuracy (Klimchik 2017, Tables 8
-//! and 9).
+//! Which robot for which task: accuracy at a force, and the robots that reach a wanted accuracy (Klimchik 2017, Tables
+//! 8 and 9).
 //!
-//! The rule of the tables: the circularity of the best place under the benchmark's force grows in proportion to the force
-//! (Table 8); compensating errors leaves a share of it (Table 9: a fifth); and no robot takes a force above the weight of its
-//! payload.
+//! The rule of the tables: the circularity of the best place under the benchmark's force grows in proportion to the
+//! force (Table 8); compensating errors leaves a share of it (Table 9: a fifth); and no robot takes a force above the
+//! weight of its payload.
 
 use serde::Serialize;
 
-/// What is asked for, and what is assumed.
+/// What is requested, and what is assumed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
     /// Wanted accuracies. m
@@ -49,7 +49,8 @@ pub struct Accuracy {
     pub robot: String,
     /// The cutting force. N
     pub force: f64,
-    /// Circularity without compensation, `None` where the force is more than the robot may take or the circle fits nowhere. m
+    /// Circularity without compensation, `None` where the force is more than the robot may take or the circle fits
+    /// nowhere. m
     pub circularity: Option<f64>,
 }
 

@@ -26,8 +26,8 @@ pub struct Sector {
 }
 
 impl Sector {
-    /// From one angle to another, counter-clockwise from the x axis and through zero where the second is smaller; `None` for angles that
-    /// are not from -360 to 360 degrees.
+    /// From one angle to another, counter-clockwise from the x axis and through zero where the second is smaller;
+    /// `None` for angles that are not from -360 to 360 degrees.
     pub fn between_deg(from: f64, to: f64) -> Option<Self> {
         let is_allowed = |angle: f64| angle.abs() <= 360.0;
         let turns = if to < from { libm::ceil((from - to) / 360.0) } else { 0.0 };
@@ -78,9 +78,9 @@ pub enum RoundnessError {
 
 /// The four circles of measured points without those in some sectors.
 ///
-/// The angle of a point is that about the least-squares centre of all points, from the x axis of the points, or from that of
-/// the plane fitted to all of them (see [`FittedPlane::x_axis`]) where they have a z. After that the plane is fitted again, to the
-/// points that are left.
+/// The angle of a point is that about the least-squares centre of all points, from the x axis of the points, or from
+/// that of the plane fitted to all of them (see [`FittedPlane::x_axis`]) where they have a z. After that the plane is
+/// fitted again, to the points that are left.
 ///
 /// # Errors
 /// [`RoundnessError`].

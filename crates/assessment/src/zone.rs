@@ -1,8 +1,8 @@
 //! Square zones of a map: where the largest circularity inside is smallest, and the zones in the middle of what can be
 //! reached (Klimchik 2017, Tables 6 and 7).
 //!
-//! The largest value over every square of a size is a sliding-window maximum along each axis in turn, so that the cost is
-//! linear in the number of nodes, whatever the size.
+//! The largest value over every square of a size is a sliding-window maximum along each axis in turn, so that the cost
+//! is linear in the number of nodes, whatever the size.
 
 use super::map::Grid;
 use serde::Serialize;
@@ -19,9 +19,9 @@ pub struct Zone {
     pub largest: f64,
 }
 
-/// The zone of `intervals` grid steps a side whose largest value is smallest; `None` where no such square has values at all
-/// its nodes. `values` are in the order of [`Grid::place`], infinite where there is none. Of several equal ones it is the
-/// first in that order.
+/// The zone of `intervals` grid steps a side whose largest value is smallest; `None` where no such square has values at
+/// all its nodes. `values` are in the order of [`Grid::place`], infinite where there is none. Of several equal ones it
+/// is the first in that order.
 pub fn optimal(grid: &Grid, values: &[f64], intervals: usize) -> Option<Zone> {
     let [columns, rows] = grid.counts;
     let side = intervals + 1;
@@ -43,8 +43,8 @@ pub fn optimal(grid: &Grid, values: &[f64], intervals: usize) -> Option<Zone> {
     best.map(|(corner, largest)| zone(grid, corner, intervals, largest))
 }
 
-/// The zone of `intervals` steps a side about a node of the grid (column and row); `None` where a node of it has no value
-/// or is off the grid. With an odd number of steps the centre is half a step below the node on both axes.
+/// The zone of `intervals` steps a side about a node of the grid (column and row); `None` where a node of it has no
+/// value or is off the grid. With an odd number of steps the centre is half a step below the node on both axes.
 pub fn about(grid: &Grid, values: &[f64], [column, row]: [usize; 2], intervals: usize) -> Option<Zone> {
     let before = intervals.div_ceil(2);
     let corner = [column.checked_sub(before)?, row.checked_sub(before)?];

@@ -81,8 +81,8 @@ impl Cover {
     }
 }
 
-/// A lower bound of the distance between a solid with spheres and one with a box, where it is below `enough`; else any value not
-/// below that. Both attachments stand at poses in one frame. m
+/// A lower bound of the distance between a solid with spheres and one with a box, where it is below `enough`; else any
+/// value not below that. Both attachments stand at poses in one frame. m
 pub fn lower_bound(a: &Cover, a_at: &Pose<f64>, b: &Cover, b_at: &Pose<f64>, enough: f64) -> f64 {
     let outside = |in_box: Vector3<f64>| (in_box.abs() - b.half).sup(&Vector3::zeros()).norm();
     let centre = b.box_pose.inverse_point(&b_at.inverse_point(&a_at.point(&a.bound.centre)));

@@ -36,8 +36,8 @@ pub enum MeshError {
 }
 
 impl TriangleMesh {
-    /// From vertices (m) and triangles of three vertex numbers, from 0. Vertices within 1e-6 of the size of the mesh are one, and triangles
-    /// without area are left out.
+    /// From vertices (m) and triangles of three vertex numbers, from 0. Vertices within 1e-6 of the size of the mesh
+    /// are one, and triangles without area are left out.
     ///
     /// # Errors
     /// [`MeshError`].
@@ -85,8 +85,8 @@ impl TriangleMesh {
         &self.solids
     }
 
-    /// Whether it is made of closed surfaces alone, so that it has an inside: in each of them every edge belongs to two triangles that
-    /// turn the same way.
+    /// Whether it is made of closed surfaces alone, so that it has an inside: in each of them every edge belongs to two
+    /// triangles that turn the same way.
     pub fn is_closed(&self) -> bool {
         self.is_closed
     }

@@ -1,4 +1,4 @@
-//! All shapes and zones of a cell, and the clearance that is asked for.
+//! All shapes and zones of a cell, and the clearance that is requested.
 
 use crate::shape::{KeepOut, Shape};
 
@@ -29,8 +29,8 @@ pub enum SurroundingsError {
 }
 
 impl Surroundings {
-    /// Joins shapes and zones with the clearance between shapes (m) and the pairs that may touch: each two names of shapes, or of
-    /// attachments (`link_2`) for all shapes attached there.
+    /// Joins shapes and zones with the clearance between shapes (m) and the pairs that may touch: each two names of
+    /// shapes, or of attachments (`link_2`) for all shapes attached there.
     ///
     /// # Errors
     /// [`SurroundingsError`].

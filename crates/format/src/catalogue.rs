@@ -1,4 +1,5 @@
-//! The arms that stead ships with: robot files that are part of the program, named `name:kuka-kr270-2` where a file is asked for.
+//! The arms that stead ships with: robot files that are part of the program, named `name:kuka-kr270-2` where a file is
+//! requested.
 
 use crate::input::InputError;
 use crate::robot::{RobotFile, geometry_from, has_stiffness};
@@ -81,7 +82,8 @@ mod tests {
         assert!(arms.iter().filter(|arm| arm.has_stiffness).count() >= 12);
         assert!(arm("staubli-tx200").has_dynamics && !arm("abb-irb6640-235").has_stiffness);
         assert!(arm("kuka-kr240-2").robot.unverified().len() == 3);
-        // Figures that were taken over from a source which is about another arm or says nothing of it, and where each comes from.
+        // Figures that were taken over from a source which is about another arm or says nothing of it, and where each
+        // comes from.
         for (name, word) in [("kuka-kr210-2", "stiffness: "), ("kuka-kr360-l240", "payload: 360 kg is what Klimchik")] {
             let unverified = arm(name).robot.unverified();
             assert!(unverified.iter().any(|what| what.starts_with(word)), "{name}: {unverified:?}");
@@ -133,7 +135,8 @@ mod tests {
         (axes, Pose { rotation, translation: flange.into() })
     }
 
-    /// Rows and controller angles together give the flange where turning the maker's own axes one after the other brings it.
+    /// Rows and controller angles together give the flange where turning the maker's own axes one after the other
+    /// brings it.
     #[test]
     fn controller_angles_turn_the_axes_as_the_maker_says() {
         let mut seen = 0;

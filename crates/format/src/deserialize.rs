@@ -1,13 +1,13 @@
 //! A TOML document as serde data, such that every error has the file, line and field of the value it is about.
 //!
-//! What a value must be is said once, by the `expecting` of the type that reads it: it becomes the `allowed` of every error
-//! about the value. Keys that a table does not have are offered as absent, so optional keys are `Option`s and a missing key is
-//! refused with what its type expects; keys that the type does not declare are refused with the nearest one that it does.
+//! What a value must be is said once, by the `expecting` of the type that reads it: it becomes the `allowed` of every
+//! error about the value. Keys that a table does not have are offered as absent, so optional keys are `Option`s and a
+//! missing key is refused with what its type expects; keys that the type does not declare are refused with the nearest
+//! one that it does.
 
 use crate::input::InputError;
 use crate::place::Place;
 use crate::quote::{GARBLED, garbles};
-use crate::tool::successor;
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, Deserializer, Error, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::fmt;
@@ -114,11 +114,8 @@ impl<'a> Node<'a> {
         let name: &str = key.get_ref();
         let path = self.place.key(name).path;
         let near = |known: &str| strsim::jaro(known, name);
-        let nearest = || keys.iter().max_by(|a, b| near(a).total_cmp(&near(b)));
-        let hint = match successor(&path) {
-            Some(successor) => format!(" (now {successor})"),
-            None => nearest().map(|known| format!(" (nearest known one: {known})")).unwrap_or_default(),
-        };
+        let nearest = keys.iter().max_by(|a, b| near(a).total_cmp(&near(b)));
+        let hint = nearest.map(|known| format!(" (nearest known one: {known})")).unwrap_or_default();
         let file = self.place.file;
         Err(file
             .locate(InputError::new(file.file(), format!("unknown key{hint}")), key.span().start)

@@ -19,7 +19,8 @@
 //!
 //! let source = TomlFile::new("cell.toml".as_ref(), b"x_mm = [-300, 300]\nwall_mm = -20".to_vec())?;
 //! let error = source.parse()?.read::<Cell>().err().map(|error| error.to_string());
-//! let expected = "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0 and not above 1e6";
+//! let expected =
+//!     "cell.toml:2: wall_mm: is out of range, found -20; allowed: a finite number above 0 and not above 1e6";
 //! assert_eq!(error.as_deref(), Some(expected));
 //! # Ok(())
 //! # }
@@ -158,18 +159,19 @@ impl Place<'_> {
     ///
     /// # Errors
     /// As [`Place::named_file`] and [`TomlFile::new`].
-    pub(crate) fn named_toml(&self, role: &'static str) -> Result<(TomlFile, InputFile), InputError> {
+    pub fn named_toml(&self, role: &'static str) -> Result<(TomlFile, InputFile), InputError> {
         let file = self.named_file()?;
         let source = file.toml()?;
         let input = input_file(role, file.name, source.bytes());
         Ok((source, input))
     }
 
-    /// The file named here, by a path relative to the folder of this one, or `name:` and the name of a shipped arm, read.
+    /// The file named here, by a path relative to the folder of this one, or `name:` and the name of a shipped arm,
+    /// read.
     ///
     /// # Errors
-    /// [`InputError`] here when there is no name, or the file cannot be read; there when it is a result that its manifest does not vouch
-    /// for.
+    /// [`InputError`] here when there is no name, or the file cannot be read; there when it is a result that its
+    /// manifest does not vouch for.
     pub fn named_file(&self) -> Result<NamedFile, InputError> {
         let name: String = self.read()?;
         let sources = self.file.sources.clone();

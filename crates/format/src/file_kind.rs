@@ -1,4 +1,5 @@
-//! What a file is that was given in place of another: told by how it begins, so that the message can name the command that takes it.
+//! What a file is that was given in place of another: told by how it begins, so that the message can name the command
+//! that takes it.
 
 use crate::input::InputError;
 use std::path::Path;
@@ -8,7 +9,7 @@ const LINES: usize = 200;
 
 /// Files that people give in place of others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum FileKind {
+pub enum FileKind {
     /// A robot description.
     Urdf,
     /// One with macros, to be expanded first.
@@ -21,6 +22,10 @@ pub(crate) enum FileKind {
     Step,
     /// A robot file of this program.
     RobotFile,
+    /// A run file of this program.
+    RunFile,
+    /// A forces file of this program.
+    ForcesFile,
 }
 
 impl FileKind {
@@ -35,6 +40,10 @@ impl FileKind {
             Some(if text.contains("xacro") { Self::Xacro } else { Self::Urdf })
         } else if any(|line| line == "[[joints]]") {
             Some(Self::RobotFile)
+        } else if any(|line| line == "[redundancy]") {
+            Some(Self::RunFile)
+        } else if any(|line| line == "[stock]") {
+            Some(Self::ForcesFile)
         } else if any(is_cldata) {
             Some(Self::Cldata)
         } else {
@@ -46,10 +55,10 @@ impl FileKind {
 
     /// What the beginning of a file shows it to be, where that is no file of this program.
     pub fn foreign(bytes: &[u8]) -> Option<Self> {
-        Self::of(bytes).filter(|kind| *kind != Self::RobotFile)
+        Self::of(bytes).filter(|kind| !matches!(kind, Self::RobotFile | Self::RunFile | Self::ForcesFile))
     }
 
-    /// That a file is of this kind and not what was asked for, and what to do with it.
+    /// That a file is of this kind and not what was requested, and what to do with it.
     pub fn refused(self, file: &Path) -> InputError {
         let (is, allowed) = match self {
             Self::Urdf => ("is a URDF", "the robot file that `stead import robot` makes of it"),
@@ -63,6 +72,14 @@ impl FileKind {
             Self::RobotFile => {
                 ("is a robot file", "a run file that names it: `stead init place --robot FILE --task TASK` writes one")
             }
+            Self::RunFile => (
+                "is a run file of `stead place`",
+                "a forces file, with path, [stock] and [tool]: `stead init forces` writes one",
+            ),
+            Self::ForcesFile => (
+                "is a forces file",
+                "a run file, which names the task that `stead forces` makes of it, or has [stock] itself",
+            ),
         };
         InputError::new(file, is).allowed(allowed)
     }
@@ -103,6 +120,8 @@ mod tests {
             ("(PART)\nG0X0Y0\n", Some(FileKind::GCode)),
             ("ISO-10303-21;\nHEADER;\n", Some(FileKind::Step)),
             ("name = 'arm'\n[[joints]]\n", Some(FileKind::RobotFile)),
+            ("path = 'a.nc'\n[stock]\nbox_mm = [1, 2, 3]\n", Some(FileKind::ForcesFile)),
+            ("robot = 'arm.toml'\n[redundancy]\n[stock]\n", Some(FileKind::RunFile)),
             ("segment,x_mm\n1,0\n", None),
             ("robot = 'name:kuka-kr500'\n[spindle]\n", None),
             ("gain = 3\nN\nG\n", None),

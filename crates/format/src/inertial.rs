@@ -14,7 +14,8 @@ pub(super) const MASS: &str = "mass_kg";
 pub(super) const CENTRE: &str = "centre_of_mass_mm";
 pub(super) const INERTIA: &str = "inertia_kg_m2";
 
-/// An inertia tensor about the centre of mass. The entries beside the diagonal are those of the tensor; 0 where left out.
+/// An inertia tensor about the centre of mass. The entries beside the diagonal are those of the tensor; 0 where left
+/// out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InertiaTable {
     /// Moment of inertia about the x direction.

@@ -64,6 +64,12 @@ impl InputError {
         self
     }
 
+    /// The same place with another problem.
+    pub fn because(mut self, problem: impl std::fmt::Display) -> Self {
+        self.problem = problem.to_string().into();
+        self
+    }
+
     /// Adds the line, from 1.
     pub fn at_line(mut self, line: usize) -> Self {
         self.line = NonZeroUsize::new(line);

@@ -1,7 +1,8 @@
 //! `manifest.json`: which files of a results folder which command has written, and whether it came to its end.
 //!
-//! A command that puts results in place first marks its entry as incomplete and states it complete at the very end. Whoever reads a result
-//! asks [`check`] whether the bytes are those of a run that came to its end. A folder without a manifest holds the user's own files.
+//! A command that puts results in place first marks its entry as incomplete and states it complete at the very end.
+//! Whoever reads a result asks [`check`] whether the bytes are those of a run that came to its end. A folder without a
+//! manifest holds the user's own files.
 
 use crate::files;
 use crate::input::{InputError, InputFile, sha256};
@@ -83,7 +84,7 @@ pub enum Found {
 pub enum Unlisted {
     /// It is the user's own.
     Accepted,
-    /// It cannot be the result that is asked for.
+    /// It cannot be the result that is requested.
     Refused,
 }
 
@@ -187,11 +188,12 @@ pub fn interruption_note(file: &Path) -> Option<String> {
     ))
 }
 
-/// Refuses a file whose bytes are not those that the manifest beside it, if there is one, states of a run that came to its end.
+/// Refuses a file whose bytes are not those that the manifest beside it, if there is one, states of a run that came to
+/// its end.
 ///
 /// # Errors
-/// [`InputError`] for a result of a run that did not end, or that was changed since; for a file that is not listed, where that is
-/// refused.
+/// [`InputError`] for a result of a run that did not end, or that was changed since; for a file that is not listed,
+/// where that is refused.
 pub fn check(file: &Path, bytes: &[u8], unlisted: Unlisted) -> Result<(), InputError> {
     let folder = file.parent().unwrap_or(Path::new(""));
     let error = |problem: String| InputError::new(file, problem);

@@ -10,14 +10,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stead_model::robot::Pose;
 
-/// The base frame of the robot's rows in the cell frame, whose z axis points up: on a pedestal, on a wall, under the ceiling. With
-/// this table all that is stated in the base frame (cell, placements, results) is in the cell frame.
+/// The base frame of the robot's rows in the cell frame, whose z axis points up: on a pedestal, on a wall, under the
+/// ceiling. With this table all that is stated in the base frame (cell, placements, results) is in the cell frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MountTable {
     /// Origin of the base frame in the cell frame.
     pub xyz_mm: Vector<Mm>,
-    /// Rotation from base to cell coordinates, by rows; at most one of this and the four keys below, upright where none is there.
+    /// Rotation from base to cell coordinates, by rows; at most one of this and the four keys below, upright where none
+    /// is there.
     pub rotation: Option<Matrix>,
     /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
     pub abc_deg: Option<Vector<Deg>>,
@@ -34,7 +35,7 @@ impl MountTable {
     ///
     /// # Errors
     /// [`InputError`] for several orientations, and for one that is none.
-    pub(crate) fn cell_from_base(&self, at: &Place<'_>) -> Result<Pose<f64>, InputError> {
+    pub fn cell_from_base(&self, at: &Place<'_>) -> Result<Pose<f64>, InputError> {
         let keys = orientation_keys!(self);
         let rotation = if keys.is_given() { keys.rotation(at)? } else { Matrix3::identity() };
         Ok(Pose { rotation, translation: self.xyz_mm.vector() })

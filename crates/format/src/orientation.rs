@@ -12,7 +12,7 @@ pub type Quaternion = Array<Number, 4>;
 
 /// What a table has under the five keys, of which exactly one is to be there.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct OrientationKeys {
+pub struct OrientationKeys {
     /// The rotation matrix, by rows.
     pub rotation: Option<Matrix>,
     /// KUKA's A, B, C.
@@ -26,6 +26,7 @@ pub(crate) struct OrientationKeys {
 }
 
 /// The keys of a table with fields of these names.
+#[macro_export]
 macro_rules! orientation_keys {
     ($table:expr) => {
         $crate::orientation::OrientationKeys {
@@ -37,7 +38,7 @@ macro_rules! orientation_keys {
         }
     };
 }
-pub(crate) use orientation_keys;
+pub use crate::orientation_keys;
 
 /// The five keys with what they stand for.
 const KEYS: &str = "exactly one of rotation (matrix, by rows), abc_deg (Rz(A) Ry(B) Rx(C)), wpr_deg (Rz(R) Ry(P) Rx(W)), \
@@ -66,8 +67,8 @@ impl OrientationKeys {
     /// The rotation that the table states.
     ///
     /// # Errors
-    /// [`InputError`] where none or several of the keys are there, for a matrix that is no rotation, and for a quaternion whose
-    /// length is not 1.
+    /// [`InputError`] where none or several of the keys are there, for a matrix that is no rotation, and for a
+    /// quaternion whose length is not 1.
     pub fn rotation(&self, at: &Place<'_>) -> Result<Matrix3<f64>, InputError> {
         if let [first, second, ..] = self.given()[..] {
             return Err(at.key(second).error(format!("states an orientation beside {first}"), KEYS));

@@ -14,7 +14,8 @@ pub struct Place<'a> {
     pub(crate) path: String,
     /// Where the table or array begins that the value is in, or would be in.
     pub(crate) parent: usize,
-    pub(crate) value: Option<&'a Spanned<DeValue<'a>>>,
+    /// What stands there; nothing where the key is left out.
+    pub value: Option<&'a Spanned<DeValue<'a>>>,
 }
 
 impl<'a> Place<'a> {
@@ -86,9 +87,10 @@ impl<'a> Place<'a> {
 }
 
 /// The value of an optional key of a table that is needed all the same: `required!(place of the table, table.key)`.
+#[macro_export]
 macro_rules! required {
     ($place:expr, $table:ident.$key:ident) => {
         $place.require(stringify!($key), $table.$key)
     };
 }
-pub(crate) use required;
+pub use crate::required;

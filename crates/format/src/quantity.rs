@@ -1,4 +1,5 @@
-//! Numbers of a file, with their unit and the range they may be in: one declaration that reads, checks, writes and documents.
+//! Numbers of a file, with their unit and the range they may be in: one declaration that reads, checks, writes and
+//! documents.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
@@ -20,9 +21,10 @@ pub trait Expects {
 }
 
 /// What the type that is read expects, as its [`Expects`] says.
-pub(crate) struct Reading<T>(pub PhantomData<T>);
+pub struct Reading<T>(pub PhantomData<T>);
 
 /// The `expecting` of a visitor, once for all.
+#[macro_export]
 macro_rules! expecting {
     ($kind:ty) => {
         fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -30,9 +32,11 @@ macro_rules! expecting {
         }
     };
 }
-pub(crate) use expecting;
+pub use crate::expecting;
 
-/// What schemas of values have in common, once for all: they stand where the value is, not by name among the definitions.
+/// What schemas of values have in common, once for all: they stand where the value is, not by name among the
+/// definitions.
+#[macro_export]
 macro_rules! inline_schema {
     ($name:expr) => {
         fn inline_schema() -> bool {
@@ -44,7 +48,7 @@ macro_rules! inline_schema {
         }
     };
 }
-pub(crate) use inline_schema;
+pub use crate::inline_schema;
 
 /// A unit of a file and what it is in SI units and radians.
 pub trait Unit: Copy + Debug + PartialEq + 'static {
@@ -194,6 +198,7 @@ impl<U: Unit, R: Range> JsonSchema for Quantity<U, R> {
 }
 
 /// Declares ranges of numbers.
+#[macro_export]
 macro_rules! ranges {
     ($($(#[$doc:meta])* $name:ident: $from:expr, $to:expr;)*) => {$(
         $(#[$doc])*
@@ -205,7 +210,7 @@ macro_rules! ranges {
         }
     )*};
 }
-pub(crate) use ranges;
+pub use crate::ranges;
 
 ranges! {
     /// Any finite number.

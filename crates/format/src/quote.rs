@@ -4,7 +4,7 @@
 const QUOTE: usize = 80;
 
 /// A piece of a file on one line, cut where it is long.
-pub(crate) fn shorten(text: &str) -> String {
+pub fn shorten(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     match line.char_indices().nth(QUOTE) {
         Some((end, _)) => format!("{}...", &line[..end]),
@@ -15,9 +15,9 @@ pub(crate) fn shorten(text: &str) -> String {
 /// What is refused in a text of a file.
 pub(crate) const GARBLED: &str = "holds a control character or a mark of writing direction";
 
-/// Whether a character is none that is seen, and changes how what is around it is shown: a control, an end of a line, or a mark of writing
-/// direction, which makes a name look like another one.
-pub(crate) fn garbles(c: char) -> bool {
+/// Whether a character is none that is seen, and changes how what is around it is shown: a control, an end of a line,
+/// or a mark of writing direction, which makes a name look like another one.
+pub fn garbles(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}')
 }

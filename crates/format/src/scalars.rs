@@ -70,7 +70,7 @@ impl<const MIN: u64, const MAX: u64> JsonSchema for Whole<MIN, MAX> {
 ///
 /// # Errors
 /// [`InputError`] at a number that is in the list twice.
-pub(crate) fn joint_set(numbers: &List<Whole<1, 6>>, at: &Place<'_>) -> Result<[bool; 6], InputError> {
+pub fn joint_set(numbers: &List<Whole<1, 6>>, at: &Place<'_>) -> Result<[bool; 6], InputError> {
     let mut joints = [false; 6];
     for (number, place) in numbers.0.iter().zip(1..) {
         if std::mem::replace(&mut joints[number.count() - 1], true) {
@@ -80,52 +80,62 @@ pub(crate) fn joint_set(numbers: &List<Whole<1, 6>>, at: &Place<'_>) -> Result<[
     Ok(joints)
 }
 
-/// What the words of a field stand for.
-pub trait Words: Copy + PartialEq + 'static {
+/// What the words of a field stand for, in the vocabulary of a crate: a type of its own, so that it can give words to
+/// types of others.
+pub trait Words<Vocabulary>: Copy + PartialEq + 'static {
     /// Every word with its meaning.
     fn words() -> Vec<(&'static str, Self)>;
 }
 
-/// Implements [`Words`] by a table of words and meanings.
+/// Implements [`Words`] by a table of words and meanings, in the vocabulary of the crate that calls it.
+// The vocabulary is meant to be the one of the crate that calls the macro.
+#[allow(clippy::crate_in_macro_def)]
+#[macro_export]
 macro_rules! words {
     ($kind:ty: $($word:literal => $meaning:expr),+ $(,)?) => {
-        impl $crate::scalars::Words for $kind {
+        impl $crate::scalars::Words<crate::Vocabulary> for $kind {
             fn words() -> Vec<(&'static str, Self)> {
                 vec![$(($word, $meaning)),+]
             }
         }
     };
 }
-pub(crate) use words;
+pub use crate::words;
 
-/// One of some words, as what it stands for.
+/// One of some words of a vocabulary, as what it stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Word<T>(pub T);
+pub struct Word<T, V = crate::Vocabulary>(pub T, PhantomData<V>);
 
-impl<T: Words> Expects for Word<T> {
+impl<T, V> From<T> for Word<T, V> {
+    fn from(meaning: T) -> Self {
+        Self(meaning, PhantomData)
+    }
+}
+
+impl<T: Words<V>, V> Expects for Word<T, V> {
     fn expected() -> String {
         T::words().iter().map(|(word, _)| format!("\"{word}\"")).collect::<Vec<_>>().join(" or ")
     }
 }
 
-impl<'de, T: Words> Deserialize<'de> for Word<T> {
+impl<'de, T: Words<V>, V> Deserialize<'de> for Word<T, V> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_str(Reading::<Self>(PhantomData))
     }
 }
 
-impl<T: Words> Visitor<'_> for Reading<Word<T>> {
-    type Value = Word<T>;
+impl<T: Words<V>, V> Visitor<'_> for Reading<Word<T, V>> {
+    type Value = Word<T, V>;
 
-    expecting!(Word<T>);
+    expecting!(Word<T, V>);
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
         let meant = T::words().into_iter().find(|(word, _)| *word == text);
-        meant.map(|(_, meaning)| Word(meaning)).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+        meant.map(|(_, meaning)| meaning.into()).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
     }
 }
 
-impl<T: Words> Serialize for Word<T> {
+impl<T: Words<V>, V> Serialize for Word<T, V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let found = T::words().into_iter().find(|(_, meaning)| *meaning == self.0);
         let (word, _) = found.ok_or_else(|| serde::ser::Error::custom("a meaning without a word"))?;
@@ -133,7 +143,7 @@ impl<T: Words> Serialize for Word<T> {
     }
 }
 
-impl<T: Words> JsonSchema for Word<T> {
+impl<T: Words<V>, V> JsonSchema for Word<T, V> {
     inline_schema!(Self::expected());
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {

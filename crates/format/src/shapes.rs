@@ -120,7 +120,8 @@ impl<U: Unit, R: Range, const APART: bool> Ends<Quantity<U, R>, APART> {
 
 impl<U: Unit, R: Range, const APART: bool> Expects for Ends<Quantity<U, R>, APART> {
     fn expected() -> String {
-        // The range of the numbers stands between what else is said of them: `two numbers [min, max] from -1 to 1 with ..`.
+        // The range of the numbers stands between what else is said of them:
+        // `two numbers [min, max] from -1 to 1 with ..`.
         let of_each = Quantity::<U, R>::expected_of_each();
         let (noun, range) = of_each.split_once("numbers").unwrap_or((&of_each, ""));
         let (ends, rule) = match APART {

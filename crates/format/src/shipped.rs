@@ -3,7 +3,7 @@
 use crate::input::InputError;
 use std::path::Path;
 
-/// What the name of a shipped arm begins with where a file is asked for.
+/// What the name of a shipped arm begins with where a file is requested.
 pub const PREFIX: &str = "name:";
 
 /// A shipped arm by its name: the file of that name in `configs/robots`.
@@ -67,13 +67,13 @@ pub(crate) const ARMS: &[(&str, &str)] = &[
 ///
 /// # Errors
 /// [`InputError`] where there is no arm of this name.
-pub(crate) fn text(file: &Path) -> Option<Result<&'static str, InputError>> {
+pub fn text(file: &Path) -> Option<Result<&'static str, InputError>> {
     let name = file.to_str()?.strip_prefix(PREFIX)?;
     Some(by_name(name).ok_or_else(|| unknown(file)))
 }
 
 /// The file of the shipped arm of a name.
-pub(crate) fn by_name(name: &str) -> Option<&'static str> {
+pub fn by_name(name: &str) -> Option<&'static str> {
     ARMS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
@@ -83,7 +83,7 @@ fn unknown(file: &Path) -> InputError {
     InputError::new(file, "is no shipped arm").allowed(names_near(name))
 }
 
-/// What may be asked for in the place of a name.
+/// What may be requested in the place of a name.
 pub(crate) fn names_near(name: &str) -> String {
     let near = |(known, _): &&(&str, &str)| strsim::jaro(known, name);
     let near =

@@ -4,6 +4,7 @@ use crate::files;
 use crate::input::InputError;
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::task::{Imported, parse_csv};
+use std::any::Any;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,8 @@ struct Shared {
     robots: Known<(PathBuf, Option<bool>), Robot>,
     tasks: Known<PathBuf, Imported>,
     meshes: Known<(PathBuf, MeshUnit), TriangleMesh>,
+    /// What was made of files, by all that it depends on.
+    made: Known<String, dyn Any + Send + Sync>,
 }
 
 /// What was read or made once, by its key.
@@ -29,7 +32,7 @@ type Known<K, T> = Mutex<HashMap<K, Arc<T>>>;
 
 impl Sources {
     /// Files are read from the disk whenever they are needed.
-    pub(crate) fn disk() -> Self {
+    pub fn disk() -> Self {
         Self(None)
     }
 
@@ -45,9 +48,10 @@ impl Sources {
     }
 
     /// The robot of a file, read by a function for this kind of use; anew where values of the file were replaced.
-    pub(crate) fn robot(
+    pub fn robot(
         &self,
-        (file, is_overridden): (&Path, bool),
+        file: &Path,
+        is_overridden: bool,
         kind: Option<bool>,
         read: impl FnOnce() -> Result<Robot, InputError>,
     ) -> Result<Robot, InputError> {
@@ -57,7 +61,7 @@ impl Sources {
     }
 
     /// The tool path of a task file.
-    pub(crate) fn task(&self, file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
+    pub fn task(&self, file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
         let Some(shared) = &self.0 else { return parse_csv(file, bytes) };
         let task = once(&shared.tasks, file.to_owned(), || parse_csv(file, bytes).map(Arc::new))?;
         Ok(Imported::clone(&task))
@@ -70,8 +74,22 @@ impl Sources {
         once(&shared.meshes, (file.to_owned(), unit), read)
     }
 
+    /// What takes long to make of files, by a key that states all that it depends on: made once.
+    ///
+    /// # Errors
+    /// Those of the function that makes it.
+    pub fn made<T: Any + Send + Sync, E>(&self, key: String, make: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
+        let Some(shared) = &self.0 else { return make().map(Arc::new) };
+        if let Some(known) = locked(&shared.made).get(&key).cloned().and_then(|known| known.downcast().ok()) {
+            return Ok(known);
+        }
+        let made = Arc::new(make()?);
+        locked(&shared.made).insert(key, made.clone());
+        Ok(made)
+    }
+
     /// Offers a task under the name of a file that is not on the disk.
-    pub(crate) fn offer(&self, file: &Path, bytes: Vec<u8>, task: Imported) {
+    pub fn offer(&self, file: &Path, bytes: Vec<u8>, task: Imported) {
         if let Some(shared) = &self.0 {
             locked(&shared.files).insert(file.to_owned(), bytes.into());
             locked(&shared.tasks).insert(file.to_owned(), Arc::new(task));
@@ -95,4 +113,23 @@ fn once<K: Hash + Eq, T: Clone, E>(
 /// What a mutex guards: nothing in it is ever half made.
 fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_long_is_made_once_for_a_key() {
+        let count = std::cell::Cell::new(0);
+        let make = || {
+            count.set(count.get() + 1);
+            Ok::<_, ()>(count.get())
+        };
+        let shared = Sources::shared();
+        let known = [("a", 1), ("a", 1), ("b", 2), ("a", 1)];
+        assert!(known.iter().all(|(key, made)| *shared.clone().made(key.to_string(), make).unwrap() == *made));
+        // From the disk everything is made anew.
+        assert_eq!(*Sources::disk().made("a".to_owned(), make).unwrap(), 3);
+    }
 }

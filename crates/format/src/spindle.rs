@@ -12,14 +12,14 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use stead_model::robot::{Pose, Spindle};
 
-/// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool centre
-/// point and its z axis along the tool, out of the spindle to the work.
+/// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool
+/// centre point and its z axis along the tool, out of the spindle to the work.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpindleTable {
     /// Tool centre point in the flange frame.
     pub xyz_mm: Vector<Mm>,
-    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange frame;
-    /// exactly one of this and the four keys below.
+    /// Rotation from tool to flange coordinates, by rows: its columns are the axes of the tool frame in the flange
+    /// frame; exactly one of this and the four keys below.
     pub rotation: Option<Matrix>,
     /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
     pub abc_deg: Option<Vector<Deg>>,
@@ -57,7 +57,7 @@ impl SpindleTable {
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: a matrix that is no rotation, a body that cannot be.
-    pub(crate) fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
+    pub fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
         let flange_from_tool =
             Pose { rotation: orientation_keys!(self).rotation(at)?, translation: self.xyz_mm.vector() };
         let mut spindle = Spindle { flange_from_tool, payload: None };
@@ -71,7 +71,7 @@ impl SpindleTable {
     ///
     /// # Errors
     /// As [`SpindleTable::spindle`], and for a table without a mass.
-    pub(crate) fn moving_spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
+    pub fn moving_spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
         let spindle = self.spindle(at)?;
         if spindle.payload.is_none() {
             let what = "is missing: how the arm moves depends on what the flange carries";

@@ -20,14 +20,15 @@ pub struct TomlFile {
     own: usize,
     overrides: Vec<(FieldOverride, Range<usize>)>,
     /// Where files that it names come from.
-    pub(crate) sources: Sources,
+    pub sources: Sources,
 }
 
 impl TomlFile {
     /// Reads a file, or the file of a shipped arm for `name:` and its name.
     ///
     /// # Errors
-    /// [`InputError`] when the file cannot be read or is not UTF-8 text, or is a result that its manifest does not vouch for.
+    /// [`InputError`] when the file cannot be read or is not UTF-8 text, or is a result that its manifest does not
+    /// vouch for.
     pub fn read(file: &Path) -> Result<Self, InputError> {
         if let Some(text) = shipped::text(file) {
             return Self::new(file, text?.as_bytes().to_vec());
@@ -59,8 +60,9 @@ impl TomlFile {
         Ok(Self { file: file.to_owned(), text, own, overrides: Vec::new(), sources: Sources::disk() })
     }
 
-    /// The same file with values that take the place of its own and of those of the files that it names, which come from here.
-    pub(crate) fn with_overrides(mut self, overrides: &FieldOverrides, sources: Sources) -> Self {
+    /// The same file with values that take the place of its own and of those of the files that it names, which come
+    /// from here.
+    pub fn with_overrides(mut self, overrides: &FieldOverrides, sources: Sources) -> Self {
         for field in &overrides.0 {
             self.text.push_str(&format!("\n{} = ", field.path()));
             let start = self.text.len();
@@ -71,12 +73,12 @@ impl TomlFile {
     }
 
     /// The values that take the place of its own, with where they are in the text.
-    pub(crate) fn overrides(&self) -> &[(FieldOverride, Range<usize>)] {
+    pub fn overrides(&self) -> &[(FieldOverride, Range<usize>)] {
         &self.overrides
     }
 
     /// Whether a value takes the place of one of its own.
-    pub(crate) fn is_overridden(&self) -> bool {
+    pub fn is_overridden(&self) -> bool {
         !self.overrides.is_empty()
     }
 
@@ -99,7 +101,7 @@ impl TomlFile {
     }
 
     /// The text of the file, exactly as read.
-    pub(crate) fn text(&self) -> &str {
+    pub fn text(&self) -> &str {
         &self.text[..self.own]
     }
 
@@ -113,7 +115,8 @@ impl TomlFile {
         self.text.as_bytes()
     }
 
-    /// The text without a first line that names its schema (`#:schema PATH`), which is true in the folder of the file alone.
+    /// The text without a first line that names its schema (`#:schema PATH`), which is true in the folder of the file
+    /// alone.
     pub fn without_schema(&self) -> &str {
         without_schema(self.text())
     }
@@ -135,7 +138,7 @@ impl TomlFile {
 }
 
 /// A text without a first line that names its schema.
-pub(crate) fn without_schema(text: &str) -> &str {
+pub fn without_schema(text: &str) -> &str {
     text.split_once('\n').filter(|(line, _)| line.starts_with("#:schema")).map_or(text, |(_, rest)| rest)
 }
 

@@ -4,9 +4,6 @@ mod cutter;
 mod engagement;
 mod force_model;
 mod milling;
-mod moved;
-
-pub(crate) use moved::successor;
 
 use crate::input::InputError;
 use crate::place::Place;
@@ -18,8 +15,8 @@ pub use engagement::EngagementKind;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
+use stead_cell::tool_scene::{Cylinder, ToolBody};
 use stead_model::cutting::{MillingDirection, Rotation, Side};
-use stead_placement::tool_scene::{Cylinder, ToolBody};
 
 /// Speeds beyond this are those of no spindle. rpm
 pub const MAX_SPINDLE_SPEED_RPM: f64 = 1e6;
@@ -27,6 +24,8 @@ pub const MAX_SPINDLE_SPEED_RPM: f64 = 1e6;
 ranges! {
     /// An entering angle. deg
     EnteringAngle: Excluded(0.0), Excluded(180.0);
+    /// Angle between the side of a tapered cutter and its axis. deg
+    Taper: Included(0.0), Excluded(60.0);
     /// A speed that a spindle may have. 1/min
     SpindleSpeed: Excluded(0.0), Included(MAX_SPINDLE_SPEED_RPM);
 }
@@ -35,28 +34,38 @@ words!(Rotation: "clockwise" => Rotation::Clockwise, "counterclockwise" => Rotat
 words!(MillingDirection: "conventional" => MillingDirection::Conventional, "climb" => MillingDirection::Climb);
 words!(Option<Side>: "left" => Some(Side::Left), "right" => Some(Side::Right), "none" => None);
 
-/// The cutter: its geometry, its sense of rotation and the coefficients of its forces. Which of the optional keys are needed
-/// depends on what is computed: all forces need `teeth`, those along a path `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm` and `kre_n_per_mm`;
-/// simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`); an assessment needs `kn_mpa`.
+/// The cutter: its geometry, its sense of rotation and the coefficients of its forces. Which of the optional keys are
+/// needed depends on what is computed: all forces need `teeth`, those along a path `kt_mpa`, `kr` (or `kr_mpa`),
+/// `kte_n_per_mm` and `kre_n_per_mm`; simulation and stability need `flute_length_mm`, `kt_mpa` and `kr_mpa` (or `kr`);
+/// an assessment needs `kn_mpa`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ToolTable {
-    /// Diameter of the cutter.
+    /// Diameter of the cutter; of a tapered one that of its tip, which a ball end of radius r has at 2 r.
     pub cutter_diameter_mm: Mm<Positive>,
+    /// Radius of the corner: 0 of a flat cutter (where left out), half the diameter of a ball, between them of a bull
+    /// nose. With `taper_deg` and `centre_cutting` it shapes the cutter that `[stock]` is cut with.
+    pub corner_radius_mm: Option<Mm<NotNegative>>,
+    /// Angle between the side and the axis; 0 where left out.
+    pub taper_deg: Option<Deg<Taper>>,
+    /// Whether the bottom cuts up to the axis, as plunges and ramps need; true where left out.
+    pub centre_cutting: Option<bool>,
     /// Number of teeth: needed where forces are computed.
     pub teeth: Option<Whole<1, 100>>,
     /// Sense of rotation seen from the spindle; clockwise where left out.
     pub rotation: Option<Word<Rotation>>,
-    /// Angle at which each tooth follows the tooth before it, in the order in which they pass, 360 in all: the second number is that
-    /// from tooth 1 to tooth 2, the first that from the last tooth to tooth 1. Equal ones where left out.
+    /// Angle at which each tooth follows the tooth before it, in the order in which they pass, 360 in all: the second
+    /// number is that from tooth 1 to tooth 2, the first that from the last tooth to tooth 1. Equal ones where left
+    /// out.
     pub pitch_deg: Option<List<Deg>>,
-    /// What the radius of each edge is more than half the diameter, in the order in which the teeth pass; 0 where left out.
+    /// What the radius of each edge is more than half the diameter, in the order in which the teeth pass; 0 where left
+    /// out.
     pub runout_um: Option<List<Um>>,
     /// Helix angle; 0 where left out.
     pub helix_deg: Option<Deg<Acute>>,
     /// Length of the flutes.
     pub flute_length_mm: Option<Mm<Positive>>,
-    /// Shank and holder above the flutes, from below: height and diameter of each cylinder. With the cutter they are kept out of the
-    /// part on the moves between segments, where there are surroundings.
+    /// Shank and holder above the flutes, from below: height and diameter of each cylinder. With the cutter they are
+    /// kept out of the part on the moves between segments, where there are surroundings.
     pub holder_mm: Option<List<Array<Mm<Positive>, 2>>>,
     /// Entering angle of the edges, between the edge and the plane normal to the tool axis; 90 where left out.
     pub entering_angle_deg: Option<Deg<EnteringAngle>>,
@@ -81,33 +90,33 @@ pub struct ToolTable {
 }
 
 /// What the cutter cuts. Forces along a path need `milling`, `radial_depth_mm` and `feed_per_tooth_mm`; simulation and
-/// stability need `milling`, `radial_depth_mm` and `spindle_rpm`; an assessment needs `engagement`, the width that goes with
-/// it, and `feed_per_tooth_mm`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// stability need `milling`, `radial_depth_mm` and `spindle_rpm`; an assessment needs `engagement`, the width that goes
+/// with it, and `feed_per_tooth_mm`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct CutTable {
     /// Whether the teeth move against the feed in the cut, `conventional`, or with it, `climb`.
     pub milling: Option<Word<MillingDirection>>,
     /// Width of the cut, across the feed.
     pub radial_depth_mm: Option<Mm<Positive>>,
-    /// Depth of the cut, along the tool axis.
-    pub axial_depth_mm: Mm<Positive>,
+    /// Depth of the cut, along the tool axis: needed but with `[stock]`.
+    pub axial_depth_mm: Option<Mm<Positive>>,
     /// Speed of the spindle.
     pub spindle_rpm: Option<Rpm<SpindleSpeed>>,
     /// Feed per tooth.
     pub feed_per_tooth_mm: Option<Mm<Positive>>,
-    /// Which part of the cutter is in the work: all of one half (`slot`), one side of it with `radial_depth_mm` (`up`, `down`,
-    /// `centred`), or a slot that is open in the middle with `open_width_mm` (`open-slot`).
+    /// Which part of the cutter is in the work: all of one half (`slot`), one side of it with `radial_depth_mm` (`up`,
+    /// `down`, `centred`), or a slot that is open in the middle with `open_width_mm` (`open-slot`).
     pub engagement: Option<Word<EngagementKind>>,
     /// Width of the opening with `engagement = "open-slot"`.
     pub open_width_mm: Option<Mm<Positive>>,
-    /// On which side of the path its corners are those of a pocket, where the cutter is in the work all over; `none` where
-    /// left out.
+    /// On which side of the path its corners are those of a pocket, where the cutter is in the work all over; `none`
+    /// where left out.
     pub concave_corners: Option<Word<Option<Side>>>,
 }
 
 impl ToolTable {
     /// The cylinders that cutter, shank and holder fill.
-    pub(crate) fn body(&self) -> ToolBody {
+    pub fn body(&self) -> ToolBody {
         let flutes = self.flute_length_mm.map_or(0.0, Quantity::si);
         let cutter = Cylinder { radius: self.cutter_diameter_mm.si() / 2.0, from: 0.0, to: flutes };
         let stacked = |from: &mut f64, piece: &Array<Mm<Positive>, 2>| {
@@ -123,9 +132,10 @@ impl ToolTable {
 
 /// Both tables with their places in a file.
 #[derive(Debug, Clone)]
-pub(crate) struct Cutting<'a> {
+pub struct Cutting<'a> {
     tool: &'a ToolTable,
     cut: &'a CutTable,
+    /// Where the tool is stated.
     pub tool_at: Place<'a>,
     cut_at: Place<'a>,
 }

@@ -84,7 +84,7 @@ units! {
 }
 
 pub use crate::quantity::Finite;
-pub(crate) use crate::quantity::ranges;
+pub use crate::quantity::ranges;
 
 ranges! {
     /// Above zero.

@@ -1,13 +1,15 @@
 //! External axes: rails and turntables that carry the robot or the workpiece.
 //!
-//! Axes that carry the same thing stand on each other in their order, the first one on the floor: a tilting table is a turntable
-//! about a level axis with another one on it. Direction and point of an axis are given in the cell frame with all axes at zero.
+//! Axes that carry the same thing stand on each other in their order, the first one on the floor: a tilting table is a
+//! turntable about a level axis with another one on it. Direction and point of an axis are given in the cell frame with
+//! all axes at zero.
 //!
 //! ```
 //! use nalgebra::Vector3;
 //! use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis, robot_from_workpiece};
 //! let rail = ExternalAxis {
-//!     name: "rail".to_owned(), kind: AxisKind::Rail, carries: Carried::Robot, direction: Vector3::x(), point: Vector3::zeros(),
+//!     name: "rail".to_owned(), kind: AxisKind::Rail, carries: Carried::Robot,
+//!     direction: Vector3::x(), point: Vector3::zeros(),
 //!     min: 0.0, max: 3.0, max_speed: None, axis_use: AxisUse::Fixed,
 //! };
 //! // The robot a metre farther along x sees the workpiece a metre behind.
@@ -72,7 +74,8 @@ pub struct ExternalAxis {
 }
 
 impl ExternalAxis {
-    /// What it does to what it carries at a position (m or rad): the pose there of a frame that is the cell frame at zero.
+    /// What it does to what it carries at a position (m or rad): the pose there of a frame that is the cell frame at
+    /// zero.
     pub fn motion(&self, position: f64) -> Pose<f64> {
         match self.kind {
             AxisKind::Rail => Pose { translation: self.direction * position, ..Pose::identity() },
@@ -98,15 +101,15 @@ impl ExternalAxis {
     }
 }
 
-/// Where axes at positions (m or rad) have brought the robot, or the workpiece: the pose in the cell of a frame that is the cell frame
-/// with all axes at zero.
+/// Where axes at positions (m or rad) have brought the robot, or the workpiece: the pose in the cell of a frame that is
+/// the cell frame with all axes at zero.
 pub fn carried(axes: &[ExternalAxis], positions: &[f64], what: Carried) -> Pose<f64> {
     let of_it = axes.iter().zip(positions).filter(|(axis, _)| axis.carries == what);
     of_it.fold(Pose::identity(), |pose, (axis, position)| pose.then(&axis.motion(*position)))
 }
 
-/// What axes at positions (m or rad) do to the workpiece as the robot sees it: a rail under the robot moves it the other way. The identity
-/// with all axes at zero.
+/// What axes at positions (m or rad) do to the workpiece as the robot sees it: a rail under the robot moves it the
+/// other way. The identity with all axes at zero.
 pub fn robot_from_workpiece(axes: &[ExternalAxis], positions: &[f64]) -> Pose<f64> {
     let [robot, workpiece] = [Carried::Robot, Carried::Workpiece].map(|what| carried(axes, positions, what));
     if axes.iter().all(|axis| axis.carries == Carried::Workpiece) {

@@ -5,7 +5,8 @@ use crate::task::ToolPath;
 use nalgebra::Vector3;
 use stead_numerics::digits::figures;
 
-/// The softest and the stiffest joint of any published arm: joints 4 to 6 of small ones, joint 2 of the largest. N m/rad
+/// The softest and the stiffest joint of any published arm: joints 4 to 6 of small ones, joint 2 of the largest. N
+/// m/rad
 const KNOWN_STIFFNESSES: [f64; 2] = [2.9e4, 9.1e6];
 /// So many times beyond these a stiffness looks wrong.
 const BEYOND: f64 = 100.0;
@@ -28,7 +29,8 @@ const LARGEST_FORCE: f64 = 1e5;
 /// A larger deflection looks wrong. m
 const LARGEST_DEFLECTION: f64 = 10e-3;
 
-/// What is to be said of an arm: joints of an odd stiffness, or of that of another arm, numbers that nobody has verified.
+/// What is to be said of an arm: joints of an odd stiffness, or of that of another arm, numbers that nobody has
+/// verified.
 pub fn arm(robot: &Robot) -> Vec<String> {
     let borrowed = robot.stiffness_like().map(|other| {
         format!(
@@ -41,7 +43,8 @@ pub fn arm(robot: &Robot) -> Vec<String> {
     odd_stiffness(robot).into_iter().chain(joint_ranges(robot)).chain(borrowed).chain(unverified).collect()
 }
 
-/// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a compensator.
+/// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a
+/// compensator.
 fn odd_stiffness(robot: &Robot) -> Option<String> {
     let [softest, stiffest] = [KNOWN_STIFFNESSES[0] / BEYOND, KNOWN_STIFFNESSES[1] * BEYOND];
     let stiffness = |joint: usize| 1.0 / robot.compliances_at(&robot.mid_range())[joint];

@@ -9,8 +9,8 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A number with three significant digits, or all digits before the point where there are more; very small and very large
-/// ones with a power of ten.
+/// A number with three significant digits, or all digits before the point where there are more; very small and very
+/// large ones with a power of ten.
 pub fn figures(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -1,7 +1,7 @@
 //! The caller's side of a long job: progress comes out, a request to stop goes in.
 //!
-//! Every job takes one [`Monitor`]. It reports to an observer, asks whether it should stop, and then ends as soon as it has
-//! something to return. Monitoring never changes a result, except that a stopped job returns less.
+//! Every job takes one [`Monitor`]. It reports to an observer, asks whether it should stop, and then ends as soon as it
+//! has something to return. Monitoring never changes a result, except that a stopped job returns less.
 
 use std::fmt;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub enum Progress {
         value: f64,
         /// The bound so far, in SI units.
         bound: f64,
-        /// The relative gap asked for.
+        /// The relative gap requested.
         gap: f64,
         /// Nodes still open.
         open: usize,
@@ -51,11 +51,23 @@ pub enum Progress {
 /// Why a job should end early.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
-    /// The caller asked for it.
+    /// The caller requested it.
     Asked,
     /// The deadline has passed.
     Deadline,
 }
+
+/// As the error of a job that has nothing to return when it is stopped.
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Asked => "stopped before it was done",
+            Self::Deadline => "stopped at its deadline before it was done",
+        })
+    }
+}
+
+impl std::error::Error for Stop {}
 
 /// A flag by which the caller, from any thread or signal handler, asks a job to stop.
 #[derive(Debug, Clone, Default)]
@@ -128,6 +140,14 @@ impl Monitor {
         }
     }
 
+    /// For a job that has nothing to return before it is done.
+    ///
+    /// # Errors
+    /// Why it should end.
+    pub fn go_on(&self) -> Result<(), Stop> {
+        self.stop().map_or(Ok(()), Err)
+    }
+
     /// Whether the job should end as soon as it has something to return.
     pub fn should_stop(&self) -> bool {
         self.stop().is_some()
@@ -160,9 +180,9 @@ mod tests {
         let other = monitor.clone();
         other.report(Progress::Steps { stage: "test", done: 1, total: 2 });
         assert_eq!(seen.load(Ordering::SeqCst), 1);
-        assert_eq!(other.stop(), None);
+        assert_eq!((other.stop(), other.go_on()), (None, Ok(())));
         assert!(!monitor.stop_handle().stop() && monitor.stop_handle().stop());
-        assert_eq!(other.stop(), Some(Stop::Asked));
+        assert_eq!((other.stop(), other.go_on()), (Some(Stop::Asked), Err(Stop::Asked)));
     }
 
     #[test]

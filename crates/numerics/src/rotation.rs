@@ -1,5 +1,5 @@
-//! Rotations (SO(3)): vectors along the axis and as long as the angle (the logarithms), angles about z, y and x, quaternions,
-//! and matrices as people print them.
+//! Rotations (SO(3)): vectors along the axis and as long as the angle (the logarithms), angles about z, y and x,
+//! quaternions, and matrices as people print them.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -43,8 +43,8 @@ pub fn rotation_from_zyx([z, y, x]: [f64; 3]) -> Matrix3<f64> {
     )
 }
 
-/// The angles about z, y and x of a rotation, the second in [-pi/2, pi/2]: the inverse of [`rotation_from_zyx`]. Where the second
-/// is a right angle only the sum or the difference of the others counts; the third is then zero. rad
+/// The angles about z, y and x of a rotation, the second in [-pi/2, pi/2]: the inverse of [`rotation_from_zyx`]. Where
+/// the second is a right angle only the sum or the difference of the others counts; the third is then zero. rad
 pub fn zyx_from_rotation(rotation: &Matrix3<f64>) -> [f64; 3] {
     let level = libm::hypot(rotation.m11, rotation.m21);
     let y = libm::atan2(-rotation.m31, level);

@@ -1,7 +1,7 @@
 //! Several numbers worked on at once, by the widest vectors that the processor has.
 //!
-//! Every operation is exactly the one of `f64` in each lane, nothing is fused and nothing is summed across lanes, so results
-//! do not depend on the width of the vectors. Choices are made with masks, never with branches.
+//! Every operation is exactly the one of `f64` in each lane, nothing is fused and nothing is summed across lanes, so
+//! results do not depend on the width of the vectors. Choices are made with masks, never with branches.
 
 use pulp::{Arch, Scalar256b, Simd, WithSimd, bytemuck};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};

@@ -1,7 +1,7 @@
 //! Numbers as files state them: units, decimals, and no minus sign before a zero.
 //!
-//! A [`Unit`] turns a number in SI or radians into the text of a CSV field or the number of a JSON document; both have the
-//! same digits.
+//! A [`Unit`] turns a number in SI or radians into the text of a CSV field or the number of a JSON document; both have
+//! the same digits.
 
 use crate::digits::fixed;
 

@@ -1,14 +1,15 @@
 //! Coordinate search: from a placement to the bottom (or top) of its basin, one direction at a time.
 //!
-//! The directions are those in which the arm has its symmetry: away from axis 1, up, the yaw against the azimuth, which is kept while the
-//! others change, and, where asked for, about axis 1. Each has a step of its own that grows with success and shrinks without.
+//! The directions are those in which the arm has its symmetry: away from axis 1, up, the yaw against the azimuth, which
+//! is kept while the others change, and, where requested, about axis 1. Each has a step of its own that grows with
+//! success and shrinks without.
 
-use super::candidate::{Objective, rank};
-use super::problem::{Placement, Problem};
-use super::sense::Sense;
 use nalgebra::Vector2;
 use std::cmp::Ordering;
 use stead_numerics::monitor::Monitor;
+use stead_planning::candidate::{Objective, rank};
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::sense::Sense;
 
 /// First steps: radius (m), height (m), yaw (rad), azimuth (rad).
 const FIRST: [f64; 4] = [0.03, 0.03, 0.06, 0.06];
@@ -30,8 +31,8 @@ pub enum Directions {
     All = 4,
 }
 
-/// The best placement (in the given sense) that steps from `start` (x, y, z in m, yaw in rad) lead to inside the cell of a problem, its
-/// objective, and the number of placements evaluated; never worse than the start. A stop ends it.
+/// The best placement (in the given sense) that steps from `start` (x, y, z in m, yaw in rad) lead to inside the cell
+/// of a problem, its objective, and the number of placements evaluated; never worse than the start. A stop ends it.
 pub fn coordinate_search(
     problem: &Problem,
     start: &Placement,
@@ -69,8 +70,8 @@ pub fn coordinate_search(
     (best, objective, evaluations)
 }
 
-/// The placements a step in either sense of radius, height and yaw away from one, inside the cell; `share` of the first steps of a
-/// search.
+/// The placements a step in either sense of radius, height and yaw away from one, inside the cell; `share` of the first
+/// steps of a search.
 pub fn neighbours(problem: &Problem, placement: &Placement, share: f64) -> Vec<Placement> {
     let all =
         (0..Directions::WithoutAzimuth as usize).flat_map(|k| [1.0, -1.0].map(|side| (k, side * share * FIRST[k])));

@@ -2,17 +2,17 @@
 //!
 //! What a search returns is evaluated by the planner in any case.
 
-use super::candidate::{Candidate, Objective, rank};
 use super::coordinate_search::{Directions, coordinate_search};
-use super::lookup::{self, BetaGrid, Look, LookupTable};
+use super::lookup::{self, BetaGrid, CollisionEffort, LookupTable};
 use super::outcome::Generation;
-use super::problem::Placement;
-use super::redundancy::{self, Planner};
-use super::sense::Sense;
-use super::symmetry::apart_about_axis_1;
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
+use stead_planning::candidate::{Candidate, Objective, rank};
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::{self, Planner};
+use stead_planning::sense::Sense;
+use stead_planning::symmetry::apart_about_axis_1;
 
 /// A planner, and the table before it.
 #[derive(Debug, Clone)]
@@ -48,11 +48,11 @@ pub struct SelectedBasins {
 
 /// What the table promises of a placement is believed if the planner finds it within this share.
 const LOOKUP_TOLERANCE: f64 = 1e-3;
-/// Where the best the planner finds is farther than this share from the best that the table promised, or where there is none,
-/// the table is rejected: it relaxes the steps and turns of the joints.
+/// Where the best the planner finds is farther than this share from the best that the table promised, or where there is
+/// none, the table is rejected: it relaxes the steps and turns of the joints.
 const REJECTION_TOLERANCE: f64 = 0.02;
-/// Placements as near as this to each other in radius, height (m) and yaw against the azimuth (rad) are the same to an upright
-/// tool.
+/// Placements as near as this to each other in radius, height (m) and yaw against the azimuth (rad) are the same to an
+/// upright tool.
 const SAME_PLACE: [f64; 3] = [0.005, 0.005, 0.02];
 
 /// Of improved candidates sorted from the best, those that are not the same as a better one: at most `max_count`.
@@ -74,7 +74,7 @@ fn distinct<'s>(
     kept
 }
 
-/// Candidates of a search that are improved on the table and planned for every basin asked for.
+/// Candidates of a search that are improved on the table and planned for every basin requested.
 const CANDIDATES: usize = 3;
 
 impl<'a> Evaluator<'a> {
@@ -89,21 +89,22 @@ impl<'a> Evaluator<'a> {
         self
     }
 
-    /// The same with a planner on a finer grid, for placements whose every point is allowed but that the coarse grid does not get
-    /// through: a coarse plan may propose a placement, but not refuse it.
+    /// The same with a planner on a finer grid, for placements whose every point is allowed but that the coarse grid
+    /// does not get through: a coarse plan may propose a placement, but not refuse it.
     pub fn with_finer_planner(mut self, finer: &'a Planner<'a>) -> Self {
         self.finer = Some(finer).filter(|finer| finer.grid().beta_count > self.planner.grid().beta_count);
         self
     }
 
-    /// The same with a planner on a coarser grid, by which neighbours of a refined placement are told apart before they are planned.
+    /// The same with a planner on a coarser grid, by which neighbours of a refined placement are distinguished before
+    /// they are planned.
     pub fn with_coarser_planner(mut self, coarser: &'a Planner<'a>) -> Self {
         self.coarser = Some(coarser);
         self
     }
 
-    /// An approximate mean, by which neighbours can be told apart: by the table or on a coarser grid, where there is one; where it is
-    /// not within two bounds without collisions, these may be left out. m
+    /// An approximate mean, by which neighbours can be distinguished: by the table or on a coarser grid, where there is
+    /// one; where it is not within two bounds without collisions, these may be left out. m
     pub fn approximate(
         &self,
         placement: &Placement,
@@ -117,8 +118,8 @@ impl<'a> Evaluator<'a> {
                 coarser.objective(placement, Sense::Min, scheme, space).mean()
             }
             None => {
-                let look = Look { within, ..Look::ALL };
-                self.table.and_then(|_| self.looked_objective(placement, scheme, look, workspace).mean())
+                let effort = CollisionEffort { within, ..CollisionEffort::ALL };
+                self.table.and_then(|_| self.looked_objective(placement, scheme, effort, workspace).mean())
             }
         }
     }
@@ -143,14 +144,14 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The mean score of the workpiece at a placement under its best plan on the planner's grid, with
-    /// the posture scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
+    /// The mean score of the workpiece at a placement under its best plan on the planner's grid, with the posture
+    /// scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
     pub fn objective(&self, placement: &Placement, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
-        self.looked_objective(placement, scheme, Look::ALL, workspace)
+        self.looked_objective(placement, scheme, CollisionEffort::ALL, workspace)
     }
 
-    /// The same to tell candidates of a search apart: by the table, of points close to each other only some are looked at for
-    /// collisions, and none where the objective is not `within` two bounds (m) without them.
+    /// The same to tell candidates of a search apart: by the table, of points close to each other only some are looked
+    /// at for collisions, and none where the objective is not `within` two bounds (m) without them.
     pub fn rough_objective(
         &self,
         placement: &Placement,
@@ -159,18 +160,18 @@ impl<'a> Evaluator<'a> {
         workspace: &mut Workspace,
     ) -> Objective {
         let stride = self.table.map_or(1, |table| table.stride);
-        self.looked_objective(placement, scheme, Look { stride, within }, workspace)
+        self.looked_objective(placement, scheme, CollisionEffort { stride, within }, workspace)
     }
 
     fn looked_objective(
         &self,
         placement: &Placement,
         scheme: Option<&[Posture]>,
-        look: Look,
+        effort: CollisionEffort,
         workspace: &mut Workspace,
     ) -> Objective {
         match (self.table, &mut workspace.table) {
-            (Some(table), Some(space)) => table.objective(placement, &self.grid, scheme, look, space),
+            (Some(table), Some(space)) => table.objective(placement, &self.grid, scheme, effort, space),
             _ => self.planned_objective(placement, scheme, workspace),
         }
     }
@@ -192,9 +193,10 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Of candidates sorted from the best, at most `max_count` that go on, ranked by the planner. With a table, more of them are
-    /// improved first, those that end at the same place are taken once, and where the planner does not find what the table
-    /// promised, the start may go on instead. Once the caller asks to stop, candidates go on as they are.
+    /// Of candidates sorted from the best, at most `max_count` that go on, ranked by the planner. With a table, more of
+    /// them are improved first, those that end at the same place are taken once, and where the planner does not find
+    /// what the table promised, the start may go on instead. Once the caller asks to stop, candidates go on as they
+    /// are.
     pub fn select_basins(
         &self,
         sorted: Vec<Candidate>,
@@ -259,7 +261,8 @@ impl<'a> Evaluator<'a> {
         SelectedBasins { basins: selected, evaluations, lookup_rejected }
     }
 
-    /// A candidate improved by coordinate search, by the table where there is one, and the number of placements evaluated.
+    /// A candidate improved by coordinate search, by the table where there is one, and the number of placements
+    /// evaluated.
     pub fn improved(
         &self,
         start: &Candidate,
@@ -273,9 +276,10 @@ impl<'a> Evaluator<'a> {
         let directions = if self.table.is_some() { Directions::WithoutAzimuth } else { Directions::All };
         let mut best = f64::INFINITY;
         let objective = |placement: &Placement| {
-            let look = Look { within: [f64::NEG_INFINITY, best], ..Look::ALL };
-            let found = self.looked_objective(placement, start.scheme.as_deref(), look, workspace);
-            // Collisions only make a mean larger: where it is larger than that of the best already, they are not looked for.
+            let effort = CollisionEffort { within: [f64::NEG_INFINITY, best], ..CollisionEffort::ALL };
+            let found = self.looked_objective(placement, start.scheme.as_deref(), effort, workspace);
+            // Collisions only make a mean larger: where it is larger than that of the best already, they are not looked
+            // for.
             if let (Sense::Min, Some(mean)) = (sense, found.mean()) {
                 best = best.min(mean);
             }
@@ -287,8 +291,8 @@ impl<'a> Evaluator<'a> {
         (Candidate { placement, objective, ..start.clone() }, evaluations)
     }
 
-    /// States what the planner says of the best of every generation in place of what the table said of it, unless the caller asks
-    /// to stop before that.
+    /// States what the planner says of the best of every generation in place of what the table said of it, unless the
+    /// caller asks to stop before that.
     pub fn check(&self, history: &mut [Generation], best: &[Candidate], sense: Sense, monitor: &Monitor) {
         if self.table.is_none() {
             return;

@@ -1,14 +1,6 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
-use super::collision::PlanClearance;
-use super::feasibility::{DeflectionMap, deflection_map};
-use super::joint_travel::JointTravel;
-use super::limit::ActiveBound;
 use super::lookup::{Accuracy, Shape};
-use super::problem::{Placement, Problem};
-use super::sense::Sense;
-use super::setup::{AxisPath, Setup, TriedSetup};
-use super::symmetry::Unsupported;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_cell::Clearance;
@@ -16,8 +8,17 @@ use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
+use stead_planning::collision::PlanClearance;
+use stead_planning::criterion::CANCELLATION;
+use stead_planning::feasibility::{DeflectionMap, deflection_map};
+use stead_planning::joint_travel::JointTravel;
+use stead_planning::limit::ActiveBound;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::setup::{AxisPath, Setup, TriedSetup};
+use stead_planning::symmetry::Unsupported;
 
-pub use super::transfer::{Cycle, Transfer};
+pub use stead_planning::transfer::{Cycle, Transfer};
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,8 +96,8 @@ pub struct Plan {
     pub axes: Vec<AxisPath>,
     /// Posture of each segment.
     pub postures: Vec<Posture>,
-    /// The figure that is minimised ([`Problem::objective`](super::problem::Problem::objective)), with what joint travel counts in it; by
-    /// default the mean. m
+    /// The figure that is minimised ([`Problem::objective`](stead_planning::problem::Problem::objective)), with what
+    /// joint travel counts in it; by default the mean. m
     pub objective: f64,
     /// Mean of the scores: f_MQC (Caro 2013, eq. 13). m
     pub mean: f64,
@@ -108,8 +109,8 @@ pub struct Plan {
     pub percentiles: [f64; 2],
     /// The deflection itself.
     pub deflection: DeflectionFigures,
-    /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err together, so
-    /// that it does not shrink with their number. m
+    /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err
+    /// together, so that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,
     /// The point with the least room, and its pair; `None` without a scene, and where nothing is near.
     pub clearance: Option<PlanClearance>,
@@ -135,16 +136,16 @@ pub struct Case {
     /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima; none where
     /// they are not known.
     pub active_bounds: Option<Vec<ActiveBound>>,
-    /// How the objective answers to the stiffness of each joint ([`objective_by_stiffness`]): derivative by its logarithm, in m; none
-    /// where it was not asked for.
+    /// How the objective answers to the stiffness of each joint ([`objective_by_stiffness`]): derivative by its
+    /// logarithm, in m; none where it was not requested.
     ///
     /// [`objective_by_stiffness`]: super::sensitivity::objective_by_stiffness
     pub objective_by_stiffness: Option<[f64; 6]>,
 }
 
 impl Case {
-    /// Its number in Caro 2013, Table III: 1 best placement, best plan; 2 best placement, worst plan; 3 worst placement,
-    /// best plan; 4 worst placement, worst plan.
+    /// Its number in Caro 2013, Table III: 1 best placement, best plan; 2 best placement, worst plan; 3 worst
+    /// placement, best plan; 4 worst placement, worst plan.
     pub fn number(&self) -> u8 {
         let second = |sense: Sense| u8::from(sense == Sense::Max);
         1 + 2 * second(self.placement_sense) + second(self.plan_sense)
@@ -160,18 +161,20 @@ pub struct Cases {
     pub best_worst_plan: Case,
     /// Worst placement with its best and its worst plan; `None` where it was not looked for
     /// ([`SearchSettings::worst`](super::settings::SearchSettings::worst)).
-    pub worst: Option<[Case; 2]>,
+    pub worst: Option<BySense<Case>>,
 }
 
 impl Cases {
     /// All there are, in the order of their numbers.
     pub fn all(&self) -> Vec<&Case> {
-        [&self.best, &self.best_worst_plan].into_iter().chain(self.worst.iter().flatten()).collect()
+        let worst = self.worst.iter().flat_map(BySense::values);
+        [&self.best, &self.best_worst_plan].into_iter().chain(worst).collect()
     }
 
     /// The same, to be changed.
     pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Case> {
-        [&mut self.best, &mut self.best_worst_plan].into_iter().chain(self.worst.iter_mut().flatten())
+        let worst = self.worst.iter_mut().flat_map(BySense::iter_mut).map(|(_, case)| case);
+        [&mut self.best, &mut self.best_worst_plan].into_iter().chain(worst)
     }
 
     /// The placements, each with its best plan: the best one, and the worst where it was looked for.
@@ -184,10 +187,6 @@ impl Cases {
         (self.best.plan.mean > CANCELLATION).then(|| case.plan.mean / self.best.plan.mean)
     }
 }
-
-/// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
-/// nothing. m
-pub const CANCELLATION: f64 = 1e-9;
 
 /// State of one genetic search after one generation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -225,8 +224,8 @@ pub struct Refinement {
     pub rounds: usize,
     /// Convex subproblems solved.
     pub iterations: usize,
-    /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit of
-    /// the variables (see [`super::refine`]); `None` where the refinement was stopped before its end.
+    /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit
+    /// of the variables (see [`super::refine`]); `None` where the refinement was stopped before its end.
     pub kkt_residual: Option<f64>,
     /// How each round ended.
     pub statuses: Vec<RefinementStatus>,
@@ -277,8 +276,9 @@ pub struct SubsetAccuracy {
     pub points: usize,
     /// Placements that were planned both on the subset and on the whole path, drawn at random.
     pub pairs: usize,
-    /// The largest relative error of their means; none where no placement was allowed. It covers the error at the next placement
-    /// drawn with probability `pairs / (pairs + 1)`, but for the choice of the subset's size, which the same placements decide.
+    /// The largest relative error of their means; none where no placement was allowed. It covers the error at the next
+    /// placement drawn with probability `pairs / (pairs + 1)`, but for the choice of the subset's size, which the same
+    /// placements decide.
     pub error: Option<f64>,
 }
 
@@ -287,9 +287,12 @@ pub struct SubsetAccuracy {
 pub struct PathLevels {
     /// Points of the path.
     pub points: usize,
-    /// The subset for the search, and that for the refinement.
-    pub subsets: [SubsetAccuracy; 2],
-    /// Points that joined the subsets because they decide whether a placement has a plan, or as the largest what it is worth.
+    /// The subset for the search.
+    pub search: SubsetAccuracy,
+    /// That for the refinement.
+    pub refinement: SubsetAccuracy,
+    /// Points that joined the subsets because they decide whether a placement has a plan, or as the largest what it is
+    /// worth.
     pub deciding: usize,
     /// Placements planned on the whole path before the last plans.
     pub whole: usize,
@@ -317,7 +320,8 @@ pub struct ForceSensitivity {
 pub struct SetOutcome {
     /// The mean score under this set, of the plan found for all. m
     pub mean: f64,
-    /// The mean score of the best placement for this set alone, refined from the same basins; `None` where none has a plan. m
+    /// The mean score of the best placement for this set alone, refined from the same basins; `None` where none has a
+    /// plan. m
     pub alone: Option<f64>,
 }
 
@@ -333,9 +337,10 @@ impl SetOutcome {
 pub struct Outcome {
     /// Cases 1 to 4.
     pub cases: Cases,
-    /// The setups that were searched, where there are several; searches and refinements below are those of the best one.
+    /// The setups that were searched, where there are several; searches and refinements below are those of the best
+    /// one.
     pub tried_setups: Vec<TriedSetup>,
-    /// The lookup table that the searches used, or why there is none; `None` where none was asked for.
+    /// The lookup table that the searches used, or why there is none; `None` where none was requested.
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     /// How a long path was searched; `None` for a path short enough to be searched whole.
     pub path_levels: Option<PathLevels>,
@@ -351,7 +356,7 @@ pub struct Outcome {
     pub states: usize,
     /// Whether the user stopped the search before its end.
     pub interrupted: bool,
-    /// What the force errors do to the best placement, where that was asked for.
+    /// What the force errors do to the best placement, where that was requested.
     pub sensitivity: Option<ForceSensitivity>,
     /// What each stiffness set of the criterion makes of the best placement; empty where there are none.
     pub sets: Vec<SetOutcome>,
@@ -364,8 +369,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement. A stop may leave them out, which is
-    /// then among the warnings.
+    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement. A stop may leave
+    /// them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
         let map = |case: &Case| deflection_map(&problem.in_setup(&case.setup), &case.placement, monitor);
         self.maps = self.cases.optima().into_iter().map(map).collect();

@@ -1,7 +1,5 @@
 //! What a run states, in figures to compare with what was meant: before any search.
 
-use super::problem::{Interval, Placement, Problem};
-use super::symmetry::is_axis_1_vertical;
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -11,6 +9,8 @@ use stead_model::robot::Robot;
 use stead_model::robot::turns::Range;
 use stead_numerics::digits::figures;
 use stead_numerics::mean_max::MeanAndMax;
+use stead_planning::problem::{Interval, Placement, Problem};
+use stead_planning::symmetry::is_axis_1_vertical;
 
 /// What a run states of its spindle, tool path, forces and cell.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -63,8 +63,8 @@ pub struct Hit {
     pub required: f64,
 }
 
-/// What the arm reaches of the path at one placement, each point by itself: within the joint limits, at some free angle and in some
-/// allowed posture.
+/// What the arm reaches of the path at one placement, each point by itself: within the joint limits, at some free angle
+/// and in some allowed posture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stance {
     /// The placement.
@@ -78,7 +78,8 @@ pub struct Stance {
 }
 
 impl Stance {
-    /// The path point and the joint angles (rad) that stand for it: the first that is reached, or the middle of the joint ranges.
+    /// The path point and the joint angles (rad) that represent it: the first that is reached, or the middle of the
+    /// joint ranges.
     pub fn shown(&self, robot: &Robot) -> (usize, [f64; 6]) {
         self.first.unwrap_or_else(|| (0, robot.mid_range()))
     }
@@ -131,7 +132,7 @@ impl Overview {
             match hit.distance > 0.0 {
                 true => {
                     let [distance, required] = [hit.distance, hit.required].map(|length| figures(length * 1e3));
-                    format!("{a} and {b} ({distance} mm apart, {required} mm asked for)")
+                    format!("{a} and {b} ({distance} mm apart, {required} mm required)")
                 }
                 false => format!("{a} and {b} (touching)"),
             }
@@ -145,7 +146,8 @@ impl Overview {
                 |(point, _)| format!("with the arm at point {point}"),
             );
             format!(
-                "{at} and the workpiece in the middle of its cell, shapes hit: {}{more}; pairs that always touch can be left out with \
+                "{at} and the workpiece in the middle of its cell, shapes hit: {}{more}; pairs that always touch can \
+                 be left out with \
                  collision.ignore",
                 named.join(", ")
             )
@@ -157,7 +159,8 @@ impl Overview {
 /// Pairs that are named in a note at the most.
 const NAMED: usize = 8;
 
-/// Where the shapes of a run are with the arm and the workpiece as they are shown, and which are too near to each other.
+/// Where the shapes of a run are with the arm and the workpiece as they are shown, and which are too near to each
+/// other.
 fn shapes(problem: &Problem, middle: &Stance) -> (Vec<Stand>, Vec<Hit>) {
     let Some(scene) = problem.scene.as_deref() else { return (Vec::new(), Vec::new()) };
     let (point, joints) = middle.shown(&problem.robot);
@@ -235,7 +238,7 @@ fn stance(problem: &Problem, placement: Placement) -> Stance {
 /// The joint angles within the limits that reach a point, those of the largest distance from a limit.
 fn reached(problem: &Problem, placement: &Placement, point: usize) -> Option<[f64; 6]> {
     let betas = (0..ANGLES).map(|k| TAU * k as f64 / ANGLES as f64);
-    let flanges = betas.map(|beta| problem.base_from_flange(point, placement, beta));
+    let flanges = betas.map(|beta| problem.at(placement).base_from_flange(point, beta));
     let allowed = || problem.postures.allowed();
     flanges
         .flat_map(|flange| allowed().filter_map(move |posture| problem.robot.inverse(&flange, posture).ok()))
@@ -259,7 +262,7 @@ fn within(robot: &Robot, wrapped: &[f64; 6]) -> Option<([f64; 6], f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::five_segments;
+    use stead_planning::testing::five_segments;
 
     #[test]
     fn the_published_run_is_understood() {
@@ -282,7 +285,7 @@ mod tests {
     #[test]
     fn a_cell_out_of_reach_is_noted() {
         let mut problem = five_segments();
-        problem.cell.position[0] = crate::problem::Interval { min: 9.0, max: 9.5 };
+        problem.cell.position[0] = stead_planning::problem::Interval { min: 9.0, max: 9.5 };
         let overview = Overview::of(&problem);
         assert_eq!((overview.middle.reached, overview.middle.first), (0, None));
         assert!(overview.notes()[0].contains("reaches 0 of 105 path points"));

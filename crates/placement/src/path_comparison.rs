@@ -1,16 +1,16 @@
 //! How far the objectives on a subset of a long path are off, measured at placements drawn from the cell.
 
-use super::candidate::{Candidate, Objective, rank};
 use super::outcome::SubsetAccuracy;
 use super::path_subset::PathSubset;
-use super::problem::{Placement, Problem};
-use super::redundancy::Planner;
 use super::search;
-use super::sense::Sense;
 use super::settings::SearchSettings;
 use super::whole_path::WholePath;
 use rayon::prelude::*;
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::candidate::{Candidate, Objective, rank};
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
 
 /// Placements with their objectives on the whole path, by which subsets are measured.
 ///
@@ -29,8 +29,8 @@ pub struct PathComparison {
 const DRAWS: u64 = 8;
 
 impl PathComparison {
-    /// Draws placements that a subset allows, and plans them on the whole path, the problem of a planner, until so many have a plan
-    /// there. There are fewer where little of the cell is feasible, and where the caller asks to stop.
+    /// Draws placements that a subset allows, and plans them on the whole path, the problem of a planner, until so many
+    /// have a plan there. There are fewer where little of the cell is feasible, and where the caller asks to stop.
     pub fn draw(
         full: &Planner<'_>,
         subset: &PathSubset,
@@ -64,8 +64,8 @@ impl PathComparison {
         comparison
     }
 
-    /// By how much the objectives on a subset differ from those on the whole path, relative to these, one for each placement that
-    /// the subset allows.
+    /// By how much the objectives on a subset differ from those on the whole path, relative to these, one for each
+    /// placement that the subset allows.
     pub fn errors(&self, problem: &Problem, subset: &PathSubset) -> Vec<f64> {
         let thinned = subset.of(problem);
         let placements: Vec<Placement> = self.pairs.iter().map(|(placement, _)| *placement).collect();

@@ -1,16 +1,15 @@
 //! Some points of a long path, by which placements are compared before the whole path is planned.
 //!
-//! The points are spread evenly over what changes along the path: position, tool axis, feed direction and force. Each stands for
-//! the points around it: the score is taken as linear in the distance along the path between two kept points of a segment, and as
-//! constant beyond the first and the last, so that the weights of a segment sum up to the number of its scored points. Between kept
-//! points beta and the joints may change by what all the steps between them allow together. What the points left out forbid is not
-//! seen: whoever uses a subset checks the whole path, and adds the points that decide ([`PathSubset::add`]).
+//! The points are spread evenly over what changes along the path: position, tool axis, feed direction and force. Each
+//! stands for the points around it: the score is taken as linear in the distance along the path between two kept points
+//! of a segment, and as constant beyond the first and the last, so that the weights of a segment sum up to the number
+//! of its scored points. Between kept points beta and the joints may change by what all the steps between them allow
+//! together. What the points left out forbid is not seen: whoever uses a subset checks the whole path, and adds the
+//! points that decide ([`PathSubset::add`]).
 
-use super::problem::Problem;
-use super::setup::Setup;
 use std::ops::Range;
-use std::sync::Arc;
 use stead_model::task::{KeptPoint, Task, ToolPath};
+use stead_planning::problem::Problem;
 
 /// Points kept of a path, ascending.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,12 +17,13 @@ pub struct PathSubset {
     points: Vec<usize>,
 }
 
-/// Changes along the path that count alike: of position (m), of directions (rad), of the force relative to its mean size.
+/// Changes along the path that count alike: of position (m), of directions (rad), of the force relative to its mean
+/// size.
 const UNITS: [f64; 3] = [0.15, 0.5, 1.0];
 /// How often points are spread again at the most.
 const SPREADS: usize = 12;
-/// In segments with fewer kept points than this they are staggered from segment to segment, so that segments side by side are not
-/// all represented at the same place.
+/// In segments with fewer kept points than this they are staggered from segment to segment, so that segments side by
+/// side are not all represented at the same place.
 const STAGGERED: usize = 3;
 /// The golden section, by which they are staggered.
 const STAGGER: f64 = 0.618_033_988_749_895;
@@ -94,18 +94,7 @@ impl PathSubset {
 
     /// The problem on these points alone.
     pub fn of(&self, problem: &Problem) -> Problem {
-        let kept = self.weighted(&problem.task);
-        Problem {
-            robot: problem.robot.clone(),
-            task: problem.task.thinned(&kept),
-            criterion: problem.criterion.clone(),
-            scene: problem.scene.clone(),
-            segment_moves: problem.segment_moves.clone(),
-            orientations: Arc::clone(&problem.orientations),
-            external_axes: problem.external_axes.clone(),
-            setup: Setup { positions: problem.setup.positions.of_points(&self.points), ..problem.setup },
-            ..*problem
-        }
+        problem.on_points(&self.weighted(&problem.task))
     }
 
     /// The points with what they stand for.
@@ -190,7 +179,7 @@ fn nearest(ascending: &[f64], at: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::five_segments;
+    use stead_planning::testing::five_segments;
 
     #[test]
     fn weights_sum_up_and_linear_scores_keep_their_sum() {
@@ -228,7 +217,7 @@ mod tests {
         let points =
             (0..105).map(|point| (task.path().segment_of(point) as u32 + 1, task.points()[point], is_scored(point)));
         let path = ToolPath::partly_scored(points).unwrap();
-        let problem = Problem { task: Task::new(path, task.wrenches().to_vec()).unwrap(), ..problem };
+        let problem = problem.clone().with(|parts| parts.task = Task::new(path, task.wrenches().to_vec()).unwrap());
         let scored = (0..105).filter(|point| is_scored(*point)).count() as f64;
         for count in [5, 12, 40] {
             let mut subset = PathSubset::new(&problem.task, count);

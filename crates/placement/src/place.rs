@@ -1,16 +1,17 @@
 //! The placement job: search, refine, plan, map.
+//!
+//! `searched` and `basins` are search and refinement, `plan` and `notes` what is stated of what they find, `infeasible`
+//! what blocks a placement that is refused. `long_path` and `long_refinement` do the same by subsets of a long path,
+//! `setups` and `axes` choose among orientations and positions of external axes, `sets` covers several stiffnesses, and
+//! `calmer` tells whether a calmer plan costs little.
 
 use super::evaluator::Evaluator;
 use super::outcome::{Case, Cases, ForceSensitivity, Outcome};
-use super::problem::Problem;
-use super::redundancy::Planner;
 use super::refine::Solution;
 use super::refine::active::{active_bounds, active_walls};
 use super::search::SearchResult;
-use super::sense::Sense;
 use super::sensitivity::{objective_by_stiffness, objective_with_force_errors};
-use super::settings::{SearchSettings, TransferSettings};
-use super::transfer::cycle;
+use super::settings::SearchSettings;
 use basins::{best_alone, choose, leading, refine_basins};
 use notes::{cancellation, interruption};
 use plan::{StatedPlans, detailed};
@@ -20,6 +21,11 @@ use sets::Sets;
 use setups::place_in_all;
 use stead_model::robot::angles::wrap;
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::problem::Problem;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::transfer::TransferSettings;
+use stead_planning::transfer::cycle;
 
 mod axes;
 mod basins;
@@ -49,12 +55,13 @@ pub fn planning_memory(problem: &Problem) -> u64 {
     MEMORY_PER_POINT * problem.task.points().len() as u64
 }
 
-/// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III; or the best one
-/// alone ([`SearchSettings::worst`]), which is what it is beside the worst one as long as the path is not searched on a subset.
+/// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table
+/// III; or the best one alone ([`SearchSettings::worst`]), which is what it is beside the worst one as long as the path
+/// is not searched on a subset.
 ///
-/// The result depends on the arguments alone, not on the number of threads. When `monitor` asks to stop, every stage ends with what
-/// it has, only the plans of the best and the worst placement are still made, and [`Outcome::interrupted`] is set. Maps are not
-/// made here: see [`Outcome::map`].
+/// The result depends on the arguments alone, not on the number of threads. When `monitor` asks to stop, every stage
+/// ends with what it has, only the plans of the best and the worst placement are still made, and
+/// [`Outcome::interrupted`] is set. Maps are not made here: see [`Outcome::map`].
 ///
 /// # Errors
 /// [`Infeasible`] when the search met no feasible placement.
@@ -78,8 +85,8 @@ fn place_as_set_up(
     monitor: &Monitor,
 ) -> Result<Outcome, Infeasible> {
     // Placements are compared by their best plans; only what is stated at the end may be worse by the tie.
-    let untied = problem.untied();
-    let planner = Planner::finer(&untied);
+    let without_tie_rule = problem.without_tie_rule();
+    let planner = Planner::finer(&without_tie_rule);
     let mut long = LongPath::new(&planner, settings, monitor);
     let searched = match &mut long {
         Some(path) => path.search(&planner, settings, monitor)?,
@@ -88,27 +95,27 @@ fn place_as_set_up(
     let Searched { found, table, lookup_summary, evaluations } = searched;
     let long = long.as_ref();
     let refused = || {
-        let nearest = &found[0].basins[0];
+        let nearest = &found.best.basins[0];
         infeasible(&planner, &nearest.placement, nearest.scheme.as_deref(), true, monitor)
     };
     let evaluator = Evaluator::new(&planner, table.as_ref()).with_finer_lookup(2);
     let (basins, refinements) = refine_basins(&evaluator, long, &found, monitor);
-    let sets = Sets::of(&untied, (&found, long), &basins[0], monitor);
+    let sets = Sets::of(&without_tie_rule, &found, long, &basins.best, monitor);
     let (best, worst) = choose(&basins, sets.regrets().as_deref(), settings).ok_or_else(refused)?;
     monitor.report(Progress::Steps { stage: "plans and maps", done: 0, total: 1 });
-    let cases = |refined, sense| stated_cases((problem, &planner), transfer, sense, refined, monitor);
+    let cases = |refined, sense| stated_cases(problem, &planner, transfer, sense, refined, monitor);
     let of_worst = || worst.as_ref().map(|worst| cases(worst, Sense::Max));
-    let ([best_case, best_worst_plan], worst) = rayon::join(|| cases(&best, Sense::Min), of_worst);
-    let cases = Cases { best: best_case, best_worst_plan, worst };
-    let interrupted = found.iter().any(|f| f.interrupted) || monitor.should_stop();
+    let (best_placement, worst) = rayon::join(|| cases(&best, Sense::Min), of_worst);
+    let cases = Cases { best: best_placement.best, best_worst_plan: best_placement.worst, worst };
+    let interrupted = found.values().iter().any(|f| f.interrupted) || monitor.should_stop();
     let sensitivity = match settings.sensitivity {
-        Some(size) if !interrupted => force_sensitivity(&untied, &best.solution, (&found, long), size, monitor),
+        Some(size) if !interrupted => force_sensitivity(&without_tie_rule, &best.solution, &found, long, size, monitor),
         _ => None,
     };
     let named = cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
     let of_moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>());
-    let stated = (&cases.best.plan, &cases.best.cycle.feed);
-    let mut notes = notes::of(problem, &cases.best.placement, stated, monitor);
+    let Case { placement, plan, cycle, .. } = &cases.best;
+    let mut notes = notes::of(problem, placement, plan, &cycle.feed, monitor);
     notes.extend((!settings.worst).then(notes::best_alone));
     Ok(Outcome {
         sets: sets.outcomes(&cases.best),
@@ -119,12 +126,12 @@ fn place_as_set_up(
         tried_setups: Vec::new(),
         lookup_summary,
         path_levels: long.map(|path| path.levels),
-        convergence: found.iter().flat_map(|f| f.history.clone()).collect(),
+        convergence: found.values().into_iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
         maps: None,
         evaluations,
         states: evaluations
-            * long.map_or(problem.task.points().len(), |path| path.levels.subsets[0].points)
+            * long.map_or(problem.task.points().len(), |path| path.levels.search.points)
             * problem.redundancy.beta_count,
         interrupted,
         warnings: cancellation(problem, best.solution.objective)
@@ -135,27 +142,28 @@ fn place_as_set_up(
     })
 }
 
-/// The best and the worst plan at a refined placement, with everything that there is to say of them; `untied` plans the problem in which
-/// the best plan is taken whatever the moves.
+/// The best and the worst plan at a refined placement, with everything that there is to say of them; `without_tie_rule`
+/// plans the problem in which the best plan is taken whatever the moves.
 fn stated_cases(
-    (problem, untied): (&Problem, &Planner<'_>),
+    problem: &Problem,
+    without_tie_rule: &Planner<'_>,
     transfer: &TransferSettings,
     placement_sense: Sense,
     refined: &Refined,
     monitor: &Monitor,
-) -> [Case; 2] {
-    let tied = (problem.postures.tie > 0.0).then(|| Planner::finer(problem));
+) -> BySense<Case> {
+    let with_tie_rule = (problem.postures.tie > 0.0).then(|| Planner::finer(problem));
     let (solution, scheme) = (&refined.solution, refined.scheme.as_deref());
-    let stated = StatedPlans::of(tied.as_ref().unwrap_or(untied), refined, monitor);
-    Sense::BOTH.map(|plan_sense| {
+    let stated = StatedPlans::of(with_tie_rule.as_ref().unwrap_or(without_tie_rule), refined, monitor);
+    BySense::from_fn(|plan_sense| {
         let plans = match plan_sense {
             Sense::Min => &stated.best,
             Sense::Max => &stated.worst,
         };
         let active_bounds = match plan_sense {
             Sense::Min if monitor.should_stop() => None,
-            Sense::Min if placement_sense == Sense::Min => active_bounds(untied.problem(), solution),
-            Sense::Min => Some(active_walls(untied, solution, scheme)),
+            Sense::Min if placement_sense == Sense::Min => active_bounds(without_tie_rule.problem(), solution),
+            Sense::Min => Some(active_walls(without_tie_rule, solution, scheme)),
             Sense::Max => Some(Vec::new()),
         };
         Case {
@@ -177,21 +185,21 @@ fn stated_cases(
 fn force_sensitivity(
     problem: &Problem,
     best: &Solution,
-    (found, long): (&[SearchResult; 2], Option<&LongPath>),
+    found: &BySense<SearchResult>,
+    long: Option<&LongPath>,
     size: f64,
     monitor: &Monitor,
 ) -> Option<ForceSensitivity> {
-    let mut robust = problem.clone();
-    robust.criterion.force_uncertainty = size;
+    let robust = problem.changed(|parts| parts.criterion.force_uncertainty = size).ok()?;
     let planner = Planner::finer(&robust);
     let evaluator = Evaluator::new(&planner, None);
-    let ([refined, _], _) = refine_basins(&evaluator, long, &best_alone(found), monitor);
+    let refined = refine_basins(&evaluator, long, &best_alone(found), monitor).0.best;
     let solution = &leading(Sense::Min, &refined)?.solution;
     let [plan, nominal] = [solution, best].map(|solution| detailed(problem, &solution.placement, &solution.plans));
     let (from, to) = (&best.placement, &solution.placement);
     Some(ForceSensitivity {
         force_uncertainty: size,
-        nominal: [nominal.objective, objective_with_force_errors(problem, from, &nominal, size)],
+        nominal: [nominal.objective, objective_with_force_errors(problem, &robust, from, &nominal)],
         robust: [plan.objective, solution.objective],
         placement: *to,
         distance: (0..3).map(|k| (to[k] - from[k]) * (to[k] - from[k])).sum::<f64>().sqrt(),

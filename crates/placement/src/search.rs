@@ -2,28 +2,23 @@
 //!
 //! Genes are x, y, z and the yaw (not Q4, which is stretched near +-1 and has a seam there). In the exact mode every
 //! candidate gets its best posture scheme from the planner; in the genetic mode the scheme is part of the genome, one
-//! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these by how
-//! many points and segments fail.
+//! posture number per segment, as Caro 2013 did it. Feasible candidates always rank before infeasible ones, and these
+//! by how many points and segments fail.
 //!
-//! Candidates are scored by interpolating a lookup table where the task allows one ([`super::lookup`]); the basins that are refined and
-//! the best of every generation are then scored by the planner: only averages are the table's.
+//! Candidates are scored by interpolating a lookup table where the task allows one ([`super::lookup`]); the basins that
+//! are refined and the best of every generation are then scored by the planner: only averages are the table's.
 //!
-//! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on the
-//! seed alone and not on the number of threads.
+//! Random numbers are counter-based: every candidate of every generation has its own stream, so the result depends on
+//! the seed alone and not on the number of threads.
 
 mod evaluation;
 #[cfg(test)]
 mod tests;
 
-use super::candidate::{Candidate, Objective, rank};
 use super::evaluator::Evaluator;
-use super::lookup::Look;
+use super::lookup::CollisionEffort;
 use super::outcome::Generation;
-use super::problem::{Cell, Placement, Problem};
-use super::redundancy::{self, Planner};
-use super::sense::Sense;
 use super::settings::{PostureSearch, SearchSettings};
-use super::symmetry::{apart_about_axis_1, is_axis_1_vertical};
 use evaluation::{better_third, evaluate};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -32,6 +27,11 @@ use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::candidate::{Candidate, Objective, rank};
+use stead_planning::problem::{Cell, Placement, Problem};
+use stead_planning::redundancy::{self, Planner};
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::symmetry::{apart_about_axis_1, is_axis_1_vertical};
 
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,22 +59,22 @@ impl SearchResult {
         self.basins.first().is_some_and(|best| best.objective.mean().is_some())
     }
 
-    /// Of the searches of both senses the one that met nothing feasible goes on from the basins of the other, where it is made at all;
-    /// whether either met something.
-    pub fn share_basins(found: &mut [Self; 2], settings: &SearchSettings) -> bool {
-        let feasible = found.each_ref().map(Self::is_feasible);
-        match feasible {
-            [true, false] if settings.worst => found[1].basins = found[0].basins.clone(),
-            [false, true] => found[0].basins = found[1].basins.clone(),
+    /// Of the searches of both senses the one that met nothing feasible continues from the basins of the other, where
+    /// it is made at all; whether either met something.
+    pub fn share_basins(found: &mut BySense<Self>, settings: &SearchSettings) -> bool {
+        let feasible = BySense::from_fn(|sense| found[sense].is_feasible());
+        match (feasible.best, feasible.worst) {
+            (true, false) if settings.worst => found.worst.basins = found.best.basins.clone(),
+            (false, true) => found.best.basins = found.worst.basins.clone(),
             _ => {}
         }
-        feasible.contains(&true)
+        feasible.best || feasible.worst
     }
 
     /// The basins of both searches, each with its sense and its rank.
-    pub fn jobs(found: &[Self; 2]) -> Vec<(Sense, usize, &Candidate)> {
+    pub fn jobs(found: &BySense<Self>) -> Vec<(Sense, usize, &Candidate)> {
         let mut jobs = Vec::new();
-        for (sense, found) in Sense::BOTH.into_iter().zip(found) {
+        for (sense, found) in found.iter() {
             jobs.extend(found.basins.iter().enumerate().map(|(rank, candidate)| (sense, rank, candidate)));
         }
         jobs
@@ -123,7 +123,7 @@ pub fn generations(
     };
     // The first population can take as long as all others.
     report(first, None);
-    evaluate(evaluator, &mut population, (0, Look::ALL.within), monitor);
+    evaluate(evaluator, &mut population, 0, CollisionEffort::ALL.within, monitor);
     let mut evaluations = population.len();
     let mut history = Vec::new();
     let mut best = Vec::new();
@@ -141,7 +141,7 @@ pub fn generations(
             let within = better_third(&population, sense);
             population.truncate(elite);
             population.extend(children);
-            evaluate(evaluator, &mut population, (elite, within), monitor);
+            evaluate(evaluator, &mut population, elite, within, monitor);
             evaluations += population.len() - elite;
         }
         population.sort_by(|a, b| rank(sense, a.objective, b.objective));
@@ -180,13 +180,13 @@ pub fn pinned(planner: &Planner<'_>, placement: Placement, sense: Sense) -> Sear
     SearchResult { basins: vec![candidate], history, evaluations: 1, lookup_rejected: false, interrupted: false }
 }
 
-/// Evaluates candidates by a planner on a finer grid, and sorts them anew: those that are feasible, or else the nearest alone. Once the
-/// caller asks to stop, two are enough.
+/// Evaluates candidates by a planner on a finer grid, and sorts them anew: those that are feasible, or else the nearest
+/// alone. Once the caller asks to stop, two are enough.
 pub fn evaluate_finer(planner: &Planner<'_>, sense: Sense, candidates: &mut Vec<Candidate>, monitor: &Monitor) {
     let objective = |candidate: &Candidate, workspace: &mut redundancy::Workspace| {
         planner.objective(&candidate.placement, Sense::Min, candidate.scheme.as_deref(), workspace)
     };
-    evaluation::by(&|| planner.workspace(), &objective, candidates, 0, (2, monitor));
+    evaluation::by(&|| planner.workspace(), &objective, candidates, 0, 2, monitor);
     candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
     let feasible = candidates.iter().filter(|candidate| candidate.objective.mean().is_some()).count();
     candidates.truncate(feasible.max(1));
@@ -331,9 +331,9 @@ fn figures(sense: Sense, generation: usize, population: &[Candidate], evaluation
     }
 }
 
-/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `max_count`. On a long path, where
-/// comparing is dear, placements that a turn about axis 1 brings near each other count as one basin: it changes nothing but the angle of
-/// joint 1.
+/// Of candidates sorted from the best, those that are not in the basin of a better one: at most `max_count`. On a long
+/// path, where comparing is dear, placements that a turn about axis 1 brings near each other count as one basin: it
+/// changes nothing but the angle of joint 1.
 pub fn distinct(problem: &Problem, sorted: &[Candidate], max_count: usize) -> Vec<Candidate> {
     let is_up_to_turn =
         problem.task.path().is_thinned() && is_axis_1_vertical(problem) && problem.external_axes.is_empty();

@@ -1,27 +1,27 @@
 //! What a result rests on: how its objective answers to the stiffness of every joint, and to errors of the force.
 
-use super::criterion::Criterion;
-use super::evaluate::reference::state;
 use super::outcome::{Plan, PlanPoint};
-use super::problem::{Placement, Problem};
-use super::redundancy::{Kept, SegmentPlan, off_grid::Spacing, settled_among_free};
-use super::sense::Sense;
-use super::way::whole_lines;
 use rayon::prelude::*;
 use stead_model::robot::{Compliance, Robot};
+use stead_planning::problem::{Placement, Problem, ProblemParts};
+use stead_planning::redundancy::off_grid::Spacing;
+use stead_planning::redundancy::{Kept, SegmentPlan, settled_among_free};
+use stead_planning::sense::Sense;
+use stead_planning::transfer_path::whole_lines;
 
-/// Relative step of the central differences of stiffness: what "one per cent more" asks.
+/// Relative step of the central differences of stiffness: what "one per cent more" means.
 const STEP: f64 = 0.01;
 /// The spacing in which beta follows a change of stiffness. rad
 const FOLLOWING: Spacing = Spacing { first: 4e-3, last: 6e-5 };
 /// A sensitivity is not left uncertain by more than this share of the largest.
 const UNCERTAIN: f64 = 0.01;
 
-/// How the objective of a plan answers to the stiffness of each joint and its drive: central differences over one per cent, in m for
-/// a stiffness e times as large, so that one per cent more changes the objective by a hundredth of it.
+/// How the objective of a plan answers to the stiffness of each joint and its drive: central differences over one per
+/// cent, in m for a stiffness e times as large, so that one per cent more changes the objective by a hundredth of it.
 ///
-/// A best plan is made anew around the present one, since it holds deflections at zero where it can: there the plan as it is would
-/// become worse both ways. Where it has nothing to gain from that, as a worst plan, the plan as it is tells the same to first order.
+/// A best plan is made anew around the present one, since it holds deflections at zero where it can: there the plan as
+/// it is would become worse both ways. Where it has nothing to gain from that, as a worst plan, the plan as it is gives
+/// the same to first order.
 pub fn objective_by_stiffness(
     problem: &Problem,
     placement: &Placement,
@@ -63,7 +63,7 @@ fn recosted(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> 
             .clone()
             .zip(&plan.betas)
             .map(|(point, beta)| {
-                let state = state(problem, point, placement, *beta, plan.posture).ok()?;
+                let state = problem.at(placement).state(point, *beta, plan.posture).ok()?;
                 Some(problem.point_cost(point, state.score()))
             })
             .collect();
@@ -84,21 +84,24 @@ fn followed_objective(problem: &Problem, placement: &Placement, plans: &[Segment
     let plans = recosted(problem, placement, plans)?;
     let followed = |plan: &SegmentPlan| {
         let kept = Kept { lines: whole_lines(problem, placement, plan), moves: false };
-        settled_among_free(problem, placement, Sense::Min, (FOLLOWING, kept), plan).cost
+        settled_among_free(problem, placement, Sense::Min, FOLLOWING, kept, plan).cost
     };
     Some(problem.objective(plans.iter().map(followed)))
 }
 
 /// The problem with the stiffness of one joint (from 0) and its drive multiplied, in all sets of compliances.
 fn stiffened(problem: &Problem, joint: usize, factor: f64) -> Option<Problem> {
-    let mut changed = problem.clone();
-    changed.robot = stiffened_robot(&problem.robot, joint, factor)?;
-    if let Some(sets) = &mut changed.criterion.stiffness {
-        for robot in &mut sets.robots {
-            *robot = stiffened_robot(robot, joint, factor)?;
+    let robot = stiffened_robot(&problem.robot, joint, factor)?;
+    let of_set = |set: &Robot| stiffened_robot(set, joint, factor);
+    let sets =
+        problem.criterion.stiffness.iter().flat_map(|sets| &sets.robots).map(of_set).collect::<Option<Vec<_>>>()?;
+    let change = |parts: &mut ProblemParts| {
+        parts.robot = robot;
+        if let Some(of_parts) = &mut parts.criterion.stiffness {
+            of_parts.robots = sets;
         }
-    }
-    Some(changed)
+    };
+    problem.changed(change).ok()
 }
 
 /// The arm with the stiffness of one joint (from 0) and its drive multiplied; its compensator stays as it is.
@@ -118,25 +121,18 @@ fn stiffened_robot(robot: &Robot, joint: usize, factor: f64) -> Option<Robot> {
     }
 }
 
-/// The same problem with one set of compliances alone.
-pub fn with_set_alone(problem: &Problem, set: &Robot) -> Problem {
-    let criterion = Criterion { stiffness: None, ..problem.criterion.clone() };
-    Problem { robot: set.clone(), criterion, ..problem.clone() }
-}
-
 /// The mean score of a plan at a placement as another problem on the same path scores it. m
 pub fn mean_by(problem: &Problem, placement: &Placement, plan: &Plan) -> f64 {
     let score =
-        |p: &PlanPoint| state(problem, p.point, placement, p.beta, p.posture).map_or(p.score, |state| state.score());
+        |p: &PlanPoint| problem.at(placement).state(p.point, p.beta, p.posture).map_or(p.score, |state| state.score());
     plan.points.iter().map(score).sum::<f64>() / problem.task.path().scored_count() as f64
 }
 
-/// The objective of a plan at a placement, with scores that cover force errors of a relative size. m
-pub fn objective_with_force_errors(problem: &Problem, placement: &Placement, plan: &Plan, size: f64) -> f64 {
-    let mut changed = problem.clone();
-    changed.criterion.force_uncertainty = size;
+/// The objective of a plan at a placement with the scores of a problem that differs in the force errors that they
+/// cover. m
+pub fn objective_with_force_errors(problem: &Problem, robust: &Problem, placement: &Placement, plan: &Plan) -> f64 {
     let scores = problem.objective(plan.points.iter().map(|p| {
-        let score = state(&changed, p.point, placement, p.beta, p.posture).map_or(p.score, |state| state.score());
+        let score = robust.at(placement).state(p.point, p.beta, p.posture).map_or(p.score, |state| state.score());
         problem.point_cost(p.point, score)
     }));
     scores + problem.travel_weight() * plan.travel.total
@@ -145,13 +141,13 @@ pub fn objective_with_force_errors(problem: &Problem, placement: &Placement, pla
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::criterion::{Aggregate, Weights};
     use crate::place::score;
-    use crate::redundancy::Planner;
     use crate::refine::planned;
-    use crate::settings::TransferSettings;
-    use crate::testing::{compensated, five_segments, with_laws};
     use stead_numerics::monitor::Monitor;
+    use stead_planning::criterion::{Aggregate, Weights};
+    use stead_planning::redundancy::Planner;
+    use stead_planning::testing::{compensated, five_segments, with_laws};
+    use stead_planning::transfer::TransferSettings;
 
     /// The objective of the best plan at a placement.
     fn planned_objective(problem: &Problem, placement: &Placement) -> (f64, Vec<SegmentPlan>) {
@@ -211,8 +207,11 @@ mod tests {
     fn force_errors_only_add() {
         let problem = five_segments();
         let placement = Placement::from([0.1, -1.7, -0.4, 1.0]);
-        let plan = score(&problem, &placement, &TransferSettings::default(), &Monitor::silent()).unwrap().best;
-        let with = |size: f64| objective_with_force_errors(&problem, &placement, &plan, size);
+        let plan = score(&problem, &placement, &TransferSettings::default(), &Monitor::silent()).unwrap().plans.best;
+        let with = |size: f64| {
+            let robust = problem.clone().with(|parts| parts.criterion.force_uncertainty = size);
+            objective_with_force_errors(&problem, &robust, &placement, &plan)
+        };
         assert!((with(0.0) / plan.objective - 1.0).abs() < 1e-9 && with(0.1) > with(0.05) && with(0.05) > with(0.0));
     }
 }

@@ -1,6 +1,6 @@
 //! How hard to search.
 
-use super::sense::Sense;
+use stead_planning::sense::Sense;
 
 /// How the posture scheme of a candidate placement is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,13 +37,13 @@ pub struct SearchSettings {
     pub basins: usize,
     /// Whether to use a lookup table.
     pub tables: LookupUse,
-    /// Points of a long path by which candidates are compared; chosen where none is given. With all points of the path or more, it
-    /// is searched and refined whole.
+    /// Points of a long path by which candidates are compared; chosen where none is given. With all points of the path
+    /// or more, it is searched and refined whole.
     pub path_points: Option<usize>,
     /// Whether the worst placement is looked for, too, to show what is at stake.
     pub worst: bool,
-    /// The relative size of a force error for which the basins are refined once more, to see how far the optimum moves; none
-    /// where that is not asked.
+    /// The relative size of a force error for which the basins are refined once more, to see how far the optimum moves;
+    /// none where that is not asked.
     pub sensitivity: Option<f64>,
 }
 
@@ -71,55 +71,5 @@ impl Default for SearchSettings {
             worst: true,
             sensitivity: None,
         }
-    }
-}
-
-/// Limits of the joint moves between segments, for joints whose row of the robot file does not state them, and how the cut is blended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TransferSettings {
-    /// Time from rest to full speed at full acceleration; the acceleration limit is speed over this. s
-    pub acceleration_time: f64,
-    /// Time from no to full acceleration at full jerk; the jerk limit is acceleration over this. s
-    pub jerk_time: f64,
-    /// Distance over which the controller blends changes of the joint speeds along the cut ([`super::feed`]). m
-    pub blend: f64,
-}
-
-impl Default for TransferSettings {
-    /// Assumptions: manufacturers publish speeds, not accelerations, and the blending distance is set by the robot's program.
-    fn default() -> Self {
-        Self { acceleration_time: 0.4, jerk_time: 0.1, blend: 5e-3 }
-    }
-}
-
-/// How sharp a certificate ([`super::certify`]) is to be, and how long it may take.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct CertificateSettings {
-    /// How much better than the value found a placement may still be, relative to it: from [`Self::MIN_GAP`] to below 1.
-    pub gap: f64,
-    /// Time for the certificate, of the best and of the worst placement together, where it is limited. What is reached by
-    /// then depends on the machine. s
-    pub time_limit: Option<f64>,
-    /// Memory for tables and open boxes, counted and not measured, so that what is reached with it is the same on every machine. Bytes
-    pub memory: u64,
-}
-
-impl CertificateSettings {
-    /// The finest gap that can be asked for: rounding and the digits of the files are well below.
-    pub const MIN_GAP: f64 = 1e-6;
-    /// What the memory is where nothing is said of it. Bytes
-    pub const DEFAULT_MEMORY: u64 = 4_000_000_000;
-
-    /// A certificate of this gap (relative), without a time limit, in the memory that is allowed by default.
-    pub fn new(gap: f64) -> Self {
-        Self { gap, time_limit: None, memory: Self::DEFAULT_MEMORY }
-    }
-
-    /// The gap of so many per cent, where it can be asked for: not zero or below, not finer than rounding allows, and less
-    /// than everything.
-    pub fn gap(percent: f64) -> Option<f64> {
-        // A number such as 0.0001 may come out a little low.
-        let min = Self::MIN_GAP * (1.0 - 1e-12);
-        Some(percent / 100.0).filter(|gap| (min..1.0).contains(gap))
     }
 }

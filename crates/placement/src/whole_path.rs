@@ -1,21 +1,20 @@
 //! What a placement that a subset of a long path allows comes to on the whole path, and which points decide that.
 
-use super::candidate::{Candidate, Objective};
-use super::criterion::Aggregate;
-use super::evaluate::reference::state;
 use super::path_subset::PathSubset;
-use super::problem::{Placement, Problem};
-use super::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
-use super::sense::Sense;
 use stead_model::robot::Posture;
+use stead_planning::candidate::{Candidate, Objective};
+use stead_planning::criterion::Aggregate;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
+use stead_planning::sense::Sense;
 
 /// Of every stretch of points that decide, so many join a subset.
 const STRETCH: usize = 3;
 /// Of a placement, at most so many stretches.
 const STRETCHES: usize = 12;
 
-/// Where the objective on the coarse grid is farther than this (relative) from that on a subset, the finer grid decides: between
-/// dense points a coarse grid may leave a narrow way out that the subset takes.
+/// Where the objective on the coarse grid is farther than this (relative) from that on a subset, the finer grid
+/// decides: between dense points a coarse grid may leave a narrow way out that the subset takes.
 const AGREEMENT: f64 = 0.05;
 
 /// The whole path on the coarse grid of beta, and on the finer one where that is too coarse.
@@ -75,9 +74,9 @@ impl<'a, 'p> WholePath<'a, 'p> {
         promised.is_some_and(|promised| mean.is_none_or(|mean| mean > promised * (1.0 + AGREEMENT)))
     }
 
-    /// Points that keep the whole path from what a subset promises of a candidate: some of every stretch where the subset's plan, with
-    /// beta interpolated in between, breaks a constraint; where it breaks none, the point whose score is the farthest above those of
-    /// the subset's points around it.
+    /// Points that keep the whole path from what a subset promises of a candidate: some of every stretch where the
+    /// subset's plan, with beta interpolated in between, breaks a constraint; where it breaks none, the point whose
+    /// score is the farthest above those of the subset's points around it.
     pub fn obstacles(&self, candidate: &Candidate, subset: &PathSubset) -> Vec<usize> {
         let problem = self.problem();
         let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
@@ -101,7 +100,7 @@ impl<'a, 'p> WholePath<'a, 'p> {
                 let between = |a: f64, b: f64| a + share * (b - a);
                 let near = std::array::from_fn(|j| between(plan.joints[from][j], plan.joints[to][j]));
                 let beta = between(plan.betas[from], plan.betas[to]);
-                off_grid::score(problem, placement, (point, beta), plan, &near)
+                off_grid::score(problem, placement, point, beta, plan, &near)
             };
             let of_kept: Vec<f64> = kept.iter().map(|point| score(*point).unwrap_or(0.0)).collect();
             for point in span.clone().filter(|point| kept.binary_search(point).is_err()) {
@@ -143,7 +142,7 @@ impl WholePath<'_, '_> {
         let plans = self.coarse.plan(placement, Sense::Min, scheme, &mut self.coarse.workspace()).ok()?;
         let cost = |plan: &SegmentPlan, point: usize| {
             let beta = plan.betas[point - plan.points.start];
-            let state = state(problem, point, placement, beta, plan.posture).ok()?;
+            let state = problem.at(placement).state(point, beta, plan.posture).ok()?;
             Some((point, problem.point_cost(point, state.score())))
         };
         let costs = plans.iter().flat_map(|plan| plan.points.clone().filter_map(move |point| cost(plan, point)));
@@ -168,10 +167,11 @@ fn deciding(problem: &Problem, none: &NoFeasiblePlan) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::five_segments;
     use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+    use stead_planning::testing::five_segments;
 
-    /// The five segments with points `from` to `from + 3` changed, which a subset of ten points leaves out, and that subset.
+    /// The five segments with points `from` to `from + 3` changed, which a subset of ten points leaves out, and that
+    /// subset.
     fn changed(from: usize, change: impl Fn(&mut PathPoint, &mut Wrench)) -> (Problem, PathSubset) {
         let mut problem = five_segments();
         let mut wrenches = problem.task.wrenches().to_vec();

@@ -1,14 +1,16 @@
 //! What was understood of a run or a robot file, before anything is computed with it.
 
 use crate::columns::line;
-use crate::document::Document;
+use crate::document::{Document, PlacementFigures};
+use crate::figure::{AngleDeg, PlaceMm, SpeedMmPerS, each};
 use crate::units::{Unit, fixed};
-use serde_json::{Value, json};
+use serde_json::Value;
 use stead_format::input::InputFile;
 use stead_model::robot::Robot;
+use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::overview::{Hit, Overview, Stand};
-use stead_placement::problem::Problem;
+use stead_planning::problem::Problem;
 
 /// A run as it was understood.
 #[derive(Debug, Clone)]
@@ -61,7 +63,7 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     say(match overview.feeds {
         None => format!("feed      {} mm/s", MM.text(problem.redundancy.feed)),
         Some(feeds) => format!(
-            "feed      {} mm/s, as the task states; the {} mm/s of redundancy.feed_mm_per_s stand for none of its moves",
+            "feed      {} mm/s, as the task states; the {} mm/s of redundancy.feed_mm_per_s apply to none of its moves",
             interval(MM, feeds),
             MM.text(problem.redundancy.feed)
         ),
@@ -140,55 +142,118 @@ pub fn robot_lines(robot: &Robot, has_stiffness: Option<bool>) -> String {
     text
 }
 
-/// What `stead check --json` prints of a run.
-pub fn run_json(run: &CheckedRun<'_>) -> Value {
-    let CheckedRun { problem, overview, inputs, notes } = run;
-    let mm = |values: [f64; 2]| values.map(|value| MM_EXACT.number(value));
-    let deg = |values: [f64; 2]| values.map(|value| Unit::ANGLE_DEG.number(value));
-    let middle = &overview.middle;
-    let shape =
-        |stand: &Stand| json!({ "name": stand.name, "attached": stand.attached, "extents_mm": stand.extents.map(mm) });
-    let hit = |hit: &Hit| {
-        json!({
-            "pair": hit.pair,
-            "distance_mm": MM_EXACT.number(hit.distance),
-            "required_mm": MM_EXACT.number(hit.required),
-        })
-    };
-    Document::new(inputs).notes(notes.iter()).with(json!({
-        "robot": robot_json(&problem.robot),
-        "tool_tilt_deg": Unit::ANGLE_DEG.number(overview.tool_tilt),
-        "points": problem.task.points().len(),
-        "segments": overview.segment_lengths.len(),
-        "segment_lengths_mm": overview.segment_lengths.iter().map(|length| MM_EXACT.number(*length)).collect::<Vec<_>>(),
-        "extents_mm": overview.extents.map(mm),
-        "tilts_deg": deg(overview.tilts),
-        "force_n": { "mean": overview.force.mean, "max": overview.force.max },
-        "feeds_mm_per_s": overview.feeds.map(mm),
-        "moment_nm": { "mean": overview.moment.mean, "max": overview.moment.max },
-        "cell_distances_mm": mm(overview.cell_distances),
-        "middle": {
-            "placement": crate::document::placement(&middle.placement),
-            "points_tried": middle.tried,
-            "points_reached": middle.reached,
-            "first_point_reached": middle.first.map(|(point, _)| point),
-        },
-        "shapes": overview.shapes.iter().map(shape).collect::<Vec<_>>(),
-        "hits": overview.hits.iter().map(hit).collect::<Vec<_>>(),
-    }))
+records! {
+    /// A run as it was understood, in a document.
+    pub struct CheckFigures of (run: &CheckedRun<'_>) {
+        let CheckedRun { problem, overview, .. } = run;
+    } with {
+        /// The robot.
+        robot: RobotFigures = (&problem.robot).into(),
+        /// Angle of the tool axis to the flange axis.
+        tool_tilt_deg: AngleDeg = overview.tool_tilt.into(),
+        /// Path points.
+        points: usize = problem.task.points().len(),
+        /// Segments.
+        segments: usize = overview.segment_lengths.len(),
+        /// Length of each segment.
+        segment_lengths_mm: Vec<PlaceMm> = overview.segment_lengths.iter().map(|length| PlaceMm(*length)).collect(),
+        /// Extents of the path in the workpiece frame, along x, y and z.
+        extents_mm: [[PlaceMm; 2]; 3] = overview.extents.map(each),
+        /// Least and largest tilt of the tool axis against z of the workpiece.
+        tilts_deg: [AngleDeg; 2] = each(overview.tilts),
+        /// Size of the force on the tool. N
+        force_n: MeanFigures = (&overview.force).into(),
+        /// Least and largest feed, where the task states feeds.
+        feeds_mm_per_s: Option<[SpeedMmPerS; 2]> = overview.feeds.map(each),
+        /// Size of the moment about the tool centre point. N m
+        moment_nm: MeanFigures = (&overview.moment).into(),
+        /// Least and largest distance of the cell from axis 1.
+        cell_distances_mm: [PlaceMm; 2] = each(overview.cell_distances),
+        /// What the arm reaches with the workpiece in the middle of the cell.
+        middle: MiddleFigures = MiddleFigures::of(run),
+        /// The shapes of the cell.
+        shapes: Vec<ShapeFigures> = overview.shapes.iter().map(ShapeFigures::of).collect(),
+        /// Pairs of shapes that are too near.
+        hits: Vec<HitFigures> = overview.hits.iter().map(HitFigures::of).collect(),
+    }
+
+    /// Mean and largest size of a load.
+    pub struct MeanFigures from figures: &MeanAndMax {
+        /// Mean.
+        mean: f64 = figures.mean,
+        /// Largest.
+        max: f64 = figures.max,
+    }
+
+    /// What the arm reaches with the workpiece in the middle of the cell.
+    pub struct MiddleFigures of (run: &CheckedRun<'_>) {
+        let middle = &run.overview.middle;
+    } with {
+        /// The placement.
+        placement: PlacementFigures = (&middle.placement).into(),
+        /// Path points tried.
+        points_tried: usize = middle.tried,
+        /// Path points reached within the joint limits.
+        points_reached: usize = middle.reached,
+        /// The first of them, from 0.
+        first_point_reached: Option<usize> = middle.first.map(|(point, _)| point),
+    }
+
+    /// A shape of the cell.
+    pub struct ShapeFigures of (stand: &Stand) {
+        /// Its name.
+        name: String = stand.name.clone(),
+        /// What it moves with.
+        attached: String = stand.attached.clone(),
+        /// Its extents along x, y and z.
+        extents_mm: [[PlaceMm; 2]; 3] = stand.extents.map(each),
+    }
+
+    /// A pair of shapes that is too near.
+    pub struct HitFigures of (hit: &Hit) {
+        /// The two.
+        pair: [String; 2] = hit.pair.clone(),
+        /// Their distance.
+        distance_mm: PlaceMm = hit.distance.into(),
+        /// The distance that they have to keep.
+        required_mm: PlaceMm = hit.required.into(),
+    }
 }
 
-/// A length in a document.
-const MM_EXACT: Unit = Unit { factor: 1e3, decimals: 4 };
+/// What `stead check --json` prints of a run.
+pub fn run_json(run: &CheckedRun<'_>) -> Value {
+    Document::new(run.inputs).notes(run.notes.iter()).with(CheckFigures::of(run))
+}
 
-/// An arm in a document.
-pub fn robot_json(robot: &Robot) -> Value {
-    json!({
-        "name": robot.name(),
-        "wrist_reach_mm": MM_EXACT.number(robot.geometry().reach()),
-        "controller": robot.controller().map(|controller| controller.kind.word()),
-        "has_root": robot.controller().is_some_and(|controller| controller.root_from_base.is_some()),
-        "stiffness_like": robot.stiffness_like(),
-        "unverified": robot.unverified(),
-    })
+records! {
+    /// An arm in a document.
+    pub struct RobotFigures from robot: &Robot {
+        let controller = robot.controller();
+    } with {
+        /// Its name.
+        name: String = robot.name().to_owned(),
+        /// How far its wrist centre gets from axis 1.
+        wrist_reach_mm: PlaceMm = robot.geometry().reach().into(),
+        /// Its controller.
+        controller: Option<&'static str> = controller.map(|controller| controller.kind.word()),
+        /// Whether the root frame of the controller is known.
+        has_root: bool = controller.is_some_and(|controller| controller.root_from_base.is_some()),
+        /// The arm whose stiffness it borrows.
+        stiffness_like: Option<String> = robot.stiffness_like().map(str::to_owned),
+        /// Figures that nobody has verified.
+        unverified: Vec<String> = robot.unverified().to_vec(),
+    }
+
+    /// A robot file as it was understood, in a document.
+    struct CheckedRobot of (robot: &Robot, has_stiffness: bool) {
+        /// The arm.
+        robot: RobotFigures = robot.into(),
+        /// Whether the file states its stiffness.
+        has_stiffness: bool = has_stiffness,
+    }
+}
+
+/// What `stead check --json` prints of a robot file.
+pub fn robot_json(robot: &Robot, has_stiffness: bool, notes: &[String], inputs: &[InputFile]) -> Value {
+    Document::new(inputs).notes(notes).with(CheckedRobot::of(robot, has_stiffness))
 }

@@ -1,4 +1,5 @@
-//! Reports of `stead circularity`: what it prints, and `circularity.json`, `deviations.csv`, `polar.svg` and `report.html`.
+//! Reports of `stead circularity`: what it prints, and `circularity.json`, `deviations.csv`, `polar.svg` and
+//! `report.html`.
 
 mod page;
 
@@ -7,19 +8,18 @@ use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::columns::aligned;
-use crate::csv_file::table;
+use crate::csv_file::rows;
 use crate::document::{Document, bytes};
+use crate::figure::{AngleDeg, MeasuredMm, MmDeflection, each, some};
 use crate::units::fixed;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::PathBuf;
-use stead_assessment::circle::Fit;
-use stead_assessment::roundness::{Measured, Roundness};
-use stead_format::PointFile;
+use stead_assessment::circle::{Fit, plane::FittedPlane};
+use stead_assessment::roundness::{Assessed, Measured, Roundness};
+use stead_run_files::PointFile;
 
-/// Decimals of lengths in mm: a nine-digit micrometre has no fewer.
-const DECIMALS: usize = 12;
-
-/// Writes `circularity.json`, `deviations.csv`, `polar.svg` and `report.html` into a folder and returns their paths in that order.
+/// Writes `circularity.json`, `deviations.csv`, `polar.svg` and `report.html` into a folder and returns their paths in
+/// that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -52,49 +52,74 @@ fn circles(found: &Roundness) -> [(&'static str, &'static str, &Fit); 4] {
     ]
 }
 
-/// What `stead circularity --json` prints, and the content of `circularity.json`. Centres are in the frame of the file.
+records! {
+    /// The circularity of a measured profile. Centres are in the frame of the file.
+    pub struct CircularityFigures of (file: &PointFile, found: &Roundness) {
+        /// The file of the points.
+        input: MeasuredFile = MeasuredFile::of(file),
+        /// Points.
+        points: usize = found.points.len(),
+        /// Points left out.
+        excluded: usize = found.points.len() - found.kept().count(),
+        /// The plane through points in space.
+        plane: Option<PlaneFigures> =
+            found.plane.as_ref().zip(found.flatness()).map(|(plane, flatness)| PlaneFigures::of(plane, flatness)),
+        /// The least squares circle.
+        lsc: CircleFigures = CircleFigures::of(found, &found.circles.lsc),
+        /// The minimum zone circle.
+        mzc: CircleFigures = CircleFigures::of(found, &found.circles.mzc),
+        /// The maximum inscribed circle.
+        mic: CircleFigures = CircleFigures::of(found, &found.circles.mic),
+        /// The minimum circumscribed circle.
+        mcc: CircleFigures = CircleFigures::of(found, &found.circles.mcc),
+    }
+
+    /// A file of points.
+    pub struct MeasuredFile of (file: &PointFile) {
+        /// Its name.
+        name: String = file.input.name.clone(),
+        /// SHA-256 digest of its bytes, in hexadecimal.
+        sha256: String = file.input.sha256.clone(),
+    }
+
+    /// A plane through points.
+    pub struct PlaneFigures of (plane: &FittedPlane, flatness: f64) {
+        /// Centre of the points.
+        center_mm: [MeasuredMm; 3] = each(plane.center.into()),
+        /// Its normal.
+        normal: [MeasuredMm; 3] = each(plane.normal.into()),
+        /// The direction of angle zero.
+        x_axis: [MeasuredMm; 3] = each(plane.x_axis.into()),
+        /// Distance of the farthest points on both sides.
+        flatness_mm: MeasuredMm = flatness.into(),
+    }
+
+    /// A reference circle.
+    pub struct CircleFigures of (found: &Roundness, fit: &Fit) {
+        let ([x, y], z) = found.center(fit);
+    } with {
+        /// x of its centre.
+        center_x_mm: MeasuredMm = x.into(),
+        /// y of its centre.
+        center_y_mm: MeasuredMm = y.into(),
+        /// z of its centre, of points in space.
+        #[serde(skip_serializing_if = "Option::is_none")] center_z_mm: Option<MeasuredMm> = some(z),
+        /// Its radius.
+        radius_mm: MeasuredMm = fit.circle.radius.into(),
+        /// Largest less smallest distance of a point from its centre.
+        circularity_mm: MeasuredMm = fit.circularity.into(),
+        /// Smallest distance.
+        smallest_radius_mm: MeasuredMm = fit.smallest.into(),
+        /// Largest distance.
+        largest_radius_mm: MeasuredMm = fit.largest.into(),
+    }
+}
+
+/// What `stead circularity --json` prints, and the content of `circularity.json`.
 pub fn circularity_json(file: &PointFile, found: &Roundness) -> Value {
-    let mut entries = json!({
-        "input": { "name": file.input.name, "sha256": file.input.sha256 },
-        "points": found.points.len(),
-        "excluded": found.points.len() - found.kept().count(),
-        "plane": plane(found),
-    });
-    for (name, _, fit) in circles(found) {
-        entries[name] = circle(found, fit);
-    }
-    Document::new(std::slice::from_ref(&file.input)).warnings(found.warnings()).with(entries)
-}
-
-fn circle(found: &Roundness, fit: &Fit) -> Value {
-    let ([x, y], z) = found.center(fit);
-    let mut value = json!({
-        "center_x_mm": number(x),
-        "center_y_mm": number(y),
-        "radius_mm": number(fit.circle.radius),
-        "circularity_mm": number(fit.circularity),
-        "smallest_radius_mm": number(fit.smallest),
-        "largest_radius_mm": number(fit.largest),
-    });
-    if let (Value::Object(map), Some(z)) = (&mut value, z) {
-        map.insert("center_z_mm".to_owned(), json!(number(z)));
-    }
-    value
-}
-
-fn plane(found: &Roundness) -> Value {
-    let (Some(plane), Some(flatness)) = (&found.plane, found.flatness()) else { return Value::Null };
-    let triple = |v: nalgebra::Vector3<f64>| json!([number(v.x), number(v.y), number(v.z)]);
-    json!({
-        "center_mm": triple(plane.center),
-        "normal": triple(plane.normal),
-        "x_axis": triple(plane.x_axis),
-        "flatness_mm": number(flatness),
-    })
-}
-
-fn number(value: f64) -> f64 {
-    fixed(value, DECIMALS).parse().unwrap_or(f64::NAN)
+    Document::new(std::slice::from_ref(&file.input))
+        .warnings(found.warnings())
+        .with(CircularityFigures::of(file, found))
 }
 
 /// The table for people.
@@ -131,36 +156,59 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
     text
 }
 
-/// Columns of points in the plane and in space.
-const PLANAR: &str = "point,line,x_mm,y_mm,angle_deg,excluded";
-const SPATIAL: &str = "point,line,x_mm,y_mm,z_mm,angle_deg,excluded,height_mm";
+records! {
+    /// A measured point. Its radius about a centre less that of the reference circle is its deviation.
+    pub struct DeviationRow of (index: usize, point: &Assessed, file: &PointFile, found: &Roundness) {
+        let is_spatial = found.plane.is_some();
+        let (x_mm, y_mm, z_mm) = match &file.measured {
+            Measured::Planar(points) => (points[index][0], points[index][1], None),
+            Measured::Spatial(points) => (points[index][0], points[index][1], Some(points[index][2])),
+        };
+    } with {
+        /// Point, from 0.
+        point: usize = index,
+        /// Line of the file.
+        line: Option<usize> = file.lines.get(index).copied(),
+        /// x as it was read. mm
+        x_mm: f64 = x_mm,
+        /// y as it was read. mm
+        y_mm: f64 = y_mm,
+        /// z as it was read, of points in space. mm
+        #[serde(skip_serializing_if = "Option::is_none")] z_mm: Option<f64> = z_mm,
+        /// Polar angle, by which `--exclude-deg` goes.
+        angle_deg: AngleDeg = point.angle.into(),
+        /// Whether it was left out.
+        excluded: bool = point.is_excluded,
+        /// Height over the plane, of points in space.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        height_mm: Option<MmDeflection> = is_spatial.then(|| point.height.into()),
+        /// About the least squares circle.
+        lsc: AboutCircle = AboutCircle::of(point, &found.circles.lsc),
+        /// About the minimum zone circle.
+        mzc: AboutCircle = AboutCircle::of(point, &found.circles.mzc),
+        /// About the maximum inscribed circle.
+        mic: AboutCircle = AboutCircle::of(point, &found.circles.mic),
+        /// About the minimum circumscribed circle.
+        mcc: AboutCircle = AboutCircle::of(point, &found.circles.mcc),
+    }
 
-/// `deviations.csv`: every point with its polar angle (by which `--exclude-deg` goes), whether it was left out, its height
-/// above the plane where there is one, and about each of the four centres its radius and that less the reference circle's.
+    /// A point about the centre of a reference circle.
+    struct AboutCircle of (point: &Assessed, fit: &Fit) {
+        let [x, y] = fit.circle.center;
+        let radius = libm::hypot(point.place[0] - x, point.place[1] - y);
+    } with {
+        /// Its radius.
+        radius_mm: MmDeflection = radius.into(),
+        /// That less the radius of the circle.
+        deviation_mm: MmDeflection = MmDeflection(radius - fit.circle.radius),
+    }
+}
+
+/// `deviations.csv`: a [`DeviationRow`] for each point.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn deviations(file: &PointFile, found: &Roundness) -> Result<Vec<u8>, ReportError> {
-    let is_spatial = found.plane.is_some();
-    let places = if is_spatial { SPATIAL } else { PLANAR }.split(',').map(str::to_owned);
-    let about = |(name, ..): (&str, _, _)| [format!("{name}_radius_mm"), format!("{name}_deviation_mm")];
-    let header = places.chain(circles(found).into_iter().flat_map(about));
-    let rows = found.points.iter().enumerate().map(|(index, point)| {
-        let mut row = vec![index.to_string(), file.lines.get(index).map_or_else(String::new, ToString::to_string)];
-        match &file.measured {
-            Measured::Planar(points) => row.extend(points[index].map(|value| value.to_string())),
-            Measured::Spatial(points) => row.extend(points[index].map(|value| value.to_string())),
-        }
-        row.extend([fixed(point.angle.to_degrees(), 4), point.is_excluded.to_string()]);
-        if is_spatial {
-            row.push(fixed(point.height, 7));
-        }
-        for (_, _, fit) in circles(found) {
-            let [x, y] = fit.circle.center;
-            let radius = libm::hypot(point.place[0] - x, point.place[1] - y);
-            row.extend([radius, radius - fit.circle.radius].map(|value| fixed(value, 7)));
-        }
-        row
-    });
-    table("the table of deviations", header, rows)
+    let row = |(index, point): (usize, &Assessed)| DeviationRow::of(index, point, file, found);
+    rows("the table of deviations", found.points.iter().enumerate().map(row))
 }

@@ -1,4 +1,5 @@
-//! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, `report.html`, and a table for people.
+//! Reports of a compensation: `corrected-path.csv`, `summary.json`, `compensation.svg`, `report.html`, and a table for
+//! people.
 
 mod page;
 
@@ -7,28 +8,22 @@ use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::columns::aligned;
-use crate::csv_file::{table, vector};
-use crate::document::{Document, bytes, placement};
-use crate::units::{Unit, fixed};
+use crate::csv_file::rows_or;
+use crate::document::{Document, PlacementFigures, bytes};
+use crate::figure::{DeflectionMm, Direction, FinestAngleDeg, Percent, each, some};
+use crate::placement::plan_row::JointColumns;
+use crate::units::fixed;
 use nalgebra::Vector3;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::path::PathBuf;
 use stead_calibration::compensation::{
-    CompensatedPath, CompensatedPoint, DeflectionModel, MeanAndMax, NotCompensated, PointError, reduction,
+    CompensatedPath, CompensatedPoint, Deflection, DeflectionModel, MeanAndMax, NotCompensated, PointError, reduction,
 };
-use stead_format::CompensateRun;
-use stead_format::scalars::Word;
+use stead_run_files::CompensateRun;
+use stead_run_files::Word;
 
-/// Places and deflections, from m to mm, to a tenth of the finest tolerance that is of use.
-const PLACE_MM: Unit = Unit { factor: 1e3, decimals: 7 };
-/// Joint angles and rotations, from rad to deg: so fine that 3 m away they move nothing by 1e-7 mm.
-const ANGLE_DEG: Unit = Unit { factor: 180.0 / std::f64::consts::PI, decimals: 9 };
-/// Components of a direction.
-const DIRECTION: Unit = Unit { factor: 1.0, decimals: 9 };
-/// Shares in per cent.
-const PER_CENT: Unit = Unit { factor: 100.0, decimals: 6 };
-
-/// Writes `corrected-path.csv`, `summary.json`, `compensation.svg` and `report.html`. Returns their paths in that order.
+/// Writes `corrected-path.csv`, `summary.json`, `compensation.svg` and `report.html`. Returns their paths in that
+/// order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -49,80 +44,180 @@ pub fn compensation_files(run: &CompensateRun, outcome: &CompensatedPath) -> Res
     Ok(named([
         ("corrected-path.csv", corrected_path(outcome)?),
         ("summary.json", bytes(&compensation_json(run, outcome))),
-        ("compensation.svg", picture::compensation(outcome).into_bytes()),
+        ("compensation.svg", picture::charts(&page::before_and_after(outcome)).into_bytes()),
         (PAGE, page::page(run, outcome).html()),
     ]))
 }
 
-const CORRECTED_PATH: &str = "\
-    point,segment,target_x_mm,target_y_mm,target_z_mm,corrected_x_mm,corrected_y_mm,corrected_z_mm,axis_x,axis_y,\
-     axis_z,rotation_x_deg,rotation_y_deg,rotation_z_deg,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,\
-     theta6_deg,before_x_mm,before_y_mm,before_z_mm,before_normal_mm,after_x_mm,after_y_mm,after_z_mm,\
-     after_normal_mm,iterations,status";
+records! {
+    /// A point of a corrected path. Places are those of the tool centre point, and all vectors are in the robot base
+    /// frame.
+    #[derive(Default)]
+    pub struct CorrectedRow of (index: usize, point: &CompensatedPoint) {
+        // The tool's z axis points out of the spindle.
+        let axis: Vector3<f64> = -point.command.rotation.column(2);
+        let [axis_x, axis_y, axis_z] = each(axis.into());
+        let [rotation_x_deg, rotation_y_deg, rotation_z_deg] = each(point.correction.angular.into());
+    } with {
+        /// Path point, from 0.
+        point: usize = index,
+        /// Segment, from 1.
+        segment: usize = point.segment,
+        /// The target.
+        target: Millimetres = point.target.translation.into(),
+        /// The corrected command.
+        corrected: Millimetres = point.command.translation.into(),
+        /// x of the tool axis of the command, from the workpiece to the robot.
+        axis_x: Direction = axis_x,
+        /// y of it.
+        axis_y: Direction = axis_y,
+        /// z of it.
+        axis_z: Direction = axis_z,
+        /// x of the rotation vector from the orientation of the target to that of the command.
+        rotation_x_deg: FinestAngleDeg = rotation_x_deg,
+        /// y of it.
+        rotation_y_deg: FinestAngleDeg = rotation_y_deg,
+        /// z of it.
+        rotation_z_deg: FinestAngleDeg = rotation_z_deg,
+        #[serde(flatten)] joints: JointColumns<FinestAngleDeg> = point.joints.into(),
+        /// The deflection without correction; empty where the arm gives way.
+        before: DeflectionColumns = (&point.before).into(),
+        /// The deflection with it.
+        after: DeflectionColumns = (&point.after).into(),
+        /// Iterations of the correction.
+        iterations: usize = point.iterations,
+        /// Whether the point is corrected, or why it keeps its target.
+        status: String = point.status.to_string(),
+    }
 
-/// `corrected-path.csv`: one row for each path point. Places are those of the tool centre point, and all vectors are in the
-/// robot base frame: the target, the corrected command with its tool axis (from the workpiece to the robot) and the rotation
-/// vector from the target's orientation to the command's, the corrected joint angles, and the deflection before and after
-/// with its part normal to the feed, empty where the arm gives way; and whether the point is corrected, or why it keeps its target.
+    /// A place in a row.
+    #[derive(Copy, Default)]
+    struct Millimetres from place: Vector3<f64> {
+        let [x_mm, y_mm, z_mm] = each(place.into());
+    } with {
+        /// x.
+        x_mm: DeflectionMm = x_mm,
+        /// y.
+        y_mm: DeflectionMm = y_mm,
+        /// z.
+        z_mm: DeflectionMm = z_mm,
+    }
+
+    /// A deflection in a row.
+    #[derive(Copy, Default)]
+    struct DeflectionColumns from deflection: &Option<Deflection> {
+        let Some(deflection) = deflection else { return Self::default() };
+        let [x_mm, y_mm, z_mm] = each(deflection.linear.into()).map(Some);
+    } with {
+        /// x.
+        x_mm: Option<DeflectionMm> = x_mm,
+        /// y.
+        y_mm: Option<DeflectionMm> = y_mm,
+        /// z.
+        z_mm: Option<DeflectionMm> = z_mm,
+        /// The part normal to the feed.
+        normal_mm: Option<DeflectionMm> = Some(deflection.normal.into()),
+    }
+}
+
+/// `corrected-path.csv`: a [`CorrectedRow`] for each path point.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn corrected_path(outcome: &CompensatedPath) -> Result<Vec<u8>, ReportError> {
-    table("the table of the corrected path", CORRECTED_PATH.split(','), outcome.points.iter().enumerate().map(row))
+    let points = outcome.points.iter().enumerate().map(|(index, point)| CorrectedRow::of(index, point));
+    rows_or("the table of the corrected path", &CorrectedRow::default(), points)
 }
 
-fn row((index, point): (usize, &CompensatedPoint)) -> Vec<String> {
-    // The tool's z axis points out of the spindle.
-    let axis: Vector3<f64> = -point.command.rotation.column(2);
-    let mut row = vec![index.to_string(), point.segment.to_string()];
-    row.extend(vector(PLACE_MM, &point.target.translation));
-    row.extend(vector(PLACE_MM, &point.command.translation));
-    row.extend(vector(DIRECTION, &axis));
-    row.extend(vector(ANGLE_DEG, &point.correction.angular));
-    row.extend(point.joints.map(|angle| ANGLE_DEG.text(angle)));
-    for deflection in [&point.before, &point.after] {
-        match deflection {
-            Some(deflection) => {
-                row.extend(vector(PLACE_MM, &deflection.linear));
-                row.push(PLACE_MM.text(deflection.normal));
-            }
-            None => row.extend(std::iter::repeat_n(String::new(), 4)),
-        }
+records! {
+    /// A compensation.
+    pub struct CompensationFigures of (run: &CompensateRun, outcome: &CompensatedPath) {
+        let settings = &run.job.settings;
+        let Reduction { before, after, reduction_percent } = outcome.deflections().into();
+        let not_corrected = outcome.not_corrected().map_or_else(Vec::new, |not| not.failed);
+    } with {
+        /// Name of the robot.
+        robot: String = run.job.robot.name().to_owned(),
+        /// Name of the arm that executes the path, where it is another one.
+        reality: Option<String> = run.has_reality.then(|| run.job.reality.name().to_owned()),
+        /// The model of the deflection.
+        model: Word<DeflectionModel> = Word::from(settings.model),
+        /// Share of the deflection that each iteration corrects.
+        alpha: f64 = settings.alpha,
+        /// The iteration ends below this. mm
+        tolerance_mm: f64 = settings.tolerance * 1e3,
+        /// Most iterations.
+        max_iterations: usize = settings.max_iterations,
+        /// The placement of the plan.
+        placement: PlacementFigures = (&run.placement).into(),
+        /// Path points.
+        points: usize = outcome.points.len(),
+        /// Points corrected.
+        corrected: usize = outcome.points.len() - not_corrected.len(),
+        /// Points that keep their target.
+        not_corrected: Vec<PointReason> = reasons(&not_corrected),
+        /// Most iterations of a point.
+        iterations: usize = outcome.iterations(),
+        /// Size of the deflection without correction.
+        before: ErrorFigures = before,
+        /// Size of the deflection with it.
+        after: ErrorFigures = after,
+        /// By how much the mean is less; null where there is no deflection.
+        reduction_percent: Option<Percent> = reduction_percent,
+        /// The part normal to the feed.
+        normal: Reduction = outcome.normal_parts().into(),
+        /// The largest correction.
+        correction: CorrectionFigures = CorrectionFigures::of(outcome),
     }
-    row.extend([point.iterations.to_string(), point.status.to_string()]);
-    row
+
+    /// A part of the deflection without correction and with it.
+    pub struct Reduction from pair: [MeanAndMax; 2] {
+        let [before, after] = pair.each_ref().map(Into::into);
+    } with {
+        /// Without.
+        before: ErrorFigures = before,
+        /// With.
+        after: ErrorFigures = after,
+        /// By how much the mean is less.
+        reduction_percent: Option<Percent> = some(reduction(pair)),
+    }
+
+    /// Mean and largest size of a deflection.
+    pub struct ErrorFigures from figures: &MeanAndMax {
+        /// Mean.
+        mean_mm: DeflectionMm = figures.mean.into(),
+        /// Largest.
+        max_mm: DeflectionMm = figures.max.into(),
+    }
+
+    /// The largest correction of a point.
+    pub struct CorrectionFigures of (outcome: &CompensatedPath) {
+        /// Of its place.
+        max_mm: DeflectionMm = outcome.figures(|point| Some(point.correction.linear.norm())).max.into(),
+        /// Of its orientation.
+        max_deg: FinestAngleDeg = outcome.figures(|point| Some(point.correction.angular.norm())).max.into(),
+    }
+
+    /// A point with why it could not be corrected.
+    pub struct PointReason of (point: &usize, reason: &PointError) {
+        /// The path point, from 0.
+        point: usize = *point,
+        /// Why not.
+        reason: String = reason.to_string(),
+    }
+
+    /// Points that cannot be compensated.
+    pub struct NotCompensatedFigures of (failure: &NotCompensated) {
+        /// Path points.
+        points: usize = failure.of,
+        /// Those that cannot.
+        failed: Vec<PointReason> = reasons(&failure.failed),
+    }
 }
 
 /// What `stead compensate --json` prints, and the content of `summary.json`.
 pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Value {
-    let settings = &run.job.settings;
-    let (deflections, normal) = (outcome.deflections(), outcome.normal_parts());
-    let not_corrected = outcome.not_corrected().map_or_else(Vec::new, |not| not.failed);
-    document(run).notes(&outcome.notes).warnings(&outcome.warnings).with(json!({
-        "robot": run.job.robot.name(),
-        "reality": run.has_reality.then(|| run.job.reality.name()),
-        "model": Word(settings.model),
-        "alpha": settings.alpha,
-        "tolerance_mm": settings.tolerance * 1e3,
-        "max_iterations": settings.max_iterations,
-        "placement": placement(&run.placement),
-        "points": outcome.points.len(),
-        "corrected": outcome.points.len() - not_corrected.len(),
-        "not_corrected": reasons(&not_corrected),
-        "iterations": outcome.iterations(),
-        "before": figures(&deflections[0]),
-        "after": figures(&deflections[1]),
-        "reduction_percent": percent(deflections),
-        "normal": {
-            "before": figures(&normal[0]),
-            "after": figures(&normal[1]),
-            "reduction_percent": percent(normal),
-        },
-        "correction": {
-            "max_mm": PLACE_MM.number(outcome.figures(|point| Some(point.correction.linear.norm())).max),
-            "max_deg": ANGLE_DEG.number(outcome.figures(|point| Some(point.correction.angular.norm())).max),
-        },
-    }))
+    document(run).notes(&outcome.notes).warnings(&outcome.warnings).with(CompensationFigures::of(run, outcome))
 }
 
 fn document(run: &CompensateRun) -> Document {
@@ -131,19 +226,11 @@ fn document(run: &CompensateRun) -> Document {
 
 /// What `stead compensate --json` prints where points cannot be compensated.
 pub fn not_compensated_json(run: &CompensateRun, failure: &NotCompensated) -> Value {
-    document(run).with(json!({ "points": failure.of, "failed": reasons(&failure.failed) }))
+    document(run).with(NotCompensatedFigures::of(failure))
 }
 
-fn reasons(points: &[(usize, PointError)]) -> Value {
-    points.iter().map(|(point, reason)| json!({ "point": point, "reason": reason.to_string() })).collect()
-}
-
-fn figures(figures: &MeanAndMax) -> Value {
-    json!({ "mean_mm": PLACE_MM.number(figures.mean), "max_mm": PLACE_MM.number(figures.max) })
-}
-
-fn percent(pair: [MeanAndMax; 2]) -> Value {
-    reduction(pair).map_or(Value::Null, |share| json!(PER_CENT.number(share)))
+fn reasons(points: &[(usize, PointError)]) -> Vec<PointReason> {
+    points.iter().map(|(point, reason)| PointReason::of(point, reason)).collect()
 }
 
 /// The table for people.

@@ -1,40 +1,74 @@
 //! CSV files of the force and the moment of a milling tool.
 
 use super::output::ReportError;
-use crate::csv_file::{table, vector};
-use crate::units::Unit;
+use crate::csv_file::rows_or;
+use crate::figure::{AngleDeg, ForceN, MomentNm, each};
 use stead_model::cutting::{ForceHistory, Sample};
 
-/// Mean force and moment over a turn as the tool moves into the work: one row per degree to which a tooth is in it, from 0 to
-/// 180 (Klimchik 2017, Fig. 4). Along the feed, to the left of it, and along the tool axis from the work to the spindle; the
-/// moment is about the tool centre point.
+records! {
+    /// Mean force and moment over a turn as the tool moves into the work (Klimchik 2017, Fig. 4).
+    #[derive(Default)]
+    pub struct EngagementRow of (sample: &Sample) {
+        /// The angle to which a tooth is in the work.
+        engaged_deg: AngleDeg = sample.phi.into(),
+        #[serde(flatten)] load: LoadColumns = sample.into(),
+    }
+
+    /// Force and moment of all teeth at an angle of the first tooth.
+    #[derive(Default)]
+    pub struct ToothRow of (sample: &Sample) {
+        /// The angle of the first tooth.
+        tooth_deg: AngleDeg = sample.phi.into(),
+        #[serde(flatten)] load: LoadColumns = sample.into(),
+    }
+}
+
+records! {
+    /// Force on the tool, and moment about its centre point: along the feed, to the left of it, and along the tool axis
+    /// from the work to the spindle.
+    #[derive(Default)]
+    struct LoadColumns from sample: &Sample {
+        let [force_feed_n, force_left_n, force_axis_n] = each(sample.wrench.force.into());
+        let [moment_feed_nm, moment_left_nm, moment_axis_nm] = each(sample.wrench.moment.into());
+    } with {
+        /// Force along the feed.
+        force_feed_n: ForceN = force_feed_n,
+        /// Force to the left of it.
+        force_left_n: ForceN = force_left_n,
+        /// Force along the tool axis.
+        force_axis_n: ForceN = force_axis_n,
+        /// Size of the force.
+        force_n: ForceN = sample.wrench.force.norm().into(),
+        /// Moment about the feed.
+        moment_feed_nm: MomentNm = moment_feed_nm,
+        /// Moment about the left.
+        moment_left_nm: MomentNm = moment_left_nm,
+        /// Moment about the tool axis.
+        moment_axis_nm: MomentNm = moment_axis_nm,
+        /// Size of the moment.
+        moment_nm: MomentNm = sample.wrench.moment.norm().into(),
+    }
+}
+
+/// An [`EngagementRow`] per degree, from 0 to 180.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn entering(force_history: &ForceHistory) -> Result<Vec<u8>, ReportError> {
-    rows("the table of mean cutting forces", "engaged_deg", &force_history.entering)
+    let samples = force_history.entering.iter().map(EngagementRow::of);
+    rows_or("the table of mean cutting forces", &EngagementRow::default(), samples)
 }
 
-/// Force and moment of all teeth over one turn, one row per angle of the first tooth, in the same directions.
+/// A [`ToothRow`] per angle of the first tooth over one turn.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn turn(force_history: &ForceHistory) -> Result<Vec<u8>, ReportError> {
-    rows("the table of cutting forces over a turn", "tooth_deg", &force_history.turn)
-}
-
-fn rows(what: &'static str, angle: &'static str, samples: &[Sample]) -> Result<Vec<u8>, ReportError> {
-    const PARTS: &str =
-        "force_feed_n,force_left_n,force_axis_n,force_n,moment_feed_nm,moment_left_nm,moment_axis_nm,moment_nm";
-    let row = |Sample { phi, wrench }: &Sample| {
-        let mut row = vec![Unit::ANGLE_DEG.text(*phi)];
-        for (unit, part) in [(Unit::FORCE_N, wrench.force), (Unit::MOMENT_NM, wrench.moment)] {
-            row.extend(vector(unit, &part));
-            row.push(unit.text(part.norm()));
-        }
-        row
-    };
-    table(what, std::iter::once(angle).chain(PARTS.split(',')), samples.iter().map(row))
+    rows_or(
+        "the table of cutting forces over a turn",
+        &ToothRow::default(),
+        force_history.turn.iter().map(ToothRow::of),
+    )
 }
 
 #[cfg(test)]

@@ -1,13 +1,15 @@
 //! What all JSON documents have in common: what they state first, their bytes, and views that several of them hold.
 
-use crate::units::Unit;
-use serde_json::{Value, json};
+use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, Plain, SpeedMmPerS};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 use stead_format::input::InputFile;
 use stead_numerics::mean_max::MeanAndMax;
-use stead_placement::feed::{CutFeed, FeedLimit};
-use stead_placement::joint_travel::{JointTravel, Swing};
 use stead_placement::outcome::DeflectionFigures;
-use stead_placement::problem::Placement;
+use stead_planning::feed::{CutFeed, FeedLimit, FeedLimitKind};
+use stead_planning::joint_travel::{JointTravel, Swing};
+use stead_planning::problem::Placement;
 
 /// How long a computation took.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,52 +23,71 @@ pub struct Timing {
 /// The layout of every JSON document of stead; raised when a key goes or changes its meaning, not when one is added.
 pub const FORMAT: u32 = 1;
 
-/// A JSON document of stead: whatever it reports, it states `format`, `version`, `inputs`, `notes` and `warnings`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Document(Value);
+/// A JSON document of stead: what every one states first, and its result.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Document<T = ()> {
+    /// Layout of the document.
+    format: u32,
+    /// Version of stead that made it.
+    version: &'static str,
+    /// The files the result depends on.
+    inputs: Vec<Input>,
+    /// What the result rests on: assumptions made and values left at their defaults.
+    notes: Vec<String>,
+    /// Why the result may not be what was wanted.
+    warnings: Vec<String>,
+    #[serde(flatten)]
+    result: T,
+}
+
+records! {
+    /// A file that a result depends on.
+    pub struct Input of (file: &InputFile) {
+        /// What the file is for: `config`, `robot`, `task` and the like.
+        role: &'static str = file.role,
+        /// For the config its file name, for the others the path as the config gives it.
+        name: String = file.name.clone(),
+        /// SHA-256 digest of its bytes, in hexadecimal.
+        sha256: String = file.sha256.clone(),
+    }
+}
 
 impl Document {
     /// A document on what was computed from these files, without notes and warnings yet.
     pub fn new(inputs: &[InputFile]) -> Self {
-        let input = |file: &InputFile| json!({ "role": file.role, "name": file.name, "sha256": file.sha256 });
-        Self(json!({
-            "format": FORMAT,
-            "version": env!("CARGO_PKG_VERSION"),
-            "inputs": inputs.iter().map(input).collect::<Value>(),
-            "notes": [],
-            "warnings": [],
-        }))
+        Self {
+            format: FORMAT,
+            version: env!("CARGO_PKG_VERSION"),
+            inputs: inputs.iter().map(Input::of).collect(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            result: (),
+        }
     }
 
     /// States what the result rests on: assumptions made and values left at their defaults.
-    pub fn notes(self, notes: impl IntoIterator<Item = impl ToString>) -> Self {
-        self.messages("notes", notes)
-    }
-
-    /// States why the result may not be what was wanted.
-    pub fn warnings(self, warnings: impl IntoIterator<Item = impl ToString>) -> Self {
-        self.messages("warnings", warnings)
-    }
-
-    fn messages(mut self, key: &str, messages: impl IntoIterator<Item = impl ToString>) -> Self {
-        if let Some(Value::Array(list)) = self.0.get_mut(key) {
-            list.extend(messages.into_iter().map(|message| json!(message.to_string())));
-        }
+    pub fn notes(mut self, notes: impl IntoIterator<Item = impl ToString>) -> Self {
+        self.notes.extend(notes.into_iter().map(|note| note.to_string()));
         self
     }
 
-    /// The document with the entries of a result, which is a JSON object.
-    pub fn with(self, result: Value) -> Value {
-        joined(self.0, result)
+    /// States why the result may not be what was wanted.
+    pub fn warnings(mut self, warnings: impl IntoIterator<Item = impl ToString>) -> Self {
+        self.warnings.extend(warnings.into_iter().map(|warning| warning.to_string()));
+        self
+    }
+
+    /// The document with a result, whose entries join those of the document.
+    pub fn with<T: Serialize>(self, result: T) -> Value {
+        let Self { format, version, inputs, notes, warnings, .. } = self;
+        value(&Document { format, version, inputs, notes, warnings, result })
     }
 }
 
-/// The entries of two JSON objects as one.
-pub(super) fn joined(mut object: Value, more: Value) -> Value {
-    if let (Value::Object(entries), Value::Object(more)) = (&mut object, more) {
-        entries.extend(more);
-    }
-    object
+/// A result as a JSON value, its keys in alphabetical order.
+pub(crate) fn value(result: &impl Serialize) -> Value {
+    // Only maps whose keys are no strings cannot be written, and there are none.
+    serde_json::to_value(result).unwrap_or_default()
 }
 
 /// A document as the bytes of a file or of standard output: indented, with a line break at the end.
@@ -80,100 +101,140 @@ pub(crate) fn compact(document: &impl serde::Serialize) -> Vec<u8> {
     serde_json::to_vec(document).unwrap_or_default()
 }
 
-/// Adds a standard deviation to an object where the robot's uncertainty is known.
-pub(super) fn put_deviation(object: &mut Value, key: &str, unit: Unit, deviation: Option<f64>) {
-    if let (Some(deviation), Value::Object(map)) = (deviation, object) {
-        map.insert(key.to_owned(), json!(unit.number(deviation)));
+records! {
+    /// A placement: the workpiece origin in the base frame of the robot, or in that of the cell where the robot is
+    /// mounted.
+    #[derive(Copy, Default)]
+    pub struct PlacementFigures from placement: &Placement {
+        /// x of the workpiece origin.
+        pub x_mm: PlaceMm = placement.x.into(),
+        /// y of the workpiece origin.
+        pub y_mm: PlaceMm = placement.y.into(),
+        /// z of the workpiece origin.
+        pub z_mm: PlaceMm = placement.z.into(),
+        /// Rotation about z.
+        pub yaw_deg: AngleDeg = placement.yaw.into(),
+        /// The quaternion component that states the yaw (Caro 2013, eq. 4).
+        pub q4: Plain = placement.q4().into(),
+    }
+
+    /// A placement with every digit, so that reading it again gives the same placement.
+    #[derive(Copy)]
+    pub struct PlacementExact from placement: &Placement {
+        /// x of the workpiece origin. mm
+        x_mm: f64 = placement.x * 1e3,
+        /// y of the workpiece origin. mm
+        y_mm: f64 = placement.y * 1e3,
+        /// z of the workpiece origin. mm
+        z_mm: f64 = placement.z * 1e3,
+        /// Rotation about z. deg
+        yaw_deg: f64 = placement.yaw.to_degrees(),
+    }
+
+    /// Mean and largest value of a deflection over the path points.
+    #[derive(Copy)]
+    pub struct DeflectionMean from figures: MeanAndMax {
+        /// Mean.
+        pub mean: DeflectionMm = figures.mean.into(),
+        /// Largest.
+        pub max: DeflectionMm = figures.max.into(),
+    }
+
+    /// How large a deflection is in each direction and altogether, in mm.
+    #[derive(Copy)]
+    pub struct DeflectionByDirection from figures: &DeflectionFigures {
+        /// Normal to feed and tool axis.
+        pub wall: DeflectionMean = figures.wall.into(),
+        /// Along the normal of the surface; null where the task states none.
+        pub surface: Option<DeflectionMean> = figures.surface.map(Into::into),
+        /// Along the feed.
+        pub feed: DeflectionMean = figures.feed.into(),
+        /// Along the tool axis.
+        pub axis: DeflectionMean = figures.axis.into(),
+        /// The size of the whole.
+        pub total: DeflectionMean = figures.total.into(),
+    }
+
+    /// Feeds of a plan.
+    pub struct FeedFigures from feed: &CutFeed {
+        let highest = feed.highest();
+        let speed = |limit: FeedLimit| limit.feed.into();
+    } with {
+        /// The programmed feed.
+        programmed_mm_per_s: SpeedMmPerS = feed.programmed.into(),
+        /// The highest that the plan holds; null where no limit of the joints is known.
+        highest_mm_per_s: Option<SpeedMmPerS> = highest.map(speed),
+        /// What decides the highest.
+        decided_by: Option<FeedDecision> = highest.map(|limit: FeedLimit| FeedDecision::of(limit, feed)),
+        /// The highest of each segment.
+        segments_mm_per_s: Vec<Option<SpeedMmPerS>> = feed.segments.iter().map(|limit| limit.map(speed)).collect(),
+    }
+
+    /// What decides the highest feed: a joint or an external axis, and where.
+    pub struct FeedDecision of (limit: FeedLimit, feed: &CutFeed) {
+        let external_axis = feed.external_axis(&limit).map(|name| name.to_owned());
+        let FeedLimit { kind, joint, segment, point, .. } = limit;
+    } with {
+        /// Which of its limits.
+        #[schemars(with = "String")] kind: FeedLimitKind = kind,
+        /// The joint, from 1; null where it is an external axis.
+        joint: Option<usize> = external_axis.is_none().then_some(joint),
+        /// The external axis.
+        #[serde(skip_serializing_if = "Option::is_none")] external_axis: Option<String> = external_axis,
+        /// The segment, from 1.
+        segment: usize = segment,
+        /// The path point, from 0.
+        point: usize = point,
+    }
+
+    /// How much the joints turn in the cut.
+    #[derive(Copy)]
+    pub struct JointTravelFigures from travel: &JointTravel {
+        let largest = |Swing { joint, angle, length, points }| LargestTurn {
+            joint,
+            turn_deg: AngleDeg(angle),
+            length_mm: PlaceMm(length),
+            points,
+        };
+    } with {
+        /// What all joints turn.
+        total_deg: AngleDeg = travel.total.into(),
+        /// Length of the path that they do it on.
+        length_mm: PlaceMm = travel.length.into(),
+        /// The largest turn of one joint from a point to the next.
+        max_step_deg: AngleDeg = travel.largest_step.into(),
+        /// The largest turn of a joint along a short stretch of the path.
+        largest_turn: Option<LargestTurn> = travel.swing.map(largest),
     }
 }
 
-/// A placement as every JSON document states it.
-pub fn placement(placement: &Placement) -> Value {
-    json!({
-        "x_mm": Unit::PLACE_MM.number(placement.x),
-        "y_mm": Unit::PLACE_MM.number(placement.y),
-        "z_mm": Unit::PLACE_MM.number(placement.z),
-        "q4": Unit::PLAIN.number(placement.q4()),
-        "yaw_deg": Unit::ANGLE_DEG.number(placement.yaw),
-    })
-}
-
-/// The same with every digit, so that whoever reads it again has the same placement.
-pub fn placement_exact(placement: &Placement) -> Value {
-    json!({
-        "x_mm": placement.x * 1e3,
-        "y_mm": placement.y * 1e3,
-        "z_mm": placement.z * 1e3,
-        "yaw_deg": placement.yaw.to_degrees(),
-    })
-}
-
-/// Mean and largest value of a deflection.
-fn mean_and_max(figures: &MeanAndMax) -> Value {
-    json!({ "mean": Unit::DEFLECTION_MM.number(figures.mean), "max": Unit::DEFLECTION_MM.number(figures.max) })
-}
-
-/// How large a deflection is in each direction and altogether, in mm; a surface that the task does not state is null.
-pub fn deflection_mm(figures: &DeflectionFigures) -> Value {
-    json!({
-        "wall": mean_and_max(&figures.wall),
-        "surface": figures.surface.as_ref().map_or(Value::Null, mean_and_max),
-        "feed": mean_and_max(&figures.feed),
-        "axis": mean_and_max(&figures.axis),
-        "total": mean_and_max(&figures.total),
-    })
-}
-
-/// The programmed feed, the highest that a plan holds with what decides it, and the highest of each segment; null where no limit of the
-/// joints is known.
-pub fn cut_feed(feed: &CutFeed) -> Value {
-    let speed = |feed: f64| Unit::SPEED_MM_PER_S.number(feed);
-    let highest = feed.highest();
-    let decided_by = highest.map(|limit| {
-        let axis = feed.external_axis(&limit);
-        let FeedLimit { kind, joint, segment, point, .. } = limit;
-        let mut value = json!({ "kind": kind, "joint": joint, "segment": segment, "point": point });
-        if let Some(axis) = axis {
-            value["joint"] = Value::Null;
-            value["external_axis"] = json!(axis);
-        }
-        value
-    });
-    json!({
-        "programmed_mm_per_s": speed(feed.programmed),
-        "highest_mm_per_s": highest.map(|limit| speed(limit.feed)),
-        "decided_by": decided_by,
-        "segments_mm_per_s": feed.segments.iter().map(|limit| limit.map(|limit| speed(limit.feed))).collect::<Vec<_>>(),
-    })
-}
-
-/// How much the joints turn in the cut.
-pub fn joint_travel(travel: &JointTravel) -> Value {
-    let angle = |angle: f64| Unit::ANGLE_DEG.number(angle);
-    let swing = travel.swing.map(|Swing { joint, angle: turned, length, points }| {
-        json!({ "joint": joint, "turn_deg": angle(turned), "length_mm": Unit::PLACE_MM.number(length), "points": points })
-    });
-    json!({
-        "total_deg": angle(travel.total),
-        "length_mm": Unit::PLACE_MM.number(travel.length),
-        "max_step_deg": angle(travel.largest_step),
-        "largest_turn": swing,
-    })
+/// A turn of a joint along the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct LargestTurn {
+    /// The joint, from 1.
+    joint: usize,
+    /// How far it turns.
+    turn_deg: AngleDeg,
+    /// Length of the path on which it does.
+    length_mm: PlaceMm,
+    /// The path points of its start and its end, from 0.
+    points: [usize; 2],
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     /// What decides the feed is a joint by its number or an external axis by its name.
     #[test]
     fn the_external_axis_that_decides_the_feed_is_named() {
-        use stead_placement::feed::FeedLimitKind;
+        use stead_planning::feed::FeedLimitKind;
         let of = |joint: usize| {
             let limit = FeedLimit { feed: 0.02, kind: FeedLimitKind::Speed, joint, segment: 1, point: 7 };
             let (programmed_segments, external_axes) = (vec![0.05], vec!["rail".to_owned()]);
             let feed = CutFeed { programmed: 0.05, programmed_segments, segments: vec![Some(limit)], external_axes };
-            cut_feed(&feed)["decided_by"].clone()
+            value(&FeedFigures::from(&feed))["decided_by"].clone()
         };
         assert_eq!(of(3), json!({ "kind": "speed", "joint": 3, "segment": 1, "point": 7 }));
         assert_eq!(of(7), json!({ "kind": "speed", "joint": null, "external_axis": "rail", "segment": 1, "point": 7 }));

@@ -1,6 +1,24 @@
 //! Results to files: CSV tables, JSON, pictures, and a short table for people. This room only reads results.
 //!
 //! Every file is made in memory first and then written whole (see [`Folder`]). The same result gives the same bytes.
+//!
+//! ```
+//! use stead_calibration::compensation::compensate;
+//! use stead_numerics::monitor::Monitor;
+//! use stead_report::compensation::compensation_files;
+//! // A job gives figures in SI units; the files of its command are made of them, and the tables of these have units in
+//! // their names.
+//! let run = stead_run_files::read_compensation("../../configs/compensate-caro-2013.toml".as_ref(), None)?;
+//! let files = compensation_files(&run, &compensate(&run.job, &Monitor::silent())?)?;
+//! let (name, table) = &files[0];
+//! assert_eq!(name, "corrected-path.csv");
+//! assert!(table.starts_with(b"point,segment,target_x_mm,target_y_mm,target_z_mm,"));
+//! assert_eq!(*table, std::fs::read("../../results/compensate-caro-2013/corrected-path.csv")?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#[macro_use]
+mod record;
 
 pub mod assessment;
 pub mod certificate;
@@ -11,6 +29,8 @@ pub mod compensation;
 mod csv_file;
 pub mod cutting;
 pub mod document;
+pub mod figure;
+pub mod forces;
 pub mod identification;
 pub mod names;
 pub mod output;
@@ -19,6 +39,7 @@ pub mod picture;
 pub mod placement;
 pub mod program;
 pub mod robot;
+pub mod schema;
 pub mod simulation;
 pub mod stability;
 pub mod study;

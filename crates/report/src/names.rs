@@ -1,10 +1,10 @@
 //! Names of things as files and pictures state them.
 
 use stead_model::robot::Posture;
-use stead_placement::constraints::{ConstraintKind, describe};
-use stead_placement::limit::{ActiveBound, Limit};
 use stead_placement::outcome::RefinementStatus;
-use stead_placement::sense::Sense;
+use stead_planning::constraints::{ConstraintKind, describe};
+use stead_planning::limit::{ActiveBound, Limit};
+use stead_planning::sense::Sense;
 
 /// `best` or `worst`.
 pub(super) fn sense(sense: Sense) -> &'static str {

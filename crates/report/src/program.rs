@@ -1,36 +1,75 @@
-//! Reports of a program: what was written with the frames for the operator, and how a program that is read back compares.
+//! Reports of a program: what was written with the frames for the operator, and how a program that is read back
+//! compares.
 
 use crate::document::Document;
-use serde_json::{Value, json};
-use stead_format::program::check::{ANGLE_DEG, Largest, MoveHit, MovePlace, POSITION_MM, ProgramCheck, UnfollowedMove};
-use stead_format::program::{OperatorFrame, Program, Rotation};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use stead_programs::check::{ANGLE_DEG, Largest, MoveHit, MovePlace, POSITION_MM, ProgramCheck, UnfollowedMove};
+use stead_programs::{OperatorFrame, Program, Rotation};
+
+records! {
+    /// A program that was written.
+    pub struct ProgramFigures of (program: &Program) {
+        /// Name of the robot.
+        robot: String = program.robot.clone(),
+        /// The language of the program.
+        program_format: &'static str = program.format.word(),
+        /// Its name.
+        name: String = program.name.clone(),
+        /// Segments of the path.
+        segments: usize = program.segments,
+        /// Moves to joint angles.
+        joint_moves: usize = program.joint_moves,
+        /// Moves on lines.
+        linear_moves: usize = program.linear_moves,
+        /// Parts that it is divided into.
+        parts: usize = program.parts,
+        /// Points that are as planned, for they could not be corrected.
+        uncorrected: usize = program.uncorrected,
+        /// Frames for the operator.
+        frames: Vec<FrameFigures> = program.frames.iter().map(Into::into).collect(),
+        /// Names of its files.
+        files: Vec<String> = program.files.iter().map(|file| file.name.clone()).collect(),
+    }
+
+    /// A frame that the operator sets at the controller.
+    pub struct FrameFigures from frame: &OperatorFrame {
+        let rotation = match frame.rotation {
+            Rotation::Angles(names, angles) => {
+                let key = format!("{}_deg", names.concat().to_ascii_lowercase());
+                RotationFigures::Angles(BTreeMap::from([(key, angles)]))
+            }
+            Rotation::Quaternion(quaternion_wxyz) => RotationFigures::Quaternion { quaternion_wxyz },
+        };
+    } with {
+        /// Its name at the controller.
+        name: &'static str = frame.name,
+        /// What it is.
+        what: &'static str = frame.what,
+        /// Its origin. mm
+        xyz_mm: [f64; 3] = frame.xyz_mm,
+        #[serde(flatten)] rotation: RotationFigures = rotation,
+    }
+}
+
+/// A rotation as a controller states it.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+enum RotationFigures {
+    /// Angles under the names that the controller has for them: `abc_deg`. deg
+    Angles(BTreeMap<String, [f64; 3]>),
+    /// A quaternion.
+    Quaternion {
+        /// Its parts.
+        quaternion_wxyz: [f64; 4],
+    },
+}
 
 /// What `stead export --json` prints.
 pub fn program_json(program: &Program) -> Value {
-    Document::new(&program.inputs).notes(&program.notes).warnings(&program.warnings).with(json!({
-        "robot": program.robot,
-        "program_format": program.format.word(),
-        "name": program.name,
-        "segments": program.segments,
-        "joint_moves": program.joint_moves,
-        "linear_moves": program.linear_moves,
-        "parts": program.parts,
-        "uncorrected": program.uncorrected,
-        "frames": program.frames.iter().map(frame_json).collect::<Value>(),
-        "files": program.files.iter().map(|file| file.name.as_str()).collect::<Value>(),
-    }))
-}
-
-fn frame_json(frame: &OperatorFrame) -> Value {
-    let mut entry = json!({ "name": frame.name, "what": frame.what, "xyz_mm": frame.xyz_mm });
-    let (key, value) = match frame.rotation {
-        Rotation::Angles(names, angles) => (format!("{}_deg", names.concat().to_ascii_lowercase()), json!(angles)),
-        Rotation::Quaternion(parts) => ("quaternion_wxyz".to_owned(), json!(parts)),
-    };
-    if let Value::Object(entries) = &mut entry {
-        entries.insert(key, value);
-    }
-    entry
+    Document::new(&program.inputs).notes(&program.notes).warnings(&program.warnings).with(ProgramFigures::of(program))
 }
 
 /// What `stead export` prints, without the files.
@@ -61,51 +100,74 @@ pub fn program_text(program: &Program) -> String {
     text
 }
 
+records! {
+    /// How a program that is read back compares with its plan.
+    pub struct ProgramCheckFigures of (check: &ProgramCheck) {
+        /// The file of the program.
+        program: String = check.file.display().to_string(),
+        /// Whether it does what the plan asks for.
+        sound: bool = check.is_sound(),
+        /// Moves read.
+        moves: usize = check.moves,
+        /// Moves to joint angles among them.
+        joint_moves: usize = check.joint_moves,
+        /// Moves that the plan asks for.
+        expected_moves: usize = check.expected_moves,
+        /// Largest deviation of a position. mm
+        position_mm: Option<LargestFigures> = check.position.as_ref().map(LargestFigures::of),
+        /// Largest deviation of an angle. deg
+        angle_deg: Option<LargestFigures> = check.angle.as_ref().map(LargestFigures::of),
+        /// Why the program is another one.
+        mismatch: Option<String> = check.mismatch.as_ref().map(ToString::to_string),
+        /// Moves that hit.
+        hits: Vec<HitFigures> = check.hits.iter().map(HitFigures::of).collect(),
+        /// Moves that the arm cannot follow.
+        unfollowed: Vec<UnfollowedFigures> = check.unfollowed.iter().map(UnfollowedFigures::of).collect(),
+        /// Largest deviation of a position that is allowed. mm
+        allowed_mm: f64 = POSITION_MM,
+        /// Largest deviation of an angle that is allowed. deg
+        allowed_deg: f64 = ANGLE_DEG,
+    }
+
+    /// Where a move is.
+    pub struct PlaceFigures from at: &MovePlace {
+        /// The file.
+        file: String = at.file.display().to_string(),
+        /// The line in it.
+        line: usize = at.line,
+        /// The segment, from 1.
+        segment: usize = at.segment,
+        /// The path point, from 0.
+        point: usize = at.point,
+        /// Whether the tool is retracted.
+        retracted: bool = at.is_retracted,
+    }
+
+    /// The largest deviation, and where.
+    pub struct LargestFigures of (found: &Largest) {
+        #[serde(flatten)] at: PlaceFigures = (&found.at).into(),
+        /// The deviation.
+        value: f64 = found.value,
+    }
+
+    /// A move that hits.
+    pub struct HitFigures of (hit: &MoveHit) {
+        #[serde(flatten)] at: PlaceFigures = (&hit.at).into(),
+        /// The two that hit.
+        pair: String = hit.pair.to_string(),
+    }
+
+    /// A move that the arm cannot follow.
+    pub struct UnfollowedFigures of (found: &UnfollowedMove) {
+        #[serde(flatten)] at: PlaceFigures = (&found.at).into(),
+        /// Why not.
+        since: String = found.end.to_string(),
+    }
+}
+
 /// What `stead export --check --json` prints.
 pub fn program_check_json(check: &ProgramCheck) -> Value {
-    let largest = |found: &Option<Largest>| {
-        found.as_ref().map(|found| {
-            let mut entry = place_json(&found.at);
-            entry["value"] = json!(found.value);
-            entry
-        })
-    };
-    Document::new(&check.inputs).with(json!({
-        "program": check.file.display().to_string(),
-        "sound": check.is_sound(),
-        "moves": check.moves,
-        "joint_moves": check.joint_moves,
-        "expected_moves": check.expected_moves,
-        "position_mm": largest(&check.position),
-        "angle_deg": largest(&check.angle),
-        "mismatch": check.mismatch,
-        "hits": check.hits.iter().map(hit_json).collect::<Value>(),
-        "unfollowed": check.unfollowed.iter().map(unfollowed_json).collect::<Value>(),
-        "allowed_mm": POSITION_MM,
-        "allowed_deg": ANGLE_DEG,
-    }))
-}
-
-fn place_json(at: &MovePlace) -> Value {
-    json!({
-        "file": at.file.display().to_string(),
-        "line": at.line,
-        "segment": at.segment,
-        "point": at.point,
-        "retracted": at.is_retracted,
-    })
-}
-
-fn hit_json(hit: &MoveHit) -> Value {
-    let mut entry = place_json(&hit.at);
-    entry["pair"] = json!(hit.pair);
-    entry
-}
-
-fn unfollowed_json(unfollowed: &UnfollowedMove) -> Value {
-    let mut entry = place_json(&unfollowed.at);
-    entry["since"] = json!(unfollowed.end.to_string());
-    entry
+    Document::new(&check.inputs).with(ProgramCheckFigures::of(check))
 }
 
 /// What `stead export --check` prints.

@@ -2,8 +2,9 @@
 
 use crate::columns::{aligned, line};
 use crate::document::Document;
+use crate::figure::{AngleDeg, ControllerMm, each};
 use crate::units::{Unit, fixed};
-use serde_json::{Value, json};
+use serde_json::Value;
 use stead_format::catalogue::ShippedArm;
 use stead_format::input::InputFile;
 use stead_model::robot::{Controller, Pose, Posture, Robot, Spindle, turns::Range};
@@ -24,7 +25,7 @@ pub struct ArmPose {
 
 /// Joint angles of one posture.
 #[derive(Debug, Clone, Copy)]
-struct Reached {
+pub(crate) struct Reached {
     /// Inside the limits where they can be. rad
     angles: [f64; 6],
     /// Whether they are.
@@ -35,6 +36,11 @@ struct Reached {
 type NamedFrame = (&'static str, &'static str, Pose<f64>);
 
 impl ArmPose {
+    /// Joint angles as the controller shows them, where that is known.
+    fn by_controller(&self, joints: &[f64; 6]) -> Option<[AngleDeg; 6]> {
+        self.robot.controller().map(|controller| each(controller.angles(joints)))
+    }
+
     /// Flange and tool in the base frame of the rows, and in the controller's root frame where that is known.
     fn frames(&self) -> Vec<NamedFrame> {
         let flange = self.robot.forward(&self.joints);
@@ -135,38 +141,62 @@ fn frames_text(frames: &[NamedFrame]) -> String {
     text
 }
 
+records! {
+    /// An arm at given joint angles.
+    pub struct PoseFigures of (pose: &ArmPose) {
+        let frame = |(frame, within, pose): NamedFrame| FrameFigures::of(frame, within, &pose);
+        let posture = |(posture, found): (Posture, Option<Reached>)| PostureFigures::of(pose, posture, found);
+    } with {
+        /// Name of the robot.
+        robot: String = pose.robot.name().to_owned(),
+        /// The posture, 1 to 8.
+        #[schemars(with = "u8")] posture: Posture = Posture::of(&pose.robot, &pose.joints),
+        /// Joint angles of the rows.
+        joints_deg: [AngleDeg; 6] = each(pose.joints),
+        /// Joint angles of the controller; null where none is known.
+        controller_deg: Option<[AngleDeg; 6]> = pose.by_controller(&pose.joints),
+        /// Flange and tool in the base frame of the rows, and in the controller's root frame where that is known.
+        frames: Vec<FrameFigures> = pose.frames().into_iter().map(frame).collect(),
+        /// Every posture that has the flange here.
+        postures: Vec<PostureFigures> = pose.postures().into_iter().map(posture).collect(),
+    }
+}
+
+records! {
+    /// A frame.
+    pub struct FrameFigures of (frame: &'static str, within: &'static str, pose: &Pose<f64>) {
+        /// `flange` or `tool`.
+        frame: &'static str = frame,
+        /// The frame that it is in.
+        #[serde(rename = "in")] within: &'static str = within,
+        /// Its origin.
+        xyz_mm: [ControllerMm; 3] = each(pose.translation.into()),
+        /// Angles about z, y and x.
+        abc_deg: [AngleDeg; 3] = each(zyx_from_rotation(&pose.rotation)),
+        /// Its rotation as a quaternion.
+        quaternion_wxyz: [f64; 4] = quaternion_from_rotation(&pose.rotation),
+        /// Its rotation as a matrix, by rows.
+        rotation: Vec<Vec<f64>> = pose.rotation.row_iter().map(|row| row.iter().copied().collect()).collect(),
+    }
+}
+
+records! {
+    /// Joint angles of a posture; null where it does not reach the pose.
+    pub struct PostureFigures of (pose: &ArmPose, posture: Posture, found: Option<Reached>) {
+        /// The posture, 1 to 8.
+        #[schemars(with = "u8")] posture: Posture = posture,
+        /// Joint angles of the rows.
+        joints_deg: Option<[AngleDeg; 6]> = found.map(|found| each(found.angles)),
+        /// Joint angles of the controller.
+        controller_deg: Option<[AngleDeg; 6]> = found.and_then(|found| pose.by_controller(&found.angles)),
+        /// Whether they are within the limits.
+        within_limits: bool = found.is_some_and(|found| found.is_within),
+    }
+}
+
 /// What `stead pose --json` prints.
 pub fn pose_json(pose: &ArmPose) -> Value {
-    let angles = |angles: &[f64; 6]| angles.map(|angle| ANGLE_DEG.number(angle));
-    let controller = pose.robot.controller();
-    let by_controller = |joints: &[f64; 6]| controller.map(|controller| angles(&controller.angles(joints)));
-    let frame = |(name, of, pose): &NamedFrame| {
-        let rotation = &pose.rotation;
-        json!({
-            "frame": name,
-            "in": of,
-            "xyz_mm": pose.translation.iter().map(|v| PLACE_MM.number(*v)).collect::<Vec<_>>(),
-            "abc_deg": zyx_from_rotation(rotation).map(|angle| ANGLE_DEG.number(angle)),
-            "quaternion_wxyz": quaternion_from_rotation(rotation),
-            "rotation": (0..3).map(|k| rotation.row(k).iter().copied().collect()).collect::<Vec<Vec<f64>>>(),
-        })
-    };
-    let posture = |(posture, found): (Posture, Option<Reached>)| {
-        json!({
-            "posture": posture,
-            "joints_deg": found.as_ref().map(|found| angles(&found.angles)),
-            "controller_deg": found.as_ref().and_then(|found| by_controller(&found.angles)),
-            "within_limits": found.is_some_and(|found| found.is_within),
-        })
-    };
-    Document::new(&pose.inputs).notes(pose.notes()).with(json!({
-        "robot": pose.robot.name(),
-        "posture": Posture::of(&pose.robot, &pose.joints),
-        "joints_deg": angles(&pose.joints),
-        "controller_deg": by_controller(&pose.joints),
-        "frames": pose.frames().iter().map(frame).collect::<Vec<_>>(),
-        "postures": pose.postures().into_iter().map(posture).collect::<Vec<_>>(),
-    }))
+    Document::new(&pose.inputs).notes(pose.notes()).with(PoseFigures::of(pose))
 }
 
 /// What `stead robots` prints.
@@ -190,20 +220,37 @@ pub fn robots_text(arms: &[ShippedArm]) -> String {
     aligned(&rows, &[0, 1, 4, 5, 6, 7])
 }
 
+records! {
+    /// The shipped arms.
+    pub struct ArmList of (arms: &[ShippedArm]) {
+        /// The arms, by their names.
+        robots: Vec<ArmFigures> = arms.iter().map(ArmFigures::of).collect(),
+    }
+
+    /// A shipped arm.
+    pub struct ArmFigures of (arm: &ShippedArm) {
+        /// The name to ask for it by.
+        name: &'static str = arm.name,
+        /// Its full name.
+        robot: String = arm.robot.name().to_owned(),
+        /// Payload. kg
+        payload_kg: Option<f64> = arm.robot.data_sheet().payload,
+        /// How far its wrist centre gets from axis 1.
+        wrist_reach_mm: ControllerMm = arm.robot.geometry().reach().into(),
+        /// Whether the stiffness of every joint is known.
+        has_stiffness: bool = arm.has_stiffness,
+        /// Whether masses and damping are known.
+        has_masses: bool = arm.has_dynamics,
+        /// Its controller.
+        controller: Option<&'static str> = arm.robot.controller().map(|controller| controller.kind.word()),
+        /// Figures that nobody has verified.
+        unverified: Vec<String> = arm.robot.unverified().to_vec(),
+        /// Where its figures come from.
+        source: String = arm.source.clone(),
+    }
+}
+
 /// What `stead robots --json` prints.
 pub fn robots_json(arms: &[ShippedArm]) -> Value {
-    let one = |arm: &ShippedArm| {
-        json!({
-            "name": arm.name,
-            "robot": arm.robot.name(),
-            "payload_kg": arm.robot.data_sheet().payload,
-            "wrist_reach_mm": Unit { factor: 1e3, decimals: 3 }.number(arm.robot.geometry().reach()),
-            "has_stiffness": arm.has_stiffness,
-            "has_masses": arm.has_dynamics,
-            "controller": arm.robot.controller().map(|controller| controller.kind.word()),
-            "unverified": arm.robot.unverified(),
-            "source": arm.source,
-        })
-    };
-    Document::new(&[]).with(json!({ "robots": arms.iter().map(one).collect::<Vec<_>>() }))
+    Document::new(&[]).with(ArmList::of(arms))
 }

@@ -7,22 +7,23 @@ use stead_format::input::InputFile;
 use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
 use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
-use stead_placement::constraints::{ConstraintKind, on_joints, on_state};
-use stead_placement::evaluate::reference::{State, state};
-use stead_placement::feasibility::{DeflectionMap, MapCell, MapReason};
-use stead_placement::feed::{CutFeed, FeedLimit, FeedLimitKind};
-use stead_placement::joint_travel::JointTravel;
 use stead_placement::outcome::*;
-use stead_placement::problem::{Placement, Problem};
-use stead_placement::sense::Sense;
-use stead_placement::settings::{SearchSettings, TransferSettings};
-use stead_placement::testing::five_segments;
+use stead_placement::settings::SearchSettings;
+use stead_planning::constraints::{ConstraintKind, on_joints, on_state};
+use stead_planning::evaluate::reference::State;
+use stead_planning::feasibility::{DeflectionMap, MapCell, MapReason};
+use stead_planning::feed::{CutFeed, FeedLimit, FeedLimitKind};
+use stead_planning::joint_travel::JointTravel;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::testing::five_segments;
+use stead_planning::transfer::TransferSettings;
 
 /// Grid steps of beta from point to point.
 const STEPS: i64 = 4;
 
-/// The problem of the result: the paper's, with narrower limits of joints 5 and 6 and a largest deflection, so that every
-/// reason against a state occurs.
+/// The problem of the result: the paper's, with narrower limits of joints 5 and 6 and a largest deflection, so that
+/// every reason against a state occurs.
 pub fn problem() -> &'static Problem {
     static PROBLEM: OnceLock<Problem> = OnceLock::new();
     PROBLEM.get_or_init(|| {
@@ -46,7 +47,7 @@ pub fn outcome() -> &'static Outcome {
         let cases = Cases {
             best: best.case(Sense::Min, Sense::Min),
             best_worst_plan: best.case(Sense::Min, Sense::Max),
-            worst: Some([Sense::Min, Sense::Max].map(|sense| worst.case(Sense::Max, sense))),
+            worst: Some(BySense::from_fn(|sense| worst.case(Sense::Max, sense))),
         };
         let [low, high] = [0, 1].map(|k| cases.optima()[k].plan.mean);
         let mut convergence = Vec::new();
@@ -258,8 +259,10 @@ impl Grid {
 }
 
 fn allowed(point: usize, placement: &Placement, k: usize, posture: Posture) -> Result<State<f64>, ConstraintKind> {
-    let mut found =
-        state(problem(), point, placement, problem().redundancy.beta(k), posture).map_err(|_| ConstraintKind::Reach)?;
+    let mut found = problem()
+        .at(placement)
+        .state(point, problem().redundancy.beta(k), posture)
+        .map_err(|_| ConstraintKind::Reach)?;
     for (angle, joint) in found.joints.iter_mut().zip(problem().robot.joints()) {
         *angle = Range::of(joint).nearest(*angle).0;
     }

@@ -108,8 +108,8 @@ impl<'a> Parts<'a> {
 }
 
 impl Arm<6> {
-    /// A joint with a spring for each row of the robot: [`Variant::Springs`], and [`Variant::Gravity`] with gravity. Joint
-    /// stiffnesses are those at `theta` (rad).
+    /// A joint with a spring for each row of the robot: [`Variant::Springs`], and [`Variant::Gravity`] with gravity.
+    /// Joint stiffnesses are those at `theta` (rad).
     ///
     /// # Errors
     /// [`Missing::Dynamics`] for a robot without masses.
@@ -128,8 +128,8 @@ impl Arm<6> {
 }
 
 impl Arm<18> {
-    /// Three joints for each row of the robot: that of the motor, then one about x and one about y of the link's frame, in
-    /// the place where the joint's bearing is (paper, eq. 11).
+    /// Three joints for each row of the robot: that of the motor, then one about x and one about y of the link's frame,
+    /// in the place where the joint's bearing is (paper, eq. 11).
     ///
     /// # Errors
     /// [`Missing`] for a robot without masses, or without stiffness normal to its joints.
@@ -181,8 +181,9 @@ impl<const N: usize> Arm<N> {
         SVector::from_fn(|k, _| if k % Self::PER_MOTOR == 0 { motors[k / Self::PER_MOTOR] } else { 0.0 })
     }
 
-    /// Generalised forces (N m) that are not yet accounted for at angles, speeds and accelerations `motion`, posed at the
-    /// angles, with the motors at `reference` (angles and speeds), with nothing on the tip: inertia and gravity less drives.
+    /// Generalised forces (N m) that are not yet accounted for at angles, speeds and accelerations `motion`, posed at
+    /// the angles, with the motors at `reference` (angles and speeds), with nothing on the tip: inertia and gravity
+    /// less drives.
     pub fn unbalanced(
         &self,
         posed: &Posed<N>,
@@ -205,8 +206,9 @@ impl<const N: usize> Arm<N> {
         posed.gravity(&self.chain) - self.not_felt(&self.planar(q).gravity(&self.chain))
     }
 
-    /// The arm with the motors of joints 4 and 6 at zero, so that it is in a plane: compensators take what gravity would ask
-    /// of their joint there, since the paper computes them from sums of q2, q3 and q5 alone (its eq. 9, with the payload).
+    /// The arm with the motors of joints 4 and 6 at zero, so that it is in a plane: compensators take what gravity
+    /// would ask of their joint there, since the paper computes them from sums of q2, q3 and q5 alone (its eq. 9, with
+    /// the payload).
     fn planar(&self, q: &SVector<f64, N>) -> Posed<N> {
         let mut planar = *q;
         for motor in COMPENSATED_AS_IF_ZERO {
@@ -238,9 +240,9 @@ impl<const N: usize> Arm<N> {
         matrix
     }
 
-    /// The angles (rad) at which gravity and springs are in equilibrium, the motors held at `reference`: the backlash of each
-    /// gear is taken up by what its joint carries. Joint angles settle to within rounding in a few repetitions, since
-    /// gravity hardly changes with them.
+    /// The angles (rad) at which gravity and springs are in equilibrium, the motors held at `reference`: the backlash
+    /// of each gear is taken up by what its joint carries. Joint angles settle to within rounding in a few repetitions,
+    /// since gravity hardly changes with them.
     pub fn at_rest(&self, reference: &SVector<f64, N>) -> SVector<f64, N> {
         let mut q = *reference;
         if !self.feels_gravity() {
@@ -262,8 +264,8 @@ impl<const N: usize> Arm<N> {
 /// Motors of the joints whose angles do not enter the compensation.
 const COMPENSATED_AS_IF_ZERO: [usize; 2] = [3, 5];
 
-/// Gravity torque carried by compensators, linearised about some joint angles; linearised anew for angles farther off than 1 mrad,
-/// where it is off by some millionths of the torque.
+/// Gravity torque carried by compensators, linearised about some joint angles; linearised anew for angles farther off
+/// than 1 mrad, where it is off by some millionths of the torque.
 #[derive(Debug, Clone)]
 pub struct Compensation<const N: usize> {
     at: SVector<f64, N>,

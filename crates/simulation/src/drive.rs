@@ -27,9 +27,9 @@ fn beyond(gap: f64, angle: f64) -> f64 {
 }
 
 impl<const N: usize> Drive<N> {
-    /// Torques on the joints (N m) at angles `q` and speeds `speed` with the motors at `reference` and `reference_speed`:
-    /// `-k (q - theta) - d (q' - theta')`, less the backlash of the paper's eq. 12. Both oppose the motion (eq. 7 is printed
-    /// with the sign of the spring turned around). rad and rad/s
+    /// Torques on the joints (N m) at angles `q` and speeds `speed` with the motors at `reference` and
+    /// `reference_speed`: `-k (q - theta) - d (q' - theta')`, less the backlash of the paper's eq. 12. Both oppose the
+    /// motion (eq. 7 is printed with the sign of the spring turned around). rad and rad/s
     pub fn torques(
         &self,
         q: &SVector<f64, N>,
@@ -51,8 +51,8 @@ impl<const N: usize> Drive<N> {
         })
     }
 
-    /// By how much the springs yield under torques `load` on the joints (N m) at rest: spring and backlash, in the middle of
-    /// the backlash where there is no load. rad
+    /// By how much the springs yield under torques `load` on the joints (N m) at rest: spring and backlash, in the
+    /// middle of the backlash where there is no load. rad
     pub fn deflection(&self, load: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::from_fn(|j, _| {
             let spring = load[j] / self.stiffness[j];

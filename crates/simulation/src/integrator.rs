@@ -2,9 +2,9 @@
 //!
 //! With beta = 1/4 and gamma = 1/2 (mean acceleration) it is of second order and, for a linear system, keeps the energy
 //! (Newmark 1959; Géradin and Cardona 2001). The equations at the end of a step are solved by Newton's method for the
-//! accelerations, with `M + gamma h C + beta h^2 K` of some earlier step: how fast that contracts is measured, and when it
-//! becomes slow the matrix is made anew. A step that does not converge is halved, up to [`Settings::max_halvings`] times,
-//! and then reported.
+//! accelerations, with `M + gamma h C + beta h^2 K` of some earlier step: how fast that contracts is measured, and when
+//! it becomes slow the matrix is made anew. A step that does not converge is halved, up to [`Settings::max_halvings`]
+//! times, and then reported.
 
 use nalgebra::{SMatrix, SVector};
 use serde::Serialize;

@@ -1,10 +1,10 @@
 //! Whether a pass stayed calm: what its forces show and what small motions do, judged together.
 //!
-//! A motion that chatters is not the same again after one period of the cutter: a flip is the other way round, a Hopf bifurcation
-//! has a frequency of its own. So forces are compared one period apart, and a period is the part of a turn after which pitches
-//! and radii of the teeth repeat: a flip of a cutter with two equal teeth repeats every turn, and only teeth that are compared with
-//! each other tell of it. With runout no two teeth are alike and a flip looks like the runout itself; there the growth of small
-//! motions over the time in the work decides.
+//! A motion that chatters is not the same again after one period of the cutter: a flip is the other way round, a Hopf
+//! bifurcation has a frequency of its own. So forces are compared one period apart, and a period is the part of a turn
+//! after which pitches and radii of the teeth repeat: a flip of a cutter with two equal teeth repeats every turn, and
+//! only teeth that are compared with each other tell of it. With runout no two teeth are alike and a flip looks like
+//! the runout itself; there the growth of small motions over the time in the work decides.
 
 use super::coupled::{End, Run};
 use super::stability::{Kind, Verdict};
@@ -22,7 +22,8 @@ pub enum Judgement {
     Growing(Kind),
     /// Small motions die out at one of the two places where they are analysed, and grow at the other.
     Marginal,
-    /// Small motions die out, but the forces do not repeat: the start is still felt, or large motions keep themselves up.
+    /// Small motions die out, but the forces do not repeat: the start is still felt, or large motions keep themselves
+    /// up.
     Unsettled,
     /// The run ended before the pass.
     Ended,
@@ -78,8 +79,8 @@ impl Evidence<'_> {
         }
     }
 
-    /// Whether a motion of a kind is the same again after a period of the cutter with its runout: a flip after any even number of
-    /// periods of its pitches.
+    /// Whether a motion of a kind is the same again after a period of the cutter with its runout: a flip after any even
+    /// number of periods of its pitches.
     fn is_hidden(&self, kind: Kind) -> bool {
         let periods = self.cutter.repeats() / self.cutter.repeats_with_runout();
         kind == Kind::Flip && periods.is_multiple_of(2)
@@ -90,9 +91,9 @@ impl Evidence<'_> {
     }
 }
 
-/// Root mean square of the difference between forces one period (in steps) apart, between two times (s), relative to that of the
-/// forces. Where the period is no whole number of steps, a difference counts as far as it leaves the values of both steps around
-/// it: forces jump where teeth enter, so that interpolated ones would never repeat.
+/// Root mean square of the difference between forces one period (in steps) apart, between two times (s), relative to
+/// that of the forces. Where the period is no whole number of steps, a difference counts as far as it leaves the values
+/// of both steps around it: forces jump where teeth enter, so that interpolated ones would never repeat.
 pub fn period_variation(run: &Run, window: [f64; 2], period: f64) -> Option<f64> {
     let range = steps(run, window)?;
     let [near, far] = [(period + WHOLE).floor() as usize, (period - WHOLE).ceil() as usize];

@@ -1,8 +1,9 @@
-//! Modal analysis: natural frequencies, damping ratios and mode shapes of an arm, and the frequency response of its tip.
+//! Modal analysis: natural frequencies, damping ratios and mode shapes of an arm, and the frequency response of its
+//! tip.
 //!
-//! Small motions about a state of rest obey `M x'' + C x' + K x = J^T F`. Modes are the eigenvalues `s` of the state matrix
-//! `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode with damping ratio `zeta`; its natural
-//! frequency is that without damping, near `omega = |s|`.
+//! Small motions about a state of rest obey `M x'' + C x' + K x = J^T F`. Modes are the eigenvalues `s` of the state
+//! matrix `[0, 1; -M^-1 K, -M^-1 C]`: a pair `s = -zeta omega +- i omega sqrt(1 - zeta^2)` is a mode with damping ratio
+//! `zeta`; its natural frequency is that without damping, near `omega = |s|`.
 
 use super::arm::Arm;
 use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Schur, Vector3};
@@ -27,8 +28,8 @@ pub struct LinearArm<const N: usize> {
 pub struct Mode {
     /// |s| / (2 pi). Hz
     pub frequency: f64,
-    /// Undamped natural frequency of the mode with the same number, a little off |s| unless damping is proportional; `None` where
-    /// overdamped modes make the numbers differ. Hz
+    /// Undamped natural frequency of the mode with the same number, a little off |s| unless damping is proportional;
+    /// `None` where overdamped modes make the numbers differ. Hz
     pub undamped: Option<f64>,
     /// Damping ratio; 1 for overdamped motions, negative for growing ones.
     pub damping_ratio: f64,
@@ -57,8 +58,8 @@ impl<const N: usize> LinearArm<N> {
         }
     }
 
-    /// Natural frequencies without damping, ascending: square roots of the eigenvalues of `M^-1 K`. Hz; none where the mass
-    /// matrix is not positive definite. A mode that gravity makes unstable counts as 0 Hz.
+    /// Natural frequencies without damping, ascending: square roots of the eigenvalues of `M^-1 K`. Hz; none where the
+    /// mass matrix is not positive definite. A mode that gravity makes unstable counts as 0 Hz.
     pub fn undamped(&self) -> Option<Vec<f64>> {
         let factor = to_dynamic(&self.mass).cholesky()?;
         let half = factor.l().solve_lower_triangular(&to_dynamic(&self.stiffness))?;
@@ -83,8 +84,8 @@ impl<const N: usize> LinearArm<N> {
         Some(matrix)
     }
 
-    /// All modes, by natural frequency; none where the mass matrix is not positive definite, or stiffness and damping are beyond all
-    /// numbers.
+    /// All modes, by natural frequency; none where the mass matrix is not positive definite, or stiffness and damping
+    /// are beyond all numbers.
     pub fn modes(&self) -> Option<Vec<Mode>> {
         let mut modes: Vec<Mode> = eigenvalues(self.state_matrix()?)?
             .iter()
@@ -127,8 +128,8 @@ impl<const N: usize> LinearArm<N> {
         })
     }
 
-    /// Response of the tip (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz): columns
-    /// are directions of the force; none in a resonance without damping.
+    /// Response of the tip (m, complex amplitude) to a force (N) in each direction that swings at `frequency` (Hz):
+    /// columns are directions of the force; none in a resonance without damping.
     pub fn response(&self, frequency: f64) -> Option<Matrix3<Complex<f64>>> {
         let matrix = self.dynamic_stiffness(Complex::new(0.0, TAU * frequency));
         let jacobian = DMatrix::from_fn(N, 3, |row, column| Complex::from(self.tip[(column, row)]));
@@ -148,8 +149,8 @@ pub(crate) fn is_within_reach(matrix: &DMatrix<f64>) -> bool {
     matrix.iter().all(|entry| entry.abs() <= REACH)
 }
 
-/// The eigenvalues of a square matrix; none where its entries are [beyond reach](is_within_reach) or the QR algorithm does not
-/// converge.
+/// The eigenvalues of a square matrix; none where its entries are [beyond reach](is_within_reach) or the QR algorithm
+/// does not converge.
 pub(crate) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     if !is_within_reach(&matrix) {
         return None;

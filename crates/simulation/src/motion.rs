@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use stead_model::cutting::{CutFrame, Side};
 use stead_model::robot::{Frames, Pose, Posture, Robot, Spindle, Unreachable, angles::ANGLE_ROUNDING};
 
-/// A start from rest to the feed with bounded jerk: constant jerk upwards over the first half of the time, downwards over
-/// the second, so that acceleration is continuous and the feed is reached with none.
+/// A start from rest to the feed with bounded jerk: constant jerk upwards over the first half of the time, downwards
+/// over the second, so that acceleration is continuous and the feed is reached with none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
     /// The feed that is reached. m/s
@@ -91,8 +91,8 @@ pub enum MotionError {
     },
 }
 
-/// The joint angles of a pass over time, from closed-form inverse kinematics at knots a millimetre apart with the slopes
-/// there, and cubics between.
+/// The joint angles of a pass over time, from closed-form inverse kinematics at knots a millimetre apart with the
+/// slopes there, and cubics between.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     ramp: Ramp,
@@ -116,7 +116,8 @@ const SPACING: f64 = 1e-3;
 const STEEPEST: f64 = 1e3;
 
 impl Motion {
-    /// Follows the pass with the inverse kinematics, in the posture of the start, each joint going on from where it was.
+    /// Follows the pass with the inverse kinematics, in the posture of the start, each joint going on from where it
+    /// was.
     ///
     /// # Errors
     /// [`MotionError`] where the arm cannot follow.
@@ -190,7 +191,8 @@ impl Motion {
         (self.start.translation + self.direction * distance, distance)
     }
 
-    /// Angles (rad) and speeds (rad/s) of the motors at a time (s); beyond the end of the pass as the last cubic goes on.
+    /// Angles (rad) and speeds (rad/s) of the motors at a time (s); beyond the end of the pass as the last cubic goes
+    /// on.
     pub fn motors(&self, time: f64) -> ([f64; 6], [f64; 6]) {
         let (distance, feed) = self.ramp.at(time);
         self.motors_at(distance, feed)

@@ -20,8 +20,8 @@ pub struct EvaluationSettings {
     pub height: f64,
     /// Cutoff of the Gaussian filter. m
     pub cutoff: f64,
-    /// Distance along the pass at which the stability analysis linearises the arm: what small motions do there is found as well, so that
-    /// both answers can be compared. m
+    /// Distance along the pass at which the stability analysis linearises the arm: what small motions do there is found
+    /// as well, so that both answers can be compared. m
     pub analysis_distance: f64,
 }
 
@@ -56,8 +56,8 @@ pub struct Simulation {
     pub window: [f64; 2],
     /// Forces on the tool along the feed and towards the wall; `None` if the run ended before the window did.
     pub forces: Option<[Statistics; 2]>,
-    /// Root mean square of the difference between the force and that one spindle turn before, over the second half of the window,
-    /// relative to the root mean square of the force; `None` if the run ended before the window did.
+    /// Root mean square of the difference between the force and that one spindle turn before, over the second half of
+    /// the window, relative to the root mean square of the force; `None` if the run ended before the window did.
     pub turn_variation: Option<f64>,
     /// The same for one period of the cutter: the part of a turn after which the teeth repeat in pitch and radius.
     pub period_variation: Option<f64>,
@@ -77,7 +77,8 @@ pub struct Simulation {
     pub filtered: Profile,
     /// Roughness of the wall as it is, and filtered; `None` if no wall was cut.
     pub roughness: Option<[Roughness; 2]>,
-    /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled`, `slow-growth` or `at-the-limit`.
+    /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled`, `slow-growth` or
+    /// `at-the-limit`.
     pub warnings: Vec<Warning>,
     /// What the result rests on.
     pub notes: Vec<String>,

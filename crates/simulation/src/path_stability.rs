@@ -1,10 +1,10 @@
 //! Critical depths along a tool path: a stiff placement may chatter all the same.
 
 use super::arm::Variant;
-use super::milling::PassCut;
 use super::stability_analysis::{CutStability, StabilityError, cut_stability, linear_of};
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use stead_model::cutting::PassCut;
 use stead_model::cutting::{CutFrame, Cutter};
 use stead_model::robot::{Robot, Spindle};
 

@@ -1,10 +1,10 @@
 //! Profile of the wall that a pass leaves, and its roughness (ISO 21920-2 parameters, Gaussian filter of ISO 16610-21).
 
-use super::milling::PassCut;
 use super::surface::Trail;
 use serde::Serialize;
 use std::f64::consts::{LN_2, PI, TAU};
 use stead_model::cutting::Cutter;
+use stead_model::cutting::PassCut;
 
 /// Heights of a wall at equal distances along the feed, y over x.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,8 +29,8 @@ pub struct Roughness {
 }
 
 impl Profile {
-    /// The wall at a height above the tip of the cutter (m), from a place to another (m): the lowest that any tooth came by,
-    /// exactly on its arc.
+    /// The wall at a height above the tip of the cutter (m), from a place to another (m): the lowest that any tooth
+    /// came by, exactly on its arc.
     pub fn of_wall(trail: &Trail, cutter: &Cutter, cut: &PassCut, height: f64, span: [f64; 2], spacing: f64) -> Self {
         let [start, end] = span;
         let count = ((end - start) / spacing + 1e-9).max(0.0) as usize + 1;
@@ -41,7 +41,8 @@ impl Profile {
         let range = trail.extents().last().map_or(0.0, |extent| extent.top - extent.bottom);
         for (tooth, offset) in cutter.teeth().iter().zip(cutter.offsets()) {
             let radius = tooth.radius;
-            // Farther from its lowest point a tooth is higher than any other may have been there, or has not come by alone.
+            // Farther from its lowest point a tooth is higher than any other may have been there, or has not come by
+            // alone.
             let reach = ((2.0 * radius * range).sqrt() + 4.0 * cut_advance(trail, cut)).min(0.9 * radius);
             let first = (offset + cutter.lag(height)) / TAU * turn;
             for lowest in (0..).map(|index| first + turn * f64::from(index)) {
@@ -70,8 +71,8 @@ impl Profile {
         Self { start, spacing, heights }
     }
 
-    /// The profile less its mean line: what waves longer than a cutoff (m) leave of it (ISO 16610-21, with weights that make up
-    /// for what lies beyond the ends).
+    /// The profile less its mean line: what waves longer than a cutoff (m) leave of it (ISO 16610-21, with weights that
+    /// make up for what lies beyond the ends).
     pub fn filtered(&self, cutoff: f64) -> Self {
         let alpha = (LN_2 / PI).sqrt();
         let half = (cutoff / self.spacing).ceil() as usize;
@@ -150,8 +151,9 @@ mod tests {
         (trail, cutter, cut)
     }
 
-    /// Cusps of `s^2 / 8R`, s apart: the feed per tooth with equal teeth, per turn if one is too short to matter. An edge goes
-    /// along a trochoid, of another curvature at its lowest by `1 +- f / 2 pi R` squared, with f the feed per turn.
+    /// Cusps of `s^2 / 8R`, s apart: the feed per tooth with equal teeth, per turn if one is too short to matter. An
+    /// edge goes along a trochoid, of another curvature at its lowest by `1 +- f / 2 pi R` squared, with f the feed per
+    /// turn.
     #[test]
     fn a_rigid_tool_leaves_cusps() {
         for (direction, sign) in [(MillingDirection::Climb, -1.0), (MillingDirection::Conventional, 1.0)] {
@@ -193,7 +195,8 @@ mod tests {
         }
     }
 
-    /// By its definition a wave of the length of the cutoff is halved, long ones go, short ones stay; and constants go entirely.
+    /// By its definition a wave of the length of the cutoff is halved, long ones go, short ones stay; and constants go
+    /// entirely.
     #[test]
     fn the_filter_halves_a_wave_of_the_cutoff() {
         let wave = |length: f64| {

@@ -1,14 +1,16 @@
-//! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the spindle speed.
+//! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the
+//! spindle speed.
 
 use super::arm::{AnyArm, Arm, Missing, Variant};
-use super::milling::PassCut;
 use super::modes::{LinearArm, Mode};
 use super::setup::Setup;
 use super::stability::{Lobe, Plant, PlantError, SemiDiscretisation, Verdict, ZeroOrder, ZeroOrderError, lobes};
 use nalgebra::{Complex, Matrix3, Vector3};
 use serde::Serialize;
+use stead_model::cutting::PassCut;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
 use stead_model::robot::{Robot, Spindle};
+use stead_numerics::monitor::{Monitor, Stop};
 
 /// Settings of a stability analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,24 +82,27 @@ const FREQUENCIES: usize = 1000;
 /// Modes, frequency response, critical depths and stability lobes of a cut, linearised where the settings say.
 ///
 /// # Errors
-/// [`StabilityError`] for an arm that says too little, or a cut without width.
+/// [`StabilityError`] for an arm that says too little, or a cut without width, or when `monitor` asked to stop.
 pub fn analyse(
     setup: &Setup,
     cutter: &Cutter,
     cut: &PassCut,
     settings: &AnalysisSettings,
+    monitor: &Monitor,
 ) -> Result<StabilityAnalysis, StabilityError> {
+    monitor.go_on()?;
     let linear = linear_at(setup, settings.distance)?;
     let frame = setup.motion.cut_frame(cut.wall(cutter));
     let plant = linear.plant(&frame)?;
     let between = |[from, to]: [f64; 2], count: usize| -> Vec<f64> {
         (0..count).map(|k| from + (to - from) * k as f64 / (count - 1).max(1) as f64).collect()
     };
+    let speeds = between(settings.speeds, settings.points);
     Ok(StabilityAnalysis {
         modes: linear.modes()?,
         frequency_response: linear.frequency_response(&frame, &between(settings.frequencies, FREQUENCIES))?,
         cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
-        lobes: lobes(&plant, cutter, cut, &between(settings.speeds, settings.points), settings.max_depth)?,
+        lobes: lobes(&plant, cutter, cut, &speeds, settings.max_depth, monitor)?,
         pass_time: cut.length / setup.motion.ramp().feed,
         notes: setup.notes().into_iter().chain(runout_note(cutter)).collect(),
     })
@@ -139,6 +144,9 @@ pub enum StabilityError {
     /// There is no zero-order solution.
     #[error("{0}")]
     ZeroOrder(#[from] ZeroOrderError),
+    /// The caller asked to stop.
+    #[error("{0}")]
+    Stopped(#[from] Stop),
 }
 
 /// The arm of a setup, linearised at a distance (m) along its pass.

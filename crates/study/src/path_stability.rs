@@ -2,8 +2,8 @@
 
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Plan, PlanPoint};
-use stead_placement::problem::{Placement, Problem};
-use stead_placement::setup::Setup;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::setup::Setup;
 use stead_simulation::path_stability::{PathConfiguration, PathStabilityAnalysis};
 use stead_simulation::stability_analysis::{CutStability, StabilityError};
 
@@ -20,7 +20,8 @@ pub struct PathStability {
 }
 
 impl PathStability {
-    /// Critical depths at every point of plans, each at its placement in its setup; `None` once the caller asks to stop.
+    /// Critical depths at every point of plans, each at its placement in its setup; `None` once the caller asks to
+    /// stop.
     ///
     /// # Errors
     /// [`StabilityError`] for a robot that says too little of its masses, or a cut without width.

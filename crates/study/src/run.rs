@@ -1,13 +1,13 @@
 //! One run: a search or a given placement, and the stability of the cut along its plans.
 
 use super::PathStability;
-use stead_format::Run;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Outcome, Plan, left_out};
 use stead_placement::place::{self, Infeasible, Score};
-use stead_placement::problem::Placement;
-use stead_placement::setup::Setup;
+use stead_planning::problem::Placement;
+use stead_planning::setup::Setup;
+use stead_run_files::Run;
 use stead_simulation::stability_analysis::StabilityError;
 
 /// Why a run ends without a result.
@@ -41,11 +41,11 @@ pub struct Scored {
     pub notes: Vec<String>,
 }
 
-/// Searches for the best and the worst placement, and makes their maps unless the run file does without. A stop that the monitor asks
-/// for leaves the best found so far, without critical depths, and without maps of a long path.
+/// Searches for the best and the worst placement, and makes their maps unless the run file does without. A stop that
+/// the monitor asks for leaves the best found so far, without critical depths, and without maps of a long path.
 ///
 /// # Errors
-/// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability asked for.
+/// [`RunError`]: no placement met satisfies the constraints, or the arm says too little for the stability requested.
 pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
     let mut outcome = place::place(&run.problem, &run.search, &run.transfer, monitor)?;
     if run.maps {
@@ -61,11 +61,11 @@ pub fn place(run: &Run, monitor: &Monitor) -> Result<Placed, RunError> {
 /// Plans a given placement, best and worst. A stop that the monitor asks for leaves out the critical depths.
 ///
 /// # Errors
-/// [`RunError`]: the placement has no plan, or the arm says too little for the stability asked for.
+/// [`RunError`]: the placement has no plan, or the arm says too little for the stability requested.
 pub fn score(run: &Run, placement: &Placement, monitor: &Monitor) -> Result<Scored, RunError> {
     let mut score = place::score(&run.problem, placement, &run.transfer, monitor)?;
     let setup = score.setup.clone();
-    let plans = [(&setup, placement, &score.best), (&setup, placement, &score.worst)];
+    let plans = [(&setup, placement, &score.plans.best), (&setup, placement, &score.plans.worst)];
     let stability = stability(run, &plans, &mut score.warnings, monitor)?;
     score.interrupted = monitor.should_stop();
     let notes = outside_cell(run, placement).into_iter().collect();

@@ -57,7 +57,7 @@ __version__ = _stead.__version__
 
 
 def init(
-    kind: Literal["place", "assess", "identify", "simulate", "study", "compensate"],
+    kind: Literal["place", "assess", "identify", "simulate", "study", "compensate", "forces"],
     folder: str | PathLike[str],
     *,
     force: bool = False,

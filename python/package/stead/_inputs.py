@@ -74,14 +74,21 @@ class FitRun:
         """What the user should know about the input though it is not wrong."""
         return self._native.notes()
 
-    def fit(self, threads: int | None = None) -> IdentifiedRobot:
+    def fit(
+        self,
+        threads: int | None = None,
+        *,
+        progress: Progress | None = None,
+        time_limit_s: float | None = None,
+    ) -> IdentifiedRobot:
         """Fits compliances, gravity compensator and their covariance to the sheet.
 
         Raises:
             InputError: at the line of the sheet that is at fault.
-            Error: where a sound sheet gives no robot.
+            Error: where a sound sheet gives no robot, or the time was up.
+            Interrupted: at Ctrl-C, without a result.
         """
-        return IdentifiedRobot(self._native.fit(options_of(threads=threads)))
+        return finished(IdentifiedRobot, self._native.fit(options_of(progress, threads, time_limit_s)))
 
 
 class DesignRun:
@@ -145,17 +152,29 @@ class CompensationRun:
         """What the user should know about the input though it is not wrong."""
         return self._native.notes()
 
-    def compensate(self, all_or_nothing: bool = False, threads: int | None = None) -> CompensatedPath:
+    def compensate(
+        self,
+        all_or_nothing: bool = False,
+        threads: int | None = None,
+        *,
+        progress: Progress | None = None,
+        time_limit_s: float | None = None,
+    ) -> CompensatedPath:
         """Finds for every point the pose to command.
 
         Args:
             all_or_nothing: Fail where a point cannot be corrected, instead of keeping its target with a warning.
             threads: Number of threads; it does not change the result.
+            progress: Called with stage, steps done and steps in all.
+            time_limit_s: The job ends without a result after so many seconds.
 
         Raises:
             NotCompensated: Not one point can be compensated, or not all where all were asked for.
+            Error: The time was up.
+            Interrupted: at Ctrl-C, without a result.
         """
-        return CompensatedPath(self._native.compensate(all_or_nothing, options_of(threads=threads)))
+        options = options_of(progress, threads, time_limit_s)
+        return finished(CompensatedPath, self._native.compensate(all_or_nothing, options))
 
 
 class SimulationRun:
@@ -187,17 +206,28 @@ class SimulationRun:
         """
         return cls(_stead.SimulationRun.read(Path(file), variant, damping_scale, spindle_rpm))
 
-    def simulate(self, condensed: bool = False, threads: int | None = None) -> SimulatedPass:
+    def simulate(
+        self,
+        condensed: bool = False,
+        threads: int | None = None,
+        *,
+        progress: Progress | None = None,
+        time_limit_s: float | None = None,
+    ) -> SimulatedPass:
         """Simulates the pass with the whole kinematic chain.
 
         Args:
             condensed: With mass matrix and Jacobian frozen every few millimetres, as `stead simulate --fast`.
             threads: Number of threads; it does not change the result.
+            progress: Called with stage, steps done and steps in all.
+            time_limit_s: The job ends without a result after so many seconds.
 
         Raises:
-            Error: for a pass too short to be judged.
+            Error: for a pass too short to be judged, or the time was up.
+            Interrupted: at Ctrl-C, without a result.
         """
-        return SimulatedPass(self._native.simulate(condensed, options_of(threads=threads)))
+        options = options_of(progress, threads, time_limit_s)
+        return finished(SimulatedPass, self._native.simulate(condensed, options))
 
 
 class StabilityRun:
@@ -218,13 +248,20 @@ class StabilityRun:
         """Reads a simulation file and its robot; arguments and exceptions as in `SimulationRun.read`."""
         return cls(_stead.StabilityRun.read(Path(file), variant, damping_scale, spindle_rpm))
 
-    def analyse(self, threads: int | None = None) -> StabilityAnalysis:
+    def analyse(
+        self,
+        threads: int | None = None,
+        *,
+        progress: Progress | None = None,
+        time_limit_s: float | None = None,
+    ) -> StabilityAnalysis:
         """Modes of the arm, frequency response at the tip, critical depth and stability lobes.
 
         Raises:
-            Error: for an arm that says too little, or a cut without width.
+            Error: for an arm that says too little, or a cut without width, or the time was up.
+            Interrupted: at Ctrl-C, without a result.
         """
-        return StabilityAnalysis(self._native.analyse(options_of(threads=threads)))
+        return finished(StabilityAnalysis, self._native.analyse(options_of(progress, threads, time_limit_s)))
 
 
 class Profile:

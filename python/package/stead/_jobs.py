@@ -3,7 +3,7 @@
 - `progress(stage, done, total)` is called on the calling thread, a few times a second and once at the end; what it raises stops the job. Of
   a certificate, `done` are the nodes bounded and `total` those and the open ones.
 - `threads`: by default one for each processor, at most 1024. It does not change a result.
-- `time_limit_s`: the job ends then with what it has.
+- `time_limit_s`: the job ends then with what it has; where that is nothing, with `Error`.
 - Ctrl-C stops a job that takes `progress`, and raises `Interrupted`, a `KeyboardInterrupt` with what was found as `result`; the second one
   does not wait. Other jobs raise `KeyboardInterrupt` at once, and what they have begun ends unheard.
 """

@@ -184,6 +184,8 @@ class PlacementScore(Result):
     feasible: bool
     interrupted: bool
     stability: Record | None
+    orientation: str | None
+    external_axes: Record | None
     _made = {**Result._made, "placement": Placement._of, "placement_exact": Placement._of}
 
     @cached_property

@@ -1,18 +1,16 @@
 //! `stead import`: what other programs write, as files of stead.
 
-mod path;
-mod robot;
+pub(super) mod path;
+pub(super) mod robot;
 
-use super::{Failure, help};
+use super::Failure;
 use clap::Subcommand;
 
 #[derive(Debug, Subcommand)]
 pub(super) enum ImportCommand {
     /// Make a task file of a tool path from CAM: CLDATA or five-axis G-code
-    #[command(after_long_help = help::IMPORT_PATH)]
     Path(path::PathOptions),
     /// Derive a robot file from a URDF: geometry, limits, speeds; states what a URDF does not know
-    #[command(after_long_help = help::IMPORT_ROBOT)]
     Robot(robot::RobotOptions),
 }
 

@@ -3,10 +3,11 @@
 use super::super::given::Force;
 use super::super::values::{finite, positive};
 use super::super::{Failure, print, say_notes};
+use crate::cli::manual::Manual;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::PathBuf;
-use stead::{CamFormat, LengthUnit, Machine, PathSettings, Resampling, import_path};
+use stead::import::{CamFormat, LengthUnit, Machine, PathSettings, Resampling, import_path};
 
 #[derive(Debug, Args)]
 pub(in super::super) struct PathOptions {
@@ -33,7 +34,8 @@ pub(in super::super) struct PathOptions {
     /// Take tool centre point control as on though the G-code has no G43.4
     #[arg(long)]
     pub tcp: bool,
-    /// Where the rotary axes meet, for G-code without it: in the workpiece frame, or for a head from the tool tip upright
+    /// Where the rotary axes meet, for G-code without it: in the workpiece frame, or for a head from the tool tip
+    /// upright
     #[arg(long, value_name = "X,Y,Z", value_parser = place, allow_hyphen_values = true, conflicts_with = "tcp")]
     pub pivot_mm: Option<[f64; 3]>,
     /// Leave out the holes of drilling cycles, and list them
@@ -45,6 +47,23 @@ pub(in super::super) struct PathOptions {
     #[command(flatten)]
     pub force: Force,
 }
+
+/// What the help and the guide say of it.
+pub(in crate::cli) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead import path part.cls --units mm --out my/part.csv --report",
+        "stead import path part.nc --machine table-ac --step-mm 5 --out my/part.csv",
+    ],
+    written: "as --out names them",
+    files: &[
+        ("NAME.csv", "the task: path points without forces"),
+        ("NAME-tool.toml", "the cutter, where the program describes one"),
+    ],
+    remarks: "The task has no forces: a run takes them from [tool] and [cut], or from [forces]. `stead init place \
+              --robot .. --task ..` takes both files.",
+    refused: "wrong usage, a program that is refused, with line and word, or a file that is there already (--force replaces it): nothing is written",
+    ..Manual::NEW
+};
 
 pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
     let settings = PathSettings {

@@ -3,9 +3,10 @@
 use super::super::given::Force;
 use super::super::values::{Home, controller, home};
 use super::super::{Failure, print, say_notes};
+use crate::cli::manual::Manual;
 use clap::Args;
 use std::path::PathBuf;
-use stead::{HomePose, ImportOptions, import_robot};
+use stead::import::{HomePose, ImportOptions, import_robot};
 use stead_model::robot::ControllerKind;
 
 #[derive(Debug, Args)]
@@ -27,7 +28,7 @@ pub(in super::super) struct RobotOptions {
     /// Whose controller the arm has
     #[arg(long, value_name = "KIND", value_parser = controller, requires = "home_deg")]
     pub controller: Option<ControllerKind>,
-    /// A flange pose read at the controller, ABB also as X,Y,Z,QW,QX,QY,QZ: tells how it counts, for [controller] and [root]
+    /// A flange pose read at the controller, ABB also as X,Y,Z,QW,QX,QY,QZ: gives [controller] and [root]
     #[arg(long, value_name = "A1,..,A6=X,Y,Z,A,B,C", value_parser = home, allow_hyphen_values = true, requires = "controller")]
     pub home_deg: Option<Home>,
     /// Look for the mesh files that the URDF names, and note those that are missing
@@ -40,11 +41,31 @@ pub(in super::super) struct RobotOptions {
     pub force: Force,
 }
 
+/// What the help and the guide say of it.
+pub(in crate::cli) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead import robot kr120.urdf --out my/kr120.toml",
+        "stead import robot cell.urdf --base-link base_link --tip-link tool0 --out my/arm.toml",
+        "stead import robot kr210.urdf --stiffness-like kuka-kr270-r2700 --collision --out my/kr210.toml",
+        "stead import robot kr210.urdf --controller kuka --out my/kr210.toml \\\n      --home-deg=-31.2,-71.4,63.7,17.9,52.6,-117.3=1791.52,1023.61,1741.52,99.95,-2.34,131.94",
+    ],
+    written: "as --out names them",
+    files: &[
+        ("NAME.toml", "the robot file"),
+        ("NAME-cell.toml", "with --collision: the links as shapes of surroundings"),
+    ],
+    remarks: "Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like \
+              taken from a shipped arm (`stead robots` lists them), which ranks placements and does not predict \
+              millimetres.",
+    refused: "wrong usage, a URDF that is refused, with line and element, or a file that is there already (--force replaces it): nothing is written",
+    ..Manual::NEW
+};
+
 pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
     let home = options.controller.zip(options.home_deg.as_ref());
     let home = home.map(|(kind, (angles, flange))| HomePose::new(kind, *angles, flange)).transpose();
     let home = home.map_err(stead::Error::from)?;
-    let asked = ImportOptions {
+    let requested = ImportOptions {
         base_link: options.base_link.as_deref(),
         tip_link: options.tip_link.as_deref(),
         stiffness_like: options.stiffness_like.as_deref(),
@@ -52,7 +73,7 @@ pub(super) fn run(options: &RobotOptions) -> Result<(), Failure> {
         check_meshes: options.check_meshes,
         collision: options.collision,
     };
-    let robot = import_robot(&options.urdf, &asked).map_err(stead::Error::from)?;
+    let robot = import_robot(&options.urdf, &requested).map_err(stead::Error::from)?;
     robot.write(&options.out, options.force.existing()).map_err(stead::Error::from)?;
     say_notes(&robot.notes);
     let files: Vec<String> = robot.files(&options.out).iter().map(|(file, _)| file.display().to_string()).collect();

@@ -1,14 +1,26 @@
 //! `stead study`: many cases of one run.
 
-mod report;
-mod run;
-mod slurm;
-mod status;
+pub(super) mod report;
+pub(super) mod run;
+pub(super) mod slurm;
+pub(super) mod status;
 
-use super::arguments::StudyCommand;
 use super::{Failure, say};
+use clap::Subcommand;
 use std::path::{Path, PathBuf};
-use stead::StudyStatus;
+use stead::study::StudyStatus;
+
+#[derive(Debug, Subcommand)]
+pub(super) enum StudyCommand {
+    /// Do what is left to do of a study, or of a shard of it; goes on where it was after a crash
+    Run(run::StudyRunOptions),
+    /// Print the script of a Slurm array that does a study, one shard an element
+    Slurm(slurm::StudySlurmOptions),
+    /// Show how far a study is, shard by shard
+    Status(status::StudyStatusOptions),
+    /// Rank the layouts of a study that is done, with fronts, effects and pictures
+    Report(report::StudyReportOptions),
+}
 
 pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
     match command {
@@ -19,9 +31,9 @@ pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
     }
 }
 
-/// The folder asked for, or `results/` and the name of the study.
-fn folder(asked: Option<&Path>, config: &Path) -> PathBuf {
-    asked.map_or_else(|| Path::new("results").join(config.file_stem().unwrap_or_default()), Path::to_owned)
+/// The folder requested, or `results/` and the name of the study.
+fn folder(requested: Option<&Path>, config: &Path) -> PathBuf {
+    requested.map_or_else(|| Path::new("results").join(config.file_stem().unwrap_or_default()), Path::to_owned)
 }
 
 /// Says which kept cases are left of the study as it was before an edit.

@@ -1,10 +1,36 @@
 //! `stead study status`: how far a study is.
 
 use super::{folder, say_stale};
-use crate::cli::arguments::StudyStatusOptions;
+use crate::cli::manual::Manual;
 use crate::cli::{Failure, on_threads, print, print_json, say};
+use clap::Args;
 use std::fmt::Write;
+use std::path::PathBuf;
 use stead::Study;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct StudyStatusOptions {
+    /// Study file (TOML)
+    pub config: PathBuf,
+    /// Folder of the results [default: results/<name of the study file>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What the help and the guide say of it.
+pub(in crate::cli) const MANUAL: Manual = Manual {
+    examples: &[
+        "stead study status configs/study-example.toml",
+        "stead study status configs/study-example.toml --json",
+    ],
+    written: "none",
+    done: "done, whether or not the study is",
+    refused: "wrong usage, bad input, or the folder of another study",
+    ..Manual::NEW
+};
 
 pub(super) fn run(options: &StudyStatusOptions) -> Result<(), Failure> {
     let study = on_threads(None, || Study::read(&options.config))??;

@@ -1,4 +1,5 @@
-//! `cargo run -p stead-judge --example judge -- RUN.toml RESULTS [PROGRAM ..]`: what the judge finds in results, and in main files of programs.
+//! `cargo run -p stead-judge --example judge -- RUN.toml RESULTS [PROGRAM ..]`: what the judge finds in results, and in
+//! main files of programs.
 
 fn main() -> Result<(), String> {
     let arguments: Vec<std::path::PathBuf> = std::env::args_os().skip(1).map(Into::into).collect();

@@ -1,4 +1,5 @@
-//! An arm from the rows of its file: frames, Jacobian, compliance. Craig's Denavit-Hartenberg parameters, multiplied out.
+//! An arm from the rows of its file: frames, Jacobian, compliance. Craig's Denavit-Hartenberg parameters, multiplied
+//! out.
 
 use crate::values::{Answer, list, number, plain, pose, required, section, sections, text, texts};
 use nalgebra::{DMatrix, Isometry3, Matrix6, Rotation3, Translation3, Vector3, Vector6};
@@ -12,7 +13,8 @@ pub(crate) enum Law {
     Constant(f64),
     /// At both limits, linear between them. rad/(N m)
     Range(f64, f64),
-    /// Without the spring (rad/(N m)), stiffness of the spring (N/m), its two levers and its free length (m), its angle (rad).
+    /// Without the spring (rad/(N m)), stiffness of the spring (N/m), its two levers and its free length (m), its angle
+    /// (rad).
     Spring { alone: f64, stiffness: f64, levers: [f64; 2], angle: f64, free: f64 },
 }
 

@@ -325,8 +325,8 @@ impl Cell {
     }
 }
 
-/// Two on the flange, or on one frame, stand still against each other; neighbouring links touch where their joint is. What is mounted on
-/// the flange is no link.
+/// Two on the flange, or on one frame, stand still against each other; neighbouring links touch where their joint is.
+/// What is mounted on the flange is no link.
 fn meets(a: &Body, b: &Body) -> bool {
     let are_links = [a, b].iter().all(|body| body.attached.starts_with("link_"));
     match (a.frame, b.frame) {

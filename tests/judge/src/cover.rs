@@ -147,8 +147,8 @@ pub fn pairs() -> BTreeSet<[(usize, usize); 2]> {
     all
 }
 
-/// Choices in which every possible pair of values occurs: of some tries that begin with a pair which is missing, each time the one that
-/// brings most.
+/// Choices in which every possible pair of values occurs: of some tries that begin with a pair which is missing, each
+/// time the one that brings most.
 pub fn cover(seed: u64) -> Vec<Choice> {
     let mut random = Random::new(seed);
     let mut missing = pairs();

@@ -1,8 +1,9 @@
 //! A judge of results: plain, slow, and of its own.
 //!
-//! From the input files of a run and the folder of its results it computes everything anew (poses in the frame of the cell, limits, steps,
-//! turns, deflections, scores, distances of all pairs of shapes at the points, between them and on the moves between segments, times,
-//! and what a controller makes of the exported program) and lists where that differs from what the results state.
+//! From the input files of a run and the folder of its results it computes everything anew (poses in the frame of the
+//! cell, limits, steps, turns, deflections, scores, distances of all pairs of shapes at the points, between them and on
+//! the moves between segments, times, and what a controller makes of the exported program) and lists where that differs
+//! from what the results state.
 //!
 //! It shares no code with stead: no crate of it is a dependency. Distances are the plain ones of parry3d.
 

@@ -1,4 +1,5 @@
-//! Moves between segments, as the summary states them: where they begin and end, that they are free, how long they take.
+//! Moves between segments, as the summary states them: where they begin and end, that they are free, how long they
+//! take.
 
 use crate::cell::{Body, Cell, Frame, Stand};
 use crate::plan::{Plan, SHAPE_SLACK};
@@ -19,7 +20,8 @@ fn body(name: &str, frame: Frame, pose: Isometry3<f64>, solid: Solid) -> Body {
 }
 
 impl WithTool {
-    /// Cutter and holder as far as they are stated, against all that is not on the arm; the path's box where no shape is the part.
+    /// Cutter and holder as far as they are stated, against all that is not on the arm; the path's box where no shape
+    /// is the part.
     pub(crate) fn new(cell: &Cell) -> Self {
         let (mut bodies, mut pairs) = (cell.bodies.clone(), cell.pairs.clone());
         let count = bodies.len();
@@ -189,7 +191,8 @@ fn time(
     let cell = plan.cell;
     let of = |key: &str, default: f64| cell.setting("transfer", key).unwrap_or(default);
     let (gather, jerk_time) = (of("acceleration_time_s", 0.4), of("jerk_time_s", 0.1));
-    // Joint angles are printed in rounded digits, which change the time of a very short move by much: the least and the most.
+    // Joint angles are printed in rounded digits, which change the time of a very short move by much: the least and the
+    // most.
     let mut sum = Some([0.0; 2]);
     let moved_at = axes_from(transfer);
     for place in 1..way.len() {

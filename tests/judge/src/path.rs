@@ -165,7 +165,8 @@ impl Milling {
 
     /// Along feed, left, axis. N
     fn mean_force(&self, width: f64) -> Vector3<f64> {
-        // A tooth at an angle from the feed, towards the wall: it cuts in front of the cutter, within the width of cut from the wall.
+        // A tooth at an angle from the feed, towards the wall: it cuts in front of the cutter, within the width of cut
+        // from the wall.
         let from = (1.0 - width / self.radius).clamp(-1.0, 1.0).asin();
         let to = std::f64::consts::FRAC_PI_2;
         let steps = 4000;

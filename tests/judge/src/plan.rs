@@ -269,7 +269,8 @@ impl Plan<'_> {
         }
     }
 
-    /// The load, what it does, and what the criterion makes of it, with what the printed digits of the angles change of that. m
+    /// The load, what it does, and what the criterion makes of it, with what the printed digits of the angles change of
+    /// that. m
     fn load(&self, verdict: &mut Verdict, i: usize, stand: &Stand, criterion: &Criterion) -> (f64, f64) {
         let (row, point) = (&self.rows[i], self.point(i));
         let part = stand.part.rotation.to_rotation_matrix();
@@ -444,6 +445,6 @@ impl Plan<'_> {
     }
 }
 
-/// What the printed digits of six angles, half a unit of 0.0001 deg each (9e-7 rad), change of a deflection, relative to it: each some five
-/// times itself at the most.
+/// What the printed digits of six angles, half a unit of 0.0001 deg each (9e-7 rad), change of a deflection, relative
+/// to it: each some five times itself at the most.
 const OF_DIGITS: f64 = 3e-5;

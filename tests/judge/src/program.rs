@@ -256,8 +256,8 @@ impl Program {
     }
 }
 
-/// The frame on the last axis that carries the part, with all axes at zero, in the cell: origin on the axis, z along it, x as near as
-/// that allows to the x axis of the robot root, or to its y axis where that is within 25 deg.
+/// The frame on the last axis that carries the part, with all axes at zero, in the cell: origin on the axis, z along
+/// it, x as near as that allows to the x axis of the robot root, or to its y axis where that is within 25 deg.
 fn table_at_zero(cell: &Cell, world: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     let axis = cell.axes.iter().rfind(|axis| !axis.carries_robot)?;
     let [x, y] = [Vector3::x(), Vector3::y()].map(|unit| world.rotation * unit);

@@ -10,7 +10,7 @@ pub struct Verdict {
     pub checks: BTreeMap<&'static str, usize>,
     /// One line each; of each kind the first twenty.
     pub disagreements: Vec<String>,
-    /// Why a program was not written, where it was asked for.
+    /// Why a program was not written, where it was requested.
     pub not_exported: Vec<String>,
     told: BTreeMap<&'static str, usize>,
 }

@@ -67,8 +67,8 @@ struct Writer<'a> {
     tool: Isometry3<f64>,
 }
 
-/// Writes the files of a choice into a folder that is there. Robots are those of `robots`, a folder of robot files, with a stiffness of
-/// the choice.
+/// Writes the files of a choice into a folder that is there. Robots are those of `robots`, a folder of robot files,
+/// with a stiffness of the choice.
 ///
 /// # Errors
 /// A sentence where a file cannot be read or written.

@@ -1,4 +1,5 @@
-//! Shipped results as they are, and with mistakes planted in results or in what they are held against: the judge has to find each.
+//! Shipped results as they are, and with mistakes planted in results or in what they are held against: the judge has to
+//! find each.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic, in its helpers too")]
 

@@ -1,15 +1,15 @@
 //! The times of moves between segments, held against the official ruckig.
 //!
-//! A member of its own, outside the default ones: the official library is the only thing that needs a C++20 compiler. Run it
-//! with `cargo test --locked -p ruckig-oracle`.
+//! A member of its own, outside the default ones: the official library is the only thing that needs a C++20 compiler.
+//! Run it with `cargo test --locked -p ruckig-oracle`.
 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
     use stead_model::robot::Robot;
-    use stead_placement::settings::TransferSettings;
-    use stead_placement::testing::five_segments;
-    use stead_placement::transfer::duration;
+    use stead_planning::testing::five_segments;
+    use stead_planning::transfer::TransferSettings;
+    use stead_planning::transfer::duration;
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]

@@ -66,9 +66,9 @@ impl<'a> DeflectedCircle<'a> {
         }
     }
 
-    /// Circularity of the circle about `centre` (plane coordinates, m) in a posture class, once for every load: a load of 1 is
-    /// the wrench of the benchmark. Infinite under a load that the arm is too soft for (see [`Obstacle::TooSoft`] and
-    /// [`Obstacle::Buckling`]). `profile` is left with the points of the last load. m
+    /// Circularity of the circle about `centre` (plane coordinates, m) in a posture class, once for every load: a load
+    /// of 1 is the wrench of the benchmark. Infinite under a load that the arm is too soft for (see
+    /// [`Obstacle::TooSoft`] and [`Obstacle::Buckling`]). `profile` is left with the points of the last load. m
     ///
     /// # Errors
     /// The first [`Obstacle`] around the circle, or that of the first load where the arm is too soft for all.
@@ -101,8 +101,8 @@ impl<'a> DeflectedCircle<'a> {
         }
     }
 
-    /// First-order circularity `load |F| (lambda_max - lambda_min)`, or with the sum where the wrench turns against the tool,
-    /// with the in-plane compliance at the centre of the circle. m
+    /// First-order circularity `load |F| (lambda_max - lambda_min)`, or with the sum where the wrench turns against the
+    /// tool, with the in-plane compliance at the centre of the circle. m
     ///
     /// # Errors
     /// [`Obstacle::Reach`] when the centre is out of reach.
@@ -172,8 +172,8 @@ impl<'a> DeflectedCircle<'a> {
         Ok(())
     }
 
-    /// Which of the two wrist flips keeps all joints within their limits between the given angles of the unflipped one; that
-    /// one, if both do.
+    /// Which of the two wrist flips keeps all joints within their limits between the given angles of the unflipped one;
+    /// that one, if both do.
     fn within_limits(&self, min: &[f64; 6], max: &[f64; 6]) -> Result<Flip, Obstacle> {
         let unflipped = (0..6).find(|j| !fits(&self.ranges[*j], min[*j], max[*j]));
         let Some(joint) = unflipped else { return Ok(Flip::Plain) };

@@ -1,13 +1,13 @@
 //! The benchmark of Klimchik 2017, section 4.2: a circle milled under a force that turns with the tool, and what the
 //! yielding arm makes of it (eq. 33 and 34).
 //!
-//! The circle lies in a plane of the cell. At polar angle phi the tip of the tool should be at `p_0 + R(phi) r`; the wrench
-//! `R(phi) (F, M)` moves it by `K_C^-1 R(phi) (F, M)`, the moment through the rotational Jacobian (eq. 34 as corrected).
-//! The parts of the displaced points in the plane are the machined profile, and its circularity is taken about the
-//! least-squares circle (eq. 28 to 32). To first order, with the force turning with the tool, the displacement is that of a
-//! quadratic form: a mean shift of radius, and an ellipse that no shift of the centre removes, so that the circularity is
-//! `|F| (lambda_max - lambda_min)` of the in-plane compliance, whatever the direction of the force
-//! ([`DeflectedCircle::first_order`]).
+//! The circle lies in a plane of the cell. At polar angle phi the tip of the tool should be at `p_0 + R(phi) r`; the
+//! wrench `R(phi) (F, M)` moves it by `K_C^-1 R(phi) (F, M)`, the moment through the rotational Jacobian (eq. 34 as
+//! corrected). The parts of the displaced points in the plane are the machined profile, and its circularity is taken
+//! about the least-squares circle (eq. 28 to 32). To first order, with the force turning with the tool, the
+//! displacement is that of a quadratic form: a mean shift of radius, and an ellipse that no shift of the centre
+//! removes, so that the circularity is `|F| (lambda_max - lambda_min)` of the in-plane compliance, whatever the
+//! direction of the force ([`DeflectedCircle::first_order`]).
 
 mod deflected_circle;
 #[cfg(test)]
@@ -54,8 +54,8 @@ impl Plane {
 pub enum Turning {
     /// By the polar angle, as the tool and its feed do (eq. 34 as written).
     WithTool,
-    /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity is then
-    /// `|F| (lambda_max + lambda_min)` to first order.
+    /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity is
+    /// then `|F| (lambda_max + lambda_min)` to first order.
     AgainstTool,
 }
 
@@ -77,8 +77,8 @@ pub enum StiffnessModel {
     Loaded,
 }
 
-/// Largest deflection, in radii of the circle and apart from what all its points have in common, at which what is left is
-/// still read as a circle: far beyond it the best circle about the points can be quite another one.
+/// Largest deflection, in radii of the circle and apart from what all its points have in common, at which what is left
+/// is still read as a circle: far beyond it the best circle about the points can be quite another one.
 pub const MAX_DEFLECTION: f64 = 0.25;
 
 /// A joint that moves by more than this between neighbouring points of a circle jumps. rad
@@ -93,15 +93,15 @@ pub struct Benchmark {
     pub radius: f64,
     /// Number of points on the circle, evenly spaced from polar angle 0.
     pub points: usize,
-    /// What the workpiece does to the tool at polar angle 0: along the radius outwards, along the direction of growing polar
-    /// angle, and along the normal of the plane. N, N m
+    /// What the workpiece does to the tool at polar angle 0: along the radius outwards, along the direction of growing
+    /// polar angle, and along the normal of the plane. N, N m
     pub wrench: Wrench,
     /// Which way the wrench turns.
     pub turning: Turning,
     /// Orientation of the tool frame, constant around the circle.
     pub base_from_tool: Matrix3<f64>,
-    /// The tool frame, its origin at the point that follows the circle, in the flange frame. `None`: the wrist centre follows it, with
-    /// the flange frame's own orientation.
+    /// The tool frame, its origin at the point that follows the circle, in the flange frame. `None`: the wrist centre
+    /// follows it, with the flange frame's own orientation.
     pub flange_from_tool: Option<Pose<f64>>,
     /// Which joints yield; the others count as rigid.
     pub yielding: [bool; 6],

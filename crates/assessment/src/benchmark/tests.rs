@@ -29,14 +29,14 @@ fn published() -> Benchmark {
 const ROBOTS: [&str; 5] =
     ["kuka-kr100-ha.toml", "kuka-kr120-r3900.toml", "kuka-kr270-r2700.toml", "kuka-kr360-l240.toml", "kuka-kr500.toml"];
 
-/// Centres a quarter of a metre apart over the workspace, half a metre off axis 1: near it the arm turns about it so fast that
-/// no circle is small.
+/// Centres a quarter of a metre apart over the workspace, half a metre off axis 1: near it the arm turns about it so
+/// fast that no circle is small.
 fn centres() -> impl Iterator<Item = [f64; 2]> {
     (0..14).flat_map(|i| (0..26).map(move |j| [0.25 * f64::from(i) + 0.5, -2.0 + 0.25 * f64::from(j)]))
 }
 
-/// Simulated and first-order circularity at every centre that both elbows of all robots can mill, at a thousandth of the
-/// load, and the anisotropy (lambda_max - lambda_min) / (lambda_max + lambda_min) there.
+/// Simulated and first-order circularity at every centre that both elbows of all robots can mill, at a thousandth of
+/// the load, and the anisotropy (lambda_max - lambda_min) / (lambda_max + lambda_min) there.
 fn simulated_and_first_order(benchmark: &Benchmark) -> Vec<(f64, f64, f64)> {
     let sums = Benchmark { turning: Turning::AgainstTool, ..benchmark.clone() };
     let mut found = Vec::new();

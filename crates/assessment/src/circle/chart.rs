@@ -1,6 +1,6 @@
 //! Two charts of all circle centres, those at infinity included: near ones by their place, far ones by direction and
-//! curvature. In each chart every point has a *reach*, its distance from the centre up to a constant, of which the search
-//! needs gradient and bounds.
+//! curvature. In each chart every point has a *reach*, its distance from the centre up to a constant, of which the
+//! search needs gradient and bounds.
 
 /// A place in the plane, or a pair of chart coordinates.
 pub(super) type Point = [f64; 2];
@@ -18,10 +18,11 @@ pub(super) trait Chart {
     fn key(at: &Self::At, point: &Point) -> f64;
     /// The reach that belongs to a key.
     fn reach(key: f64) -> f64;
-    /// The reach of a point, its gradient, and its second derivatives: twice by the first coordinate, by both, twice by the
-    /// second.
+    /// The reach of a point, its gradient, and its second derivatives: twice by the first coordinate, by both, twice by
+    /// the second.
     fn derivatives(at: &Self::At, point: &Point) -> (f64, Point, [f64; 3]);
-    /// A bound, from a centre where the reach is as given to anywhere: reach there >= reach + gradient . x - bend |x|^2 / 2.
+    /// A bound, from a centre where the reach is as given to anywhere: reach there >= reach + gradient . x - bend |x|^2
+    /// / 2.
     fn bend_below(reach: f64) -> f64;
     /// Likewise, reach there <= reach + gradient . x + bend |x|^2 / 2.
     fn bend_above(reach: f64) -> f64;
@@ -69,10 +70,10 @@ impl Chart for Centre {
     }
 }
 
-/// Far centres `n / curvature` with `n = (cos, sin)` of an angle. Coordinates are angle and curvature, the latter within
-/// [`Far::MAX`] on either side of zero. The reach is distance less `1 / curvature`, without the cancellation:
-/// `(k |p|^2 - 2 p.n) / (|k p - n| + 1)`. It runs smoothly through curvature zero, where it is the distance from a line;
-/// behind, centre and sign have changed sides.
+/// Far centres `n / curvature` with `n = (cos, sin)` of an angle. Coordinates are angle and curvature, the latter
+/// within [`Far::MAX`] on either side of zero. The reach is distance less `1 / curvature`, without the cancellation:
+/// `(k |p|^2 - 2 p.n) / (|k p - n| + 1)`. It runs smoothly through curvature zero, where it is the distance from a
+/// line; behind, centre and sign have changed sides.
 pub(super) struct Far;
 
 /// A far centre.

@@ -42,8 +42,8 @@ impl Hull {
         width
     }
 
-    /// The edge that faces a place, as a corner and the direction to the next; seen from the first corner, the place lies
-    /// in the angle over that edge or behind it.
+    /// The edge that faces a place, as a corner and the direction to the next; seen from the first corner, the place
+    /// lies in the angle over that edge or behind it.
     pub fn facing(&self, place: Point) -> (Point, Point) {
         let corners = &self.vertices;
         let root = corners[0];

@@ -19,11 +19,11 @@ const ENOUGH: usize = 2048;
 
 /// The least-squares circle: the circle with the smallest sum of squared distances of the points from it.
 ///
-/// Newton's method from Taubin's algebraic circle, which unlike the centroid of eq. 30 is a good start for arcs too, damped
-/// (Levenberg-Marquardt) where the plain step does not help. Centres beyond three times the extent of the points are
-/// sought by direction and curvature, so that flat arcs are no harder than full circles. What is found is a minimum to
-/// within rounding. For points near any circle or arc it is the global one. For scattered points (residuals beyond some 5 %
-/// of their extent), which may have several minima, it is the best that 21 starts over the plane lead to.
+/// Newton's method from Taubin's algebraic circle, which unlike the centroid of eq. 30 is a good start for arcs too,
+/// damped (Levenberg-Marquardt) where the plain step does not help. Centres beyond three times the extent of the points
+/// are sought by direction and curvature, so that flat arcs are no harder than full circles. What is found is a minimum
+/// to within rounding. For points near any circle or arc it is the global one. For scattered points (residuals beyond
+/// some 5 % of their extent), which may have several minima, it is the best that 21 starts over the plane lead to.
 ///
 /// Allocates nothing; some 72 points near a circle take a few microseconds. The radius is the mean distance from the
 /// centre.
@@ -74,8 +74,8 @@ struct Set<'a> {
     stride: usize,
 }
 
-/// The sum of squared residuals at a centre, with half its derivatives by the chart coordinates. The radius is always the
-/// best for the centre.
+/// The sum of squared residuals at a centre, with half its derivatives by the chart coordinates. The radius is always
+/// the best for the centre.
 #[derive(Clone, Copy)]
 struct State {
     middle: Middle,
@@ -164,8 +164,8 @@ impl State {
         self.hessian[0].abs() + self.hessian[2].abs() + 2.0 * self.hessian[1].abs() + f64::MIN_POSITIVE
     }
 
-    /// The damped Newton step, at most one unit long, and whether it is an undamped one. Where the curvature is negative
-    /// it is damped enough to go downhill.
+    /// The damped Newton step, at most one unit long, and whether it is an undamped one. Where the curvature is
+    /// negative it is damped enough to go downhill.
     fn step(&self, damping: f64) -> (Point, bool) {
         let [xx, xy, yy] = self.hessian;
         let min = 0.5 * (xx + yy) - libm::hypot(0.5 * (xx - yy), xy);

@@ -5,8 +5,8 @@ use super::chart::{Centre, Chart, Point, farthest};
 /// The centre of the minimum circumscribed circle of points in their local frame.
 ///
 /// Pivoting as Gaertner does for Welzl's algorithm (Fast and robust smallest enclosing balls, 1999): the point farthest
-/// outside joins those that hold the circle, and the smallest circle around these four at most is found by trying all pairs
-/// and triples. The radius grows each time, so that this ends; it takes a handful of passes over the points.
+/// outside joins those that hold the circle, and the smallest circle around these four at most is found by trying all
+/// pairs and triples. The radius grows each time, so that this ends; it takes a handful of passes over the points.
 pub(super) fn minimum_circumscribed(points: &[Point]) -> Point {
     let mut support = vec![farthest::<Centre>(&[0.0, 0.0], points).0];
     let (mut centre, mut radius) = (support[0], 0.0);

@@ -8,12 +8,12 @@
 //! | MIC, [`maximum_inscribed`] | of the largest circle with no point in it, inside the convex hull | that circle's |
 //! | MCC, [`minimum_circumscribed`] | of the smallest circle around all points | that circle's |
 //!
-//! The circularity is always the largest less the smallest distance of the points from the centre (eq. 28, 32); eq. 31 of
-//! the paper has a plus under its root. Points may be in any unit of length; results are in the same.
+//! The circularity is always the largest less the smallest distance of the points from the centre (eq. 28, 32); eq. 31
+//! of the paper has a plus under its root. Points may be in any unit of length; results are in the same.
 //!
-//! The last three are global optima: what is found is within `1e-12` of the optimum, or within rounding, some `1e-15` of
-//! the extent of the points, where that is more. [`least_squares`] says what it promises. All are computed relative to
-//! the middle of the points, so that a place far from the origin costs no digits.
+//! The last three are global optima: what is found is within `1e-12` of the optimum, or within rounding, some `1e-15`
+//! of the extent of the points, where that is more. [`least_squares`] says what it promises. All are computed relative
+//! to the middle of the points, so that a place far from the origin costs no digits.
 //!
 //! ```
 //! use stead_assessment::circle::{maximum_inscribed, minimum_circumscribed};
@@ -64,8 +64,8 @@ pub struct Circle {
 pub struct Fit {
     /// The reference circle.
     pub circle: Circle,
-    /// Largest less smallest distance of the points from the centre (eq. 28), with more digits than the difference of the
-    /// two below.
+    /// Largest less smallest distance of the points from the centre (eq. 28), with more digits than the difference of
+    /// the two below.
     pub circularity: f64,
     /// Smallest distance of a point from the centre (eq. 32).
     pub smallest: f64,
@@ -104,8 +104,8 @@ pub enum CircleError {
     /// All points lie on one straight line, but for the rounding of their coordinates.
     #[error("all points lie on one straight line")]
     Collinear,
-    /// The best circle has a radius beyond all bounds: a straight line (LSC) or two parallel ones (MZC) fit no worse than
-    /// any circle.
+    /// The best circle has a radius beyond all bounds: a straight line (LSC) or two parallel ones (MZC) fit no worse
+    /// than any circle.
     #[error("a straight line fits these points as well as any circle")]
     Straight,
 }
@@ -116,16 +116,16 @@ pub enum CircleError {
 /// better in it. Points on a short arc may have their centre far away.
 ///
 /// # Errors
-/// [`CircleError`]; [`CircleError::Straight`] where two parallel lines enclose the points at least as closely as any two
-/// concentric circles.
+/// [`CircleError`]; [`CircleError::Straight`] where two parallel lines enclose the points at least as closely as any
+/// two concentric circles.
 pub fn minimum_zone(points: &[[f64; 2]]) -> Result<Fit, CircleError> {
     let frame = Frame::new(points)?;
     let local = frame.localise(points);
     Ok(frame.fit(mzc::minimum_zone(&local, &Hull::new(&local), &[])?, points, Radius::Middle))
 }
 
-/// The maximum inscribed circle: of all circles that hold no point inside and have their centre in the convex hull of the
-/// points, the largest. About a measured round that is the largest disc that fits into the profile.
+/// The maximum inscribed circle: of all circles that hold no point inside and have their centre in the convex hull of
+/// the points, the largest. About a measured round that is the largest disc that fits into the profile.
 ///
 /// # Errors
 /// [`CircleError`], never [`CircleError::Straight`].

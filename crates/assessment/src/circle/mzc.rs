@@ -12,7 +12,8 @@ const NEAR: f64 = 1.0 / Far::MAX;
 /// unit.
 const ROUNDING: [f64; 2] = [1e-12, 8.0 * f64::EPSILON];
 
-/// The centre of the minimum zone circles of points in their local frame; starts are guesses at it, besides their middle.
+/// The centre of the minimum zone circles of points in their local frame; starts are guesses at it, besides their
+/// middle.
 pub(super) fn minimum_zone(points: &[Point], hull: &Hull, starts: &[Point]) -> Result<Middle, CircleError> {
     let width = |start: &Point| {
         let at = Centre::at(*start);

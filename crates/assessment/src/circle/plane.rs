@@ -18,8 +18,8 @@ pub struct FittedPlane {
     pub center: Vector3<f64>,
     /// Unit normal, its largest component positive: z of the plane's frame.
     pub normal: Vector3<f64>,
-    /// x axis of the plane's frame: the x axis of the points' frame projected onto the plane, or their y axis where x is
-    /// within some 26 deg of the normal.
+    /// x axis of the plane's frame: the x axis of the points' frame projected onto the plane, or their y axis where x
+    /// is within some 26 deg of the normal.
     pub x_axis: Vector3<f64>,
     /// y axis of the plane's frame, `normal x x_axis`.
     pub y_axis: Vector3<f64>,

@@ -1,11 +1,11 @@
 //! The global search for a centre: branch and bound with cutting planes.
 //!
 //! Sought is the centre with the smallest *objective*: the reach of the farthest point less that of the nearest for the
-//! minimum zone, and less the distance of the nearest alone for the maximum inscribed circle. A cell is a convex polygon of
-//! centres and the points that may be farthest or nearest somewhere in it. Seen from its centroid, farthest and nearest
-//! point give a plane that the objective exceeds everywhere in the cell, but for a bound on the bending that shrinks with
-//! the square of the size. Where the plane is above the best objective known, the cell is cut off; where that takes away too
-//! little it is split. What is left in the end is nothing, which proves the best one best.
+//! minimum zone, and less the distance of the nearest alone for the maximum inscribed circle. A cell is a convex
+//! polygon of centres and the points that may be farthest or nearest somewhere in it. Seen from its centroid, farthest
+//! and nearest point give a plane that the objective exceeds everywhere in the cell, but for a bound on the bending
+//! that shrinks with the square of the size. Where the plane is above the best objective known, the cell is cut off;
+//! where that takes away too little it is split. What is left in the end is nothing, which proves the best one best.
 
 use super::chart::{Chart, Point, farthest, nearest};
 use super::hull::Hull;
@@ -63,7 +63,8 @@ struct View {
 }
 
 impl CentreSearch<'_> {
-    /// The best centre in a rectangle of chart coordinates, if it is better than `known`, which is a bound on the objective.
+    /// The best centre in a rectangle of chart coordinates, if it is better than `known`, which is a bound on the
+    /// objective.
     pub fn best<C: Chart>(&self, from: Point, to: Point, known: f64) -> Option<BestCentre> {
         let mut best = BestCentre { coordinates: from, objective: known };
         let lists = Lists { outer: self.outer.to_vec(), inner: self.inner.to_vec(), size: f64::INFINITY };
@@ -120,8 +121,8 @@ impl CentreSearch<'_> {
     }
 }
 
-/// Cuts a polygon of centres at the edge of the hull that faces a place, if the place is outside, and says whether it is
-/// inside.
+/// Cuts a polygon of centres at the edge of the hull that faces a place, if the place is outside, and says whether it
+/// is inside.
 fn confine(hull: &Hull, place: Point, polygon: &mut Polygon) -> bool {
     let (corner, along) = hull.facing(place);
     let outward = [along[1], -along[0]];

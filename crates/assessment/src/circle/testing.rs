@@ -111,8 +111,8 @@ pub(super) fn edges(points: &[[f64; 2]]) -> Vec<([f64; 2], f64)> {
     lines
 }
 
-/// Smallest zone, smallest circumscribed and largest inscribed radius from all centres that can be any of them. The zone
-/// may also be one between parallel lines.
+/// Smallest zone, smallest circumscribed and largest inscribed radius from all centres that can be any of them. The
+/// zone may also be one between parallel lines.
 pub(super) fn brute_force(points: &[[f64; 2]]) -> [f64; 3] {
     let (lines, edges) = (bisectors(points), edges(points));
     let mut centres = Vec::new();

@@ -31,8 +31,8 @@ fn zone_circumscribed_and_inscribed_are_the_best_of_all_candidates() {
 
 #[test]
 fn points_of_a_square_grid_are_no_harder() {
-    // Cuts through corners of a cell, along its sides and its diagonals are exact for such points, and leave cells without
-    // any area.
+    // Cuts through corners of a cell, along its sides and its diagonals are exact for such points, and leave cells
+    // without any area.
     let fixed: [&[[f64; 2]]; 2] = [
         &[[0.0, 2.0], [2.0, 0.0], [1.0, 1.0], [2.0, 2.0]],
         &[[5.0, 0.0], [3.0, 4.0], [0.0, 5.0], [1.0, 4.0], [4.0, 4.0], [4.0, 2.0], [5.0, 1.0], [1.0, 5.0]],

@@ -16,7 +16,8 @@ struct Command {
     iterations: usize,
 }
 
-/// Corrects one point and executes it, without and with the correction; a point that cannot be corrected is executed as it is.
+/// Corrects one point and executes it, without and with the correction; a point that cannot be corrected is executed as
+/// it is.
 pub(super) fn compensated(job: &CompensationProblem, point: &PathPoint) -> CompensatedPoint {
     let target = &point.base_from_tool;
     // The joint angles of the plan are those of the target but for rounding.
@@ -41,7 +42,8 @@ pub(super) fn compensated(job: &CompensationProblem, point: &PathPoint) -> Compe
     }
 }
 
-/// Where the loaded tool of the arm that stands for reality rests for commanded joint angles (rad), seen from the target.
+/// Where the loaded tool of the arm that stands for reality rests for commanded joint angles (rad), seen from the
+/// target.
 fn deflection(job: &CompensationProblem, point: &PathPoint, joints: &[f64; 6]) -> Result<Deflection, PointError> {
     let rest = rest(job, &job.reality, DeflectionModel::Equilibrium, point, joints)
         .map_err(|NoEquilibrium { share }| PointError::RealityUnstable { share })?;

@@ -1,19 +1,19 @@
 //! Offline compensation of deflections: the path to command so that the loaded tool follows its target path.
 //!
-//! Under a wrench the tool comes to rest beside the pose that was commanded. For every point of a plan, [`compensate`] looks
-//! for the commanded pose t* at which the loaded tool rests at the target t_0 (Klimchik et al. 2017, eq. 26),
-//! `t_0 = f(t*)`, by the iteration of eq. 27, `t* <- t* + alpha (t_0 - f(t*))`. Errors of orientation are corrected with
-//! those of position, as rotation vectors. f is given by the [`DeflectionModel`]; the wrench keeps its directions in space, and
-//! posture and turns are those of the plan.
+//! Under a wrench the tool comes to rest beside the pose that was commanded. For every point of a plan, [`compensate`]
+//! looks for the commanded pose t* at which the loaded tool rests at the target t_0 (Klimchik et al. 2017, eq. 26),
+//! `t_0 = f(t*)`, by the iteration of eq. 27, `t* <- t* + alpha (t_0 - f(t*))`. Errors of orientation are corrected
+//! with those of position, as rotation vectors. f is given by the [`DeflectionModel`]; the wrench keeps its directions
+//! in space, and posture and turns are those of the plan.
 //!
-//! A correction is about as large as the deflection, and over so small a way the deflection hardly changes: with `alpha = 1`
-//! each iteration takes another factor of about deflection over arm length off the error. A smaller alpha leaves
-//! `1 - alpha` of the error each time, which a very soft arm may need. An iteration that does not converge is never taken for
-//! a correction: such a point keeps its target, with the reason.
+//! A correction is about as large as the deflection, and over so small a way the deflection hardly changes: with
+//! `alpha = 1` each iteration takes another factor of about deflection over arm length off the error. A smaller alpha
+//! leaves `1 - alpha` of the error each time, which a very soft arm may need. An iteration that does not converge is
+//! never taken for a correction: such a point keeps its target, with the reason.
 //!
-//! Then the commands are executed in simulation: on the same arm, or on another one of the same geometry, which stands for
-//! reality. There the arm always comes to rest in its exact static equilibrium. The remaining error is the share of the
-//! deflection that the model does not predict.
+//! Then the commands are executed in simulation: on the same arm, or on another one of the same geometry, which stands
+//! for reality. There the arm always comes to rest in its exact static equilibrium. The remaining error is the share of
+//! the deflection that the model does not predict.
 
 mod iteration;
 mod outcome;
@@ -26,7 +26,9 @@ pub use stead_numerics::mean_max::MeanAndMax;
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::{Pose, Posture, Robot, Spindle};
+use stead_numerics::monitor::{Monitor, Progress, Stop};
 
 /// Inputs of a compensation. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,8 +76,8 @@ pub enum DeflectionModel {
 /// Settings of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Alpha of eq. 27: the share of the error that one iteration corrects, above 0. Up to 1 the corrections approach the
-    /// solution from one side; beyond they overshoot, and from 2 on they cannot converge.
+    /// Alpha of eq. 27: the share of the error that one iteration corrects, above 0. Up to 1 the corrections approach
+    /// the solution from one side; beyond they overshoot, and from 2 on they cannot converge.
     pub alpha: f64,
     /// An error of position up to this counts as none. m
     pub tolerance: f64,
@@ -100,11 +102,22 @@ impl Default for Settings {
     }
 }
 
-/// Corrects every point of a path that can be, and executes the commands in simulation; a point that cannot be corrected keeps its
-/// target as its command, with the reason. [`CompensatedPath::complete`] asks for all of them. The result does not depend on the number of
-/// threads.
-pub fn compensate(job: &CompensationProblem) -> CompensatedPath {
-    CompensatedPath::new(job.points.par_iter().map(|point| iteration::compensated(job, point)).collect())
+/// Corrects every point of a path that can be, and executes the commands in simulation; a point that cannot be
+/// corrected keeps its target as its command, with the reason. [`CompensatedPath::complete`] asks for all of them. The
+/// result does not depend on the number of threads.
+///
+/// # Errors
+/// [`Stop`] when `monitor` asked to stop before the last point: a path that is corrected up to somewhere is of no use.
+pub fn compensate(job: &CompensationProblem, monitor: &Monitor) -> Result<CompensatedPath, Stop> {
+    let (done, total) = (AtomicUsize::new(0), job.points.len());
+    let compensated = |point: &PathPoint| {
+        monitor.go_on()?;
+        let compensated = iteration::compensated(job, point);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        monitor.report(Progress::Steps { stage: "correcting points", done, total });
+        Ok(compensated)
+    };
+    Ok(CompensatedPath::new(job.points.par_iter().map(compensated).collect::<Result<_, _>>()?))
 }
 
 /// The first row entry in which two arms have another geometry.

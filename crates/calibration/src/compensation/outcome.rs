@@ -1,4 +1,5 @@
-//! Results of a compensation: corrected points with their remaining errors, or the points that cannot be corrected and why.
+//! Results of a compensation: corrected points with their remaining errors, or the points that cannot be corrected and
+//! why.
 
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -33,7 +34,8 @@ pub struct CompensatedPoint {
     pub correction: Displacement<f64>,
     /// The joint angles of the command, in the posture and turns of the plan and within the limits. rad
     pub joints: [f64; 6],
-    /// Deflection in reality with the target commanded; none where the arm of reality has no equilibrium under the load.
+    /// Deflection in reality with the target commanded; none where the arm of reality has no equilibrium under the
+    /// load.
     pub before: Option<Deflection>,
     /// Deflection in reality with the command, likewise.
     pub after: Option<Deflection>,

@@ -6,6 +6,11 @@ use stead_model::robot::testing::{kr270, odd_arms, spindle};
 use stead_model::stiffness::equilibrium::{Load, displaced, equilibrium};
 use stead_numerics::rotation::rotation_vector;
 
+/// The path of a job that nobody stops.
+fn compensate(job: &CompensationProblem) -> CompensatedPath {
+    super::compensate(job, &Monitor::silent()).unwrap()
+}
+
 /// The station at which an arm stands with joint angles `theta`, under a wrench.
 fn path_point(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> PathPoint {
     let [fx, fy, fz, mx, my, mz] = wrench;
@@ -297,4 +302,23 @@ fn another_geometry_is_found_and_other_compliances_and_limits_are_not() {
     joints[3].d = 1.101;
     let other = other_geometry(&robot, &Robot::new("x", joints).unwrap()).unwrap();
     assert_eq!((other.joint, other.field, other.expected, other.found), (4, "d", 1.1, 1.101));
+}
+
+#[test]
+fn a_stop_before_or_during_the_job_leaves_no_path() {
+    let robot = kr270();
+    let job = job(&robot, &robot, vec![path_point(&robot, &MIDDLE, CUT); 20]);
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    assert_eq!(super::compensate(&job, &stopped), Err(Stop::Asked));
+    // Stopped by its own first report, which says how far it is.
+    let handle = stead_numerics::monitor::StopHandle::default();
+    let stop = handle.clone();
+    let watch = move |progress: &Progress| {
+        assert!(matches!(progress, Progress::Steps { stage: "correcting points", done: 1..20, total: 20 }));
+        stop.stop();
+    };
+    let during = Monitor::new(watch).with_stop(handle);
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    assert_eq!(alone.install(|| super::compensate(&job, &during)), Err(Stop::Asked));
 }

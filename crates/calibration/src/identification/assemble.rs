@@ -48,9 +48,9 @@ struct FittedArm {
 }
 
 impl Assembly<'_> {
-    /// All of it, with the law of the varying joint fitted; warnings are left to be added. `dropped` are the unidentifiable
-    /// parameters that are not free. A spring that is not identifiable is left out, and the rest kept: its joint then has one
-    /// compliance for all angles.
+    /// All of it, with the law of the varying joint fitted; warnings are left to be added. `dropped` are the
+    /// unidentifiable parameters that are not free. A spring that is not identifiable is left out, and the rest kept:
+    /// its joint then has one compliance for all angles.
     pub fn assemble(self, dropped: Vec<Parameter>) -> Result<Identified, IdentifyError> {
         let (sheet, layout, robust) = (&self.problem.sheet, self.layout, &self.robust);
         let law = self.problem.varying.map_or(Law::Constant, |(_, law)| law);
@@ -107,10 +107,10 @@ impl Assembly<'_> {
     }
 
     fn held(&self, dropped: Vec<Parameter>) -> Vec<Held> {
-        let asked = (0..6).filter(|joint| self.problem.hold[*joint]).map(Parameter::Joint);
-        let asked = asked.map(|parameter| Held { parameter, reason: HeldReason::Asked });
+        let requested = (0..6).filter(|joint| self.problem.hold[*joint]).map(Parameter::Joint);
+        let requested = requested.map(|parameter| Held { parameter, reason: HeldReason::Asked });
         let dropped = dropped.into_iter();
-        asked.chain(dropped.map(|parameter| Held { parameter, reason: HeldReason::Unidentifiable })).collect()
+        requested.chain(dropped.map(|parameter| Held { parameter, reason: HeldReason::Unidentifiable })).collect()
     }
 
     fn compliances(&self, variance: f64, width: f64) -> Vec<Estimate<Parameter>> {
@@ -203,8 +203,8 @@ impl Assembly<'_> {
         self.problem.sheet.readings.iter().enumerate().map(row).collect()
     }
 
-    /// F test of the law of the varying joint against one compliance for each angle: the probability of so large an increase of the
-    /// residuals under a right law.
+    /// F test of the law of the varying joint against one compliance for each angle: the probability of so large an
+    /// increase of the residuals under a right law.
     fn law_probability(&self, law: Law, arm: &ArmFit) -> Option<f64> {
         self.problem.varying?;
         let unknowns = match law {

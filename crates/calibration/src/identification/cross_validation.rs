@@ -1,7 +1,7 @@
 //! How well the arm's numbers predict a configuration that was left out.
 //!
-//! For least squares the residuals of a configuration without which the estimate was made are `(I - H)^-1 e`, with its ordinary
-//! residuals e and its block H of the hat matrix, so that nothing is estimated again.
+//! For least squares the residuals of a configuration without which the estimate was made are `(I - H)^-1 e`, with its
+//! ordinary residuals e and its block H of the hat matrix, so that nothing is estimated again.
 
 use super::law::{ArmFit, ArmParameter};
 use super::model::{Layout, Observation};
@@ -12,7 +12,8 @@ use serde::Serialize;
 /// The error of predicted deflections, each from all other configurations.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
-    /// Root of the mean square of a component, for equations of unit variance; over all configurations that the others predict.
+    /// Root of the mean square of a component, for equations of unit variance; over all configurations that the others
+    /// predict.
     pub rms: f64,
     /// The worst configuration and its root mean square.
     pub worst: Option<(usize, f64)>,

@@ -1,9 +1,9 @@
 //! The arm in one configuration under its load: how far it deflects, and how that changes with the compliances.
 //!
-//! At small loads the deflection is linear in the compliances. At 10 mm that is off by as much as half a percent, at 30 mm by two, since the
-//! load turns its own levers; so the arm is taken to its exact static equilibrium, `theta - theta_0 = C tau(theta)` with the
-//! diagonal matrix C of the compliances and tau = J^T w. From there `d theta = (1 - C H)^-1 diag(tau) dc`, with H the derivative of
-//! the torques by the angles ([`load_hessian`]).
+//! At small loads the deflection is linear in the compliances. At 10 mm that is off by as much as half a percent, at 30
+//! mm by two, since the load turns its own levers; so the arm is taken to its exact static equilibrium,
+//! `theta - theta_0 = C tau(theta)` with the diagonal matrix C of the compliances and tau = J^T w. From there
+//! `d theta = (1 - C H)^-1 diag(tau) dc`, with H the derivative of the torques by the angles ([`load_hessian`]).
 
 use super::response::{Response, torque};
 use super::sheet::Configuration;
@@ -36,7 +36,8 @@ struct Rest {
 }
 
 impl<'a> Deflected<'a> {
-    /// An arm with these compliances (rad/(N m)) and a load at a point of the flange frame (m), its deflection linear in both.
+    /// An arm with these compliances (rad/(N m)) and a load at a point of the flange frame (m), its deflection linear
+    /// in both.
     pub fn linear(
         robot: &Robot,
         compliances: Vector6<f64>,

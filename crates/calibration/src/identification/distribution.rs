@@ -2,8 +2,8 @@
 
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-/// Half the width of the 95 % interval of an estimate in its standard deviations: Student's t where the noise is estimated
-/// with so many degrees of freedom, normal where it is known.
+/// Half the width of the 95 % interval of an estimate in its standard deviations: Student's t where the noise is
+/// estimated with so many degrees of freedom, normal where it is known.
 pub fn half_width(degrees: Option<usize>) -> f64 {
     const UPPER: f64 = 0.975;
     let student = degrees.and_then(|degrees| StudentsT::new(0.0, 1.0, degrees as f64).ok());

@@ -1,5 +1,5 @@
-//! The equations of a sheet about the arm as it rests under its loads, which depends on the compliances that are sought: Gauss-Newton
-//! on the exact static equilibria.
+//! The equations of a sheet about the arm as it rests under its loads, which depends on the compliances that are
+//! sought: Gauss-Newton on the exact static equilibria.
 
 use super::error::IdentifyError;
 use super::model::{Layout, Noise, Observation, ObservationModel};
@@ -8,6 +8,7 @@ use super::outliers::{OutlierSearch, ROUNDING, RobustEstimate};
 use super::problem::Problem;
 use super::setup::Setup;
 use nalgebra::Vector6;
+use stead_numerics::monitor::Monitor;
 
 /// What all equations of an identification have in common.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +25,8 @@ pub(super) struct Equilibria<'a> {
     pub hold: [bool; 6],
     /// Standard deviations by which the equations are divided.
     pub noise: Noise,
+    /// Who may stop it.
+    pub monitor: &'a Monitor,
 }
 
 /// Equations about the arm that they describe.
@@ -31,8 +34,8 @@ pub(super) struct Equilibria<'a> {
 pub(super) struct Settled {
     /// The equations.
     pub observations: Vec<Observation>,
-    /// Configurations (from 0) whose equations do not describe the arm at rest: it gives way there with the compliances found, or the
-    /// equations did not settle.
+    /// Configurations (from 0) whose equations do not describe the arm at rest: it gives way there with the compliances
+    /// found, or the equations did not settle.
     pub not_at_rest: Vec<usize>,
 }
 
@@ -42,15 +45,16 @@ const STEPS: usize = 12;
 const SAME: f64 = 1e-12;
 
 impl Equilibria<'_> {
-    /// The equations about the arm with the compliances of a solution, and the configurations in which it would give way.
+    /// The equations about the arm with the compliances of a solution, and the configurations in which it would give
+    /// way.
     pub fn about(&self, setup: &Setup, solution: &Solution) -> (Vec<Observation>, Vec<usize>) {
         let Problem { robot, sheet, load_point, .. } = self.problem;
         let compliances = |configuration| solution.compliances(self.layout.varying, self.layout.group(configuration));
         ObservationModel { robot, sheet, setup, load_point, noise: self.noise, hold: self.hold }.about(compliances)
     }
 
-    /// From equations about another arm to those about the arm that they describe, by the readings that are kept. Where these do not
-    /// determine it, the equations are left as they are.
+    /// From equations about another arm to those about the arm that they describe, by the readings that are kept. Where
+    /// these do not determine it, or when `monitor` asked to stop, the equations are left as they are.
     pub fn settled(&self, setup: &Setup, mut observations: Vec<Observation>, kept: &[bool]) -> Settled {
         let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
         let mut not_at_rest = Vec::new();
@@ -62,7 +66,7 @@ impl Equilibria<'_> {
             let (next, given_way) = self.about(setup, &solution);
             let apart = self.apart(&observations, &next, &solution);
             (observations, not_at_rest) = (next, given_way);
-            if apart.is_empty() {
+            if apart.is_empty() || self.monitor.should_stop() {
                 return Settled { observations, not_at_rest };
             }
             not_at_rest.extend(apart);

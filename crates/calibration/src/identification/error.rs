@@ -5,6 +5,7 @@ use super::model::Layout;
 use super::normal_equations::Unidentifiable;
 use super::setup::SetupError;
 use stead_model::robot::RobotError;
+use stead_numerics::monitor::Stop;
 
 /// Why nothing can be identified.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -78,6 +79,9 @@ pub enum IdentifyError {
         /// Its standard deviation. urad/(N m)
         deviation_urad: f64,
     },
+    /// The caller asked to stop.
+    #[error("{0}")]
+    Stopped(#[from] Stop),
     /// The identified arm is refused, as where the compensator makes a joint give way inside its limits.
     #[error("the identified arm is none: {0}")]
     Robot(#[from] RobotError),
@@ -172,9 +176,11 @@ impl IdentifyError {
             Self::Law(LawError::TooFewAngles { joint, .. } | LawError::Unidentifiable { joint }) => {
                 fault(None, &format!("theta{joint}_deg"), "three or more distinct angles, wide apart")
             }
-            Self::Law(LawError::NoSpring { .. }) | Self::NotPositive { .. } | Self::NothingFree | Self::Robot(_) => {
-                None
-            }
+            Self::Law(LawError::NoSpring { .. })
+            | Self::NotPositive { .. }
+            | Self::NothingFree
+            | Self::Stopped(_)
+            | Self::Robot(_) => None,
         }
     }
 }

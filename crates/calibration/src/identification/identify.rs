@@ -13,6 +13,7 @@ use super::setup::{Setup, check, estimate};
 use super::warnings::warnings;
 use nalgebra::Vector6;
 use stead_model::robot::Pose;
+use stead_numerics::monitor::{Monitor, Progress};
 
 /// Largest ratio of a deflection to the one predicted by the starting arm.
 const FAR: f64 = 50.0;
@@ -21,26 +22,35 @@ const ROUNDS: usize = 4;
 
 /// Identifies the compliances of an arm.
 ///
-/// The equations are linear about the arm as it rests under its loads, and are made anew with its new compliances until they
-/// predict every reading as its static equilibrium does. Outliers are left out of the deflections and then of the setup too, until
-/// both agree. Noise that is not stated is estimated from the residuals; a deflection is the difference of two readings and has
-/// twice their variance.
+/// The equations are linear about the arm as it rests under its loads, and are made anew with its new compliances until
+/// they predict every reading as its static equilibrium does. Outliers are left out of the deflections and then of the
+/// setup too, until both agree. Noise that is not stated is estimated from the residuals; a deflection is the
+/// difference of two readings and has twice their variance.
 ///
 /// # Errors
-/// [`IdentifyError`] when they are not identifiable from the sheet.
-pub fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
-    let (mut identified, load_point) = fitted(problem)?;
+/// [`IdentifyError`] when they are not identifiable from the sheet, or when `monitor` asked to stop.
+pub fn identify(problem: &Problem, monitor: &Monitor) -> Result<Identified, IdentifyError> {
+    let (mut identified, load_point) = fitted(problem, "fitting the arm", monitor)?;
     identified.warnings = warnings(problem, &identified);
-    let doubt = load_point.and_then(|test| doubted(problem, &identified, test, |moved| fitted(moved).ok()));
+    let moved = |moved: &Problem| fitted(moved, "load elsewhere", monitor).ok();
+    let doubt = load_point.and_then(|test| doubted(problem, &identified, test, moved));
+    // What was found of the load point by then is no answer.
+    monitor.go_on()?;
     identified.warnings.extend(doubt);
     Ok(identified)
 }
 
-/// All of it but the warnings, and the test of the load point.
-fn fitted(problem: &Problem) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
+/// All of it but the warnings, and the test of the load point; reported as a stage.
+fn fitted(
+    problem: &Problem,
+    stage: &'static str,
+    monitor: &Monitor,
+) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
+    monitor.go_on()?;
+    let round_done = |done: usize| monitor.report(Progress::Steps { stage, done, total: 1 + ROUNDS });
     if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
         // The joint keeps the law that it has in the starting arm: there is none to fit.
-        return fitted(&Problem { varying: None, ..problem.clone() });
+        return fitted(&Problem { varying: None, ..problem.clone() }, stage, monitor);
     }
     let sheet = &problem.sheet;
     let layout = Layout::new(sheet, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
@@ -56,14 +66,17 @@ fn fitted(problem: &Problem) -> Result<(Identified, Option<LoadPointTest>), Iden
     let (free, dropped) = free_parameters(problem, &layout, &unloaded)?;
     if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
         // Identifiable at no angle: then its law is not either, and the joint keeps the one it has.
-        return fitted(&Problem { varying: None, ..problem.clone() });
+        return fitted(&Problem { varying: None, ..problem.clone() }, stage, monitor);
     }
     // A joint that is given up is held like one that is to be: at the angle of each configuration.
     let hold = std::array::from_fn(|joint| problem.hold[joint] || dropped.contains(&Parameter::Joint(joint)));
-    let equilibria = Equilibria { problem, layout: &layout, free: &free, held: (&held.0, &held.1), hold, noise };
+    let equilibria =
+        Equilibria { problem, layout: &layout, free: &free, held: (&held.0, &held.1), hold, noise, monitor };
     let mut settled = equilibria.settled(&setup, unloaded, &kept);
+    monitor.go_on()?;
     let mut robust = equilibria.robust_estimate(&settled.observations)?;
-    for _ in 0..ROUNDS {
+    for round in 1..=ROUNDS {
+        round_done(round);
         if robust.kept == kept {
             break;
         }
@@ -75,8 +88,11 @@ fn fitted(problem: &Problem) -> Result<(Identified, Option<LoadPointTest>), Iden
         setup = estimate(sheet, &flanges, &used, Some(&setup.tracker_from_base.rotation))?;
         let (about, _) = equilibria.about(&setup, &robust.solution);
         settled = equilibria.settled(&setup, about, &kept);
+        monitor.go_on()?;
         robust = equilibria.robust_estimate(&settled.observations)?;
     }
+    monitor.go_on()?;
+    round_done(1 + ROUNDS);
     let fit = check(sheet, &flanges, &used, &setup)?;
     let load_point = tested(&equilibria, &setup, &settled.observations, &robust);
     let assembly = Assembly {

@@ -1,10 +1,10 @@
-//! From the compliances at distinct angles to the parameters of the arm: one constant compliance for each joint, or compliance,
-//! spring stiffness and free length where a compensator acts on a joint.
+//! From the compliances at distinct angles to the parameters of the arm: one constant compliance for each joint, or
+//! compliance, spring stiffness and free length where a compensator acts on a joint.
 //!
 //! The compliances at the distinct angles of a joint become stiffnesses, which are linear in (K_theta, K_GC, s_0 K_GC)
-//! (Klimchik et al. 2017, eq. 21 and 22, with the sign of its eq. 14 corrected), weighted by their covariance. From there
-//! Gauss-Newton on the compliances themselves, together with those of the other joints, gives the least sum of squares over
-//! all readings: the errors are normal in the compliances, not in their inverses.
+//! (Klimchik et al. 2017, eq. 21 and 22, with the sign of its eq. 14 corrected), weighted by their covariance. From
+//! there Gauss-Newton on the compliances themselves, together with those of the other joints, gives the least sum of
+//! squares over all readings: the errors are normal in the compliances, not in their inverses.
 
 use super::normal_equations::{NormalEquations, Solution};
 use super::spring::{Geometry, scaled_inverse, spring_start};
@@ -105,8 +105,8 @@ pub enum LawError {
 
 const STEPS: usize = 60;
 
-/// Fits the parameters of the arm to the normal equations. `joints` says which joints are free, `by_angle` is the estimate with one
-/// compliance for each distinct angle, at `angles` in rad.
+/// Fits the parameters of the arm to the normal equations. `joints` says which joints are free, `by_angle` is the
+/// estimate with one compliance for each distinct angle, at `angles` in rad.
 ///
 /// # Errors
 /// [`LawError`] where the law is a spring that is not identifiable from the angles.

@@ -1,7 +1,7 @@
 //! Whether the readings agree with where the load is said to act.
 //!
-//! A wrong load point scales the levers of the wrist, and least squares takes that for other compliances: their intervals do not show it.
-//! What of it the compliances cannot take up stays in the residuals, and is tested for.
+//! A wrong load point scales the levers of the wrist, and least squares takes that for other compliances: their
+//! intervals do not show it. What of it the compliances cannot take up stays in the residuals, and is tested for.
 
 use super::distribution::tail;
 use super::equilibria::Equilibria;
@@ -32,7 +32,8 @@ const UNSEEN: f64 = 1e-8;
 /// Gauss-Newton steps to the place by the readings, and the last one worth taking. m
 const STEPS: (usize, f64) = (8, 1e-5);
 
-/// Tests the load point that a problem states, about the arm of an estimate; nothing where there are too few readings for it.
+/// Tests the load point that a problem states, about the arm of an estimate; nothing where there are too few readings
+/// for it.
 pub(super) fn tested(
     equilibria: &Equilibria<'_>,
     setup: &Setup,
@@ -98,7 +99,8 @@ fn unexplained(
     Some(changed.iter().zip(&sheet.readings).map(left).collect())
 }
 
-/// A warning where the readings contradict the place stated: where they have the load, and what that does to the compliances.
+/// A warning where the readings contradict the place stated: where they have the load, and what that does to the
+/// compliances.
 pub(super) fn doubted(
     problem: &Problem,
     found: &Identified,
@@ -134,7 +136,8 @@ pub(super) fn doubted(
             let changes =
                 if changes.is_empty() { String::new() } else { format!(", and there {}", changes.join(", ")) };
             format!(
-                "the deflections contradict load_point_mm = {stated}: they agree best with a load at {}, with a residual of {:.4} mm rms \
+                "the deflections contradict load_point_mm = {stated}: they agree best with a load at {}, with a \
+                 residual of {:.4} mm rms \
                  in place of {:.4} mm{changes}: measure where the load acts",
                 millimetres(&moved.load_point),
                 there.residual_rms * 1e3,
@@ -142,7 +145,8 @@ pub(super) fn doubted(
             )
         }
         None => format!(
-            "the deflections contradict load_point_mm = {stated}, and other loads than at a point nearby too: check load_point_mm, the \
+            "the deflections contradict load_point_mm = {stated}, and other loads than at a point nearby too: check \
+             load_point_mm, the \
              wrench columns and the names of the points"
         ),
     };

@@ -1,19 +1,21 @@
 //! From measurements to joint compliances, with their uncertainty (Klimchik et al. 2017, section 3.2).
 //!
-//! Makers publish no stiffness. It is identified by loading the arm at known joint angles with a known wrench and measuring the
-//! displacement of some reference points. [`identify`] takes such a [`Sheet`] through these steps:
+//! Makers publish no stiffness. It is identified by loading the arm at known joint angles with a known wrench and
+//! measuring the displacement of some reference points. [`identify`] takes such a [`Sheet`] through these steps:
 //!
 //! 1. [`setup`]: poses of tracker and reference points, from the unloaded readings alone (eq. 24);
-//! 2. [`model`], [`response`]: deflections as linear functions of the compliances (eq. 16, 20) about the arm as it rests under
-//!    its loads ([`deflected`]), the joint beside a compensator having one for each distinct angle;
+//! 2. [`model`], [`response`]: deflections as linear functions of the compliances (eq. 16, 20) about the arm as it
+//!    rests under its loads ([`deflected`]), the joint beside a compensator having one for each distinct angle;
 //! 3. [`normal_equations`]: least squares with covariance (eq. 18, 19, 23), and which parameters are identifiable;
 //! 4. [`outliers`]: a robust estimate, and readings that deviate from the others by more than noise;
-//! 5. [`law`]: from the compliances at distinct angles to joint stiffness, spring stiffness and free length (eq. 21, 22);
+//! 5. [`law`]: from the compliances at distinct angles to joint stiffness, spring stiffness and free length (eq. 21,
+//!    22);
 //! 6. [`cross_validation`]: the error of predicting a configuration that was left out;
-//! 7. whether the readings agree with where the load is said to act, and their residuals with the scatter of the unloaded ones.
+//! 7. whether the readings agree with where the load is said to act, and their residuals with the scatter of the
+//!    unloaded ones.
 //!
-//! Nothing is regularised: unidentifiable compliances are refused by name, or on request held at their value in the starting
-//! robot. [`design`] chooses the measurements.
+//! Nothing is regularised: unidentifiable compliances are refused by name, or on request held at their value in the
+//! starting robot. [`design`] chooses the measurements.
 
 mod assemble;
 pub mod cross_validation;

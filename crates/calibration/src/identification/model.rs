@@ -1,7 +1,8 @@
-//! The observation model: the readings of a sheet as equations linear in the joint compliances (Klimchik et al. 2017, eq. 20, 23).
+//! The observation model: the readings of a sheet as equations linear in the joint compliances (Klimchik et al. 2017,
+//! eq. 20, 23).
 //!
-//! Where a compensator stands beside a joint, that joint has one compliance for each distinct angle: a [`Layout`] says which
-//! configurations share one.
+//! Where a compensator stands beside a joint, that joint has one compliance for each distinct angle: a [`Layout`] says
+//! which configurations share one.
 
 use super::deflected::Deflected;
 use super::setup::Setup;
@@ -31,7 +32,8 @@ pub enum Parameter {
 }
 
 impl Layout {
-    /// The layout for a sheet; angles of the varying joint within `tolerance` (rad) of the smallest of their group are one.
+    /// The layout for a sheet; angles of the varying joint within `tolerance` (rad) of the smallest of their group are
+    /// one.
     pub fn new(sheet: &Sheet, varying: Option<usize>, tolerance: f64) -> Self {
         let Some(joint) = varying else {
             return Self { varying, angles: vec![], group_of: vec![] };
@@ -118,24 +120,24 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// What deflections (per m) and rotations (per rad) are multiplied by to have unit variance: they are differences of two
-    /// readings, so that their variance is twice that of one.
+    /// What deflections (per m) and rotations (per rad) are multiplied by to have unit variance: they are differences
+    /// of two readings, so that their variance is twice that of one.
     pub fn weights(&self) -> (f64, f64) {
         let weight = |deviation: f64| 1.0 / (libm::sqrt(2.0) * deviation);
         (weight(self.position), weight(self.orientation))
     }
 }
 
-/// One reading as equations of unit variance: `deflection = design * compliances + error`. Rows 3 to 5 are zero in sheets
-/// without orientations.
+/// One reading as equations of unit variance: `deflection = design * compliances + error`. Rows 3 to 5 are zero in
+/// sheets without orientations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// Design matrix: columns are the six joints, those of held joints zero.
     pub design: Matrix6<f64>,
     /// Deflection read, less what is known of it.
     pub deflection: Vector6<f64>,
-    /// What the compliances that are sought do not change: the deflection by the held joints, with the compliances of the starting arm at
-    /// the angles of the configuration, and what is not linear in the others.
+    /// What the compliances that are sought do not change: the deflection by the held joints, with the compliances of
+    /// the starting arm at the angles of the configuration, and what is not linear in the others.
     pub known: Vector6<f64>,
 }
 
@@ -166,8 +168,9 @@ impl ObservationModel<'_> {
         self.sheet.configurations.iter().flat_map(|c| self.equations(c, &deflected(c))).collect()
     }
 
-    /// The equations of all readings linearised about the arm as it rests with these compliances (rad/(N m)), a function of the
-    /// configuration (from 0); and the configurations in which it would give way, whose equations are those for small deflections.
+    /// The equations of all readings linearised about the arm as it rests with these compliances (rad/(N m)), a
+    /// function of the configuration (from 0); and the configurations in which it would give way, whose equations are
+    /// those for small deflections.
     pub fn about(&self, compliances: impl Fn(usize) -> Vector6<f64>) -> (Vec<Observation>, Vec<usize>) {
         let mut observations = Vec::with_capacity(self.sheet.readings.len());
         let mut given_way = Vec::new();

@@ -187,8 +187,8 @@ impl NormalEquations {
         dependent.map(name).collect()
     }
 
-    /// The identifiable parameters among those that are not held, and every unidentifiable combination: of each the first
-    /// parameter is taken out until the others are identifiable.
+    /// The identifiable parameters among those that are not held, and every unidentifiable combination: of each the
+    /// first parameter is taken out until the others are identifiable.
     pub fn identifiable(&self, hold: [bool; 6]) -> (FreeParameters, Vec<Unidentifiable>) {
         let mut free = self.free_unless(hold);
         let mut all: Vec<Unidentifiable> = Vec::new();

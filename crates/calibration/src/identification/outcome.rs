@@ -100,8 +100,8 @@ pub struct Identified {
     pub law_probability: Option<f64>,
     /// Error of predicted deflections, for a configuration that was left out. Component; m
     pub prediction: Prediction,
-    /// Why the spring beside the varying joint is not in the arm, where it was asked for and is not identifiable: then the joint has
-    /// one compliance for all its angles.
+    /// Why the spring beside the varying joint is not in the arm, where it was requested and is not identifiable: then
+    /// the joint has one compliance for all its angles.
     pub spring_fault: Option<String>,
     /// Configurations (from 0) in which the arm found would give way under its load, or whose equations did not settle.
     pub not_at_rest: Vec<usize>,

@@ -1,9 +1,10 @@
 //! Robust estimation: readings that deviate from the others by more than noise.
 //!
-//! A first estimate that outliers hardly move (Huber's weights, then Tukey's bisquare, both by iterated least squares with the
-//! median of the residuals as scale) tells which readings to leave out at first. Then the ordinary estimate from the others judges
-//! every reading by its studentised residual, as often as that changes something: one that was left out comes back if it
-//! agrees. A reading is an outlier where so large a residual would turn up by chance in one sheet of a hundred.
+//! A first estimate that outliers hardly move (Huber's weights, then Tukey's bisquare, both by iterated least squares
+//! with the median of the residuals as scale) tells which readings to leave out at first. Then the ordinary estimate
+//! from the others judges every reading by its studentised residual, as often as that changes something: one that was
+//! left out comes back if it agrees. A reading is an outlier where so large a residual would turn up by chance in one
+//! sheet of a hundred.
 
 use super::distribution::tail;
 use super::model::{Layout, Observation};

@@ -1,9 +1,9 @@
 //! Pose of the tracker and positions of the reference points, from the unloaded readings alone.
 //!
 //! Reading i of point p in configuration j is `R (R_j p_i + o_j) + t`, with the flange at (R_j, o_j) by the forward
-//! kinematics and the tracker at (R, t). Given R it is linear in t and the points: their least-squares estimate is the mean of
-//! `R_j^T dp` (Klimchik et al. 2017, eq. 24, where `D^T D` is the identity). Here R is sought along with them: Gauss-Newton
-//! with steps halved until they help, to the least sum of squares over all of them.
+//! kinematics and the tracker at (R, t). Given R it is linear in t and the points: their least-squares estimate is the
+//! mean of `R_j^T dp` (Klimchik et al. 2017, eq. 24, where `D^T D` is the identity). Here R is sought along with them:
+//! Gauss-Newton with steps halved until they help, to the least sum of squares over all of them.
 
 use super::sheet::Sheet;
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
@@ -75,10 +75,11 @@ pub struct SetupFit {
     pub others_rms: f64,
     /// Root of the mean square distance of the flange from its mean place. m
     pub flange_rms: f64,
-    /// For each reference point the standard deviation of its place on the flange, in the direction in which it is largest,
-    /// with the residuals taken for noise. m
+    /// For each reference point the standard deviation of its place on the flange, in the direction in which it is
+    /// largest, with the residuals taken for noise. m
     pub point_deviations: Vec<f64>,
-    /// Standard deviation of a coordinate by the residuals, which it is at most: they have the errors of the kinematics too. m
+    /// Standard deviation of a coordinate by the residuals, which it is at most: they have the errors of the kinematics
+    /// too. m
     pub noise: f64,
     /// Coordinates less unknowns.
     pub degrees: usize,
@@ -86,7 +87,8 @@ pub struct SetupFit {
 
 /// Configurations that a start is sought from; more would not make it better.
 const START: usize = 60;
-/// Readings and flange may spread over lengths that differ by this factor: a reference point turns about the flange too.
+/// Readings and flange may spread over lengths that differ by this factor: a reference point turns about the flange
+/// too.
 const SPREAD: f64 = 30.0;
 /// Unloaded readings that are farther off than this share of the flange's spread do not belong to the joint angles.
 const MISFIT: f64 = 0.02;
@@ -143,7 +145,8 @@ pub fn estimate(
 /// How well a setup fits the unloaded readings for which `used` holds.
 ///
 /// # Errors
-/// [`SetupError::Misfit`] where it does not: joint angles, zero positions, axes or units are others than the robot file's.
+/// [`SetupError::Misfit`] where it does not: joint angles, zero positions, axes or units are others than the robot
+/// file's.
 pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup) -> Result<SetupFit, SetupError> {
     let all: Vec<usize> = (0..sheet.readings.len()).filter(|index| used[*index]).collect();
     let whole = SetupProblem::new(sheet, flanges, &all);
@@ -175,7 +178,8 @@ pub fn check(sheet: &Sheet, flanges: &[Pose<f64>], used: &[bool], setup: &Setup)
     Ok(SetupFit { worst, others_rms, flange_rms, point_deviations, noise: libm::sqrt(variance), degrees })
 }
 
-/// The unknowns. Readings and flange origins count from their centres, so that `shift` and `rotation` are hardly coupled.
+/// The unknowns. Readings and flange origins count from their centres, so that `shift` and `rotation` are hardly
+/// coupled.
 #[derive(Debug, Clone)]
 struct Unknowns {
     rotation: Matrix3<f64>,

@@ -76,8 +76,8 @@ pub const COLUMNS: &str = "configuration,theta1_deg,theta2_deg,theta3_deg,theta4
                            unloaded_x_mm,unloaded_y_mm,unloaded_z_mm,loaded_x_mm,loaded_y_mm,loaded_z_mm";
 
 impl Sheet {
-    /// The sheet as CSV with [`COLUMNS`]: so many decimals of places in mm, all digits of angles and wrench; names must have no
-    /// comma or quote in them. Orientations are left out.
+    /// The sheet as CSV with [`COLUMNS`]: so many decimals of places in mm, all digits of angles and wrench; names must
+    /// have no comma or quote in them. Orientations are left out.
     pub fn csv(&self, decimals: usize) -> String {
         self.text(|reading| {
             let read = reading.unloaded.iter().chain(&reading.loaded);

@@ -16,7 +16,8 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Stiffness of the joint per (K_theta, K_GC, s_0 K_GC) at an angle in rad (Klimchik et al. 2017, eq. 22, corrected).
+    /// Stiffness of the joint per (K_theta, K_GC, s_0 K_GC) at an angle in rad (Klimchik et al. 2017, eq. 22,
+    /// corrected).
     pub fn row(&self, angle: f64) -> Vector3<f64> {
         let (sine, cosine) = libm::sincos(angle + self.alpha);
         let product = self.a * self.l;

@@ -20,7 +20,8 @@ const MISFIT: f64 = 2e-3;
 const LOOSE: f64 = 1e-3;
 /// A reading so many times as far off as the others is not like them.
 const FAR: f64 = 6.0;
-/// Compliances so many times those of the robot file, up or down, by their median: rather another unit than another arm.
+/// Compliances so many times those of the robot file, up or down, by their median: rather another unit than another
+/// arm.
 const SCALE: f64 = 5.0;
 /// The stated noise is doubted where the residuals are outside this range of it.
 const NOISE_RATIO: std::ops::Range<f64> = 0.8..1.25;
@@ -190,8 +191,9 @@ fn misfit(result: &Identified) -> Option<Warning> {
         && tail(ratio * ratio, result.degrees_of_freedom.max(1), fit.degrees) < MISFIT_PROBABILITY;
     is_doubted.then(|| {
         let message = format!(
-            "the deflections scatter about those of the arm found as if one reading had {:.4} mm of noise, {ratio:.1} times as much as \
-             the unloaded readings show: load point, wrenches or the model are off, and the intervals do not cover that",
+            "the deflections scatter about those of the arm found as if one reading had {:.4} mm of noise, {ratio:.1} \
+             times as much as the unloaded readings show: load point, wrenches or the model are off, and the intervals do \
+             not cover that",
             result.noise * 1e3
         );
         Warning::new("residual-misfit", message)

@@ -1,7 +1,7 @@
 //! Convex solids, and their distance by GJK.
 //!
-//! A capsule is a segment with a radius: GJK ends after a few steps on a segment, where it would creep along the round surface. On
-//! cylinders it ends within 0.01 mm of the distance.
+//! A capsule is a segment with a radius: GJK ends after a few steps on a segment, where it would creep along the round
+//! surface. On cylinders it ends within 0.01 mm of the distance.
 
 use super::vector;
 use crate::solid::Solid;
@@ -44,8 +44,8 @@ impl SupportMap for Hull {
     }
 }
 
-/// The corners of the hull of points and, of many points, others on it or near it; all points where the library forms no hull that contains
-/// them: the hull is the same, only more is looked at.
+/// The corners of the hull of points and, of many points, others on it or near it; all points where the library forms
+/// no hull that contains them: the hull is the same, only more is looked at.
 fn corners(points: Vec<Vector>) -> Vec<Vector> {
     // A corrupt mesh must not end the program: the library asserts that its links are right.
     let formed = || if points.len() <= MOST_AT_ONCE { formed(&points) } else { outermost(&points) };
@@ -61,8 +61,8 @@ fn formed(points: &[Vector]) -> Option<Vec<Vector>> {
     points.iter().all(is_inside).then(|| hull.points().to_vec())
 }
 
-/// Points without those that are in the hull of a few of them, in a time that grows with their number: the hull of the outermost ones along
-/// some directions, and of those that are farthest from the faces of that hull, and so on.
+/// Points without those that are in the hull of a few of them, in a time that grows with their number: the hull of the
+/// outermost ones along some directions, and of those that are farthest from the faces of that hull, and so on.
 fn outermost(points: &[Vector]) -> Option<Vec<Vector>> {
     let size = Aabb::from_points(points.iter().copied()).half_extents().length();
     let mut chosen: Vec<usize> = Vec::new();
@@ -84,7 +84,8 @@ fn outermost(points: &[Vector]) -> Option<Vec<Vector>> {
             Some((normal, normal.dot(a)))
         });
         let planes: Vec<(Vector, f64)> = planes.collect();
-        // A hull that is as much larger that its nearest face is so much farther out sticks out by no more than the tolerance.
+        // A hull that is as much larger that its nearest face is so much farther out sticks out by no more than the
+        // tolerance.
         let inner = planes.iter().map(|(normal, offset)| offset - normal.dot(centre)).fold(f64::INFINITY, f64::min);
         if !inner.is_finite() || inner < FLAT * size {
             return None;
@@ -132,8 +133,8 @@ const MOST_CORNERS: usize = 200;
 const ROUNDING: f64 = 1e-9;
 
 impl Convex {
-    /// A solid that is not a mesh, and the pose of the library's form of it, whose cylinders stand along y; `None` where a mesh
-    /// has no vertex.
+    /// A solid that is not a mesh, and the pose of the library's form of it, whose cylinders stand along y; `None`
+    /// where a mesh has no vertex.
     pub fn new(solid: &Solid) -> Option<(Self, ParryPose)> {
         let plain = |core: Core| Some((Self { core, radius: 0.0 }, ParryPose::IDENTITY));
         match solid {
@@ -159,8 +160,9 @@ impl Convex {
         Self { core: Core::Hull(Arc::new(Hull { points })), radius }
     }
 
-    /// What contains all points for certain: their hull and a little more, since its corners may be off by rounding; of so many points
-    /// that their hull may take longer than what it saves, the box around them. `None` where there is none.
+    /// What contains all points for certain: their hull and a little more, since its corners may be off by rounding; of
+    /// so many points that their hull may take longer than what it saves, the box around them. `None` where there is
+    /// none.
     pub fn around(points: Vec<Vector>) -> Option<Self> {
         if points.is_empty() {
             return None;
@@ -211,16 +213,16 @@ impl Convex {
         (BoundingSphere::new(sphere.center, sphere.radius + self.radius), bounds)
     }
 
-    /// The distance of another convex solid at a pose, where it is below `limit`, else a value not below that, zero where they touch; and
-    /// the direction from one to the other.
+    /// The distance of another convex solid at a pose, where it is below `limit`, else a value not below that, zero
+    /// where they touch; and the direction from one to the other.
     pub fn distance(&self, pose: &ParryPose, other: &Self, limit: f64) -> (f64, Option<Vector>) {
         let around = self.radius + other.radius;
         let (distance, axis) = core_distance(self.core(), pose, other.core(), limit + around);
         ((distance - around).max(0.0), axis)
     }
 
-    /// How far away another convex solid at a pose is, and the nearest points of the two cores in this one's frame; `None` where it is
-    /// not below `limit`, or they touch.
+    /// How far away another convex solid at a pose is, and the nearest points of the two cores in this one's frame;
+    /// `None` where it is not below `limit`, or they touch.
     pub fn nearest(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(f64, [Vector; 2])> {
         let around = self.radius + other.radius;
         let points = nearest_core_points(self.core(), pose, other.core(), limit + around)?;
@@ -234,8 +236,8 @@ impl Convex {
     }
 }
 
-/// The nearest points of two cores, the second at a pose in the frame of the first, in that frame; `None` where they are not nearer than
-/// `limit`, or touch.
+/// The nearest points of two cores, the second at a pose in the frame of the first, in that frame; `None` where they
+/// are not nearer than `limit`, or touch.
 pub fn nearest_core_points(
     a: &dyn SupportMap,
     pose: &ParryPose,
@@ -249,7 +251,8 @@ pub fn nearest_core_points(
     }
 }
 
-/// The distance of two cores, the second at a pose in the frame of the first, where it is below `limit`; else a value not below that.
+/// The distance of two cores, the second at a pose in the frame of the first, where it is below `limit`; else a value
+/// not below that.
 pub fn core_distance(a: &dyn SupportMap, pose: &ParryPose, b: &dyn SupportMap, limit: f64) -> (f64, Option<Vector>) {
     // The search ends as soon as the two are known to be farther apart.
     let simplex = &mut VoronoiSimplex::new();
@@ -273,7 +276,8 @@ mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
-    /// Points in a ball or on it, as scans and finely meshed parts have them: with the square of their number it would take an hour.
+    /// Points in a ball or on it, as scans and finely meshed parts have them: with the square of their number it would
+    /// take an hour.
     #[test]
     fn the_hull_of_very_many_points_is_theirs() {
         let mut random = ChaCha8Rng::seed_from_u64(30);

@@ -1,8 +1,8 @@
 //! Meshes of triangles, and their distance from other solids.
 //!
-//! A mesh is descended through its tree of boxes with the distance of each triangle from the other solid, so that a distance costs
-//! hardly more than an intersection; two meshes through the trees of both: the library's own distance of meshes does not prune both
-//! sides.
+//! A mesh is descended through its tree of boxes with the distance of each triangle from the other solid, so that a
+//! distance costs hardly more than an intersection; two meshes through the trees of both: the library's own distance of
+//! meshes does not prune both sides.
 
 use super::convex::{Convex, core_distance, nearest_core_points};
 use super::tree::{MARGIN, Tree};
@@ -36,7 +36,8 @@ struct Part {
     is_hollow: bool,
 }
 
-/// A distance from the hull and one from the mesh that differ by no more are one: what rounding and GJK on round surfaces make of them. m
+/// A distance from the hull and one from the mesh that differ by no more are one: what rounding and GJK on round
+/// surfaces make of them. m
 const SAME: f64 = 5e-6;
 
 /// What is held against a mesh, in the frame of the mesh.
@@ -65,7 +66,8 @@ impl Mesh {
     pub fn new(mesh: &TriangleMesh) -> Option<Self> {
         let vertices: Vec<Vector> = mesh.vertices().iter().map(vector).collect();
         let formed = |flags: TriMeshFlags| TriMesh::with_flags(vertices.clone(), mesh.triangles().to_vec(), flags).ok();
-        // What is inside of a closed surface is told by the normals of its edges and vertices; of several, of each by itself.
+        // What is inside of a closed surface is told by the normals of its edges and vertices; of several, of each by
+        // itself.
         let hull = Convex::around(vertices.clone())?;
         let of = |triangles: TriMesh, solids: Option<Vec<Part>>, is_closed: bool| {
             let tree = Tree::new(&triangles.triangles().collect::<Vec<Triangle>>());
@@ -86,8 +88,8 @@ impl Mesh {
         self.hull.extent(direction)
     }
 
-    /// The distance of a convex solid at a pose, where it is below `limit`; else a value not below that. The direction from one to the
-    /// other, where the hull of the mesh is as far away.
+    /// The distance of a convex solid at a pose, where it is below `limit`; else a value not below that. The direction
+    /// from one to the other, where the hull of the mesh is as far away.
     pub fn distance(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> (f64, Option<Vector>) {
         unless_by_hulls(self.hull.distance(pose, solid, limit), limit, || self.distance_to_convex(pose, solid, limit))
     }
@@ -98,8 +100,8 @@ impl Mesh {
         if distance > 0.0 && self.is_inside(other.sphere.center) { 0.0 } else { distance }
     }
 
-    /// How far away a convex solid at a pose is, and the nearest points of the mesh and of its core in the frame of the mesh; `None` where
-    /// it is not below `limit`, or they touch.
+    /// How far away a convex solid at a pose is, and the nearest points of the mesh and of its core in the frame of the
+    /// mesh; `None` where it is not below `limit`, or they touch.
     pub fn nearest(&self, pose: &ParryPose, solid: &Convex, limit: f64) -> Option<(f64, [Vector; 2])> {
         let other = Other::convex(solid, pose);
         let found = self.nearest_triangle(&other, limit)?;
@@ -124,13 +126,13 @@ impl Mesh {
         })
     }
 
-    /// The numbers of the triangles of this mesh and of the other that are nearest to each other, and their distance, where that is below
-    /// `limit`, a positive number; the first that touch, where any do.
+    /// The numbers of the triangles of this mesh and of the other that are nearest to each other, and their distance,
+    /// where that is below `limit`, a positive number; the first that touch, where any do.
     fn nearest_triangles(&self, pose: &ParryPose, other: &Self, limit: f64) -> Option<(u32, u32, f64)> {
         let from_mesh = pose.inverse();
         self.tree.nearest(pose, &other.tree, limit, |on_self, on_other, known| {
             let [own, others] = [self.triangles.triangle(on_self), other.triangles.triangle(on_other)];
-            // Most pairs are told apart by a direction that is easily found.
+            // Most pairs are distinguished by a direction that is easily found.
             let gap = gap_of_triangles(own.vertices(), &others.vertices().map(|vertex| pose * vertex));
             if gap >= known { gap } else { core_distance(&others, &from_mesh, &own, known).0 }
         })
@@ -196,7 +198,8 @@ impl Part {
     }
 }
 
-/// The closed surfaces of a mesh. One that faces inwards is a hollow where it lies in one that faces outwards; else the file has turned it.
+/// The closed surfaces of a mesh. One that faces inwards is a hollow where it lies in one that faces outwards; else the
+/// file has turned it.
 fn parts(mesh: &TriangleMesh) -> Option<Vec<Part>> {
     let read = |triangles: &Vec<[u32; 3]>| {
         let mut corners: Vec<u32> = triangles.iter().flatten().copied().collect();
@@ -230,8 +233,8 @@ fn parts(mesh: &TriangleMesh) -> Option<Vec<Part>> {
     )
 }
 
-/// The distance and direction of two hulls where that is enough; else the distance of what is in them, with that direction where it is as
-/// large.
+/// The distance and direction of two hulls where that is enough; else the distance of what is in them, with that
+/// direction where it is as large.
 fn unless_by_hulls(
     (apart, axis): (f64, Option<Vector>),
     limit: f64,

@@ -1,8 +1,10 @@
 //! Distances between solids: the one adapter around the library of shapes (parry3d).
 //!
-//! Convex pairs are decided by GJK (`convex`); meshes by their trees of boxes (`mesh`), two of them by both trees at once (`tree`).
+//! Convex pairs are decided by GJK (`convex`); meshes by their trees of boxes (`mesh`), two of them by both trees at
+//! once (`tree`).
 //!
-//! The orientation goes to the library as a unit quaternion, so distances agree with the matrices of the arm to about 1e-12 m.
+//! The orientation goes to the library as a unit quaternion, so distances agree with the matrices of the arm to about
+//! 1e-12 m.
 
 mod convex;
 mod mesh;
@@ -49,9 +51,10 @@ fn parry_pose(pose: &Pose<f64>) -> ParryPose {
 /// How far two solids are apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation {
-    /// Their distance where it is below the limit asked for; else a value not below that; zero where they touch. m
+    /// Their distance where it is below the limit requested; else a value not below that; zero where they touch. m
     pub distance: f64,
-    /// The direction from the first to the second along which they are so far apart, in the common frame; `None` where it is not known.
+    /// The direction from the first to the second along which they are so far apart, in the common frame; `None` where
+    /// it is not known.
     pub axis: Option<Vector3<f64>>,
 }
 
@@ -77,8 +80,8 @@ impl Collider {
         })
     }
 
-    /// The distance of two solids whose attachments stand at poses in one frame, where it is below `limit`; else a value not below
-    /// that; zero where they touch. m
+    /// The distance of two solids whose attachments stand at poses in one frame, where it is below `limit`; else a
+    /// value not below that; zero where they touch. m
     pub fn distance(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, limit: f64) -> f64 {
         self.separation(at, other, other_at, limit).distance
     }
@@ -118,8 +121,8 @@ impl Collider {
         Some(Nearest { distance, points })
     }
 
-    /// How far two solids are apart along a direction, a unit vector in the common frame from the first to the second: never more than
-    /// their distance. m
+    /// How far two solids are apart along a direction, a unit vector in the common frame from the first to the second:
+    /// never more than their distance. m
     pub fn gap(&self, at: &Pose<f64>, other: &Self, other_at: &Pose<f64>, axis: &Vector3<f64>) -> f64 {
         -self.extent(at, axis) - other.extent(other_at, &-axis)
     }
@@ -290,8 +293,8 @@ mod tests {
             }
         }
 
-        /// A mesh that is not convex is as far from a solid as the nearer of the boxes that make it up, and its nearest points are that
-        /// far apart.
+        /// A mesh that is not convex is as far from a solid as the nearer of the boxes that make it up, and its nearest
+        /// points are that far apart.
         #[test]
         fn a_mesh_with_a_notch_is_as_far_away_as_its_parts(
             place in prop::array::uniform3(-0.5..2.5_f64), turn in prop::array::uniform3(-3.0..3.0_f64), limit in 0.05..2.0_f64

@@ -1,4 +1,5 @@
-//! Trees of boxes over the triangles of meshes, and the search of two of them at once for the triangles that are nearest.
+//! Trees of boxes over the triangles of meshes, and the search of two of them at once for the triangles that are
+//! nearest.
 
 use parry3d_f64::math::{Matrix, Pose as ParryPose, Vector};
 use parry3d_f64::shape::Triangle;
@@ -31,7 +32,7 @@ enum Within {
 /// By what boxes and spheres are larger, so that rounding does not make boxes part whose triangles touch. m
 pub const MARGIN: f64 = 1e-9;
 
-/// Where the second of two meshes stands in the frame of the first.
+/// Pose of the second of two meshes in the frame of the first.
 struct Between {
     rotation: Matrix,
     inverse: Matrix,
@@ -47,8 +48,8 @@ impl Between {
         Self { rotation, inverse, translation: pose.translation, magnitudes: [rotation.abs(), inverse.abs()] }
     }
 
-    /// What the triangles of two nodes are apart at the least: by the boxes, each within a box along the axes of the other, and by the
-    /// spheres. m
+    /// What the triangles of two nodes are apart at the least: by the boxes, each within a box along the axes of the
+    /// other, and by the spheres. m
     fn bound(&self, a: &Node, b: &Node) -> f64 {
         let apart = self.rotation * b.centre + self.translation - a.centre;
         let in_first = apart.abs() - a.half - self.magnitudes[0] * b.half;
@@ -91,9 +92,10 @@ impl Tree {
         }
     }
 
-    /// The numbers of a triangle of this mesh and of one of another at a pose, and how far they are apart, where no two are nearer and
-    /// that is below `limit`, a positive number; the first two found that touch, where any do. `distance` tells that of two triangles
-    /// where it is below the limit that it is told; else a value not below that.
+    /// The numbers of a triangle of this mesh and of one of another at a pose, and how far they are apart, where no two
+    /// are nearer and that is below `limit`, a positive number; the first two found that touch, where any do.
+    /// `distance` returns that of two triangles where it is below the limit that it is given; else a value not below
+    /// that.
     pub fn nearest(
         &self,
         pose: &ParryPose,

@@ -54,7 +54,7 @@ impl Scene {
                 // Spheres for what is on the arm, the box for what stands.
                 let (a, b) = if moves_more(bodies[a].frame, bodies[b].frame) { (a, b) } else { (b, a) };
                 let name = |body: usize| surroundings.shapes()[body].name.clone();
-                let reach = reach(robot, (bodies[a].frame, &bodies[a].cover), (bodies[b].frame, &bodies[b].cover));
+                let reach = reach(robot, bodies[a].frame, &bodies[a].cover, bodies[b].frame, &bodies[b].cover);
                 pairs.push(Pair {
                     names: Arc::new([name(a), name(b)]),
                     kind,
@@ -101,8 +101,8 @@ impl Scene {
         self.in_every_posture(|number, poses| !self.keeps_apart(number, poses))
     }
 
-    /// Pairs that depend on the joints alone and are nearer to each other than a distance (m) in every posture tried: parts that move
-    /// along with each other, as a link and the one after next.
+    /// Pairs that depend on the joints alone and are nearer to each other than a distance (m) in every posture tried:
+    /// parts that move along with each other, as a link and the one after next.
     pub fn always_near(&self, distance: f64) -> Vec<[String; 2]> {
         self.in_every_posture(|number, poses| self.distance(number, poses, distance) < distance)
     }
@@ -129,7 +129,8 @@ impl Scene {
     }
 }
 
-/// What the distance of two shapes depends on; `None` where nothing moves them against each other, and for neighbouring links.
+/// What the distance of two shapes depends on; `None` where nothing moves them against each other, and for neighbouring
+/// links.
 fn pair_kind(a: &Shape, b: &Shape) -> Option<PairKind> {
     use Attachment::{Axis, Base, Flange, Link, Workpiece};
     let (a, b) = (a.attached, b.attached);
@@ -165,14 +166,14 @@ pub(super) fn on_arm(frame: usize) -> usize {
 }
 
 /// By how much two bodies can come nearer for each radian of a joint.
-fn reach(robot: &Robot, (a, cover_a): (usize, &Cover), (b, cover_b): (usize, &Cover)) -> [f64; 6] {
+fn reach(robot: &Robot, a: usize, cover_a: &Cover, b: usize, cover_b: &Cover) -> [f64; 6] {
     let (a, b, cover) =
         if on_arm(a) > on_arm(b) { (on_arm(b), on_arm(a), cover_a) } else { (on_arm(a), on_arm(b), cover_b) };
     travel(robot, a, b, cover.farthest())
 }
 
-/// How far a point of frame `to`, not farther than `beyond` (m) from its origin, moves against frame `from` for each radian of the
-/// joints: not farther from an axis than all that lies between. m
+/// How far a point of frame `to`, not farther than `beyond` (m) from its origin, moves against frame `from` for each
+/// radian of the joints: not farther from an axis than all that lies between. m
 fn travel(robot: &Robot, from: usize, to: usize, beyond: f64) -> [f64; 6] {
     std::array::from_fn(|j| {
         let joint = j + 1;

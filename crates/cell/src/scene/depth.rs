@@ -12,7 +12,8 @@ const DOUBLINGS: usize = 23;
 const TURNS: [f64; 5] = [0.35, 0.18, 0.09, 0.045, 0.022];
 
 impl Scene {
-    /// As [`Scene::clearance`], and of several pairs that touch the one that is deepest in each other beyond what it has to keep.
+    /// As [`Scene::clearance`], and of several pairs that touch the one that is deepest in each other beyond what it
+    /// has to keep.
     pub fn deepest(&self, poses: &Poses, kinds: &[PairKind]) -> Option<Clearance> {
         let least = self.clearance(poses, kinds)?;
         if least.distance > 0.0 {
@@ -25,7 +26,8 @@ impl Scene {
         deepest.map(|(_, pair)| Clearance { distance: 0.0, pair })
     }
 
-    /// About how far a pair that touches has to be moved until it does not: the shortest shift found over directions all round. m
+    /// About how far a pair that touches has to be moved until it does not: the shortest shift found over directions
+    /// all round. m
     fn depth(&self, number: usize, poses: &Poses) -> f64 {
         let parts = |shift: Vector3<f64>| match self.pairs[number].members {
             Members::Bodies(a, b) => {

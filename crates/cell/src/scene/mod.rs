@@ -46,7 +46,8 @@ impl Poses {
         Self { frames }
     }
 
-    /// The flange and the workpiece at poses in one frame (m), for pairs of these two alone: all else is left at the origin.
+    /// The flange and the workpiece at poses in one frame (m), for pairs of these two alone: all else is left at the
+    /// origin.
     pub fn of_tool(base_from_flange: &Pose<f64>, base_from_workpiece: &Pose<f64>) -> Self {
         let mut frames = [Pose::identity(); FRAMES];
         frames[6] = *base_from_flange;
@@ -135,8 +136,8 @@ impl Body {
     }
 }
 
-/// How far a point can be moved by a turn from one orientation to another, per metre from its centre: the largest singular value of the
-/// difference.
+/// How far a point can be moved by a turn from one orientation to another, per metre from its centre: the largest
+/// singular value of the difference.
 fn largest_move(before: &Matrix3<f64>, after: &Matrix3<f64>) -> f64 {
     (after - before).norm() * FRAC_1_SQRT_2
 }
@@ -151,8 +152,8 @@ pub struct Pair {
     /// The distance that they have to keep. m
     pub required: f64,
     members: Members,
-    /// Whether turning joints 4 and 6 by half a turn and joint 5 to the other side, which leaves the tool where it is, changes the
-    /// distance: something is attached to link 4 or 5.
+    /// Whether turning joints 4 and 6 by half a turn and joint 5 to the other side, which leaves the tool where it is,
+    /// changes the distance: something is attached to link 4 or 5.
     pub knows_flips: bool,
     /// By how much the two can come nearer for each radian of a joint, at the most. m
     reach: [f64; 6],
@@ -208,7 +209,7 @@ impl PartialEq for Scene {
     }
 }
 
-/// Distances above this are not told apart. m
+/// Distances above this are not distinguished. m
 pub const FAR: f64 = 1.0;
 
 impl Scene {
@@ -275,7 +276,8 @@ impl Scene {
         distance <= 0.0 && matches!(self.pairs[number].members, Members::Bodies(..))
     }
 
-    /// A lower bound of the distance of a pair by its covers, where it is below `enough`; else a value not below that. m
+    /// A lower bound of the distance of a pair by its covers, where it is below `enough`; else a value not below that.
+    /// m
     fn bound(&self, pair: &Pair, poses: &Poses, enough: f64) -> f64 {
         match pair.members {
             Members::Bodies(a, b) => {
@@ -316,7 +318,8 @@ impl Scene {
         }
     }
 
-    /// The pair of some kinds with the least room beyond what it has to keep; `None` where there is no pair nearer than [`FAR`].
+    /// The pair of some kinds with the least room beyond what it has to keep; `None` where there is no pair nearer than
+    /// [`FAR`].
     pub fn clearance(&self, poses: &Poses, kinds: &[PairKind]) -> Option<Clearance> {
         let mut bounds: Vec<(f64, usize)> = self
             .of_kinds(kinds)

@@ -1,10 +1,11 @@
 //! Joint motions: whether all pairs keep apart all along.
 //!
-//! Two bodies keep apart on a whole interval where the room that they have at both ends together is not less than what they can move
-//! towards each other in between. That has two bounds: no point of a body moves faster than its reach times the speeds of the joints;
-//! and none is farther from the straight line between its places at both ends than its acceleration takes it, an eighth of the most that
-//! it can be, so that short motions count hardly more than what they lead to. Where neither decides, the interval is halved. In the end
-//! nothing moves farther between two states looked at than the resolution, and both states keep nine tenths of the distance asked for.
+//! Two bodies keep apart on a whole interval where the room that they have at both ends together is not less than what
+//! they can move towards each other in between. That has two bounds: no point of a body moves faster than its reach
+//! times the speeds of the joints; and none is farther from the straight line between its places at both ends than its
+//! acceleration takes it, an eighth of the most that it can be, so that short motions count hardly more than what they
+//! lead to. Where neither decides, the interval is halved. In the end nothing moves farther between two states looked
+//! at than the resolution, and both states keep nine tenths of the distance requested.
 
 use super::build::on_arm;
 use super::quick::Quick;
@@ -22,11 +23,11 @@ pub struct MotionHit {
     pub pair: usize,
 }
 
-/// The share of the clearance that has to be left between the ends of a motion: where both ends have just what is asked for, a straight
-/// motion between them comes a little nearer.
+/// The share of the clearance that has to be left between the ends of a motion: where both ends have just what is
+/// requested, a straight motion between them comes a little nearer.
 const BETWEEN: f64 = 0.9;
 
-/// The resolution where no clearance is asked for, and at the finest. m
+/// The resolution where no clearance is requested, and at the finest. m
 const FINEST: f64 = 5e-4;
 
 /// What a frame that is not on the arm does in a motion: it turns evenly about an axis and moves evenly along it.
@@ -94,7 +95,8 @@ struct OpenPair {
     rooms: [f64; 2],
 }
 
-/// A motion: straight in the joints, all else turning and moving evenly about and along an axis from one pose to another.
+/// A motion: straight in the joints, all else turning and moving evenly about and along an axis from one pose to
+/// another.
 struct Motion<'a> {
     from: (&'a [f64; 6], &'a Poses),
     to: (&'a [f64; 6], &'a Poses),
@@ -130,9 +132,9 @@ impl<'a> Motion<'a> {
 }
 
 impl Scene {
-    /// The first state found at which a motion, straight in the joints (rad), brings a pair nearer than nine tenths of what it has to
-    /// keep; `None` where all pairs keep apart all along. Each end has its joint angles and where all stands there. Pairs that do not
-    /// move against each other are not looked at.
+    /// The first state found at which a motion, straight in the joints (rad), brings a pair nearer than nine tenths of
+    /// what it has to keep; `None` where all pairs keep apart all along. Each end has its joint angles and where all
+    /// stands there. Pairs that do not move against each other are not looked at.
     pub fn motion(&self, from: (&[f64; 6], &Poses), to: (&[f64; 6], &Poses)) -> Option<MotionHit> {
         let quick = Quick::new(self, from.1);
         self.motion_unless(|number, travel| quick.leaves(self, &self.pairs[number], travel), from, to)
@@ -206,7 +208,8 @@ impl Scene {
         None
     }
 
-    /// How far the two of a pair can move towards each other between two states of a motion that are a share of it apart. m
+    /// How far the two of a pair can move towards each other between two states of a motion that are a share of it
+    /// apart. m
     fn approach(&self, pair: &OpenPair, ends: [&Poses; 2], share: f64) -> f64 {
         let by_joints = pair.by_joints * share;
         let Members::Bodies(a, b) = self.pairs[pair.number].members else { return by_joints };
@@ -214,8 +217,8 @@ impl Scene {
         by_joints.min(moved + pair.bend * share * share / 4.0)
     }
 
-    /// The most that the points of a pair are accelerated against each other, per square of the motion's duration; nothing for zones,
-    /// whose travel is bounded by the joints alone. m
+    /// The most that the points of a pair are accelerated against each other, per square of the motion's duration;
+    /// nothing for zones, whose travel is bounded by the joints alone. m
     fn bend(&self, number: usize, motion: &Motion<'_>) -> f64 {
         let Members::Bodies(a, b) = self.pairs[number].members else { return 0.0 };
         let of = |body: usize| {
@@ -236,8 +239,8 @@ impl Scene {
         self.pairs[number].required * BETWEEN
     }
 
-    /// The room of a pair beyond the distance that it has to keep between the ends of a motion, where it is below `enough`; else a value
-    /// not below that. Where shapes touch it is less than nothing. m
+    /// The room of a pair beyond the distance that it has to keep between the ends of a motion, where it is below
+    /// `enough`; else a value not below that. Where shapes touch it is less than nothing. m
     fn room(&self, number: usize, poses: &Poses, enough: f64) -> f64 {
         let (pair, wanted) = (&self.pairs[number], self.wanted_between(number));
         let limit = (enough + wanted).max(f64::MIN_POSITIVE);
@@ -256,7 +259,8 @@ impl Scene {
         by_joints
             + match pair.members {
                 Members::Bodies(a, b) => of_body(&self.bodies[a]) + of_body(&self.bodies[b]),
-                // A zone turns with the cell about the origin of the base frame: no point of the arm is farther from that.
+                // A zone turns with the cell about the origin of the base frame: no point of the arm is farther from
+                // that.
                 Members::Zone(..) => screw(0).map_or(0.0, |screw| {
                     let rows: f64 = self.robot.mounted_rows().iter().map(|row| row.translation.norm()).sum();
                     screw.travel(rows + self.flange_from_tool.translation.norm())

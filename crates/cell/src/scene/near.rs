@@ -1,4 +1,5 @@
-//! Pairs that have little room, and how that room changes with a small motion: what a refinement by linear models needs.
+//! Pairs that have little room, and how that room changes with a small motion: what a refinement by linear models
+//! needs.
 
 use super::{Members, PairKind, Poses, Scene};
 use crate::collider::Nearest;
@@ -38,8 +39,8 @@ impl Scene {
         self.of_kinds(kinds).filter_map(near).collect()
     }
 
-    /// By how much the room of such a pair changes from its state to one nearby, to first order: the nearest points, carried along by
-    /// their shapes, part or meet along the direction from one to the other. m
+    /// By how much the room of such a pair changes from its state to one nearby, to first order: the nearest points,
+    /// carried along by their shapes, part or meet along the direction from one to the other. m
     pub fn room_change(&self, near: &Near, from: &Poses, to: &Poses) -> f64 {
         match (self.pairs[near.pair].members, &near.points) {
             (Members::Bodies(a, b), Some(points)) => {

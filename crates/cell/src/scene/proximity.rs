@@ -1,7 +1,7 @@
 //! What states looked at before say about the distances in the next one.
 //!
-//! From one state of a path to the next nothing moves far. A pair that had room is not looked at again before its two shapes have come
-//! as far, together, as the room that was left; and what separated the two before mostly still does.
+//! From one state of a path to the next nothing moves far. A pair that had room is not looked at again before its two
+//! shapes have come as far, together, as the room that was left; and what separated the two before mostly still does.
 
 use super::{FRAMES, Members, MotionHit, PairKind, Poses, Scene, largest_move};
 use nalgebra::Vector3;
@@ -32,7 +32,8 @@ struct Rooms {
     apart_until: Vec<f64>,
 }
 
-/// Distances are told apart up to this beyond what is required: finding one that is larger costs more than it saves. m
+/// Distances are distinguished up to this beyond what is required: finding one that is larger costs more than it saves.
+/// m
 const AHEAD: f64 = 0.02;
 /// What rounding may make of sums of travelled distances. m
 const ROUNDING: f64 = 1e-9;

@@ -9,7 +9,8 @@ const SAME: f64 = 1e-6;
 /// Edge of the cells in which vertices are looked up, by the distance at which they are one.
 const CELL: f64 = 8.0;
 
-/// Vertices of which none are one, and the number among them of each that was given: the first of those that it is one with.
+/// Vertices of which none are one, and the number among them of each that was given: the first of those that it is one
+/// with.
 pub(super) fn merged(vertices: &[Vector3<f64>]) -> (Vec<Vector3<f64>>, Vec<u32>) {
     let first = vertices.first().copied().unwrap_or_default();
     let (low, high) = vertices.iter().fold((first, first), |(low, high), v| (low.inf(v), high.sup(v)));
@@ -42,8 +43,8 @@ pub(super) struct Solids {
     pub is_touching: bool,
 }
 
-/// The closed surfaces of which a mesh is made; `None` where something of it is not closed. Triangles at an edge belong together; where
-/// solids touch along an edge, those with the material of one solid between them.
+/// The closed surfaces of which a mesh is made; `None` where something of it is not closed. Triangles at an edge belong
+/// together; where solids touch along an edge, those with the material of one solid between them.
 pub(super) fn solids_of(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Option<Solids> {
     let mut edges: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
     for (number, triangle) in triangles.iter().enumerate() {
@@ -81,7 +82,8 @@ pub(super) fn solids_of(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Op
     Some(Solids { solids, is_touching })
 }
 
-/// Of the triangles beyond an edge of one, the first that is met on the way round the edge through the material behind that one.
+/// Of the triangles beyond an edge of one, the first that is met on the way round the edge through the material behind
+/// that one.
 fn across(
     vertices: &[Vector3<f64>],
     triangles: &[[u32; 3]],

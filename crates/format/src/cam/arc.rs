@@ -60,7 +60,8 @@ impl Arc {
         Unit::try_new(self.axis, 1e-9).map_or(0.0, |axis| (self.end - self.start).dot(&axis))
     }
 
-    /// The points after the start up to the end, which is the last, so many that neither the chord error nor the step is passed.
+    /// The points after the start up to the end, which is the last, so many that neither the chord error nor the step
+    /// is passed.
     pub fn points(&self, resampling: &Resampling) -> Result<Vec<Vector3<f64>>, ArcError> {
         let axis = Unit::try_new(self.axis, 1e-9).ok_or(ArcError::Axis)?;
         let (from, to) = (self.arm(self.start), self.arm(self.end));

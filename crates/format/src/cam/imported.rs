@@ -1,8 +1,8 @@
 //! An imported tool path: its points as a task file, and what was found and changed.
 
-use super::segments::{Counts, Point, Resampling, expected_points, segments};
-use super::tool::{self, Use};
-use super::{Program, counted, rounded};
+use super::segments::{Counts, Point, Resampling, Segments, expected_points, segments};
+use super::tool::{self, ProgramTool, Use};
+use super::{Move, Program, counted, rounded};
 use crate::files::new::{Existing, write_all_new};
 use crate::input::InputError;
 use crate::task::parse_csv;
@@ -10,17 +10,21 @@ use nalgebra::Vector3;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use stead_model::plausibility;
+use stead_model::task::ToolPath;
 
 /// The points of a program, ready to be written as a task file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportedPath {
     segments: Vec<Vec<Point>>,
+    rapids: Vec<Vec<Move>>,
     counts: Counts,
     resampling: Resampling,
     has_feeds: bool,
     tools: Vec<String>,
     /// Tables of a run file for its cutter, where it is described.
     cutter: Option<String>,
+    /// The tool with the longest way.
+    tool: Option<ProgramTool>,
     notes: Vec<String>,
 }
 
@@ -61,7 +65,7 @@ impl ImportedPath {
             return Err(InputError::new(file, problem)
                 .allowed(format!("{LARGEST_COUNT:.0} points at most: a larger --step-mm")));
         }
-        let (segments, counts) = segments(&program, resampling);
+        let Segments { segments, rapids, counts } = segments(&program, resampling);
         if !segments.iter().flatten().any(|point| point.is_scored) {
             let problem = format!("{} cutting moves, none of which can be scored", counts.cutting);
             return Err(InputError::new(file, problem).allowed(SCORED));
@@ -101,6 +105,7 @@ impl ImportedPath {
         let uses = program.uses();
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let cutter = tool::text(&uses, &name);
+        let tool = uses.first().map(|one| one.tool.clone());
         if cutter.is_some() && uses.len() > 1 {
             let words: Vec<String> = uses.iter().take(NAMED_TOOLS).map(Use::words).collect();
             notes.push(format!(
@@ -109,7 +114,8 @@ impl ImportedPath {
                 words.join("; ")
             ));
         }
-        Ok(Self { segments, counts, resampling, has_feeds, tools: program.tools, cutter, notes })
+        let tools = program.tools;
+        Ok(Self { segments, rapids, counts, resampling, has_feeds, tools, cutter, tool, notes })
     }
 
     /// The task file, checked as it will be read; `file` is its name in messages.
@@ -138,8 +144,8 @@ impl ImportedPath {
         Ok(text)
     }
 
-    /// The files of the path with their texts: the task file, and beside it, where the program describes its cutter, tables of a run
-    /// file for that, `NAME-tool.toml`.
+    /// The files of the path with their texts: the task file, and beside it, where the program describes its cutter,
+    /// tables of a run file for that, `NAME-tool.toml`.
     ///
     /// # Errors
     /// Those of [`ImportedPath::csv`].
@@ -152,13 +158,32 @@ impl ImportedPath {
     /// Writes these files, and returns their paths; their folder is made where there is none.
     ///
     /// # Errors
-    /// Those of [`ImportedPath::csv`], and [`InputError`] for a file that is there already and to be kept, or that cannot be written:
-    /// nothing is left behind then.
+    /// Those of [`ImportedPath::csv`], and [`InputError`] for a file that is there already and to be kept, or that
+    /// cannot be written: nothing is left behind then.
     pub fn write(&self, out: &Path, existing: Existing) -> Result<Vec<PathBuf>, InputError> {
         let files = self.files(out)?;
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
         write_all_new(&texts, existing)?;
         Ok(files.into_iter().map(|(file, _)| file).collect())
+    }
+
+    /// The path with its lines in the task file that it would be; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Those of [`ImportedPath::csv`].
+    pub fn path(&self, file: &Path) -> Result<ToolPath, InputError> {
+        Ok(parse_csv(file, self.csv(file)?.as_bytes())?.path)
+    }
+
+    /// The rapid moves before each segment and after the last: the places in the air between the end of one and the
+    /// start of the next.
+    pub fn rapids(&self) -> &[Vec<Move>] {
+        &self.rapids
+    }
+
+    /// What the program says of its tool: of several that with the longest way.
+    pub fn tool(&self) -> Option<&ProgramTool> {
+        self.tool.as_ref()
     }
 
     /// Number of segments.

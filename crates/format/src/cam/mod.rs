@@ -1,8 +1,8 @@
 //! Tool paths from CAM systems: CLDATA and G-code into the points of a task file.
 //!
-//! A reader ([`cldata`], [`gcode`]) turns a program into straight [`Move`]s of the tool centre point, in the workpiece frame, SI
-//! inside. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`] holds the
-//! points, writes them as a task file, and says what was found and what was changed.
+//! A reader ([`cldata`], [`gcode`]) turns a program into straight [`Move`]s of the tool centre point, in the workpiece
+//! frame, SI inside. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`]
+//! holds the points, writes them as a task file, and says what was found and what was changed.
 
 mod arc;
 pub mod cldata;
@@ -16,7 +16,7 @@ mod tool;
 pub use imported::ImportedPath;
 pub use segments::Resampling;
 pub use tool::ProgramTool;
-pub(crate) use tool::file_beside;
+pub use tool::file_beside;
 
 use crate::files;
 use crate::input::InputError;
@@ -74,8 +74,8 @@ pub struct ReadSettings {
     pub units: Option<LengthUnit>,
     /// The machine that G-code with rotary axes is for.
     pub machine: Option<Machine>,
-    /// Where the rotary axes of that machine meet, for G-code without tool centre point control: in the workpiece frame for a table, from
-    /// the tool centre point with the tool upright for a head. m
+    /// Where the rotary axes of that machine meet, for G-code without tool centre point control: in the workpiece frame
+    /// for a table, from the tool centre point with the tool upright for a head. m
     pub pivot: Option<Vector3<f64>>,
     /// Whether tool centre point control is on though the program has no G43.4.
     pub tool_centre_point: bool,
@@ -128,8 +128,8 @@ impl Program {
 /// Reads a program and resamples it into the points of a task.
 ///
 /// # Errors
-/// [`InputError`] with file and line: a file that cannot be read, a format or a unit that cannot be told, whatever the reader of the format
-/// refuses, or a program without a cutting move that can be scored.
+/// [`InputError`] with file and line: a file that cannot be read, a format or a unit that cannot be told, whatever the
+/// reader of the format refuses, or a program without a cutting move that can be scored.
 pub fn import_path(file: &Path, settings: &ReadSettings) -> Result<ImportedPath, InputError> {
     let bytes = files::read(file).map_err(|e| InputError::new(file, format!("cannot be read: {e}")))?;
     import_bytes(file, &bytes, settings)

@@ -1,7 +1,7 @@
 //! From the moves of a program to the points of a task: runs of cutting moves between rapids, resampled.
 //!
-//! Points that a straight line stands for within the chord error are left out, and long lines are divided. Corners, changes of the feed,
-//! points of arcs and the ends of plunges and of turns in place stay where they are.
+//! Points that a straight line stands for within the chord error are left out, and long lines are divided. Corners,
+//! changes of the feed, points of arcs and the ends of plunges and of turns in place stay where they are.
 
 use super::{Move, Program};
 use nalgebra::{Rotation3, Vector3};
@@ -96,23 +96,38 @@ pub(super) fn expected_points(program: &Program, resampling: Resampling) -> f64 
     program.moves.windows(2).map(steps).sum()
 }
 
+/// The segments of a program, and the rapid moves before each of them and after the last: the places in the air
+/// between the end of one and the start of the next.
+#[derive(Debug, Default)]
+pub(super) struct Segments {
+    pub segments: Vec<Vec<Point>>,
+    pub rapids: Vec<Vec<Move>>,
+    pub counts: Counts,
+}
+
 /// The segments of a program.
-pub(super) fn segments(program: &Program, resampling: Resampling) -> (Vec<Vec<Point>>, Counts) {
+pub(super) fn segments(program: &Program, resampling: Resampling) -> Segments {
     let mut counts = Counts::default();
-    let mut segments = Vec::new();
+    let (mut segments, mut rapids) = (Vec::new(), Vec::new());
     let mut knots: Vec<Knot> = Vec::new();
     let mut start: Option<&Move> = None;
-    let mut close = |knots: &mut Vec<Knot>, counts: &mut Counts| {
+    // Rapid moves since the end of the last segment.
+    let mut air: Vec<Move> = Vec::new();
+    let mut close = |knots: &mut Vec<Knot>, counts: &mut Counts, air: &mut Vec<Move>| {
         if knots.len() > 1 {
             let kept = kept(knots, resampling, counts);
             segments.push(points(&divided(&kept, resampling, counts), counts));
+            // The last of them ends where the segment starts.
+            air.pop();
+            rapids.push(std::mem::take(air));
         }
         knots.clear();
     };
     for (place, one) in program.moves.iter().enumerate() {
         if one.is_rapid {
             counts.rapid += usize::from(place > 0);
-            close(&mut knots, &mut counts);
+            close(&mut knots, &mut counts, &mut air);
+            air.push(*one);
         } else {
             counts.cutting += 1;
             if let (true, Some(start)) = (knots.is_empty(), start) {
@@ -122,8 +137,9 @@ pub(super) fn segments(program: &Program, resampling: Resampling) -> (Vec<Vec<Po
         }
         start = Some(one);
     }
-    close(&mut knots, &mut counts);
-    (segments, counts)
+    close(&mut knots, &mut counts, &mut air);
+    rapids.push(air);
+    Segments { segments, rapids, counts }
 }
 
 /// Adds the end of a move, unless the tool is there already.
@@ -208,7 +224,8 @@ fn divided(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<K
     all
 }
 
-/// The points with their directions: to the next point, or from the one before where there is no wall on the way to the next.
+/// The points with their directions: to the next point, or from the one before where there is no wall on the way to the
+/// next.
 fn points(knots: &[Knot], counts: &mut Counts) -> Vec<Point> {
     let walled = |direction: Option<Vector3<f64>>, knot: &Knot| direction.filter(|direction| has_wall(direction, knot));
     let directions: Vec<Option<Vector3<f64>>> = (0..knots.len())

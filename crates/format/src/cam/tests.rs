@@ -146,8 +146,8 @@ fn the_cutter_of_a_program_is_written_with_its_speed_and_feed() {
         has(&format!("\n# spindle_rpm = {speed} "));
         // The feed of the longest way: 1200 mm/min at 6000 rpm.
         has("\n# feed_per_tooth_mm = 0.1 ");
-        assert_eq!(text.contains("corner radius"), corner.is_some());
-        assert!(corner.is_none_or(|corner| text.contains(&format!("\n# corner radius {corner} mm "))), "{text}");
+        assert_eq!(text.contains("corner_radius_mm"), corner.is_some());
+        assert!(corner.is_none_or(|corner| text.contains(&format!("\ncorner_radius_mm = {corner} "))), "{text}");
         assert_eq!(text.contains("\nrotation = \"counterclockwise\""), tool.contains("CCLW"), "{text}");
     }
     // A cutter that is not described has no file; a speed alone is kept in comments.
@@ -198,4 +198,18 @@ fn lines_hardly_longer_than_the_step_are_not_divided() {
         task(&text, &settings()).0.path.points().len()
     };
     assert_eq!(["10", "10.05", "10.1", "10.2", "20.1", "20.3"].map(points), [2, 2, 2, 3, 3, 4]);
+}
+
+#[test]
+fn moves_in_the_air_are_kept_between_the_segments_that_they_join() {
+    let text = "G21 G90\nG0 X0 Y0 Z9\nZ5\nG1 Z0 F600\nX20\nG0 Z5\nX40 Y7\nZ1\nG1 X60\nG0 Z9\nX0\nM30\n";
+    let path = import_bytes(Path::new("part.nc"), text.as_bytes(), &settings()).unwrap();
+    let mm = |places: &Vec<Move>| -> Vec<[f64; 3]> {
+        places.iter().map(|place| (place.position * 1e3).map(f64::round).into()).collect()
+    };
+    let air: Vec<_> = path.rapids().iter().map(mm).collect();
+    // The ends of the segments themselves are left out.
+    let expected =
+        [vec![[0.0, 0.0, 9.0]], vec![[20.0, 0.0, 5.0], [40.0, 7.0, 5.0]], vec![[60.0, 7.0, 9.0], [0.0, 7.0, 9.0]]];
+    assert_eq!(air, expected);
 }

@@ -26,7 +26,7 @@ pub struct ProgramTool {
 }
 
 /// The file with the cutter of a task file, `NAME-tool.toml` beside it.
-pub(crate) fn file_beside(task: &Path) -> PathBuf {
+pub fn file_beside(task: &Path) -> PathBuf {
     task.with_file_name(format!("{}-tool.toml", task.file_stem().unwrap_or_default().to_string_lossy()))
 }
 
@@ -152,8 +152,7 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
         lines.row(&key("rotation = \"counterclockwise\"".to_owned()), "seen from the spindle");
     }
     if let Some(corner) = tool.corner_radius {
-        let comment = "of the CAM file; forces and bodies are those of a plain cylinder";
-        lines.row(&format!("# corner radius {:?} mm", mm(corner)), comment);
+        lines.row(&key(format!("corner_radius_mm = {:?}", mm(corner))), "of the CAM file");
     }
     if let Some(length) = tool.length {
         let comment = "of the CAM file, perhaps with its shank: kept out of the part between segments";

@@ -47,7 +47,7 @@ fn numbers_are_taken_as_written() {
     assert_eq!(number("v = 0x10"), Ok(16.0));
     assert_eq!(read::<Whole<0, { u64::MAX }>>("v = 9223372036854775807").map(Whole::get), Ok(9223372036854775807));
     assert_eq!(read::<bool>("v = true"), Ok(true));
-    assert_eq!(read::<Word<bool>>("v = 'right'"), Ok(Word(false)));
+    assert_eq!(read::<Word<bool>>("v = 'right'"), Ok(Word::from(false)));
     assert_eq!(read::<Option<Number>>("w = 1"), Ok(None));
     let file = file("v = 1\nw = 2");
     let document = file.parse().unwrap();

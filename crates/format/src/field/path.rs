@@ -12,14 +12,16 @@ pub(crate) enum Step {
     Entry(usize),
 }
 
-/// The path of a field: `cell.z_mm`, `robot.joints[1].stiffness_mnm_per_rad`, `spindle.xyz_mm[3]`. Entries count from 1.
+/// The path of a field: `cell.z_mm`, `robot.joints[1].stiffness_mnm_per_rad`, `spindle.xyz_mm[3]`. Entries count
+/// from 1.
 ///
 /// ```
 /// use stead_format::field::FieldPath;
 /// let path: FieldPath = "robot.joints[1].stiffness_mnm_per_rad".parse()?;
 /// assert_eq!(path.to_string(), "robot.joints[1].stiffness_mnm_per_rad");
 /// assert_eq!("cell.z_mm[0]".parse::<FieldPath>().unwrap_err().to_string(),
-///     "is no path of a field: '0' is no entry; allowed: keys joined by dots and entries from 1, as in robot.joints[1].min_deg");
+///     "is no path of a field: '0' is no entry; \
+///      allowed: keys joined by dots and entries from 1, as in robot.joints[1].min_deg");
 /// # Ok::<(), stead_format::field::PathError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -39,8 +39,8 @@ fn moved(span: Range<usize>, by: usize) -> Range<usize> {
     span.start + by..span.end + by
 }
 
-/// Puts a value where a path leads, making the tables on the way that are not there; leaves everything as it is where the path leads
-/// on into a file that is named on the way.
+/// Puts a value where a path leads, making the tables on the way that are not there; leaves everything as it is where
+/// the path leads on into a file that is named on the way.
 pub(crate) fn put<'a>(
     root: &mut Spanned<DeValue<'a>>,
     steps: &'a [Step],

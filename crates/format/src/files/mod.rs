@@ -1,11 +1,11 @@
 //! Files on the disk: how they are read, put in place and locked.
 //!
-//! The one door through which files come in ([`read`]), so that none of them is a pipe or a device or fills the memory; files written under
-//! temporary names and then renamed ([`Staged`]); locks ([`Lock`]). Files of this program beside results, which anybody may have put a
-//! link in place of, are opened by [`options`].
+//! The one door through which files come in ([`read`]), so that none of them is a pipe or a device or fills the memory;
+//! files written under temporary names and then renamed ([`Staged`]); locks ([`Lock`]). Files of this program beside
+//! results, which anybody may have put a link in place of, are opened by [`options`].
 
 mod lock;
-pub(crate) mod new;
+pub mod new;
 mod staged;
 
 pub use lock::{Lock, TryLock};
@@ -21,8 +21,8 @@ pub const MAX_BYTES: u64 = 1_000_000_000;
 /// Reads a file, whole.
 ///
 /// # Errors
-/// What the system says; [`ErrorKind::InvalidInput`] for what is no file, such as a pipe or a device, [`ErrorKind::FileTooLarge`] for one
-/// of more than [`MAX_BYTES`].
+/// What the system says; [`ErrorKind::InvalidInput`] for what is no file, such as a pipe or a device,
+/// [`ErrorKind::FileTooLarge`] for one of more than [`MAX_BYTES`].
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     whole(open(path)?)
 }
@@ -39,7 +39,7 @@ pub fn read_own(path: &Path) -> Result<Vec<u8>> {
 
 fn whole(mut file: File) -> Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(file.metadata()?.len() as usize);
-    // A file may grow while it is read, and some of the system do not tell their size.
+    // A file may grow while it is read, and some of the system do not state their size.
     Read::by_ref(&mut file).take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
     check_size(bytes.len() as u64)?;
     Ok(bytes)
@@ -83,7 +83,8 @@ pub fn options() -> OpenOptions {
     options
 }
 
-/// Whether a file could not be written for want of room: on the disk, in the user's share of it, or under a limit on the size of files.
+/// Whether a file could not be written for want of room: on the disk, in the user's share of it, or under a limit on
+/// the size of files.
 pub fn is_full(cause: &Error) -> bool {
     matches!(cause.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
 }
@@ -116,7 +117,7 @@ mod tests {
             let problem = read(path).unwrap_err();
             assert_eq!(problem.to_string(), "it is a pipe, a socket or a device, and no file", "{}", path.display());
         }
-        // The system's own files tell no size.
+        // The system's own files state no size.
         assert!(!read(Path::new("/proc/self/status")).unwrap().is_empty());
     }
 

@@ -1,4 +1,4 @@
-//! Files that a command makes beside those of the user: they must not be there yet, or are replaced where that was asked for.
+//! Files that a command makes beside those of the user: they must not be there yet, or are replaced with `--force`.
 
 use super::is_full;
 use super::staged::{PREFIX, Staged, sync};
@@ -21,17 +21,25 @@ const ALLOWED: &str = "the name of a file that is not there yet, in a folder tha
 ///
 /// # Errors
 /// [`InputError`] where the file is there already and to be kept, or cannot be written; it is then as it was.
-pub(crate) fn write_new(file: &Path, text: &str, existing: Existing) -> Result<(), InputError> {
+pub fn write_new(file: &Path, text: &str, existing: Existing) -> Result<(), InputError> {
     write_all_new(&[(file.to_owned(), text)], existing)
 }
 
-/// Writes files: all, or none where one of them is there already and to be kept, or cannot be written. They are written under
-/// temporary names first. The first of them, which tells of the others, gets its name last: a process that is killed leaves it or nothing
-/// that looks whole.
+/// Refuses names of files that could not be written, before the long work that makes them.
+///
+/// # Errors
+/// [`InputError`] where a file is there already and to be kept.
+pub fn check_all_new(files: &[PathBuf], existing: Existing) -> Result<(), InputError> {
+    files.iter().try_for_each(|file| check(file, existing))
+}
+
+/// Writes files: all, or none where one of them is there already and to be kept, or cannot be written. They are written
+/// under temporary names first. The first of them, which names the others, gets its name last: a process that is killed
+/// leaves it or nothing that looks whole.
 ///
 /// # Errors
 /// Those of [`write_new`].
-pub(crate) fn write_all_new(files: &[(PathBuf, &str)], existing: Existing) -> Result<(), InputError> {
+pub fn write_all_new(files: &[(PathBuf, &str)], existing: Existing) -> Result<(), InputError> {
     files.iter().try_for_each(|(file, _)| check(file, existing))?;
     let mut made = MadeFolders::default();
     let mut staged = Vec::with_capacity(files.len());

@@ -4,7 +4,7 @@ use std::io::{ErrorKind, Result, Write};
 use std::path::Path;
 use tempfile::{Builder, NamedTempFile};
 
-/// How the names of temporary files begin, unless whoever clears up after them knows its own by another name.
+/// How the names of temporary files begin, unless the code that removes them knows its own by another name.
 pub const PREFIX: &str = ".stead-";
 /// What the names of temporary files end with.
 const SUFFIX: &str = ".tmp";
@@ -81,7 +81,8 @@ fn is_temporary(name: &str, prefix: &str) -> bool {
     random.is_some_and(|random| random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric()))
 }
 
-/// Puts the names in a folder on disk, in the order in which they were given. A file system that cannot do so is none to wait for.
+/// Puts the names in a folder on disk, in the order in which they were given. A file system that cannot do so is none
+/// to wait for.
 ///
 /// # Errors
 /// What the system says.

@@ -122,7 +122,7 @@ impl Row<'_> {
 }
 
 /// What a function gives for each of some things, or its first error.
-pub(crate) fn try_each<A, B: Copy + Default, E, const N: usize>(
+pub fn try_each<A, B: Copy + Default, E, const N: usize>(
     things: [A; N],
     mut function: impl FnMut(A) -> Result<B, E>,
 ) -> Result<[B; N], E> {

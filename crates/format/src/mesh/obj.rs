@@ -1,5 +1,5 @@
-//! OBJ: vertices, and faces that name them. Of a face only its vertices are read; one with more than three corners becomes a fan of
-//! triangles, which covers it.
+//! OBJ: vertices, and faces that name them. Of a face only its vertices are read; one with more than three corners
+//! becomes a fan of triangles, which covers it.
 
 use super::stl::{number_of, shortened};
 use super::{MAX_TRIANGLES, THINNER, Triangles};
@@ -7,7 +7,8 @@ use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
 
-/// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface (points, lines).
+/// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface
+/// (points, lines).
 const WITHOUT_SURFACE: [&str; 22] = [
     "vt",
     "vn",

@@ -1,5 +1,6 @@
-//! The mesh of the shipped cell, `configs/cells/stepped-part.stl`: a slab with a stepped shoulder whose top is wavy. The walls of the steps
-//! are 8 mm, the radius of the cutter, beside the path `tasks/five-segments.csv`, which runs on the slab.
+//! The mesh of the shipped cell, `configs/cells/stepped-part.stl`: a slab with a stepped shoulder whose top is wavy.
+//! The walls of the steps are 8 mm, the radius of the cutter, beside the path `tasks/five-segments.csv`, which runs on
+//! the slab.
 
 use super::*;
 use crate::testing::root;
@@ -44,7 +45,8 @@ fn triangles() -> Vec<[Vector3<f64>; 3]> {
             quad(a, b, c, d);
             let [a, b, c, d] = corners.map(|[x, y]| [x, y, SLAB[1]]);
             quad(a, d, c, b);
-            // Over each side of the cell, counterclockwise: down to the neighbour, or to the lower side at the end of the slab.
+            // Over each side of the cell, counterclockwise: down to the neighbour, or to the lower side at the end of
+            // the slab.
             let neighbours = [(i, j.wrapping_sub(1)), (i + 1, j), (i, j + 1), (i.wrapping_sub(1), j)];
             for (side, (ni, nj)) in neighbours.into_iter().enumerate() {
                 let ([x0, y0], [x1, y1]) = (corners[side], corners[(side + 1) % 4]);

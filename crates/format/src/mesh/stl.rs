@@ -1,7 +1,7 @@
 //! STL: triangles one by one, binary or in ASCII.
 //!
-//! Many binary files begin with `solid` as those in ASCII do. So the size decides: a binary file is as long as the count of its
-//! triangles says, to the byte. What is not, begins with `solid` and holds no zero byte is text.
+//! Many binary files begin with `solid` as those in ASCII do. So the size decides: a binary file is as long as the
+//! count of its triangles says, to the byte. What is not, begins with `solid` and holds no zero byte is text.
 
 use super::{MAX_TRIANGLES, THINNER, Triangles};
 use crate::input::InputError;

@@ -10,7 +10,8 @@ pub(super) const STIFFNESS: &str = "stiffness_mnm_per_rad";
 pub(super) const COMPLIANCE: &str = "compliance_urad_per_nm";
 pub(super) const COMPENSATOR: &str = "compensator";
 /// How to come by the stiffness of a joint, which no robot maker states.
-const WAYS: &str = "measure it (stead identify plan, from a rough value), or take that of a shipped arm (stiffness_like in the run file, stead import robot --stiffness-like)";
+const WAYS: &str = "measure it (stead identify plan, from a rough value), or take that of a shipped arm \
+                    (stiffness_like in the run file, stead import robot --stiffness-like)";
 
 /// The law of a joint, from whichever of its three keys are given.
 pub(super) fn compliance_from(joint: &JointRow, at: &Place<'_>) -> Result<Compliance, InputError> {

@@ -7,7 +7,7 @@ use crate::place::Place;
 use crate::scalars::Words;
 use stead_model::robot::{Controller, ControllerKind, Pose, Robot};
 
-impl Words for ControllerKind {
+impl Words<crate::Vocabulary> for ControllerKind {
     fn words() -> Vec<(&'static str, Self)> {
         Self::ALL.map(|kind| (kind.word(), kind)).to_vec()
     }

@@ -37,27 +37,6 @@ pub fn parameter_unit(parameter: Parameter) -> f64 {
     }
 }
 
-/// The table `[covariance]` that a robot file ends with, as [`read_robot`](super::read_robot) reads it: what an
-/// identification writes. Numbers have as many digits as they need to be read back as they are.
-pub fn covariance_text(uncertainty: &Uncertainty) -> String {
-    let parameters = uncertainty.parameters();
-    let mut text = format!("[{COVARIANCE}]\n{PARAMETERS} = [\n");
-    for parameter in parameters {
-        text.push_str(&format!("    \"{}\",\n", parameter_name(*parameter)));
-    }
-    text.push_str("]\nmatrix = [\n");
-    for (row, a) in parameters.iter().enumerate() {
-        let entry = |(column, b): (usize, &Parameter)| {
-            let unit = parameter_unit(*a) * parameter_unit(*b);
-            format!("{:e}", uncertainty.covariance()[(row, column)] / unit)
-        };
-        let entries: Vec<String> = parameters.iter().enumerate().map(entry).collect();
-        text.push_str(&format!("    [{}],\n", entries.join(", ")));
-    }
-    text.push_str("]\n");
-    text
-}
-
 /// The same arm with the covariance of its file.
 pub(super) fn with_covariance(robot: Robot, table: &CovarianceTable, at: &Place<'_>) -> Result<Robot, InputError> {
     let known = names_of(&robot);
@@ -146,7 +125,7 @@ fn locate(at: &Place<'_>, error: &UncertaintyError) -> InputError {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{read_robot, robot_from};
+    use super::super::robot_from;
     use super::*;
     use crate::toml_file::TomlFile;
     use std::path::Path;
@@ -190,25 +169,6 @@ matrix = [
             }
         }
         assert_eq!(read("").unwrap().uncertainty(), None);
-    }
-
-    #[test]
-    fn what_is_written_is_read_back() {
-        let all: Vec<Parameter> =
-            (0..6).flat_map(Parameter::of_joint).filter(|p| read("").unwrap().has_parameter(*p)).collect();
-        assert_eq!(all.len(), 9);
-        let factor = DMatrix::from_fn(9, 9, |j, k| parameter_unit(all[j]) * libm::sin((10 * j + k) as f64));
-        let written = Uncertainty::new(all, &factor * factor.transpose()).unwrap();
-        let robot = read(&covariance_text(&written)).unwrap();
-        let found = robot.uncertainty().unwrap();
-        assert_eq!(found.parameters(), written.parameters());
-        let scale = |j: usize| written.covariance()[(j, j)];
-        for (j, k) in (0..9).flat_map(|j| (0..9).map(move |k| (j, k))) {
-            let difference = found.covariance()[(j, k)] - written.covariance()[(j, k)];
-            assert!(difference * difference <= 1e-30 * scale(j) * scale(k), "{j} {k} {difference}");
-        }
-        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/robots/kuka-kr270-2.toml");
-        assert_eq!(read_robot(&shipped).unwrap().uncertainty(), None);
     }
 
     #[test]

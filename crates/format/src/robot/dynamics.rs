@@ -59,12 +59,20 @@ fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<JointDynamics, InputErro
     })
 }
 
-/// As [`robot_from`], for a robot whose motion is to be computed; with `orthogonal`, in directions normal to its axes too.
+/// As [`robot_from`], for a robot whose motion is to be computed; with `orthogonal`, in directions normal to its axes
+/// too.
 ///
 /// # Errors
 /// Those of [`robot_from`], and [`InputError`] at the first joint whose row says too little, naming what is missing.
-pub(crate) fn moving_robot_from(source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
-    let robot = robot_from(source)?;
+pub fn moving_robot_from(source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
+    checked_to_move(robot_from(source)?, source, orthogonal)
+}
+
+/// The robot read from `source`, if its rows say enough for its motion to be computed, as [`moving_robot_from`] has it.
+///
+/// # Errors
+/// [`InputError`] at the first joint whose row says too little, naming what is missing.
+pub fn checked_to_move(robot: Robot, source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
     let document = source.parse()?;
     let lacking = |index: usize, keys: &[&str], what: &str| {
         let row = document.root().key("joints").element(index + 1);

@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stead_model::robot::ControllerKind;
 
-/// A six-axis robot: geometry, joint limits and stiffness, where known speeds, masses and damping. Lengths are in mm and
-/// angles in deg, as the keys say; every number needs a source.
+/// A six-axis robot: geometry, joint limits and stiffness, where known speeds, masses and damping. Lengths are in mm
+/// and angles in deg, as the keys say; every number needs a source.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RobotFile {
     /// Name of the robot, on one line.
@@ -20,7 +20,8 @@ pub struct RobotFile {
     pub source: String,
     /// The arm whose joint stiffness the rows state, where it is not their own; every result says so.
     pub stiffness_like: Option<String>,
-    /// Which numbers nobody has checked against their source, and what is known of them, a sentence each; said by every run.
+    /// Which numbers nobody has checked against their source, and what is known of them, a sentence each; said by every
+    /// run.
     pub unverified: Option<List<String>>,
     /// Largest payload by the data sheet.
     pub payload_kg: Option<Kg<Positive>>,
@@ -47,8 +48,8 @@ pub struct ControllerTable {
     pub sign: Array<Number, 6>,
     /// Angle of each row where the controller's angle is zero.
     pub offset_deg: Array<Deg, 6>,
-    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, so that A_2 + A_3 stands in the
-    /// place of A_3; where left out, true for "fanuc" and false for the others.
+    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, so that A_2 + A_3
+    /// stands in the place of A_3; where left out, true for "fanuc" and false for the others.
     pub is_j3_level: Option<bool>,
 }
 
@@ -69,8 +70,8 @@ pub struct RootTable {
     pub quaternion_wxyz: Option<Quaternion>,
 }
 
-/// One joint, with the link behind it. The frame of a row is that of modified Denavit-Hartenberg parameters: its z axis is
-/// the joint axis, its origin is reached after `alpha`, `a` and `d`.
+/// One joint, with the link behind it. The frame of a row is that of modified Denavit-Hartenberg parameters: its z axis
+/// is the joint axis, its origin is reached after `alpha`, `a` and `d`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JointRow {
     /// Angle from the previous joint axis to this one, about the previous x axis (modified Denavit-Hartenberg).
@@ -112,7 +113,8 @@ pub struct JointRow {
     pub orthogonal_stiffness_mnm_per_rad: Option<MnmPerRad<Positive>>,
     /// Viscous damping against rotation about each of the two directions normal to the joint axis.
     pub orthogonal_damping_nms_per_rad: Option<NmsPerRad<NotNegative>>,
-    /// Where on the joint axis it yields in these directions: along z from the origin of the row's frame; 0 where left out.
+    /// Where on the joint axis it yields in these directions: along z from the origin of the row's frame; 0 where left
+    /// out.
     pub bearing_mm: Option<Mm>,
 }
 
@@ -134,8 +136,8 @@ pub struct CompensatorTable {
 /// Covariance of parameters of the joint compliances.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CovarianceTable {
-    /// Names of the parameters, as their keys are named: `joints[1].compliance_urad_per_nm`, with `[1]` or `[2]` behind for
-    /// the ends of a range, `joints[2].compensator.spring_stiffness_n_per_mm` and `.free_length_mm`.
+    /// Names of the parameters, as their keys are named: `joints[1].compliance_urad_per_nm`, with `[1]` or `[2]` behind
+    /// for the ends of a range, `joints[2].compensator.spring_stiffness_n_per_mm` and `.free_length_mm`.
     pub parameters: List<String>,
     /// Their covariance matrix, in products of the units of the keys; symmetric, positive semidefinite.
     pub matrix: List<List<Number>>,

@@ -15,7 +15,8 @@ pub(crate) struct NoLender {
     pub allowed: String,
 }
 
-/// The file of a shipped arm that states the stiffness of every joint, by its name with or without `name:`, and its entry among inputs.
+/// The file of a shipped arm that states the stiffness of every joint, by its name with or without `name:`, and its
+/// entry among inputs.
 ///
 /// # Errors
 /// [`NoLender`] where no shipped arm has this name, or that arm has no stiffness.

@@ -21,7 +21,7 @@ use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
 use controller::with_controller;
 use covariance::{COVARIANCE, with_covariance};
 use dynamics::dynamics_from;
-pub(super) use dynamics::moving_robot_from;
+pub use dynamics::{checked_to_move, moving_robot_from};
 use std::path::Path;
 use stead_model::robot::{Compliance, DataSheet, Joint, Robot, RobotError};
 
@@ -57,7 +57,7 @@ pub fn geometry_file(file: &Path) -> Result<(Robot, Vec<u8>), InputError> {
 pub const NOMINAL_STIFFNESS: f64 = 1e6;
 
 /// As [`read_geometry`], from a file already read.
-pub(crate) fn geometry_from(source: &TomlFile) -> Result<Robot, InputError> {
+pub fn geometry_from(source: &TomlFile) -> Result<Robot, InputError> {
     let document = source.parse()?;
     let mut file: RobotFile = document.read()?;
     // What is said of compliances belongs to the rows that state them.
@@ -68,8 +68,8 @@ pub(crate) fn geometry_from(source: &TomlFile) -> Result<Robot, InputError> {
     })
 }
 
-/// Of a robot file, whether it states the stiffness of every joint; nothing of a file of another kind, known by its having no
-/// `[[joints]]`.
+/// Of a robot file, whether it states the stiffness of every joint; nothing of a file of another kind, known by its
+/// having no `[[joints]]`.
 ///
 /// # Errors
 /// [`InputError`]: a file that cannot be read or is no TOML, and what is wrong in a robot file.
@@ -89,21 +89,17 @@ pub(crate) fn has_stiffness(row: &JointRow) -> bool {
 }
 
 /// As [`read_robot`], from a file already read.
-pub(super) fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
+pub fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     let document = source.parse()?;
     made(&document.read()?, &document.root(), compliance_from)
 }
 
-/// The robot of a file whose rows state no stiffness, with that of a shipped arm, and the entry of that arm among the inputs; nothing of
-/// a file with a row that states one. `at` is the key that names the other arm.
+/// The robot of a file whose rows state no stiffness, with that of a shipped arm, and the entry of that arm among the
+/// inputs; nothing of a file with a row that states one. `at` is the key that names the other arm.
 ///
 /// # Errors
 /// As [`read_robot`], and [`InputError`] at the key where no shipped arm of this name has a stiffness.
-pub(super) fn robot_like(
-    source: &TomlFile,
-    other: &str,
-    at: &Place<'_>,
-) -> Result<Option<(Robot, InputFile)>, InputError> {
+pub fn robot_like(source: &TomlFile, other: &str, at: &Place<'_>) -> Result<Option<(Robot, InputFile)>, InputError> {
     let document = source.parse()?;
     let mut file: RobotFile = document.read()?;
     if file.joints.iter().any(has_stiffness) {
@@ -167,7 +163,7 @@ const STIFFNESS_LIKE: &str = "stiffness_like";
 ///
 /// # Errors
 /// [`InputError`] for a name that is none.
-pub(super) fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
+pub fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
     match other {
         None => Ok(robot),
         Some(name) if !name.contains(garbles) => Ok(robot.with_stiffness_like(name)),

@@ -1,11 +1,12 @@
-//! What stands around a robot and on it, from the tables of a run file and of the file that its key `surroundings` names.
+//! What stands around a robot and on it, from the tables of a run file and of the file that its key `surroundings`
+//! names.
 
 mod notes;
 mod solid;
+mod stock;
 mod tables;
-#[cfg(test)]
-mod tests;
 
+pub use stock::{PartTable, PlacedSolid, StockTable};
 pub use tables::{
     CapsuleTable, CollisionTable, CylinderTable, HalfSpaceTable, KeepOutTable, ShapeTable, SurroundingsFile,
 };
@@ -23,7 +24,8 @@ pub(crate) use tables::{CLEARANCE, attachment};
 
 /// The scene of a run, where it has one.
 #[derive(Debug, Default)]
-pub(crate) struct SceneRead {
+pub struct SceneRead {
+    /// The shapes with the arm; none where no shape is stated.
     pub scene: Option<Arc<Scene>>,
     /// The files that it was read from.
     pub inputs: Vec<InputFile>,
@@ -38,17 +40,18 @@ struct Part<'a> {
 }
 
 /// The role of mesh files among the inputs of a run.
-pub(crate) const MESH: &str = "mesh";
+pub const MESH: &str = "mesh";
 
 /// The scene of a run file: the shapes and zones of its own tables and of the file that it names, joined with its arm.
 ///
 /// # Errors
-/// [`InputError`] with file, line and field: a shape or zone that cannot be, a mesh that cannot be read, two of one name, a pair of
-/// unknown names, a clearance that is stated twice or for nothing, shapes that touch in every posture.
-pub(crate) fn read_scene(
+/// [`InputError`] with file, line and field: a shape or zone that cannot be, a mesh that cannot be read, two of one
+/// name, a pair of unknown names, a clearance that is stated twice or for nothing, shapes that touch in every posture.
+pub fn read_scene(
     own: SurroundingsFile,
     at: &Place<'_>,
-    (robot, spindle): (&Robot, &Spindle),
+    robot: &Robot,
+    spindle: &Spindle,
     axes: &[ExternalAxis],
 ) -> Result<SceneRead, InputError> {
     let named = at.key("surroundings");
@@ -72,7 +75,7 @@ pub(crate) fn read_scene(
 ///
 /// # Errors
 /// As [`read_scene`], but for what an arm has to do with.
-pub(crate) fn read_surroundings(file: &Path) -> Result<Option<Surroundings>, InputError> {
+pub fn read_surroundings(file: &Path) -> Result<Option<Surroundings>, InputError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;
     let part = Part { tables: document.read()?, at: document.root() };

@@ -46,7 +46,7 @@ impl ShapeTable {
 }
 
 /// The mesh of the file that is named here.
-fn read(at: &Place<'_>, unit: MeshUnit) -> Result<(Arc<TriangleMesh>, InputFile), InputError> {
+pub(super) fn read(at: &Place<'_>, unit: MeshUnit) -> Result<(Arc<TriangleMesh>, InputFile), InputError> {
     let named = at.named_file()?;
     let mesh = named.sources.mesh(&named.file, &named.bytes, unit)?;
     Ok((mesh, input_file(MESH, named.name, &named.bytes)))

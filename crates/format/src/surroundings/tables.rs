@@ -51,14 +51,16 @@ pub struct CapsuleTable {
     pub length: Mm<NotNegative>,
 }
 
-/// A shape: its form, its place, and what it moves with. Exactly one of `box_mm`, `cylinder_mm`, `capsule_mm`, `hull`, `mesh`.
+/// A shape: its form, its place, and what it moves with. Exactly one of `box_mm`, `cylinder_mm`, `capsule_mm`, `hull`,
+/// `mesh`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapeTable {
     /// Its name, which no other shape or zone has.
     pub name: String,
-    /// What it moves with: `base` (what stands in the cell), `workpiece`, `flange`, a link, `link_1` to `link_6`, in the frame of its
-    /// row, or the name of an external axis for what that carries, in the cell frame with all axes at zero.
+    /// What it moves with: `base` (what stands in the cell), `workpiece`, `flange`, a link, `link_1` to `link_6`, in
+    /// the frame of its row, or the name of an external axis for what that carries, in the cell frame with all axes at
+    /// zero.
     pub attached: String,
     /// A box about the origin of the shape: its edges along x, y and z.
     pub box_mm: Option<Vector<Mm<Positive>>>,
@@ -74,7 +76,8 @@ pub struct ShapeTable {
     pub unit: Option<Word<MeshUnit>>,
     /// Where the origin of the shape is, in the frame of what it moves with; zero where left out.
     pub xyz_mm: Option<Vector<Mm>>,
-    /// How it is turned, as a rotation matrix by rows: this, one of the four keys below, or none for a shape that is not turned.
+    /// How it is turned, as a rotation matrix by rows: this, one of the four keys below, or none for a shape that is
+    /// not turned.
     pub rotation: Option<Matrix>,
     /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
     pub abc_deg: Option<Vector<Deg>>,
@@ -92,7 +95,8 @@ pub struct ShapeTable {
 pub struct KeepOutTable {
     /// Its name, which no other zone or shape has.
     pub name: String,
-    /// The points that are kept out: `tool` (tool centre point), `wrist` (where axes 4, 5 and 6 meet), `elbow` (origin of row 3).
+    /// The points that are kept out: `tool` (tool centre point), `wrist` (where axes 4, 5 and 6 meet), `elbow` (origin
+    /// of row 3).
     pub points: List<Word<TrackedPoint>>,
     /// A box about its origin: its edges along x, y and z.
     pub box_mm: Option<Vector<Mm<Positive>>>,
@@ -171,7 +175,7 @@ fn check_name(name: &str, axes: &[ExternalAxis], at: &Place<'_>) -> Result<(), I
 }
 
 /// The pose that a table states: no turn where it has no orientation key.
-fn pose(xyz: Option<Vector<Mm>>, keys: &OrientationKeys, at: &Place<'_>) -> Result<Pose<f64>, InputError> {
+pub(super) fn pose(xyz: Option<Vector<Mm>>, keys: &OrientationKeys, at: &Place<'_>) -> Result<Pose<f64>, InputError> {
     let mut pose = Pose { translation: xyz.map_or(Vector3::zeros(), |xyz| xyz.vector()), ..Pose::identity() };
     if keys.is_given() {
         pose.rotation = keys.rotation(at)?;
@@ -204,7 +208,8 @@ impl KeepOutTable {
     /// The zone.
     ///
     /// # Errors
-    /// [`InputError`] for a name that cannot be, two forms or none, a plane without a normal, a point that is named twice.
+    /// [`InputError`] for a name that cannot be, two forms or none, a plane without a normal, a point that is named
+    /// twice.
     pub(super) fn keep_out(&self, axes: &[ExternalAxis], at: &Place<'_>) -> Result<KeepOut, InputError> {
         check_name(&self.name, axes, at)?;
         let mut points = Vec::new();

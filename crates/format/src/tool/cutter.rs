@@ -14,7 +14,7 @@ impl Cutting<'_> {
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: lists that do not fit the teeth, numbers that make no cutter.
-    pub(super) fn cutter(&self, coefficients: Coefficients, source: &str) -> Result<Cutter, InputError> {
+    pub fn cutter(&self, coefficients: Coefficients, source: &str) -> Result<Cutter, InputError> {
         let (tool, at) = (self.tool, &self.tool_at);
         let count = self.count()?;
         let radius = tool.cutter_diameter_mm.written() / 2e3;
@@ -65,7 +65,10 @@ impl Cutting<'_> {
     }
 
     /// The coefficients of the linear force law, the radial one by whichever of `kr` and `kr_mpa` is given.
-    pub(super) fn coefficients(&self) -> Result<Coefficients, InputError> {
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and field: a missing coefficient, or both radial ones.
+    pub fn coefficients(&self) -> Result<Coefficients, InputError> {
         let (tool, at) = (self.tool, &self.tool_at);
         let tangential = required!(at, tool.kt_mpa)?.si();
         let radial = match (tool.kr, tool.kr_mpa) {

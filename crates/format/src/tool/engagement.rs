@@ -33,7 +33,7 @@ words!(EngagementKind:
 
 /// A cutter in the work.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct EngagedCutter {
+pub struct EngagedCutter {
     pub(super) cutter: Cutter,
     pub(super) axial_depth: f64,
     pub(super) feed_per_tooth: f64,
@@ -53,8 +53,8 @@ impl Cutting<'_> {
     /// The cutter in the work, its force by the rake face: coefficients `kn_mpa` and `friction`.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and field: a missing key, a width that the engagement does not have or that is larger
-    /// than the cutter, values that make no finite force.
+    /// [`InputError`] with file, line and field: a missing key, a width that the engagement does not have or that is
+    /// larger than the cutter, values that make no finite force.
     pub fn engaged_cutter(&self) -> Result<EngagedCutter, InputError> {
         let (tool, cut) = (self.tool, self.cut);
         let face = RakeFace {
@@ -64,7 +64,7 @@ impl Cutting<'_> {
             normal_pressure: required!(self.tool_at, tool.kn_mpa)?.si(),
         };
         let feed_per_tooth = required!(self.cut_at, cut.feed_per_tooth_mm)?.si();
-        let (axial_depth, engagement) = (cut.axial_depth_mm.si(), self.engagement()?);
+        let (axial_depth, engagement) = (required!(self.cut_at, cut.axial_depth_mm)?.si(), self.engagement()?);
         let no_force = || {
             let problem = "gives, with the other values of [tool] and [cut], no finite force";
             self.tool_at.key("kn_mpa").error(problem, "values whose forces are finite")

@@ -7,10 +7,12 @@ use crate::units::{Mm, Positive};
 use stead_model::cutting::{Cut, PathForces};
 
 impl Cutting<'_> {
-    /// The mean forces of milling with edge forces: coefficients `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm`, `kre_n_per_mm`.
+    /// The mean forces of milling with edge forces: coefficients `kt_mpa`, `kr` (or `kr_mpa`), `kte_n_per_mm`,
+    /// `kre_n_per_mm`.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and field: a missing key, a cut wider than the cutter, a negative radial coefficient.
+    /// [`InputError`] with file, line and field: a missing key, a cut wider than the cutter, a negative radial
+    /// coefficient.
     pub fn path_forces(&self) -> Result<PathForces, InputError> {
         let (tool, cut) = (self.tool, self.cut);
         let radial_depth = required!(self.cut_at, cut.radial_depth_mm)?;
@@ -25,7 +27,7 @@ impl Cutting<'_> {
             cut: Cut {
                 direction: required!(self.cut_at, cut.milling)?.0,
                 radial_depth: radial_depth.si(),
-                axial_depth: cut.axial_depth_mm.si(),
+                axial_depth: required!(self.cut_at, cut.axial_depth_mm)?.si(),
             },
             feed_per_tooth: required!(self.cut_at, cut.feed_per_tooth_mm)?.si(),
             concave_corners: cut.concave_corners.and_then(|word| word.0),

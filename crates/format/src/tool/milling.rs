@@ -4,15 +4,15 @@ use super::Cutting;
 use crate::input::InputError;
 use crate::place::required;
 use stead_model::cutting::{Cut, Cutter};
-use stead_simulation::milling::{CutError, PassCut};
+use stead_model::cutting::{CutError, PassCut};
 
 impl Cutting<'_> {
-    /// The cutter and its cut, for work of a length (m), in so many slices and steps a turn: `flute_length_mm`, `kt_mpa`,
-    /// `kr_mpa` (or `kr`), `milling`, `radial_depth_mm` and `spindle_rpm`.
+    /// The cutter and its cut, for work of a length (m), in so many slices and steps a turn: `flute_length_mm`,
+    /// `kt_mpa`, `kr_mpa` (or `kr`), `milling`, `radial_depth_mm` and `spindle_rpm`.
     ///
     /// # Errors
-    /// [`InputError`] with file, line and field: a missing key, pitches that do not make a turn, a cut wider than the cutter or
-    /// deeper than its flutes, too few steps.
+    /// [`InputError`] with file, line and field: a missing key, pitches that do not make a turn, a cut wider than the
+    /// cutter or deeper than its flutes, too few steps.
     pub fn cutter_and_cut(
         &self,
         length: f64,
@@ -23,14 +23,15 @@ impl Cutting<'_> {
         required!(self.tool_at, tool.flute_length_mm)?;
         let cutter = self.cutter(self.coefficients()?, "kt_mpa")?;
         let radius = tool.cutter_diameter_mm.written() / 2e3;
-        // With runout the cutter cuts wider or less wide than its diameter: a cut of the whole diameter is a slot all the same.
+        // With runout the cutter cuts wider or less wide than its diameter: a cut of the whole diameter is a slot all
+        // the same.
         let (width, mean) = (required!(at, table.radial_depth_mm)?.si(), 2.0 * cutter.radius());
         let is_slot = (2.0 * radius.min(cutter.radius())..=2.0 * radius).contains(&width);
         let cut = PassCut {
             section: Cut {
                 direction: required!(at, table.milling)?.0,
                 radial_depth: if is_slot { mean } else { width },
-                axial_depth: table.axial_depth_mm.si(),
+                axial_depth: required!(at, table.axial_depth_mm)?.si(),
             },
             length,
             spindle_speed: required!(at, table.spindle_rpm)?.si(),

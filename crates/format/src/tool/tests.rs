@@ -93,7 +93,8 @@ concave_corners = 'right'
         }
     }
 
-    /// The order of the lists is that in which the teeth pass (what each pitch is counted from: `milling::tests` of the simulation).
+    /// The order of the lists is that in which the teeth pass (what each pitch is counted from: `milling::tests` of the
+    /// simulation).
     #[test]
     fn pitches_and_radii_are_those_of_the_teeth_in_their_order() {
         let listed = "teeth = 3\npitch_deg = [100, 120, 140]\nrunout_um = [6, 0, -4]";
@@ -119,18 +120,6 @@ concave_corners = 'right'
         assert_refused(read(tool), &["run.toml:1: cut: is missing", "[cut] beside [tool]"]);
         assert_refused(read(cut), &["run.toml:1: tool: is missing", "[tool] beside [cut]"]);
         assert_refused(read(""), &["run.toml:1: tool: is missing", "[tool] and [cut]"]);
-    }
-
-    #[test]
-    fn old_keys_are_refused_with_the_new_ones_named() {
-        let old = format!("[cutting]\nteeth = 4\n{TEXT}");
-        assert_refused(
-            read(&old),
-            &["run.toml:1: cutting: unknown key (now [tool] for the cutter and [cut]", "[cutting]"],
-        );
-        assert_eq!(successor("stability.teeth").as_deref(), Some("tool.teeth"));
-        assert_eq!(successor("stability.radial_depth_mm").as_deref(), Some("cut.radial_depth_mm"));
-        assert_eq!((successor("stability.tooth"), successor("cut.milling")), (None, None));
     }
 }
 

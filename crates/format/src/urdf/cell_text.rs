@@ -10,7 +10,8 @@ use stead_cell::Solid;
 use stead_numerics::rotation::quaternion_from_rotation;
 use toml::Value;
 
-/// The text of a file of surroundings at a path, from whose folder mesh files are named; `urdf` is the file that they come from.
+/// The text of a file of surroundings at a path, from whose folder mesh files are named; `urdf` is the file that they
+/// come from.
 pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
     let mut text = format!(
         "# The links of an arm, by `stead import robot --collision` from {}: its <collision> shapes in the frames of the rows.\n\
@@ -21,7 +22,8 @@ pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
     links.shapes.iter().for_each(|link| shape(&mut text, link, file));
     if !links.ignored.is_empty() {
         text.push_str(
-            "\n# These touch in every posture tried, or at joint values zero of the URDF, or are near each other in every posture.\n\
+            "\n# These touch in every posture tried, or at joint values zero of the URDF, or are near each other in \
+             every posture.\n\
              [collision]\nignore = [\n",
         );
         for [a, b] in &links.ignored {

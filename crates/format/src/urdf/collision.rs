@@ -206,7 +206,8 @@ fn touching(robot: &Robot, zero: &[f64; 6], shapes: &[LinkShape], notes: &mut Ve
     notes.extend(near.iter().map(|[a, b]| {
         let mm = ALWAYS_NEAR * 1e3;
         format!(
-            "{a:?} and {b:?} are within {mm} mm of each other in every posture tried, as parts next to each other are: ignored; take the \
+            "{a:?} and {b:?} are within {mm} mm of each other in every posture tried, as parts next to each other \
+             are: ignored; take the \
              pair out of ignore if they can touch"
         )
     }));

@@ -11,7 +11,8 @@ use stead_model::robot::{Pose, Robot};
 /// Random postures that rows and URDF are compared in.
 pub const POSTURES: usize = 2000;
 
-/// The largest differences of the tip link's pose by the rows from that by the URDF, over random postures within the limits.
+/// The largest differences of the tip link's pose by the rows from that by the URDF, over random postures within the
+/// limits.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Deviation {
     /// Of the position. mm

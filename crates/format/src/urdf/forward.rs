@@ -1,13 +1,13 @@
-//! Forward kinematics of a URDF as its format defines it: the product of joint origins and turns about joint axes. It shares
-//! nothing with the rows that are derived from it, which are tested against it.
+//! Forward kinematics of a URDF as its format defines it: the product of joint origins and turns about joint axes. It
+//! shares nothing with the rows that are derived from it, which are tested against it.
 
 use super::read::{Joint, Urdf};
 use super::tree::Chain;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::Pose;
 
-/// A link of the chain in the base link, for the values of the six moving joints in rad: the link behind joint `last` of the path,
-/// counted from 0; the tip link for the last of them.
+/// A link of the chain in the base link, for the values of the six moving joints in rad: the link behind joint `last`
+/// of the path, counted from 0; the tip link for the last of them.
 pub(super) fn link_at(urdf: &Urdf, chain: &Chain, values: &[f64; 6], last: usize) -> Pose<f64> {
     let mut pose = Pose::identity();
     for joint in chain.path.iter().take(last + 1) {

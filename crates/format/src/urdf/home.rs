@@ -20,7 +20,8 @@ pub struct HomePose {
 }
 
 impl HomePose {
-    /// A pose from what the controller shows of the flange: X, Y, Z (mm) and A, B, C (deg), or for an ABB X, Y, Z and its quaternion.
+    /// A pose from what the controller shows of the flange: X, Y, Z (mm) and A, B, C (deg), or for an ABB X, Y, Z and
+    /// its quaternion.
     ///
     /// # Errors
     /// [`InputError`]: neither six numbers nor seven, a quaternion of another controller, or one whose length is not 1.
@@ -52,22 +53,24 @@ const QUATERNION_ROUNDING: f64 = 1e-3;
 const POSITION: f64 = 1.5e-3;
 /// Likewise its directions. rad
 const DIRECTION: f64 = 2e-3;
-/// Where axis 5 is nearer to straight than this, axes 4 and 6 cannot be told apart. deg
+/// Where axis 5 is nearer to straight than this, axes 4 and 6 cannot be distinguished. deg
 const STRAIGHT_DEG: f64 = 20.0;
 /// The offsets that are tried. deg
 const OFFSETS_DEG: [f64; 4] = [0.0, 90.0, 180.0, -90.0];
 
 const OPTION: &str = "--home-deg";
 /// What a pose has to be.
-const WANTED: &str = "A1,..,A6=X,Y,Z,A,B,C in deg and mm as the controller shows them for the flange in its robot root, no tool, no base; ABB also \
+const WANTED: &str = "A1,..,A6=X,Y,Z,A,B,C in deg and mm as the controller shows them for the flange in its robot \
+                      root, no tool, no base; ABB also \
      X,Y,Z,QW,QX,QY,QZ; |A5| at least 20 deg, no angle at a multiple of 45 deg";
 
 fn refused(problem: String) -> InputError {
     InputError::new(Path::new(OPTION), problem).allowed(WANTED)
 }
 
-/// How the controller counts: as the URDF where that agrees with the pose, else in the one way that does, by signs, offsets of quarter
-/// turns, and a root at the base link or at the height of axis 2. `own` is the URDF's. Second, whether it is the URDF's.
+/// How the controller counts: as the URDF where that agrees with the pose, else in the one way that does, by signs,
+/// offsets of quarter turns, and a root at the base link or at the height of axis 2. `own` is the URDF's. Second,
+/// whether it is the URDF's.
 ///
 /// # Errors
 /// [`InputError`]: a pose that leaves a sign open, or that no way of counting agrees with.
@@ -118,8 +121,8 @@ pub(super) fn controller_at(
             });
         }
     }
-    // With the sign of axis 5 the other way and half a turn more at axes 4 and 6 the flange is always where it was: of two such ways the
-    // one that is nearer to the URDF is taken.
+    // With the sign of axis 5 the other way and half a turn more at axes 4 and 6 the flange is always where it was: of
+    // two such ways the one that is nearer to the URDF is taken.
     let changes = |way: &Controller| {
         let is_other = |joint: &usize| way.sign[*joint] != own.sign[*joint] || way.offset[*joint] != own.offset[*joint];
         (3..6).filter(is_other).count()
@@ -136,7 +139,8 @@ pub(super) fn controller_at(
     }
 }
 
-/// Whether two ways of counting differ only in what a flip of the wrist takes back: whatever the angles, the flange is the same.
+/// Whether two ways of counting differ only in what a flip of the wrist takes back: whatever the angles, the flange is
+/// the same.
 fn is_wrist_flip(a: &Controller, b: &Controller) -> bool {
     let half_turn = |joint: usize| (libm::cos(a.offset[joint] - b.offset[joint]) + 1.0).abs() < 1e-9;
     let is_same = |joint: usize| a.sign[joint] == b.sign[joint];

@@ -12,8 +12,8 @@ pub(super) fn missing(urdf: &Urdf) -> Vec<String> {
     missing
 }
 
-/// The file of a shape, where it is found: by a relative path from the folder of the URDF, one of a package (`package://name/..`) from
-/// the nearest folder above it that has the package, or the rest of the path, in it.
+/// The file of a shape, where it is found: by a relative path from the folder of the URDF, one of a package
+/// (`package://name/..`) from the nearest folder above it that has the package, or the rest of the path, in it.
 pub(super) fn found(urdf: &Urdf, name: &str) -> Option<PathBuf> {
     let folder = std::path::absolute(&urdf.file).unwrap_or_default();
     let folder = folder.parent().unwrap_or(Path::new("."));

@@ -1,8 +1,9 @@
 //! Robots from URDF files, the robot descriptions of ROS.
 //!
-//! A URDF is a tree of links and joints, each joint with an origin and an axis in its parent. A robot file is six modified
-//! Denavit-Hartenberg rows. [`import_robot`] finds the six joints of the arm, derives the rows, maps limits and speeds, compares
-//! both forward kinematics over random postures, and states what a URDF does not know: the stiffness of the joints above all.
+//! A URDF is a tree of links and joints, each joint with an origin and an axis in its parent. A robot file is six
+//! modified Denavit-Hartenberg rows. [`import_robot`] finds the six joints of the arm, derives the rows, maps limits
+//! and speeds, compares both forward kinematics over random postures, and states what a URDF does not know: the
+//! stiffness of the joints above all.
 //!
 //! ```
 //! use stead_format::urdf::{ImportOptions, import_robot};
@@ -91,7 +92,7 @@ pub struct ImportedRobot {
     pub controller: Option<Controller>,
     /// The bodies behind the joints in the frames of the rows, where the URDF states all.
     pub bodies: Option<[Inertial; 6]>,
-    /// The shapes of the links, where they were asked for.
+    /// The shapes of the links, where they were requested.
     pub link_shapes: Option<LinkShapes>,
     /// What the user should know.
     pub notes: Vec<String>,
@@ -109,8 +110,9 @@ const ENDLESS: f64 = std::f64::consts::TAU;
 /// Reads a URDF and derives the robot file of its arm.
 ///
 /// # Errors
-/// [`InputError`] with file, line and element: a file that is no URDF, links that are no tree, a chain that is not six hinges, a joint
-/// without limits, an arm that is no upright elbow arm with a spherical wrist, or rows that miss the URDF by more than 0.5 mm or 0.1 deg.
+/// [`InputError`] with file, line and element: a file that is no URDF, links that are no tree, a chain that is not six
+/// hinges, a joint without limits, an arm that is no upright elbow arm with a spherical wrist, or rows that miss the
+/// URDF by more than 0.5 mm or 0.1 deg.
 pub fn import_robot(file: &Path, options: &ImportOptions<'_>) -> Result<ImportedRobot, InputError> {
     imported(&Urdf::read(file)?, options)
 }
@@ -191,8 +193,8 @@ impl ImportedRobot {
         Controller { kind, sign, offset, is_j3_level: false, root_from_base: Some(self.link_from_base) }
     }
 
-    /// The files of the robot with their texts: the robot file, and beside it, where the shapes of the links were asked for, that of
-    /// the surroundings with these shapes, `NAME-cell.toml`.
+    /// The files of the robot with their texts: the robot file, and beside it, where the shapes of the links were
+    /// requested, that of the surroundings with these shapes, `NAME-cell.toml`.
     pub fn files(&self, file: &Path) -> Vec<(PathBuf, String)> {
         let mut files = vec![(file.to_owned(), self.text.clone())];
         if let Some(shapes) = &self.link_shapes {
@@ -309,3 +311,13 @@ fn refuse_far(urdf: &Urdf, chain: &Chain, deviation: Deviation) -> Result<(), In
 
 #[cfg(test)]
 mod tests;
+
+/// The last link of a URDF's arm at its joint values (rad) in the frame of the first, through the URDF's own joint
+/// origins and axes: an oracle of tests.
+#[cfg(feature = "testing")]
+#[allow(clippy::unwrap_used)]
+pub fn tip_at(text: &str, joints: &[f64; 6]) -> Pose<f64> {
+    let urdf = read::Urdf::parse(Path::new("arm.urdf"), text.to_owned()).unwrap();
+    let chain = tree::Chain::new(&urdf, &tree::Tree::new(&urdf).unwrap(), None, None).unwrap();
+    forward::tip_at(&urdf, &chain, joints)
+}

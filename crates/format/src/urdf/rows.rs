@@ -1,9 +1,9 @@
 //! Modified Denavit-Hartenberg rows from the six joint axes of a URDF.
 //!
-//! At joint values zero the axes are lines in the base link. Directions that miss a right or straight angle by rounding are made
-//! exact, each in terms of the one before it; the wrist centre is the point nearest to axes 4, 5 and 6. Then
-//! every x axis lies along the common normal of two neighbours, and the rows are read off (Khalil and Dombre 2002). What the
-//! rounding costs is measured afterwards, on the rows as they are written (`deviation`).
+//! At joint values zero the axes are lines in the base link. Directions that miss a right or straight angle by rounding
+//! are made exact, each in terms of the one before it; the wrist centre is the point nearest to axes 4, 5 and 6. Then
+//! every x axis lies along the common normal of two neighbours, and the rows are read off (Khalil and Dombre 2002).
+//! What the rounding costs is measured afterwards, on the rows as they are written (`deviation`).
 
 use super::forward::{link_at, tip_at};
 use super::read::Urdf;
@@ -98,7 +98,8 @@ fn axes(urdf: &Urdf, chain: &Chain) -> [Axis; 6] {
     })
 }
 
-/// The z axes of the rows, at exact angles to each other, and which way each turns: axis 1 up, the others as in the URDF.
+/// The z axes of the rows, at exact angles to each other, and which way each turns: axis 1 up, the others as in the
+/// URDF.
 fn directions(urdf: &Urdf, chain: &Chain, axes: &[Axis; 6]) -> Result<([Vector3<f64>; 6], [f64; 6]), InputError> {
     let up = Vector3::z();
     let given = axes.map(|axis| axis.direction);

@@ -99,8 +99,8 @@ fn cycle(urdf: &Urdf, to: &[Option<usize>], reached: &[usize]) -> InputError {
 }
 
 impl Chain {
-    /// The chain between two named links, or else from `base_link` or the root to `tool0`, `flange` or the link behind the last
-    /// moving joint.
+    /// The chain between two named links, or else from `base_link` or the root to `tool0`, `flange` or the link behind
+    /// the last moving joint.
     pub fn new(urdf: &Urdf, tree: &Tree, base: Option<&str>, tip: Option<&str>) -> Result<Self, InputError> {
         let base = base.map(|name| link_named(urdf, "--base-link", name)).transpose()?;
         let from = base.unwrap_or(tree.root());

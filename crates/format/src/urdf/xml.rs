@@ -1,4 +1,5 @@
-//! Elements of an XML document with their place in the file: attributes read as text and numbers, errors with line, tag and value.
+//! Elements of an XML document with their place in the file: attributes read as text and numbers, errors with line, tag
+//! and value.
 
 use crate::input::InputError;
 pub(super) use crate::quote::one_line;
@@ -49,7 +50,7 @@ impl<'a> Element<'a> {
     pub fn require(self, name: &str) -> Result<&'a str, InputError> {
         let text = self.attribute(name).filter(|text| !text.trim().is_empty());
         let text = text.ok_or_else(|| self.error(Some(name), "is missing", "a text that is not empty"))?;
-        // What comes of it stands in the files that are written.
+        // The result is in the files that are written.
         let is_plain = !text.contains(garbles);
         is_plain.then_some(text).ok_or_else(|| self.error(Some(name), GARBLED, "a text without them"))
     }

@@ -55,8 +55,8 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// The sign with which the angle psi of a tooth from the wall changes: climb milling ends at the wall, conventional milling
-    /// starts there.
+    /// The sign with which the angle psi of a tooth from the wall changes: climb milling ends at the wall, conventional
+    /// milling starts there.
     pub fn sense(&self) -> f64 {
         match self.direction {
             MillingDirection::Climb => -1.0,
@@ -82,8 +82,8 @@ pub struct CutFrame {
 }
 
 impl CutFrame {
-    /// With the wall on a side of the feed; `axis` points from the work to the spindle. The component of the feed along the axis is
-    /// left out.
+    /// With the wall on a side of the feed; `axis` points from the work to the spindle. The component of the feed along
+    /// the axis is left out.
     pub fn new(feed: Vector3<f64>, axis: Vector3<f64>, wall: Side) -> Self {
         let left = axis.cross(&feed).normalize();
         Self { feed: left.cross(&axis), normal: if wall == Side::Right { left } else { -left }, axis }

@@ -68,8 +68,8 @@ pub enum CutterError {
 }
 
 impl Cutter {
-    /// A cutter of teeth in the order in which they pass, with a helix angle (rad; positive: higher parts of a tooth lag behind
-    /// its tip), flutes of a length (m), where known, a sense of rotation, and cutting coefficients.
+    /// A cutter of teeth in the order in which they pass, with a helix angle (rad; positive: higher parts of a tooth
+    /// lag behind its tip), flutes of a length (m), where known, a sense of rotation, and cutting coefficients.
     ///
     /// # Errors
     /// [`CutterError`] for the first number that is out of range.
@@ -177,8 +177,8 @@ impl Cutter {
         self.repeats_by(|a, b| (a.pitch - b.pitch).abs() < SAME_PITCH)
     }
 
-    /// How often in a turn the teeth repeat in pitch and radius: after this part of a turn a cut without chatter is the same
-    /// again.
+    /// How often in a turn the teeth repeat in pitch and radius: after this part of a turn a cut without chatter is the
+    /// same again.
     pub fn repeats_with_runout(&self) -> usize {
         self.repeats_by(|a, b| (a.pitch - b.pitch).abs() < SAME_PITCH && (a.radius - b.radius).abs() < SAME_RADIUS)
     }

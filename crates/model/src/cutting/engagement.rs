@@ -15,11 +15,11 @@ pub struct Arc {
 
 /// The arcs of a turn over which a tooth cuts: one, or two where the middle of the slot is open already.
 ///
-/// The angle phi of a tooth runs in the sense of rotation. At 0 the tooth is at the side of the tool where its motion is along
-/// the feed of the tool, at pi/2 it is in front, and at pi at the other side; from pi to a full turn it is behind and cuts
-/// nothing. The chip is `f_z sin(phi)` thick (eq. 1). Seen in the feed direction with the tool axis up, phi = 0 is on the left
-/// for a cutter that turns clockwise, and on the right for the other. Up milling starts at phi = 0, where the chip has no
-/// thickness, down milling ends at phi = pi, and a full slot does both.
+/// The angle phi of a tooth runs in the sense of rotation. At 0 the tooth is at the side of the tool where its motion
+/// is along the feed of the tool, at pi/2 it is in front, and at pi at the other side; from pi to a full turn it is
+/// behind and cuts nothing. The chip is `f_z sin(phi)` thick (eq. 1). Seen in the feed direction with the tool axis up,
+/// phi = 0 is on the left for a cutter that turns clockwise, and on the right for the other. Up milling starts at phi =
+/// 0, where the chip has no thickness, down milling ends at phi = pi, and a full slot does both.
 ///
 /// Lengths are measured across the feed. Fig. 3 of the paper shows such cases; which, its text does not say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -130,7 +130,8 @@ impl Engagement {
         Ok(Self { arcs: vec![Arc { entry: immersion(from, diameter), exit: immersion(to, diameter) }] })
     }
 
-    /// A slot of the cutter's diameter, in the middle of which a channel of the given width is open already: two arcs. m
+    /// A slot of the cutter's diameter, in the middle of which a channel of the given width is open already: two arcs.
+    /// m
     ///
     /// # Errors
     /// [`EngagementError`] unless `0 < open_width < diameter`.
@@ -179,8 +180,8 @@ fn check_width(width: f64, diameter: f64) -> Result<(), EngagementError> {
     if width > 0.0 && width <= diameter { Ok(()) } else { Err(EngagementError::Width { width, diameter }) }
 }
 
-/// Angle between the radii to a side of the cutter and to its rim at a distance (m) across the feed from that side: 0 to pi.
-/// rad
+/// Angle between the radii to a side of the cutter and to its rim at a distance (m) across the feed from that side: 0
+/// to pi. rad
 fn immersion(distance: f64, diameter: f64) -> f64 {
     libm::acos((1.0 - 2.0 * distance / diameter).clamp(-1.0, 1.0))
 }

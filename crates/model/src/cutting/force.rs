@@ -1,12 +1,12 @@
 //! Force and moment of a milling cutter: at an angle of the turn, and as means over the turn in closed form.
 //!
-//! A tooth at angle phi (see [`Engagement`]) cuts a chip of thickness `h = f_z sin(phi)` at the full depth of cut a_p and is pushed
-//! as its [`Coefficients`] say. Means integrate that over the arcs of the engagement (Klimchik 2017, eq. 5 to 8; with edge terms
-//! as Tlusty and MacNeil 1975).
+//! A tooth at angle phi (see [`Engagement`]) cuts a chip of thickness `h = f_z sin(phi)` at the full depth of cut a_p
+//! and is pushed as its [`Coefficients`] say. Means integrate that over the arcs of the engagement (Klimchik 2017, eq.
+//! 5 to 8; with edge terms as Tlusty and MacNeil 1975).
 //!
-//! **What is left out.** As in Klimchik 2017 a tooth is a point at the radius R in the plane of the tool centre point (eq. 8): the
-//! lag of the helix over the depth of cut, which does not change the mean force, and the lever of the height of the cut, at most
-//! `a_p` times the force. The feed turns into the chip as if the teeth ran on circles.
+//! **What is left out.** As in Klimchik 2017 a tooth is a point at the radius R in the plane of the tool centre point
+//! (eq. 8): the lag of the helix over the depth of cut, which does not change the mean force, and the lever of the
+//! height of the cut, at most `a_p` times the force. The feed turns into the chip as if the teeth ran on circles.
 //
 
 use super::coefficients::Coefficients;
@@ -44,8 +44,8 @@ impl CuttingForce<'_> {
         }
     }
 
-    /// Wrench of one tooth in the work at angle phi (rad) from 0 to pi, in the frame of [this room](crate::cutting), the moment
-    /// about the tool centre point.
+    /// Wrench of one tooth in the work at angle phi (rad) from 0 to pi, in the frame of [this room](crate::cutting),
+    /// the moment about the tool centre point.
     pub fn tooth_wrench(&self, phi: f64) -> Wrench {
         let [outward, motion] = self.cutter.rotation().tooth(phi);
         let ToothForce { chip, edge } = self.tooth();
@@ -56,7 +56,8 @@ impl CuttingForce<'_> {
         Wrench { force, moment: (outward * self.cutter.radius()).cross(&force) }
     }
 
-    /// Wrench of all teeth while the first is at angle phi (rad), any angle, in the frame of [this room](crate::cutting).
+    /// Wrench of all teeth while the first is at angle phi (rad), any angle, in the frame of [this
+    /// room](crate::cutting).
     pub fn instantaneous_wrench(&self, engagement: &Engagement, phi: f64) -> Wrench {
         let mut sum = Wrench::zero();
         for offset in self.cutter.offsets() {
@@ -70,8 +71,8 @@ impl CuttingForce<'_> {
         sum
     }
 
-    /// Mean wrench of all teeth over a turn, in the frame of [this room](crate::cutting): eq. 5 to 8 in closed form, summed
-    /// over the teeth.
+    /// Mean wrench of all teeth over a turn, in the frame of [this room](crate::cutting): eq. 5 to 8 in closed form,
+    /// summed over the teeth.
     pub fn mean_wrench(&self, engagement: &Engagement) -> Wrench {
         self.mean_over(engagement.integrals())
     }

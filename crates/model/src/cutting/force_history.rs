@@ -15,15 +15,16 @@ pub struct Sample {
     pub wrench: Wrench,
 }
 
-/// The wrench of a milling tool: its mean, how the mean grows as the tool moves into the work, and how it goes over a turn.
+/// The wrench of a milling tool: its mean, how the mean grows as the tool moves into the work, and how it goes over a
+/// turn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ForceHistory {
     /// Where a tooth cuts.
     pub engagement: Engagement,
     /// The mean over a turn.
     pub mean: Wrench,
-    /// Means of cuts whose teeth are in the work from 0 to phi, with phi from 0 to pi in steps of a degree. The mean of any cut
-    /// is what these gain over its arcs.
+    /// Means of cuts whose teeth are in the work from 0 to phi, with phi from 0 to pi in steps of a degree. The mean of
+    /// any cut is what these gain over its arcs.
     pub entering: Vec<Sample>,
     /// The wrench of all teeth while the first is at phi, with phi from 0 to a full turn in steps of half a degree.
     pub turn: Vec<Sample>,

@@ -17,8 +17,8 @@ pub struct PathForces {
     pub cut: Cut,
     /// Feed per tooth f_z. m
     pub feed_per_tooth: f64,
-    /// Turns of the path to this side run into a wall: over the last radius + a_e before the turn the width of cut grows
-    /// linearly from a_e to a full slot. `None`: the width of cut never changes.
+    /// Turns of the path to this side run into a wall: over the last radius + a_e before the turn the width of cut
+    /// grows linearly from a_e to a full slot. `None`: the width of cut never changes.
     pub concave_corners: Option<Side>,
 }
 

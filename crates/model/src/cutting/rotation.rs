@@ -21,8 +21,8 @@ impl Rotation {
         }
     }
 
-    /// Unit vectors of a tooth at angle phi (see [`Engagement`](super::Engagement)) along feed, left of the feed, and tool
-    /// axis: from the cutter's axis out to the tooth, and along its motion, the derivative of the first after phi.
+    /// Unit vectors of a tooth at angle phi (see [`Engagement`](super::Engagement)) along feed, left of the feed, and
+    /// tool axis: from the cutter's axis out to the tooth, and along its motion, the derivative of the first after phi.
     pub fn tooth(self, phi: f64) -> [Vector3<f64>; 2] {
         let (sine, cosine) = libm::sincos(phi);
         [vector![sine, -self.sign() * cosine, 0.0], vector![cosine, self.sign() * sine, 0.0]]

@@ -1,4 +1,5 @@
-//! Force and moment of a [`RakeFace`] against limits, sums over tooth positions, energy, and coefficients with edge forces.
+//! Force and moment of a [`RakeFace`] against limits, sums over tooth positions, energy, and coefficients with edge
+//! forces.
 
 use super::*;
 use crate::task::Wrench;
@@ -115,7 +116,8 @@ fn engagements() -> impl Strategy<Value = Engagement> {
     ]
 }
 
-/// The largest difference of two wrenches, over the normal force of all teeth in front, moments with the radius as lever.
+/// The largest difference of two wrenches, over the normal force of all teeth in front, moments with the radius as
+/// lever.
 fn apart(tool: &Tool, a: &Wrench, b: &Wrench) -> f64 {
     let force = tool.normal_pressure * tool.feed_per_tooth * tool.axial_depth * f64::from(tool.teeth);
     let moments = (a.moment - b.moment).abs().max() / tool.radius;
@@ -253,7 +255,8 @@ proptest! {
         prop_assert!(apart(&tool, &slot, &plus(mean(up), mean(down))) < 1e-14);
     }
 
-    /// The mirror of a cutter in the plane of feed and axis turns the other way; of a moment, the other parts change sign.
+    /// The mirror of a cutter in the plane of feed and axis turns the other way; of a moment, the other parts change
+    /// sign.
     #[test]
     fn the_other_hand_is_the_mirror_image(tool in tools(), engagement in engagements()) {
         let other = match tool.rotation {
@@ -266,7 +269,8 @@ proptest! {
         prop_assert_eq!(mirrored.moment, mean.moment.component_mul(&vector![-1.0, 1.0, -1.0]));
     }
 
-    /// The mirror that takes phi to pi - phi takes up milling to down milling, and turns round a force along the motion.
+    /// The mirror that takes phi to pi - phi takes up milling to down milling, and turns round a force along the
+    /// motion.
     #[test]
     fn up_and_down_milling_mirror_each_other(tool in tools(), width in 0.01..=1.0_f64) {
         let balanced = Tool { entering_angle: FRAC_PI_2, friction: libm::tan(tool.rake), ..tool };
@@ -287,8 +291,9 @@ proptest! {
         prop_assert_eq!(deeper.force, tool.mean_wrench(&engagement).force * 2.0);
     }
 
-    /// What spindle and feed give is what the teeth take: the sum over teeth of force times velocity, reckoned tooth by tooth.
-    /// Without friction the spindle gives K_n for every volume of chip, but for what the angles turn away from the motion.
+    /// What spindle and feed give is what the teeth take: the sum over teeth of force times velocity, reckoned tooth by
+    /// tooth. Without friction the spindle gives K_n for every volume of chip, but for what the angles turn away from
+    /// the motion.
     #[test]
     fn energy_is_conserved(tool in tools(), width in 0.01..=1.0_f64, speed in 1.0..1000.0_f64) {
         let engagement = Engagement::up(width, 1.0).unwrap();

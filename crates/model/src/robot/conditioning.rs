@@ -1,9 +1,10 @@
 //! Distance of a configuration from a singularity: the condition number of the normalised Jacobian.
 //!
-//! `kappa_F = (1/6) sqrt(tr(N N^T) tr((N N^T)^-1))` with N the Jacobian at the tool centre point, its position rows divided
-//! by the characteristic length (Caro 2013, eq. 26, after their reference 8); 1/kappa_F is in (0, 1].
+//! `kappa_F = (1/6) sqrt(tr(N N^T) tr((N N^T)^-1))` with N the Jacobian at the tool centre point, its position rows
+//! divided by the characteristic length (Caro 2013, eq. 26, after their reference 8); 1/kappa_F is in (0, 1].
 //!
-//! A spherical wrist makes the Jacobian at the wrist centre block triangular, so its inverse needs two 3x3 inverses only.
+//! A spherical wrist makes the Jacobian at the wrist centre block triangular, so its inverse needs two 3x3 inverses
+//! only.
 
 use super::forward::Frames;
 use nalgebra::{Matrix3, Vector3};

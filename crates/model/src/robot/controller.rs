@@ -39,10 +39,11 @@ pub struct Controller {
     pub sign: [f64; 6],
     /// The angle of each row where the controller's is zero. rad
     pub offset: [f64; 6],
-    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, as Fanuc's do: the angle
-    /// between the two is then the sum of its angles of axes 2 and 3.
+    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, as Fanuc's do: the
+    /// angle between the two is then the sum of its angles of axes 2 and 3.
     pub is_j3_level: bool,
-    /// Pose of the base frame of the rows in the controller's robot root (`$ROBROOT`, base, world at rest), where known.
+    /// Pose of the base frame of the rows in the controller's robot root (`$ROBROOT`, base, world at rest), where
+    /// known.
     pub root_from_base: Option<Pose<f64>>,
 }
 

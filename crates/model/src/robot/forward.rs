@@ -5,8 +5,8 @@ use super::pose::{Pose, cast};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use stead_numerics::scalar::Scalar;
 
-/// The joint frames of an arm in one configuration, in base coordinates; in those of the cell for an arm that is mounted
-/// ([`Robot::mounted`]).
+/// The joint frames of an arm in one configuration, in base coordinates; in those of the cell for an arm that is
+/// mounted ([`Robot::mounted`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frames<T: Scalar> {
     /// Unit vectors of the six joint axes.
@@ -59,8 +59,8 @@ impl<T: Scalar> Frames<T> {
 }
 
 impl Robot {
-    /// The frames of the six rows in base coordinates, in those of the cell for an arm that is mounted, for joint angles `theta` in
-    /// rad, each fixed to its link.
+    /// The frames of the six rows in base coordinates, in those of the cell for an arm that is mounted, for joint
+    /// angles `theta` in rad, each fixed to its link.
     pub fn link_frames(&self, theta: &[f64; 6]) -> [Pose<f64>; 6] {
         let mut pose = self.cell_from_base();
         std::array::from_fn(|j| {

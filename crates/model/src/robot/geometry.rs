@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, Vector3};
 /// centre. Signs are those of the sines of the twists, each +1 or -1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
-    /// Rotation from root to base coordinates; to those of the cell for an arm that is mounted ([`Robot::mounted`](super::Robot::mounted)).
+    /// Rotation from root to base coordinates; to those of the cell for an arm that is mounted
+    /// ([`Robot::mounted`](super::Robot::mounted)).
     pub base_from_root: Matrix3<f64>,
     /// Origin of the root frame in the base frame. m
     pub root_in_base: Vector3<f64>,
@@ -97,8 +98,8 @@ impl Geometry {
         libm::hypot(self.shoulder_radius.abs() + self.upper_arm + self.forearm, self.lateral)
     }
 
-    /// The frame of every row at joint angle zero, in that before it: `Rx(alpha_i) Tx(a_i) Tz(d_i)`, right and straight twists
-    /// taken as exact.
+    /// The frame of every row at joint angle zero, in that before it: `Rx(alpha_i) Tx(a_i) Tz(d_i)`, right and straight
+    /// twists taken as exact.
     pub(super) fn rows(&self, joints: &[Joint; 6]) -> [Pose<f64>; 6] {
         std::array::from_fn(|j| {
             let Joint { alpha, a, d, .. } = joints[j];

@@ -49,9 +49,9 @@ pub enum InertialError {
 const ROUNDING: f64 = 1e-9;
 
 impl Inertial {
-    /// A body of a mass (kg) with its centre of mass at `centre` (m) and the tensor `inertia` (kg m^2) about the centre of
-    /// mass along the axes of the frame: off-diagonal numbers are entries of the tensor, `-integral x y dm`. Only the upper
-    /// triangle is read.
+    /// A body of a mass (kg) with its centre of mass at `centre` (m) and the tensor `inertia` (kg m^2) about the centre
+    /// of mass along the axes of the frame: off-diagonal numbers are entries of the tensor, `-integral x y dm`. Only
+    /// the upper triangle is read.
     ///
     /// # Errors
     /// [`InertialError`] when no rigid body has these numbers.

@@ -1,8 +1,8 @@
 //! Inverse kinematics in closed form: eight postures of an elbow arm with a spherical wrist.
 //!
-//! The wrist centre fixes theta_1 (in front or back), the triangle of shoulder, elbow and wrist centre fixes theta_3 and
-//! theta_2, and the rest of the orientation fixes the wrist (two ways). Where a joint angle is undetermined (wrist centre
-//! on axis 1, axes 4 and 6 in line, wrist centre on axis 2) it is set to zero, and the others follow from it.
+//! The wrist centre fixes theta_1 (in front or back), the triangle of shoulder, elbow and wrist centre fixes theta_3
+//! and theta_2, and the rest of the orientation fixes the wrist (two ways). Where a joint angle is undetermined (wrist
+//! centre on axis 1, axes 4 and 6 in line, wrist centre on axis 2) it is set to zero, and the others follow from it.
 
 use super::Robot;
 use super::pose::{Pose, cast};
@@ -136,8 +136,8 @@ impl Robot {
         base_from_flange.translation - axis6 * T::constant(self.geometry().flange)
     }
 
-    /// How far the wrist centre may move from where it is, in any direction, and still be in the geometric reach of a posture; joint limits
-    /// are ignored. Zero out of reach. m
+    /// How far the wrist centre may move from where it is, in any direction, and still be in the geometric reach of a
+    /// posture; joint limits are ignored. Zero out of reach. m
     pub fn reach_margin(&self, base_from_flange: &Pose<f64>, posture: Posture) -> f64 {
         let g = self.geometry();
         let wrist = g.base_from_root.transpose() * (self.wrist_centre(base_from_flange) - g.root_in_base);
@@ -151,7 +151,8 @@ impl Robot {
         let distance = libm::hypot(outward - g.shoulder_radius, wrist.z - g.shoulder_height);
         let room = (g.upper_arm + g.forearm - distance).min(distance - (g.upper_arm - g.forearm).abs()).max(0.0);
         if lateral == 0.0 {
-            // The distance from the shoulder changes by no more than the wrist centre moves; past axis 1 the arm turns about.
+            // The distance from the shoulder changes by no more than the wrist centre moves; past axis 1 the arm turns
+            // about.
             return room.min(radius);
         }
         // As far as `forward` stays above its half, it changes by so many times what the wrist centre moves.

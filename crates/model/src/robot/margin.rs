@@ -5,8 +5,8 @@ use super::{Compliance, Joint, Robot, RobotError};
 use nalgebra::DMatrix;
 
 impl Robot {
-    /// The same arm with every joint limit `margin` (rad) further inside, and the same compliance at every angle that is left; with the
-    /// margin negated, the arm before that again.
+    /// The same arm with every joint limit `margin` (rad) further inside, and the same compliance at every angle that
+    /// is left; with the margin negated, the arm before that again.
     ///
     /// # Errors
     /// [`RobotError::Limits`] for the first joint of which nothing is left.

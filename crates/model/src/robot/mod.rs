@@ -9,7 +9,9 @@
 //! ```
 //! use stead_model::robot::{Joint, Posture, Robot};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let rows = [(0.0, 0.0, 0.0), (90.0, 0.35, 0.0), (0.0, 1.25, 0.0), (-90.0, 0.055, 1.1), (90.0, 0.0, 0.0), (-90.0, 0.0, 0.0)];
+//! let upper = [(0.0, 0.0, 0.0), (90.0, 0.35, 0.0), (0.0, 1.25, 0.0)];
+//! let wrist = [(-90.0, 0.055, 1.1), (90.0, 0.0, 0.0), (-90.0, 0.0, 0.0)];
+//! let rows: [_; 6] = std::array::from_fn(|k| if k < 3 { upper[k] } else { wrist[k - 3] });
 //! let joints = rows.map(|(alpha, a, d): (f64, f64, f64)| Joint {
 //!     alpha: alpha.to_radians(), a, d, min: -6.0, max: 6.0,
 //!     max_speed: None, max_acceleration: None, max_jerk: None, compliance: 1e-6.into(),
@@ -193,9 +195,9 @@ impl Robot {
     /// Checks six rows, base first.
     ///
     /// # Errors
-    /// [`RobotError`] when a number is not finite or out of its range, or when the arm is not an elbow arm (axis 2 normal
-    /// to axis 1, axis 3 parallel to axis 2, axis 4 normal to axis 3) with a spherical wrist (axes 4, 5, 6 meet in one
-    /// point, neighbours at right angles).
+    /// [`RobotError`] when a number is not finite or out of its range, or when the arm is not an elbow arm (axis 2
+    /// normal to axis 1, axis 3 parallel to axis 2, axis 4 normal to axis 3) with a spherical wrist (axes 4, 5, 6 meet
+    /// in one point, neighbours at right angles).
     pub fn new(name: impl Into<String>, joints: [Joint; 6]) -> Result<Self, RobotError> {
         for (index, joint) in joints.iter().enumerate() {
             check_joint(index + 1, joint)?;
@@ -216,7 +218,8 @@ impl Robot {
         })
     }
 
-    /// The name by which results call the arm: that of the robot file, with that of another arm where the joint stiffness is that one's.
+    /// The name by which results call the arm: that of the robot file, with that of another arm where the joint
+    /// stiffness is that one's.
     pub fn name(&self) -> &str {
         self.stiffness_like.as_ref().map_or(&self.name, |borrowed| &borrowed.name)
     }
@@ -260,7 +263,8 @@ impl Robot {
         &self.rows
     }
 
-    /// The arm as a [`Chain`] with a body behind every joint, given in the frame of its row, and a tip in the flange frame.
+    /// The arm as a [`Chain`] with a body behind every joint, given in the frame of its row, and a tip in the flange
+    /// frame.
     pub fn chain(&self, bodies: &[Inertial; 6], flange_from_tip: Pose<f64>) -> Chain<6> {
         let rows = self.mounted_rows();
         let links = std::array::from_fn(|j| Link::new(rows[j], Axis::Z, Some(bodies[j])));

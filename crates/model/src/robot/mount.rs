@@ -1,15 +1,16 @@
 //! Where the robot stands in its cell: on the floor, on a pedestal, on a wall, under the ceiling.
 //!
-//! A mounted arm is an arm whose first row begins at another pose. All that is stated in the base frame (kinematics, placements,
-//! forces, gravity along -z) is then in the cell frame, whose z axis points up; without a mount the two are one.
+//! A mounted arm is an arm whose first row begins at another pose. All that is stated in the base frame (kinematics,
+//! placements, forces, gravity along -z) is then in the cell frame, whose z axis points up; without a mount the two are
+//! one.
 
 use super::Robot;
 use super::pose::Pose;
 use stead_numerics::scalar::Scalar;
 
 impl Robot {
-    /// The same arm with the frame in which it is given at a pose in the cell frame, in which it is given then. An arm that is mounted
-    /// already is moved as a whole.
+    /// The same arm with the frame in which it is given at a pose in the cell frame, in which it is given then. An arm
+    /// that is mounted already is moved as a whole.
     pub fn mounted(mut self, cell_from_base: &Pose<f64>) -> Self {
         if *cell_from_base == Pose::identity() {
             return self;
@@ -30,7 +31,8 @@ impl Robot {
         self.mount.is_some()
     }
 
-    /// Pose of the cell frame in the root of the controller (`$ROBROOT`, base), where that is known: what programs are stated in.
+    /// Pose of the cell frame in the root of the controller (`$ROBROOT`, base), where that is known: what programs are
+    /// stated in.
     pub fn controller_root_from_cell(&self) -> Option<Pose<f64>> {
         let root_from_base = self.controller()?.root_from_base?;
         Some(self.mount.map_or(root_from_base, |mount| root_from_base.then(&mount.inverse())))

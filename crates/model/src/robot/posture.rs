@@ -3,8 +3,8 @@
 //! A posture is numbered `1 + 4 [back] + 2 [delta <= 0] + [theta_5 < 0]`. *Back*: theta_1 points away from the wrist
 //! centre. `delta` is the elbow angle, zero with the arm stretched; in front of the robot delta <= 0 is elbow up. Two
 //! postures that differ only in the wrist flip (theta_4 + 180 deg, -theta_5, theta_6 + 180 deg) place every axis of the
-//! arm alike: together they are a [`PostureClass`]. Conditioning cannot tell them apart, nor can deflection where the wrist
-//! joints have constant compliances ([`Robot::flips_yield_alike`]).
+//! arm alike: together they are a [`PostureClass`]. Conditioning cannot tell them apart, nor can deflection where the
+//! wrist joints have constant compliances ([`Robot::flips_yield_alike`]).
 
 use super::{Robot, angles::wrap, forward::Frames};
 use serde::{Deserialize, Serialize};

@@ -5,9 +5,9 @@ use nalgebra::{Matrix3, Vector3};
 use stead_numerics::rotation::orthonormal;
 use stead_numerics::scalar::Scalar;
 
-/// Rotation from the tool frame to frame P_i of a path point (x along the feed, z along the tool axis from the workpiece to
-/// the robot) for a free angle beta in rad: Caro 2013, eq. 10, which is its own inverse. The tool's z axis points from the
-/// robot to the workpiece, and at beta zero its x axis lies along the feed.
+/// Rotation from the tool frame to frame P_i of a path point (x along the feed, z along the tool axis from the
+/// workpiece to the robot) for a free angle beta in rad: Caro 2013, eq. 10, which is its own inverse. The tool's z axis
+/// points from the robot to the workpiece, and at beta zero its x axis lies along the feed.
 pub fn point_from_tool<T: Scalar>(beta: T) -> Matrix3<T> {
     let (sine, cosine) = beta.sin_cos();
     let (zero, one) = (T::zero(), T::one());

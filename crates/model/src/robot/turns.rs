@@ -1,7 +1,7 @@
 //! Joint limits and turns.
 //!
-//! A joint whose range is a full turn or more can stand at several real angles that look the same. The inverse kinematics
-//! gives one wrapped angle; here are the real ones.
+//! A joint whose range is a full turn or more can stand at several real angles that look the same. The inverse
+//! kinematics gives one wrapped angle; here are the real ones.
 
 use super::{Joint, angles::ANGLE_ROUNDING};
 use std::f64::consts::TAU;
@@ -49,6 +49,23 @@ impl Range {
         let excess_below = self.min - below;
         if excess_above <= excess_below { (above, excess_above) } else { (below, excess_below) }
     }
+}
+
+/// All real joint angles inside some ranges that are given angles (rad) but for whole turns: ascending, those of joint
+/// 6 change first.
+pub fn real_configurations(ranges: &[Range; 6], angles: &[f64; 6]) -> Vec<[f64; 6]> {
+    let mut configurations = vec![*angles];
+    for (j, range) in ranges.iter().enumerate() {
+        let turned = configurations.iter().flat_map(|known| {
+            range.real_angles(angles[j]).map(|real| {
+                let mut next = *known;
+                next[j] = real;
+                next
+            })
+        });
+        configurations = turned.collect();
+    }
+    configurations
 }
 
 /// Full turns of a real angle: what it has beyond its wrapped value in (-pi, pi].

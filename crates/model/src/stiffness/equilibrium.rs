@@ -1,9 +1,9 @@
 //! The static equilibrium of an arm under load, with the geometry as it is when deflected.
 //!
 //! Each joint is driven to a commanded angle and gives way behind its drive until its torque balances the load:
-//! `K_theta (theta - theta_0) = J(theta)^T w`, where force and moment keep their directions in space and act on the displaced
-//! point. K_theta is that of the commanded configuration (Klimchik et al. 2017, eq. 12: it depends on q, not on the
-//! deflection). Of several equilibria the one is found that the arm comes to as the load grows from zero.
+//! `K_theta (theta - theta_0) = J(theta)^T w`, where force and moment keep their directions in space and act on the
+//! displaced point. K_theta is that of the commanded configuration (Klimchik et al. 2017, eq. 12: it depends on q, not
+//! on the deflection). Of several equilibria the one is found that the arm comes to as the load grows from zero.
 
 use super::Displacement;
 use super::loaded::{inverse_tangent, load_hessian, roots};
@@ -217,8 +217,8 @@ mod tests {
         }
     }
 
-    /// A bound of what is of third order in the load, from the largest turn of the joints that a load on an arm of less than
-    /// 3 m can cause. m
+    /// A bound of what is of third order in the load, from the largest turn of the joints that a load on an arm of less
+    /// than 3 m can cause. m
     fn third_order(robot: &Robot, load: &Load) -> f64 {
         let compliance: f64 = robot.compliances_at(&[0.0; 6]).iter().sum();
         (compliance * (3.0 * load.force.norm() + load.moment.norm())).powi(3) + 1e-14

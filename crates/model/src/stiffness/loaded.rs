@@ -1,11 +1,11 @@
 //! The compliance of an arm under load: what a load adds to or takes from the stiffness by turning its own lever arms.
 //!
-//! `K_C = (J (K_theta - H)^-1 J^T)^-1` with H the derivative of the joint torques `J^T w` by the joint angles (Klimchik et
-//! al. 2017, eq. 11). For a force H is a Hessian and symmetric. A moment that keeps its direction in space has no potential:
-//! its part of H is not symmetric. It is kept as it is, since only then `K_theta - H` is the tangent of the static
-//! equilibrium `K_theta (theta - theta_0) = J^T w` (see [`super::equilibrium`]), and K_C what a little more load meets.
-//! Whether the arm holds is judged by the symmetric part: while that is positive definite, any small motion costs more work
-//! than the load gives back.
+//! `K_C = (J (K_theta - H)^-1 J^T)^-1` with H the derivative of the joint torques `J^T w` by the joint angles (Klimchik
+//! et al. 2017, eq. 11). For a force H is a Hessian and symmetric. A moment that keeps its direction in space has no
+//! potential: its part of H is not symmetric. It is kept as it is, since only then `K_theta - H` is the tangent of the
+//! static equilibrium `K_theta (theta - theta_0) = J^T w` (see [`super::equilibrium`]), and K_C what a little more load
+//! meets. Whether the arm holds is judged by the symmetric part: while that is positive definite, any small motion
+//! costs more work than the load gives back.
 
 use super::Displacement;
 use crate::robot::Frames;
@@ -19,11 +19,11 @@ pub struct Buckled {
     pub share: f64,
 }
 
-/// H of eq. 11: the derivative of the joint torques `J^T w` by the joint angles, row by row, for `force` (N) and `moment`
-/// (N m) at `point` (m), all in the base frame and unchanged while the joints turn. N m/rad
+/// H of eq. 11: the derivative of the joint torques `J^T w` by the joint angles, row by row, for `force` (N) and
+/// `moment` (N m) at `point` (m), all in the base frame and unchanged while the joints turn. N m/rad
 ///
-/// With z an axis, o a point on it, and i the joint nearer to the base: `(z_i x (z_j x (p - o_j))) . F` in both places of a
-/// pair, and of a moment `(z_i x z_j) . M` in row j, column i alone.
+/// With z an axis, o a point on it, and i the joint nearer to the base: `(z_i x (z_j x (p - o_j))) . F` in both places
+/// of a pair, and of a moment `(z_i x z_j) . M` in row j, column i alone.
 pub fn load_hessian(
     frames: &Frames<f64>,
     point: &Vector3<f64>,
@@ -45,8 +45,8 @@ pub fn load_hessian(
     hessian
 }
 
-/// The inverse of K_C under load (eq. 11): displacement of the tool (m, rad) per additional wrench (N, N m) at `point` (m),
-/// for joint compliances at the pose in rad/(N m). Symmetric for a pure force.
+/// The inverse of K_C under load (eq. 11): displacement of the tool (m, rad) per additional wrench (N, N m) at `point`
+/// (m), for joint compliances at the pose in rad/(N m). Symmetric for a pure force.
 ///
 /// # Errors
 /// [`Buckled`] when the symmetric part of `K_theta - H` is not positive definite.
@@ -63,11 +63,12 @@ pub fn loaded_compliance(
     Ok(scaled * inverse * scaled.transpose())
 }
 
-/// The displacement at `point` (m) as Klimchik et al. (2017) take it, `K_C^-1 w` with K_C under the load (eq. 9 with 11),
-/// for joint compliances at the pose in rad/(N m).
+/// The displacement at `point` (m) as Klimchik et al. (2017) take it, `K_C^-1 w` with K_C under the load (eq. 9 with
+/// 11), for joint compliances at the pose in rad/(N m).
 ///
-/// It agrees with the equilibrium to first order in the load. Of the second-order part along the force it has two thirds:
-/// the last third is the curvature of the way that the point takes. [`super::equilibrium::displaced`] has all of it.
+/// It agrees with the equilibrium to first order in the load. Of the second-order part along the force it has two
+/// thirds: the last third is the curvature of the way that the point takes. [`super::equilibrium::displaced`] has all
+/// of it.
 ///
 /// # Errors
 /// Those of [`loaded_compliance`].
@@ -83,8 +84,8 @@ pub fn loaded_displacement(
     Ok(Displacement { linear: moved.fixed_rows::<3>(0).into_owned(), angular: moved.fixed_rows::<3>(3).into_owned() })
 }
 
-/// Square roots of the compliances: the scale S that makes `S (K_theta - H) S = 1 - S H S` a matrix without units, which
-/// exists for rigid joints too.
+/// Square roots of the compliances: the scale S that makes `S (K_theta - H) S = 1 - S H S` a matrix without units,
+/// which exists for rigid joints too.
 pub(super) fn roots(compliances: &[f64; 6]) -> Vector6<f64> {
     Vector6::from(compliances.map(libm::sqrt))
 }

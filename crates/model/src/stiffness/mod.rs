@@ -1,9 +1,10 @@
 //! Deflection of the arm: joint compliances mapped to the tool centre point.
 //!
-//! With rigid links and compliant joints the Cartesian compliance is `J K_theta^-1 J^T` (Caro 2013, eq. 12 as corrected: no
-//! complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
-//! `K^-1 w = sum_j J_j (J_j . w) / k_j`. Loads so high that they change the configuration are for [`loaded`] (the tangent,
-//! Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest). Rotations are vectors here: [`stead_numerics::rotation`].
+//! With rigid links and compliant joints the Cartesian compliance is `J K_theta^-1 J^T` (Caro 2013, eq. 12 as
+//! corrected: no complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
+//! `K^-1 w = sum_j J_j (J_j . w) / k_j`. Loads so high that they change the configuration are for [`loaded`] (the
+//! tangent, Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest). Rotations are vectors
+//! here: [`stead_numerics::rotation`].
 
 pub mod equilibrium;
 pub mod loaded;

@@ -3,7 +3,8 @@
 use super::{TaskError, ToolPath};
 
 impl ToolPath {
-    /// States the feed (m/s) of the move to each point from the one before; that of the first point of a segment says nothing.
+    /// States the feed (m/s) of the move to each point from the one before; that of the first point of a segment says
+    /// nothing.
     ///
     /// # Errors
     /// [`TaskError`] where their number is not that of the points, or at the first that is not above zero and finite.
@@ -47,8 +48,8 @@ impl ToolPath {
         self.scored.as_ref().map_or(self.points.len(), |scored| scored.iter().filter(|is_scored| **is_scored).count())
     }
 
-    /// Time from the point before to a point, both in one segment, at the feed of the task, or at the given one (m/s) where it states
-    /// none; infinite for a turn of the tool in place, to which no feed belongs. s
+    /// Time from the point before to a point, both in one segment, at the feed of the task, or at the given one (m/s)
+    /// where it states none; infinite for a turn of the tool in place, to which no feed belongs. s
     pub fn step_time(&self, point: usize, feed: f64) -> f64 {
         let length = self.step_length(point);
         if self.turns_in_place(point) { f64::INFINITY } else { length / self.feed(point).unwrap_or(feed) }

@@ -24,14 +24,14 @@ pub struct PathPoint {
 }
 
 impl PathPoint {
-    /// The direction to the left of the feed seen against the tool axis, `axis x feed`, of unit length: the direction in
-    /// which the deflection spoils the wall (Caro 2013, eq. 11, where the sign does not matter).
+    /// The direction to the left of the feed seen against the tool axis, `axis x feed`, of unit length: the direction
+    /// in which the deflection spoils the wall (Caro 2013, eq. 11, where the sign does not matter).
     pub fn normal(&self) -> Vector3<f64> {
         self.axis.cross(&self.feed).normalize()
     }
 
-    /// Rotation from frame P_i (z along the tool axis, y along [`PathPoint::normal`], x the feed normal to the axis) to the
-    /// workpiece frame.
+    /// Rotation from frame P_i (z along the tool axis, y along [`PathPoint::normal`], x the feed normal to the axis) to
+    /// the workpiece frame.
     pub fn workpiece_from_point(&self) -> Matrix3<f64> {
         let normal = self.normal();
         Matrix3::from_columns(&[normal.cross(&self.axis), normal, self.axis])
@@ -183,8 +183,9 @@ impl ToolPath {
         Self::partly_scored(points.into_iter().map(|(segment, point)| (segment, point, true)))
     }
 
-    /// As [`ToolPath::new`], with whether each point is scored. One that is not must be reached, but has no part in the objective and no
-    /// force, as in a plunge. Its `feed` only says from where beta counts, and it may be where the point before it is.
+    /// As [`ToolPath::new`], with whether each point is scored. One that is not must be reached, but has no part in the
+    /// objective and no force, as in a plunge. Its `feed` only says from where beta counts, and it may be where the
+    /// point before it is.
     ///
     /// # Errors
     /// [`TaskError`] at the first point that breaks a rule, or where no point is scored.

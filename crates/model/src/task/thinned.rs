@@ -23,8 +23,8 @@ pub(super) struct Thinned {
 }
 
 impl ToolPath {
-    /// The path thinned to some of its points, ascending and at least one of every segment; the distances between them stay those
-    /// along the whole path.
+    /// The path thinned to some of its points, ascending and at least one of every segment; the distances between them
+    /// stay those along the whole path.
     fn thinned(&self, kept: &[KeptPoint]) -> Self {
         let mut segments = Vec::with_capacity(self.segments.len());
         let mut steps = Vec::with_capacity(kept.len());
@@ -86,7 +86,8 @@ impl ToolPath {
         }
     }
 
-    /// Whether the tool turns in place, which no feed belongs to, on the way to a point from the one before, in the same segment.
+    /// Whether the tool turns in place, which no feed belongs to, on the way to a point from the one before, in the
+    /// same segment.
     pub fn turns_in_place(&self, point: usize) -> bool {
         match &self.thinned {
             Some(thinned) => thinned.turns[point],

@@ -4,8 +4,8 @@ use super::{Task, ToolPath, Wrench};
 use nalgebra::Matrix3;
 
 impl Task {
-    /// The same task on the workpiece turned by a rotation about its origin: positions, directions and wrenches in the directions of
-    /// the frame in which the rotation is given.
+    /// The same task on the workpiece turned by a rotation about its origin: positions, directions and wrenches in the
+    /// directions of the frame in which the rotation is given.
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         let turned = |wrench: &Wrench| Wrench { force: rotation * wrench.force, moment: rotation * wrench.moment };
         Self { path: self.path.turned(rotation), wrenches: self.wrenches.iter().map(turned).collect() }

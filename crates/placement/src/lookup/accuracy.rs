@@ -1,12 +1,12 @@
 //! The error of a lookup table against the reference evaluator, at random states all over the cell.
 
 use super::{BetaGrid, LookupTable};
-use crate::feasibility::without_clearance;
-use crate::problem::{Placement, Redundancy};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use stead_model::robot::{PostureClass, angles::wrap};
+use stead_planning::feasibility::without_clearance;
+use stead_planning::problem::{Placement, Redundancy};
 
 /// Random placements, each with a path point.
 const DRAWN: u64 = 96;

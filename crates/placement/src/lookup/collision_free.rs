@@ -1,15 +1,14 @@
-//! The lookup table among shapes: a way through a segment is found, its states are looked at, those that hit are forbidden, and the
-//! way is found again ([`crate::redundancy`] does the same with the planner).
+//! The lookup table among shapes: a way through a segment is found, its states are looked at, those that hit are
+//! forbidden, and the way is found again ([`stead_planning::redundancy`] does the same with the planner).
 //!
 //! The table does not tell the two flips of the wrist apart, so a state is forbidden where something hits in both.
 
 use super::objective::Workspace;
 use super::{BetaGrid, LookupTable};
-use crate::problem::Placement;
-use crate::redundancy::{StateSet, forbid, kinds_left};
-use std::ops::Range as Span;
 use stead_cell::Proximity;
 use stead_model::robot::PostureClass;
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::{StateSet, forbid, kinds_left};
 
 /// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 30;
@@ -17,18 +16,26 @@ const MAX_ROUNDS: usize = 30;
 /// Where not all points are looked at, not all values of beta are either, but at least so many of a turn: every 15 deg.
 const LEAST_LOOKS: usize = 24;
 
+/// How the states of a path are checked for collisions.
+pub(super) struct PathCheck<'s> {
+    pub placement: &'s Placement,
+    pub grid: &'s BetaGrid,
+    /// See [`CollisionEffort::stride`](super::CollisionEffort::stride).
+    pub stride: usize,
+}
+
 impl LookupTable<'_> {
-    /// The class that gets through a segment in ways in which nothing hits with the smallest sum of scores, and that sum (m): first the
-    /// one that was `found`, then what is found `again` without the states that hit.
+    /// The class that gets through a segment in ways in which nothing hits with the smallest sum of scores, and that
+    /// sum (m): first the one that was `found`, then what is found `again` without the states that hit.
     pub(super) fn best_free_class(
         &self,
-        (placement, grid): (&Placement, &BetaGrid),
-        (index, span): (usize, &Span<usize>),
+        PathCheck { placement, grid, stride }: &PathCheck<'_>,
+        index: usize,
         mut found: Option<(f64, usize)>,
         again: impl Fn(&mut Workspace) -> Option<(f64, usize)>,
-        stride: usize,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
+        let (span, stride) = (&self.problem.task.segments()[index], *stride);
         // States met on earlier ways in which nothing hits.
         let mut free = StateSet::default();
         for _ in 0..MAX_ROUNDS {
@@ -40,12 +47,12 @@ impl LookupTable<'_> {
                 if free.contains(point, PostureClass::ALL[class], beta) {
                     return false;
                 }
-                let is_hit = self.hits(placement, (point, class), (grid, beta), along);
+                let is_hit = self.hits(placement, point, class, grid, beta, along);
                 if is_hit {
                     across.begin_with(along);
-                    let hits = |k| self.hits(placement, (point, class), (grid, k), across);
+                    let hits = |k| self.hits(placement, point, class, grid, k, across);
                     let across = stride.min(grid.count / LEAST_LOOKS).max(1);
-                    forbid((point, PostureClass::ALL[class]), (beta, grid.count, across), hits, forbidden);
+                    forbid(point, PostureClass::ALL[class], beta, grid.count, across, hits, forbidden);
                 } else {
                     free.add(point, PostureClass::ALL[class], beta);
                 }
@@ -74,13 +81,15 @@ impl LookupTable<'_> {
     fn hits(
         &self,
         placement: &Placement,
-        (point, class): (usize, usize),
-        (grid, beta): (&BetaGrid, usize),
+        point: usize,
+        class: usize,
+        grid: &BetaGrid,
+        beta: usize,
         known: &mut Proximity,
     ) -> bool {
         let [plain, flipped] = PostureClass::ALL[class].postures();
         let kinds = kinds_left(grid.tool_hits.as_deref());
-        let mut hit = |posture| self.problem.next_hit((point, grid.beta(beta)), placement, posture, kinds, known);
+        let mut hit = |posture| self.problem.next_hit(point, grid.beta(beta), placement, posture, kinds, known);
         let Some(pair) = hit(plain) else { return false };
         let knows_flips =
             self.problem.scene.as_deref().and_then(|scene| scene.pair(pair)).is_some_and(|p| p.knows_flips);
@@ -89,7 +98,7 @@ impl LookupTable<'_> {
 }
 
 /// The numbers of beta on the way with the least cost at its end, from the costs after each point.
-fn traced(kept: &[f32], changes: &[crate::redundancy::BetaChange], count: usize) -> Vec<usize> {
+fn traced(kept: &[f32], changes: &[stead_planning::redundancy::BetaChange], count: usize) -> Vec<usize> {
     let rows: Vec<&[f32]> = kept.chunks_exact(count).collect();
     let least = |betas: &mut dyn Iterator<Item = usize>, row: &[f32]| {
         betas.min_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(0)

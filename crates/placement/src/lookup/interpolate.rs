@@ -1,7 +1,8 @@
 //! Interpolating the table: the scores of one path point at one placement, over a grid of beta, in one posture class.
 //!
-//! Cubic interpolation in all three directions. Heights first, and kept for as long as the height stays, since most paths are
-//! level; then radii and fields together into one row over the heading, since a score is linear in the fields; then the heading.
+//! Cubic interpolation in all three directions. Heights first, and kept for as long as the height stays, since most
+//! paths are level; then radii and fields together into one row over the heading, since a score is linear in the
+//! fields; then the heading.
 
 use super::polar::PolarPoint;
 use super::shape::{Shape, cubic};
@@ -72,16 +73,18 @@ struct Radii<'a> {
     weights: [f32; 4],
 }
 
-/// A constant and factors of the fields: m, d1, d2, and c_rz, c_tz where there is a vertical part.
+/// A constant and factors of the fields: m, d1, d2, and c_rz, c_tz where there is a vertical part, and g where a moment
+/// acts.
 struct Combination {
     constant: f64,
     in_plane: [f64; 3],
     vertical: [f64; 2],
+    moment: Option<[f64; field::MOMENT]>,
 }
 
 impl LookupTable<'_> {
-    /// The scores (m; infinite where not allowed) of a point in one posture class over a grid of beta. False when none is
-    /// allowed for certain; true says nothing.
+    /// The scores (m; infinite where not allowed) of a point in one posture class over a grid of beta. False when none
+    /// is allowed for certain; true says nothing.
     pub(super) fn interpolate(
         &self,
         point: &PolarPoint,
@@ -102,7 +105,7 @@ impl LookupTable<'_> {
         if is_robust {
             (0..3).for_each(|k| along(&from.response[k], &mut to.response[k]));
         }
-        if self.shape.has_first_joint {
+        if self.shape.parts.first_joint {
             (0..2).for_each(|k| along(&from.first_joint[k], &mut to.first_joint[k]));
         }
         let count = scores.len();
@@ -118,7 +121,7 @@ impl LookupTable<'_> {
                 scores[k] += squares.sqrt() * uncertainty;
             }
         }
-        if self.shape.has_first_joint {
+        if self.shape.parts.first_joint {
             self.exclude_first_joint(point, &to.first_joint, scores);
         }
         if let Some(limit) = self.problem.constraints.max_deflection {
@@ -149,7 +152,7 @@ impl LookupTable<'_> {
         let mut any = false;
         for radius in point.radius.0..point.radius.0 + 4 {
             if scratch.filled[radius * 4 + class] == Filled::NotYet {
-                self.fill(radius, class, height, scratch);
+                self.fill(radius, class, height.0, height.1, scratch);
             }
             any |= scratch.filled[radius * 4 + class] == Filled::Feasible;
         }
@@ -157,7 +160,7 @@ impl LookupTable<'_> {
     }
 
     /// The fields of one radius and class at a height, into the slab.
-    fn fill(&self, radius: usize, class: usize, (first, weights): (usize, [f32; 4]), scratch: &mut Scratch) {
+    fn fill(&self, radius: usize, class: usize, first: usize, weights: [f32; 4], scratch: &mut Scratch) {
         let (radii, block) = (self.shape.radius.count, self.shape.block());
         let index = |height: usize| (height * radii + radius) * 4 + class;
         let slot = radius * 4 + class;
@@ -178,25 +181,28 @@ impl LookupTable<'_> {
         let radii =
             Radii { blocks: [0, 1, 2, 3].map(|k| &slab[((first + k) * 4 + class) * block..][..block]), weights };
         let (n, f, joint1) = (&point.normal, &point.force, point.first_compliance);
+        let t = &point.moment;
+        let moment = shape.parts.moment.then(|| [n.x * t.x, n.x * t.y, n.x * t.z, n.y * t.x, n.y * t.y, n.y * t.z]);
         let deflection = Combination {
-            constant: joint1 * n.y * f.y,
+            constant: joint1 * n.y * f.y + point.first_moment_compliance * n.y * t.z,
             in_plane: [n.x * f.x + n.y * f.y, n.x * f.x - n.y * f.y, n.x * f.y + n.y * f.x],
             vertical: [f.z * n.x, f.z * n.y],
+            moment,
         };
         self.combine(&radii, &deflection, &mut rows.normal_part);
         self.field(&radii, field::ROOM, &mut rows.room);
         if point.uncertainty > 0.0 {
             let response = [
-                Combination { constant: 0.0, in_plane: [n.x, n.x, n.y], vertical: [0.0; 2] },
-                Combination { constant: joint1 * n.y, in_plane: [n.y, -n.y, n.x], vertical: [0.0; 2] },
-                Combination { constant: 0.0, in_plane: [0.0; 3], vertical: [n.x, n.y] },
+                Combination { constant: 0.0, in_plane: [n.x, n.x, n.y], vertical: [0.0; 2], moment: None },
+                Combination { constant: joint1 * n.y, in_plane: [n.y, -n.y, n.x], vertical: [0.0; 2], moment: None },
+                Combination { constant: 0.0, in_plane: [0.0; 3], vertical: [n.x, n.y], moment: None },
             ];
             response
                 .iter()
                 .zip(&mut rows.response)
                 .for_each(|(combination, row)| self.combine(&radii, combination, row));
         }
-        if shape.has_first_joint {
+        if shape.parts.first_joint {
             (0..2).for_each(|k| self.field(&radii, shape.first_joint() + k, &mut rows.first_joint[k]));
         }
     }
@@ -213,11 +219,19 @@ impl LookupTable<'_> {
             for k in 0..headings {
                 out[k] += m[k] * a + d1[k] * b + d2[k] * c;
             }
-            if self.shape.has_vertical {
+            if self.shape.parts.vertical {
                 let [a, b] = combination.vertical.map(|factor| factor as f32 * weight);
                 let (rz, tz) = values[field::VERTICAL * headings..][..2 * headings].split_at(headings);
                 for k in 0..headings {
                     out[k] += rz[k] * a + tz[k] * b;
+                }
+            }
+            if let Some(moment) = combination.moment {
+                let [a, b, c, d, e, f] = moment.map(|factor| factor as f32 * weight);
+                let fields = &values[self.shape.moment() * headings..][..field::MOMENT * headings];
+                let [rr, rt, rz, tr, tt, tz] = std::array::from_fn(|k| &fields[k * headings..][..headings]);
+                for k in 0..headings {
+                    out[k] += rr[k] * a + rt[k] * b + rz[k] * c + tr[k] * d + tt[k] * e + tz[k] * f;
                 }
             }
         }

@@ -1,18 +1,22 @@
-//! A lookup table of the scores of upright tools: candidates are scored by interpolating it, at a tenth of the cost of planning
-//! them; only survivors are planned exactly.
+//! A lookup table of the scores of upright tools: candidates are scored by interpolating it, at a tenth of the cost of
+//! planning them; only survivors are planned exactly.
 //!
-//! With the tool axis along axis 1 ([`super::symmetry`]), a state depends on four things alone: the tool centre point's radius r
-//! and height z in the root frame, the heading of the spindle against the point's azimuth, and the posture class. The
-//! compliance there is sampled once per robot and spindle, by the reference geometry (`sample`, over the grid of `shape`). A placement
-//! is scored point by point (`polar`, `interpolate`), and the best plan through the scores found by the planner's rules without
-//! joint steps and turns (`objective`); the search descends on that. With n the wall normal and f the force, both as (radial,
-//! tangential, up), and the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]]:
+//! With the tool axis along axis 1 ([`stead_planning::symmetry`]), a state depends on four things alone: the tool
+//! centre point's radius r and height z in the root frame, the heading of the spindle against the point's azimuth, and
+//! the posture class. The compliance there is sampled once per robot and spindle, by the reference geometry (`sample`,
+//! over the grid of `shape`). A placement is scored point by point (`polar`, `interpolate`), and the best plan through
+//! the scores found by the planner's rules without joint steps and turns (`objective`); the search descends on that.
+//! With n the wall normal, f the force and t the moment about the tool centre point, all as (radial, tangential, up),
+//! the in-plane compliance of joints 2 to 6 [[m + d1, d2], [d2, m - d1]], and g their compliance between n and t:
 //!
 //! ```text
-//! n . K^-1 f = m n.f + d1 (n_r f_r - n_t f_t) + d2 (n_r f_t + n_t f_r)     joints 2 to 6 in the plane
-//!            + f_z (c_rz n_r + c_tz n_t)                                   and out of it
-//!            + r^2 k_1 n_t f_t                                             joint 1, of compliance k_1: not in the table
+//! n . K^-1 w = m n.f + d1 (n_r f_r - n_t f_t) + d2 (n_r f_t + n_t f_r)  joints 2 to 6 in the plane
+//!            + f_z (c_rz n_r + c_tz n_t)                                and out of it
+//!            + sum over i = r, t and j = r, t, z of g_ij n_i t_j        under the moment
+//!            + r k_1 n_t (r f_t + t_z)                                  joint 1, of compliance k_1: not in the table
 //! ```
+//!
+//! Force and moment enter point by point, so that they may differ at every point at no cost.
 //!
 //! [`LookupTable::accuracy`] measures the error of the interpolation.
 
@@ -25,21 +29,22 @@ mod sample;
 mod shape;
 
 pub use accuracy::Accuracy;
-pub use objective::{Look, Workspace};
-pub use shape::{Axis, Shape};
+pub use objective::{CollisionEffort, Workspace};
+pub use shape::{Axis, Parts, Shape};
 
-use super::constraints::{ConstraintKind, relaxed};
-use super::problem::{Problem, Redundancy};
-use super::redundancy::{BetaChange, Planner, StateSet, saved_changes};
-use super::symmetry::{
-    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
-};
 use nalgebra::Matrix3;
 use polar::WorkpiecePoint;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use stead_model::robot::turns::Range;
 use stead_numerics::monitor::Monitor;
+use stead_planning::constraints::{ConstraintKind, relaxed};
+use stead_planning::problem::{Problem, Redundancy};
+use stead_planning::redundancy::{BetaChange, Planner, StateSet, saved_changes};
+use stead_planning::symmetry::{
+    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
+    require_no_moment,
+};
 
 /// Largest size of a table. Bytes
 pub const MAX_BYTES: u64 = 1 << 30;
@@ -56,7 +61,7 @@ pub struct LookupTable<'a> {
     points: Vec<WorkpiecePoint>,
     root_from_base: Matrix3<f64>,
     /// +1 where a growing beta turns the spindle counter-clockwise about axis 1.
-    sense: f64,
+    rotation_sign: f64,
     /// Compliance of joint 1. rad/(N m)
     first_compliance: f64,
     /// So many points are near enough to each other for one of them to be looked at for collisions first.
@@ -123,7 +128,12 @@ impl<'a> LookupTable<'a> {
         require_certain_compliances(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0
             && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
-        let shape = Shape::new(problem, !is_flat, !Range::of(&problem.robot.joints()[0]).has_turns());
+        let parts = Parts {
+            vertical: !is_flat,
+            moment: require_no_moment(problem).is_err(),
+            first_joint: !Range::of(&problem.robot.joints()[0]).has_turns(),
+        };
+        let shape = Shape::new(problem, parts);
         let bytes = shape.bytes();
         if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(shape) }
     }
@@ -142,8 +152,8 @@ impl<'a> LookupTable<'a> {
     /// [`Unsupported`], with the reason, one of which is [`Unsupported::Interrupted`].
     pub fn monitored(problem: &'a Problem, monitor: &Monitor) -> Result<Self, Unsupported> {
         let shape = Self::shape_for(problem)?;
-        let sense = Upright::of(problem)?.sense;
-        let (data, alive) = sample::sample(problem, &shape, sense, monitor).ok_or(Unsupported::Interrupted)?;
+        let rotation_sign = Upright::of(problem)?.rotation_sign;
+        let (data, alive) = sample::sample(problem, &shape, rotation_sign, monitor).ok_or(Unsupported::Interrupted)?;
         // Exactly upright, so that a level path is level to the last bit.
         let r = problem.robot.geometry().base_from_root.transpose();
         let root_from_base = Matrix3::new(r.m11, r.m12, 0.0, r.m21, r.m22, 0.0, 0.0, 0.0, r.m33.signum());
@@ -154,7 +164,7 @@ impl<'a> LookupTable<'a> {
             alive,
             points: polar::points(problem),
             root_from_base,
-            sense,
+            rotation_sign,
             first_compliance: problem.robot.compliances_at(&[0.0; 6])[0],
             stride: stride(problem),
         })

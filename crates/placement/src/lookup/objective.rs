@@ -1,17 +1,18 @@
 //! The objective of a placement by the lookup table: dynamic programming over interpolated scores.
 //!
-//! The rules are those of [`crate::redundancy::transition`], but for the steps and turns of the joints.
+//! The rules are those of [`stead_planning::redundancy::transition`], but for the steps and turns of the joints.
 
+use super::collision_free::PathCheck;
 use super::interpolate::Scratch;
 use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
-use crate::candidate::{Objective, best_of};
-use crate::problem::Placement;
-use crate::redundancy::{BetaChange, StateSet};
-use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_cell::Proximity;
 use stead_model::robot::{Posture, PostureClass};
+use stead_planning::candidate::{Objective, best_of};
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::{BetaChange, StateSet};
+use stead_planning::sense::Sense;
 
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]
@@ -52,22 +53,26 @@ pub(super) struct Rows {
     is_whole: bool,
 }
 
+/// A posture class with its scores over beta, point by point, as far as they are known.
+struct ClassScores<'s> {
+    class: usize,
+    known: &'s [f32],
+}
+
 /// How thoroughly collisions are looked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub struct CollisionEffort {
     /// The states of every so many points of a way are looked at first, the others only beside what hits.
     pub stride: usize,
-    /// None are looked for where the objective without them is below the first or above the second: it is told as it is. m
+    /// Collisions are checked only if the collision-free objective lies within these; otherwise it is returned
+    /// unchecked. m
     pub within: [f64; 2],
 }
 
-impl Look {
+impl CollisionEffort {
     /// At everything.
     pub const ALL: Self = Self { stride: 1, within: [f64::NEG_INFINITY, f64::INFINITY] };
 }
-
-/// A segment, with its number.
-type Numbered<'s> = (usize, &'s Span<usize>);
 
 impl LookupTable<'_> {
     /// Scratch space for one thread and one grid of beta.
@@ -92,27 +97,27 @@ impl LookupTable<'_> {
         placement: &Placement,
         grid: &BetaGrid,
         scheme: Option<&[Posture]>,
-        look: Look,
+        effort: CollisionEffort,
         workspace: &mut Workspace,
     ) -> Objective {
         let schemes = self.problem.unchanging_schemes(scheme);
         if !schemes.is_empty() {
-            let of = |scheme: Vec<Posture>| self.objective(placement, grid, Some(&scheme), look, workspace);
+            let of = |scheme: Vec<Posture>| self.objective(placement, grid, Some(&scheme), effort, workspace);
             return best_of(Sense::Min, schemes.into_iter().map(of));
         }
         let placed = self.place(placement);
         let rules = &self.problem.postures;
-        let is_asked = |index: usize, class: usize| {
+        let is_requested = |index: usize, class: usize| {
             let only = scheme.map(|s| s[index].class().index());
-            only.is_none_or(|asked| asked == class) && rules.allows_class(PostureClass::ALL[class])
+            only.is_none_or(|requested| requested == class) && rules.allows_class(PostureClass::ALL[class])
         };
         workspace.forbidden.clear();
         let spans = self.problem.task.segments();
         let mut found: Vec<Option<(f64, usize)>> = Vec::with_capacity(spans.len());
-        for segment in spans.iter().enumerate() {
-            workspace.segments[segment.0].least = [f64::NEG_INFINITY; 4];
-            workspace.segments[segment.0].rows.is_whole = false;
-            found.push(self.best_class(&placed, segment, &|class| is_asked(segment.0, class), grid, workspace));
+        for index in 0..spans.len() {
+            workspace.segments[index].least = [f64::NEG_INFINITY; 4];
+            workspace.segments[index].rows.is_whole = false;
+            found.push(self.best_class(&placed, index, &|class| is_requested(index, class), grid, workspace));
         }
         let objective = |found: &[Option<(f64, usize)>]| {
             let cost = |(index, found): (usize, &Option<(f64, usize)>)| {
@@ -122,30 +127,32 @@ impl LookupTable<'_> {
             costs.map(|costs| self.problem.objective(costs))
         };
         let relaxed = objective(&found);
-        let is_within = |relaxed: f64| relaxed >= look.within[0] && relaxed <= look.within[1];
+        let is_within = |relaxed: f64| relaxed >= effort.within[0] && relaxed <= effort.within[1];
         if self.problem.scene.is_some() && relaxed.is_some_and(is_within) {
             workspace.known.iter_mut().for_each(Proximity::clear);
             if self.problem.placement_hit(placement).is_some() {
                 return Objective::Infeasible { points: self.problem.task.points().len(), segments: 0 };
             }
-            for (segment, found) in spans.iter().enumerate().zip(&mut found) {
+            let check = PathCheck { placement, grid, stride: effort.stride };
+            for (index, found) in found.iter_mut().enumerate() {
                 let again = |workspace: &mut Workspace| {
-                    self.best_class(&placed, segment, &|class| is_asked(segment.0, class), grid, workspace)
+                    self.best_class(&placed, index, &|class| is_requested(index, class), grid, workspace)
                 };
-                *found = self.best_free_class((placement, grid), segment, *found, again, look.stride, workspace);
+                *found = self.best_free_class(&check, index, *found, again, workspace);
             }
         }
         let Some(mean) = objective(&found) else {
-            return self.blocked(&placed, is_asked, grid, &found, workspace);
+            return self.blocked(&placed, is_requested, grid, &found, workspace);
         };
         Objective::Feasible(mean)
     }
 
-    /// Why there is no way through the segments for which none was found: how many points, or else segments, are in the way.
+    /// Why there is no way through the segments for which none was found: how many points, or else segments, are in the
+    /// way.
     fn blocked(
         &self,
         placed: &PlacedPath,
-        is_asked: impl Fn(usize, usize) -> bool,
+        is_requested: impl Fn(usize, usize) -> bool,
         grid: &BetaGrid,
         found: &[Option<(f64, usize)>],
         workspace: &mut Workspace,
@@ -156,7 +163,7 @@ impl LookupTable<'_> {
             let Workspace { scratch, scores, forbidden, .. } = workspace;
             let is_blocked = |point: &usize| {
                 let polar = self.polar_point(placed, *point);
-                let mut classes = (0..4).filter(|class| is_asked(index, *class));
+                let mut classes = (0..4).filter(|class| is_requested(index, *class));
                 let mut is_allowed = |polar: &PolarPoint, class: usize| {
                     let is_reached = self.interpolate(polar, class, grid, scratch, scores);
                     for hits in grid.tool_hits.as_deref().into_iter().chain([&*forbidden]) {
@@ -177,17 +184,18 @@ impl LookupTable<'_> {
     fn best_class(
         &self,
         placed: &PlacedPath,
-        (index, span): Numbered<'_>,
-        is_asked: &impl Fn(usize) -> bool,
+        index: usize,
+        is_requested: &impl Fn(usize) -> bool,
         grid: &BetaGrid,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
+        let span = &self.problem.task.segments()[index];
         let mut best: Option<(f64, usize)> = None;
         // The class that won last time goes first: the others can then mostly be given up on the way.
         let SegmentSpace { favourite: first, least, .. } = workspace.segments[index];
         let mut order = [first, first ^ 1, first ^ 2, first ^ 3];
         order.sort_by(|a, b| least[*a].total_cmp(&least[*b]));
-        for class in order.into_iter().filter(|class| is_asked(*class)) {
+        for class in order.into_iter().filter(|class| is_requested(*class)) {
             let bound = best.map_or(f64::INFINITY, |(cost, _)| cost);
             if least[class] >= bound {
                 continue;
@@ -195,7 +203,7 @@ impl LookupTable<'_> {
             // The scores of the class that won last are kept.
             let is_kept = class == first && workspace.segments[index].rows.is_whole;
             let known = if is_kept { std::mem::take(&mut workspace.segments[index].rows.scores) } else { Vec::new() };
-            let cost = self.through(placed, span.clone(), (class, &known), grid, bound, workspace);
+            let cost = self.through(placed, span.clone(), ClassScores { class, known: &known }, grid, bound, workspace);
             if is_kept {
                 workspace.segments[index].rows.scores = known;
             }
@@ -210,13 +218,13 @@ impl LookupTable<'_> {
         best
     }
 
-    /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`; its scores are
-    /// interpolated where they are not known. m
+    /// The smallest sum of scores with which a posture class gets through a segment, if it is below `bound`; its scores
+    /// are interpolated where they are not known. m
     fn through(
         &self,
         placed: &PlacedPath,
         span: Span<usize>,
-        (class, known): (usize, &[f32]),
+        ClassScores { class, known }: ClassScores<'_>,
         grid: &BetaGrid,
         bound: f64,
         workspace: &mut Workspace,
@@ -274,8 +282,8 @@ impl LookupTable<'_> {
 /// After so many points costs are made relative to the smallest.
 const RENEWAL: usize = 64;
 
-/// Adds to each score the smallest cost from which an allowed change leads to it, cyclically: the new costs. False when none is
-/// below `bound`.
+/// Adds to each score the smallest cost from which an allowed change leads to it, cyclically: the new costs. False when
+/// none is below `bound`.
 fn advance(costs: &mut [f32], scores: &[f32], change: BetaChange, bound: f32, windows: &mut [Vec<f32>; 2]) -> bool {
     let count = costs.len();
     let min = |a: f32, b: f32| if b < a { b } else { a };

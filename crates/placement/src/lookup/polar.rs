@@ -1,8 +1,8 @@
 //! Path points as the lookup table sees them: about axis 1.
 
 use super::LookupTable;
-use crate::problem::{Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
+use stead_planning::problem::{Placement, Problem};
 
 /// A path point in the workpiece frame.
 #[derive(Debug, Clone)]
@@ -12,6 +12,7 @@ pub(super) struct WorkpiecePoint {
     feed: Vector3<f64>,
     normal: Vector3<f64>,
     force: Vector3<f64>,
+    moment: Vector3<f64>,
     /// What the score counts of |K^-1 n|. N
     uncertainty: f64,
 }
@@ -27,6 +28,7 @@ pub(super) fn points(problem: &Problem) -> Vec<WorkpiecePoint> {
                 feed: axes.column(0).into_owned(),
                 normal: axes.column(1).into_owned(),
                 force: wrench.force,
+                moment: wrench.moment,
                 uncertainty: problem.criterion.force_uncertainty * wrench.force.norm(),
             }
         })
@@ -51,9 +53,12 @@ pub(super) struct PolarPoint {
     pub heading: f64,
     /// Tangential compliance by joint 1, r^2 k_1. m/N
     pub first_compliance: f64,
-    /// Wall normal and force: radial, tangential, up. -, N
+    /// The same under a moment about axis 1, r k_1. 1/N
+    pub first_moment_compliance: f64,
+    /// Wall normal, force and moment: radial, tangential, up. -, N, N m
     pub normal: Vector3<f64>,
     pub force: Vector3<f64>,
+    pub moment: Vector3<f64>,
     /// What the score counts of |K^-1 n|. N
     pub uncertainty: f64,
 }
@@ -68,7 +73,8 @@ impl LookupTable<'_> {
         }
     }
 
-    /// Where a path point is at a placement; `None` beyond the table, where the arm does not get, and too near to axis 1.
+    /// Where a path point is at a placement; `None` beyond the table, where the arm does not get, and too near to
+    /// axis 1.
     pub(super) fn polar_point(&self, placed: &PlacedPath, point: usize) -> Option<PolarPoint> {
         let point = &self.points[point];
         let tip = placed.rotation * point.position + placed.translation;
@@ -85,11 +91,13 @@ impl LookupTable<'_> {
         Some(PolarPoint {
             radius: self.shape.radius.stencil(radius)?,
             height: tip.z,
-            azimuth: if self.shape.has_first_joint { libm::atan2(sine, cosine) } else { 0.0 },
-            heading: self.sense * libm::atan2(feed.y, feed.x),
+            azimuth: if self.shape.parts.first_joint { libm::atan2(sine, cosine) } else { 0.0 },
+            heading: self.rotation_sign * libm::atan2(feed.y, feed.x),
             first_compliance: radius * radius * self.first_compliance,
+            first_moment_compliance: radius * self.first_compliance,
             normal: polar(&point.normal),
             force: polar(&point.force),
+            moment: polar(&point.moment),
             uncertainty: point.uncertainty,
         })
     }

@@ -1,12 +1,12 @@
 //! Sampling a table by the reference geometry.
 
-use super::shape::Shape;
-use crate::problem::Problem;
+use super::shape::{MAX_FIELDS, Shape};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use stead_model::robot::{Frames, Pose, PostureClass, Robot, conditioning::inverse_condition, turns::Range};
 use stead_numerics::monitor::Monitor;
+use stead_planning::problem::Problem;
 
 /// Fields of a row.
 pub(super) mod field {
@@ -20,6 +20,9 @@ pub(super) mod field {
     pub const ROOM: usize = 3;
     /// Compliance between radial and vertical, then between tangential and vertical. m/N
     pub const VERTICAL: usize = 4;
+    /// How many fields the moment has: compliance between radial, then tangential, and a moment about radial,
+    /// tangential and up. 1/N
+    pub const MOMENT: usize = 6;
 }
 
 /// The smallest bound on 1/kappa that room is measured in units of.
@@ -27,8 +30,14 @@ const MIN_SLOPE: f64 = 0.05;
 /// Room is cut off at this.
 const MAX_ROOM: f64 = 0.5;
 
-/// All rows, and which of them (height, radius, posture class) have an allowed state; `None` once the caller asks to stop.
-pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64, monitor: &Monitor) -> Option<(Vec<f32>, Vec<bool>)> {
+/// All rows, and which of them (height, radius, posture class) have an allowed state; `None` once the caller asks to
+/// stop.
+pub(super) fn sample(
+    problem: &Problem,
+    shape: &Shape,
+    rotation_sign: f64,
+    monitor: &Monitor,
+) -> Option<(Vec<f32>, Vec<bool>)> {
     let (radii, block) = (shape.radius.count, shape.block());
     let mut data = vec![0.0_f32; shape.height.count * radii * 4 * block];
     data.par_chunks_mut(4 * block).enumerate().try_for_each(|(index, rows)| {
@@ -38,7 +47,7 @@ pub(super) fn sample(problem: &Problem, shape: &Shape, sense: f64, monitor: &Mon
         let (height, radius) = (shape.height.node(index / radii), shape.radius.node(index % radii));
         for heading in 0..shape.headings {
             let angle = shape.heading_step() * heading as f64;
-            let flange = base_from_flange(problem, radius, height, sense * angle, sense);
+            let flange = base_from_flange(problem, radius, height, rotation_sign * angle, rotation_sign);
             for class in PostureClass::ALL {
                 let row = &mut rows[class.index() * block..][..block];
                 let values = state(problem, shape, &flange, class, radius, height);
@@ -58,13 +67,19 @@ fn room<'r>(shape: &Shape, row: &'r [f32]) -> &'r [f32] {
     &row[field::ROOM * shape.headings..][..shape.headings]
 }
 
-/// The flange for the tool centre point at (`radius`, 0, `height`) of the root frame (m), the tool's x axis at an angle of
-/// `heading` (rad) to the root's, and the tool axis along axis 1 (`sense` +1) or against it.
-pub(super) fn base_from_flange(problem: &Problem, radius: f64, height: f64, heading: f64, sense: f64) -> Pose<f64> {
+/// The flange for the tool centre point at (`radius`, 0, `height`) of the root frame (m), the tool's x axis at an angle
+/// of `heading` (rad) to the root's, and the tool axis along axis 1 (`rotation_sign` +1) or against it.
+pub(super) fn base_from_flange(
+    problem: &Problem,
+    radius: f64,
+    height: f64,
+    heading: f64,
+    rotation_sign: f64,
+) -> Pose<f64> {
     let g = problem.robot.geometry();
     let (sine, cosine) = libm::sincos(heading);
     let x = Vector3::new(cosine, sine, 0.0);
-    let z = Vector3::new(0.0, 0.0, -sense);
+    let z = Vector3::new(0.0, 0.0, -rotation_sign);
     let root_from_tool = Matrix3::from_columns(&[x, z.cross(&x), z]);
     let base_from_tool = Pose {
         rotation: g.base_from_root * root_from_tool,
@@ -81,10 +96,10 @@ fn state(
     class: PostureClass,
     radius: f64,
     height: f64,
-) -> [f64; 8] {
+) -> [f64; MAX_FIELDS] {
     let robot = &problem.robot;
     let g = robot.geometry();
-    let mut values = [0.0; 8];
+    let mut values = [0.0; MAX_FIELDS];
     let joints = match robot.inverse(base_from_flange, class.postures()[0]) {
         Ok(joints) => joints,
         Err(unreachable) => {
@@ -97,15 +112,22 @@ fn state(
     let tip = g.root_in_base + g.base_from_root * Vector3::new(radius, 0.0, height);
     let compliances = robot.compliances_at(&joints);
     let (mut rr, mut tt, mut rt, mut rz, mut tz) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut radial, mut tangential) = (Vector3::zeros(), Vector3::zeros());
     let root_from_base = g.base_from_root.transpose();
     for j in 1..6 {
-        let v = root_from_base * frames.twist(j, &tip).0;
+        let (velocity, axis) = frames.twist(j, &tip);
+        let v = root_from_base * velocity;
         let k = compliances[j];
         rr += k * v.x * v.x;
         tt += k * v.y * v.y;
         rt += k * v.x * v.y;
         rz += k * v.x * v.z;
         tz += k * v.y * v.z;
+        if shape.parts.moment {
+            let axis = root_from_base * axis;
+            radial += axis * (k * v.x);
+            tangential += axis * (k * v.y);
+        }
     }
     let condition = inverse_condition(&frames, &tip, problem.constraints.characteristic_length);
     // In squares, which run straight through the limit of the reach, where 1/kappa comes to nothing like a root.
@@ -115,11 +137,15 @@ fn state(
     values[field::DIFFERENCE] = 0.5 * (rr - tt);
     values[field::MIXED] = rt;
     values[field::ROOM] = conditioned.min(joint_room(robot, &joints)).min(MAX_ROOM);
-    if shape.has_vertical {
+    if shape.parts.vertical {
         values[field::VERTICAL] = rz;
         values[field::VERTICAL + 1] = tz;
     }
-    if shape.has_first_joint {
+    if shape.parts.moment {
+        let all = radial.iter().chain(&tangential);
+        values[shape.moment()..].iter_mut().zip(all).for_each(|(value, part)| *value = *part);
+    }
+    if shape.parts.first_joint {
         let (sine, cosine) = libm::sincos(joints[0]);
         values[shape.first_joint()] = sine;
         values[shape.first_joint() + 1] = cosine;
@@ -142,8 +168,8 @@ fn joint_room(robot: &Robot, theta: &[f64; 6]) -> f64 {
     room(1, theta[1]).min(room(2, theta[2])).min(plain.max(flipped))
 }
 
-/// Gives states out of reach what the nearest radius within reach has, so that the interpolation beside them stays smooth, and
-/// the room that goes on from there as it went, below zero.
+/// Gives states out of reach what the nearest radius within reach has, so that the interpolation beside them stays
+/// smooth, and the room that goes on from there as it went, below zero.
 fn fill(shape: &Shape, slice: &mut [f32]) {
     let (radii, block, headings) = (shape.radius.count, shape.block(), shape.headings);
     let place =

@@ -1,8 +1,9 @@
 //! What a table is sampled over.
 
-use crate::problem::Problem;
+use super::sample::field;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
+use stead_planning::problem::Problem;
 
 /// Step of radius and height. m
 const STEP: f64 = 0.07;
@@ -31,11 +32,23 @@ pub struct Shape {
     pub height: Axis,
     /// Headings of the spindle against the azimuth of the point, over a full turn.
     pub headings: usize,
-    /// Whether the compliance between the vertical and the plane is in it.
-    pub has_vertical: bool,
-    /// Whether the angle of joint 1 against the azimuth is in it: where joint 1 does not get all the way round.
-    pub has_first_joint: bool,
+    /// What is in it beside the in-plane compliance and the room left.
+    pub parts: Parts,
 }
+
+/// What a table holds only where a problem needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parts {
+    /// The compliance between the vertical and the plane.
+    pub vertical: bool,
+    /// The compliance between the plane and a moment.
+    pub moment: bool,
+    /// The angle of joint 1 against the azimuth: where joint 1 does not get all the way round.
+    pub first_joint: bool,
+}
+
+/// Fields of a table with all parts.
+pub(super) const MAX_FIELDS: usize = field::VERTICAL + 2 + field::MOMENT + 2;
 
 /// Weights of the four nodes around a place, for the cubic through them (Lagrange).
 pub(super) fn cubic(t: f64) -> [f32; 4] {
@@ -66,8 +79,8 @@ impl Axis {
     }
 }
 
-/// Headings that go well with a grid of beta: as many as it has, or a multiple, or a part of them, so that places between
-/// headings repeat along the grid.
+/// Headings that go well with a grid of beta: as many as it has, or a multiple, or a part of them, so that places
+/// between headings repeat along the grid.
 fn headings(beta_count: usize) -> usize {
     let (min_count, max_count) = HEADING_COUNTS;
     if beta_count <= max_count {
@@ -78,7 +91,7 @@ fn headings(beta_count: usize) -> usize {
 }
 
 impl Shape {
-    pub(super) fn new(problem: &Problem, has_vertical: bool, has_first_joint: bool) -> Self {
+    pub(super) fn new(problem: &Problem, parts: Parts) -> Self {
         let g = problem.robot.geometry();
         let [x, y, z] = problem.cell.position;
         let nearest =
@@ -105,19 +118,23 @@ impl Shape {
             radius: Axis::around(min, max, STEP),
             height: Axis::around(bottom, top, STEP),
             headings: headings(problem.redundancy.beta_count),
-            has_vertical,
-            has_first_joint,
+            parts,
         }
     }
 
     /// Numbers in each state: m, d1, d2, the room left, and what else there is.
     pub fn fields(&self) -> usize {
-        4 + 2 * usize::from(self.has_vertical) + 2 * usize::from(self.has_first_joint)
+        self.first_joint() + 2 * usize::from(self.parts.first_joint)
+    }
+
+    /// The first of the fields of the moment.
+    pub(super) fn moment(&self) -> usize {
+        field::VERTICAL + 2 * usize::from(self.parts.vertical)
     }
 
     /// The first of the fields of joint 1: sine, then cosine.
     pub(super) fn first_joint(&self) -> usize {
-        4 + 2 * usize::from(self.has_vertical)
+        self.moment() + field::MOMENT * usize::from(self.parts.moment)
     }
 
     /// Numbers in each row: all fields of one posture class over all headings.

@@ -1,21 +1,28 @@
 //! The table against the reference evaluator and the planner, and with parts of the formula broken on purpose.
 
-use super::super::candidate::Objective;
-use super::super::candidate::rank;
-use super::super::constraints::ConstraintKind;
-use super::super::feasibility::explain;
-use super::super::problem::{Interval, Placement, Redundancy};
-use super::super::sense::Sense;
-use super::super::testing::{compensated, five_segments, hanging, slanted, with_laws, with_uncertainty};
 use super::sample::field;
 use super::*;
 use crate::coordinate_search::{Directions, coordinate_search};
+use crate::evaluator::Evaluator;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stead_model::robot::{PostureClass, Robot};
-use stead_model::task::{PathPoint, Task, ToolPath};
+use std::sync::Arc;
+use stead_cell::testing::{kr270_shapes, scene_of, shape};
+use stead_cell::{Attachment, Solid};
+use stead_model::robot::{Joint, PostureClass, Robot};
+use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::Monitor;
+use stead_planning::candidate::Objective;
+use stead_planning::candidate::rank;
+use stead_planning::constraints::ConstraintKind;
+use stead_planning::feasibility::explain;
+use stead_planning::problem::{Interval, Placement, Redundancy};
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
+use stead_planning::testing::{
+    compensated, corners, five_segments, hanging, slanted, with_laws, with_turn_limits, with_uncertainty,
+};
 
 /// Errors in all directions counted.
 fn robust() -> Problem {
@@ -33,8 +40,19 @@ fn limited() -> Problem {
     problem
 }
 
-/// What a table says of drawn states beside what the reference evaluator says: relative root mean square of the errors, largest
-/// error, and share of disputes.
+/// A force and a moment that differ at every point, in all directions.
+fn twisted(problem: Problem) -> Problem {
+    let wrenches = problem.task.wrenches().iter().enumerate().map(|(k, wrench)| {
+        let at = |phase: f64| libm::sin(0.37 * k as f64 + phase);
+        let moment = Vector3::new(at(0.0), at(2.1), at(4.2)) * (0.4 * wrench.force.norm());
+        Wrench { force: wrench.force * (1.0 + 0.3 * at(1.0)), moment }
+    });
+    let task = Task::new(problem.task.path().clone(), wrenches.collect()).unwrap();
+    problem.with(|parts| parts.task = task)
+}
+
+/// What a table says of drawn states beside what the reference evaluator says: relative root mean square of the errors,
+/// largest error, and share of disputes.
 fn compared(table: &LookupTable<'_>, count: usize, draws: u64) -> Accuracy {
     let problem = table.problem();
     let redundancy = Redundancy { beta_count: count, ..problem.redundancy };
@@ -88,6 +106,10 @@ fn errs_no_more_than_it_says() {
         ("robust", robust()),
         ("limited", limited()),
         ("hanging", hanging()),
+        ("twisted", twisted(five_segments())),
+        ("twisted and slanted", twisted(slanted())),
+        ("twisted and limited", twisted(limited())),
+        ("twisted and hanging", twisted(hanging())),
     ] {
         let table = LookupTable::new(&problem).unwrap();
         let stated = table.accuracy();
@@ -113,19 +135,25 @@ fn every_broken_part_of_the_formula_is_seen() {
             row[range.clone()].iter_mut().for_each(|value| *value = change(*value));
         }
     }
-    let mutations: [Mutation; 10] = [
+    let mutations: [Mutation; 16] = [
         ("r^2 / k1 left out", |table| table.first_compliance = 0.0),
         ("sign of m", |table| scale(table, field::MEAN, |v| -v)),
         ("sign of d1", |table| scale(table, field::DIFFERENCE, |v| -v)),
         ("sign of d2", |table| scale(table, field::MIXED, |v| -v)),
         ("sign of c_rz", |table| scale(table, field::VERTICAL, |v| -v)),
         ("sign of c_tz", |table| scale(table, field::VERTICAL + 1, |v| -v)),
-        ("sense of the heading against the azimuth", |table| table.sense = -table.sense),
+        ("sign of g_rr", |table| scale(table, table.shape.moment(), |v| -v)),
+        ("sign of g_rt", |table| scale(table, table.shape.moment() + 1, |v| -v)),
+        ("sign of g_rz", |table| scale(table, table.shape.moment() + 2, |v| -v)),
+        ("sign of g_tr", |table| scale(table, table.shape.moment() + 3, |v| -v)),
+        ("sign of g_tt", |table| scale(table, table.shape.moment() + 4, |v| -v)),
+        ("sign of g_tz", |table| scale(table, table.shape.moment() + 5, |v| -v)),
+        ("sense of the heading against the azimuth", |table| table.rotation_sign = -table.rotation_sign),
         ("axis 1 elsewhere by a step", |table| table.shape.radius.first += table.shape.radius.step),
         ("heights off by a step", |table| table.shape.height.first -= table.shape.height.step),
         ("no limits", |table| scale(table, field::ROOM, |_| 1.0)),
     ];
-    let problem = slanted();
+    let problem = twisted(slanted());
     let sound = LookupTable::new(&problem).unwrap();
     let stated = sound.accuracy();
     let is_fine = |found: &Accuracy| found.rms < 4.0 * stated.rms + 2e-6 && found.disputed < 0.02;
@@ -152,7 +180,9 @@ fn drawn_poses(problem: &Problem, count: usize) -> Vec<Placement> {
 #[test]
 fn objective_agrees_with_the_planner() {
     // The workpiece that hangs is where limits bind all over: there the table errs at their edges.
-    for (problem, close_share, most_above) in [(five_segments(), 8, 0), (robust(), 8, 0), (hanging(), 6, 5)] {
+    for (problem, close_share, most_above) in
+        [(five_segments(), 8, 0), (robust(), 8, 0), (hanging(), 6, 5), (twisted(slanted()), 8, 0)]
+    {
         let planner = Planner::new(&problem);
         let table = LookupTable::new(&problem).unwrap();
         let grid = BetaGrid::of(&planner);
@@ -160,9 +190,12 @@ fn objective_agrees_with_the_planner() {
         let (mut close, mut above, mut feasible, mut disputed) = (0, 0, 0, 0);
         for (k, placement) in drawn_poses(&problem, 40).iter().enumerate() {
             let planned = planner.objective(placement, Sense::Min, None, &mut space);
-            let looked = table.objective(placement, &grid, None, Look::ALL, &mut looking);
+            let looked = table.objective(placement, &grid, None, CollisionEffort::ALL, &mut looking);
             // A fresh workspace, with nothing kept from the placement before, says the same.
-            assert_eq!(table.objective(placement, &grid, None, Look::ALL, &mut table.workspace(&grid)), looked);
+            assert_eq!(
+                table.objective(placement, &grid, None, CollisionEffort::ALL, &mut table.workspace(&grid)),
+                looked
+            );
             let (Some(planned), Some(looked)) = (planned.mean(), looked.mean()) else {
                 disputed += usize::from(planned.mean().is_some() || looked.mean().is_some());
                 continue;
@@ -178,10 +211,13 @@ fn objective_agrees_with_the_planner() {
                 && let Ok(plans) = planner.plan(placement, Sense::Min, None, &mut space)
             {
                 let mut scheme: Vec<_> = plans.iter().map(|plan| plan.posture).collect();
-                let held = table.objective(placement, &grid, Some(&scheme), Look::ALL, &mut looking).mean().unwrap();
+                let held = table
+                    .objective(placement, &grid, Some(&scheme), CollisionEffort::ALL, &mut looking)
+                    .mean()
+                    .unwrap();
                 assert!((held / looked - 1.0).abs() < 1e-3);
                 scheme[2] = stead_model::robot::Posture::ALL[(usize::from(scheme[2].number()) + 3) % 8];
-                let other = table.objective(placement, &grid, Some(&scheme), Look::ALL, &mut looking);
+                let other = table.objective(placement, &grid, Some(&scheme), CollisionEffort::ALL, &mut looking);
                 assert!(rank(Sense::Min, other, Objective::Feasible(held * (1.0 - 1e-6))).is_gt());
             }
         }
@@ -202,7 +238,7 @@ fn what_nothing_reaches_is_counted_as_the_planner_counts_it() {
     let (mut blocked, mut apart) = (0, 0);
     for placement in drawn_poses(&problem, 30) {
         let planned = planner.objective(&placement, Sense::Min, None, &mut space);
-        let looked = table.objective(&placement, &grid, None, Look::ALL, &mut looking);
+        let looked = table.objective(&placement, &grid, None, CollisionEffort::ALL, &mut looking);
         if let (Objective::Infeasible { points: a, .. }, Objective::Infeasible { points: b, .. }) = (planned, looked) {
             blocked += a;
             apart += a.abs_diff(b);
@@ -230,7 +266,8 @@ fn a_long_path_keeps_its_digits() {
     let grid = BetaGrid::of(&planner);
     let placement = Placement::from([0.0, -1.8, -0.4, 0.7]);
     let planned = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean().unwrap();
-    let looked = table.objective(&placement, &grid, None, Look::ALL, &mut table.workspace(&grid)).mean().unwrap();
+    let looked =
+        table.objective(&placement, &grid, None, CollisionEffort::ALL, &mut table.workspace(&grid)).mean().unwrap();
     assert!((looked / planned - 1.0).abs() < 2e-5, "{looked} {planned}");
 }
 
@@ -254,10 +291,10 @@ fn coordinate_search_gets_better_inside_the_cell() {
     let mut workspace = table.workspace(&grid);
     for (sense, start) in [(Sense::Min, [0.1, -1.8, -0.4, 1.0]), (Sense::Max, [-0.1, -2.0, -0.4, 0.6])] {
         let start = Placement::from(start);
-        let before = table.objective(&start, &grid, None, Look::ALL, &mut workspace);
+        let before = table.objective(&start, &grid, None, CollisionEffort::ALL, &mut workspace);
         for directions in [Directions::WithoutAzimuth, Directions::All] {
             let mut evaluate =
-                |placement: &Placement| table.objective(placement, &grid, None, Look::ALL, &mut workspace);
+                |placement: &Placement| table.objective(placement, &grid, None, CollisionEffort::ALL, &mut workspace);
             let (end, objective, evaluations) =
                 coordinate_search(&problem, &start, sense, directions, &mut evaluate, &Monitor::silent());
             assert!(rank(sense, objective, before).is_lt() && evaluations > 20, "{sense:?} {before:?} {objective:?}");
@@ -307,17 +344,11 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     );
     assert_eq!(with_axes(&|k| if k < 40 { upright } else { -upright }), Unsupported::UpsideDown { point: 40 });
 
-    let mut twisted = five_segments();
-    let mut wrenches = twisted.task.wrenches().to_vec();
-    wrenches[7].moment.z = 1.0;
-    twisted.task = Task::new(twisted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(refused(&twisted), Unsupported::Moment { point: 7 });
-
     for joint in [0, 3, 5] {
         let mut joints = five_segments().robot.joints().clone();
         (joints[joint].min, joints[joint].max) = (-2.0, 2.0);
         joints[joint].compliance = stead_model::robot::Compliance::Range { at_min: 1e-6, at_max: 2e-6 };
-        let problem = Problem { robot: Robot::new("law", joints).unwrap(), ..five_segments() };
+        let problem = five_segments().with(|parts| parts.robot = Robot::new("law", joints).unwrap());
         assert_eq!(refused(&problem), Unsupported::VaryingCompliance { joint: joint + 1 });
     }
 
@@ -341,4 +372,58 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     let Unsupported::TooLarge { bytes, max } = refused(&huge) else { panic!("a crane's table does not fit") };
     assert!(bytes > max && max == MAX_BYTES);
     assert!(refused(&huge).to_string().contains(" GB, and at most 1.074 GB are allowed"), "{}", refused(&huge));
+}
+
+#[test]
+fn the_lookup_table_keeps_the_turn_of_the_spindle() {
+    let mut problem = with_turn_limits(corners(0.0), 120, None, 3.0);
+    let joints = problem.robot.joints().clone().map(|joint| Joint { max_speed: None, ..joint });
+    problem.robot = Robot::new("unbounded", joints).unwrap();
+    let planner = Planner::new(&problem);
+    let table = LookupTable::new(&problem).unwrap();
+    let grid = BetaGrid::of(&planner);
+    let mut compared = 0;
+    for k in 0..12 {
+        let f = f64::from(k);
+        let placement = Placement::from([-0.2 + 0.04 * f, -1.6 - 0.04 * f, -0.5 + 0.02 * f, -3.0 + 0.5 * f]);
+        let planned = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean();
+        let looked = table.objective(&placement, &grid, None, CollisionEffort::ALL, &mut table.workspace(&grid)).mean();
+        if let Some((planned, looked)) = planned.zip(looked) {
+            compared += 1;
+            assert!((looked / planned - 1.0).abs() < 5e-3, "{looked} {planned}");
+        }
+    }
+    assert!(compared > 4, "{compared}");
+}
+
+#[test]
+fn table_and_planner_agree_among_shapes() {
+    let post = shape("post", Attachment::Base, Solid::Cylinder { radius: 0.12, length: 2.5 }, [0.55, -1.35, 0.3]);
+    let shapes = kr270_shapes().into_iter().filter(|shape| shape.name != "pillar").chain([post]).collect();
+    let mut problem = five_segments();
+    problem.redundancy.beta_count = 60;
+    problem.scene = Some(Arc::new(scene_of(shapes, 0.02)));
+    let planner = Planner::new(&problem);
+    let table = LookupTable::new(&problem).unwrap();
+    let evaluator = Evaluator::new(&planner, Some(&table));
+    let mut space = evaluator.workspace();
+    for placement in [[0.1, -1.9, -0.4, 1.0], [-0.05, -1.75, -0.3, -0.6], [0.2, -1.7, -0.45, 2.4]].map(Placement::from)
+    {
+        let by_table = evaluator.objective(&placement, None, &mut space).mean();
+        let planned = planner.objective(&placement, Sense::Min, None, &mut planner.workspace()).mean();
+        match (by_table, planned) {
+            (Some(by_table), Some(planned)) => assert!((by_table / planned - 1.0).abs() < 0.01, "{by_table} {planned}"),
+            (by_table, planned) => assert_eq!(by_table.is_some(), planned.is_some()),
+        }
+    }
+}
+
+#[test]
+fn the_table_declares_what_it_relaxes() {
+    let mut problem = five_segments();
+    problem.constraints.max_deflection = Some(1e-3);
+    problem.constraints.min_base_distance = 0.3;
+    problem.redundancy.max_spindle_turn = Some(1.0);
+    let relaxed = [ConstraintKind::JointStep, ConstraintKind::JointTurn];
+    assert_eq!(LookupTable::new(&problem).unwrap().relaxed(), relaxed);
 }

@@ -1,19 +1,21 @@
-//! Where the external axes stand: from one position for the path over one for each segment to a position for each point.
+//! Where the external axes stand: from one position for the path over one for each segment to a position for each
+//! point.
 //!
-//! Each use starts from the answer of the poorer one, and a step is only taken to a setup whose plan is better, so a richer use is never
-//! worse.
+//! Each use starts from the answer of the poorer one, and a step is only taken to a setup whose plan is better, so a
+//! richer use is never worse.
 
 use crate::evaluator::Evaluator;
 use crate::path_subset::PathSubset;
-use crate::problem::{Placement, Problem};
-use crate::redundancy::Planner;
-use crate::redundancy::axis_path::AxisGrid;
 use crate::refine::{Solution, planned, refine};
-use crate::sense::Sense;
-use crate::setup::{AxisPositions, Setup};
 use rayon::prelude::*;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::compass::CompassSteps;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::Planner;
+use stead_planning::redundancy::axis_path::AxisGrid;
+use stead_planning::sense::Sense;
+use stead_planning::setup::{AxisPositions, Setup};
 
 /// Positions of an axis that are tried first, over its whole range.
 pub(super) const GRID: usize = 5;
@@ -41,7 +43,8 @@ pub(super) struct Improved {
     pub solution: Solution,
 }
 
-/// Improves the positions of the axes at a placement, and the placement with them, by turns; nothing where that gains nothing.
+/// Improves the positions of the axes at a placement, and the placement with them, by turns; nothing where that gains
+/// nothing.
 pub(super) fn improved(problem: &Problem, start: &Solution, monitor: &Monitor) -> Option<Improved> {
     let mut best = Improved { setup: problem.setup.clone(), solution: start.clone() };
     let axes = || problem.external_axes.iter().enumerate().filter(|(_, axis)| axis.max > axis.min);
@@ -93,12 +96,13 @@ fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) -> Option<Imp
     (solution.objective < known.solution.objective).then(|| Improved { setup: known.setup.clone(), solution })
 }
 
-/// Another position of an axis for the path, or for each segment: first anywhere in its range, then by ever smaller steps.
-fn by_segments(
+/// Another position of an axis for the path, or for each segment: first anywhere in its range, then by ever smaller
+/// steps.
+fn by_segments<'a>(
     problem: &Problem,
     known: &Improved,
     number: usize,
-    axis: &ExternalAxis,
+    axis: &'a ExternalAxis,
     monitor: &Monitor,
 ) -> Option<Improved> {
     let path = problem.task.path();
@@ -106,36 +110,33 @@ fn by_segments(
     let placement = &known.solution.placement;
     let is_one = axis.axis_use == AxisUse::Fixed;
     // For an axis that moves along segments already only shifts as a whole are tried.
-    let mut now = Shifts { rows, shifts: vec![0.0; path.segments().len()], number, axis };
-    let mut costs = costs(problem, known, &now, placement, &vec![0.0; now.shifts.len()])?;
-    let mut step = (axis.max - axis.min) / (GRID - 1) as f64;
-    let mut offsets: Vec<f64> = (1..GRID).flat_map(|k| [step * k as f64, -step * k as f64]).collect();
-    for _ in 0..STEPS {
-        if step <= LAST_STEP * (axis.max - axis.min) || monitor.should_stop() {
-            break;
-        }
-        let tried: Vec<(f64, Vec<Vec<Option<f64>>>)> = offsets
-            .par_iter()
-            .filter_map(|offset| {
-                let moved: Vec<f64> = vec![*offset; now.shifts.len()];
-                Some((*offset, self::costs(problem, known, &now, placement, &moved)?))
-            })
-            .collect();
-        let chosen = if is_one { one_for_all(problem, &costs, &tried) } else { for_each(problem, &costs, &tried) };
-        match chosen {
-            Some(moves) => {
-                now.shifts.iter_mut().zip(&moves).for_each(|(shift, by)| *shift += by);
-                costs = self::costs(problem, known, &now, placement, &vec![0.0; now.shifts.len()])?;
-            }
-            None => step /= 2.0,
-        }
-        offsets = vec![step, -step];
-    }
-    if now.shifts.iter().all(|shift| *shift == 0.0) {
+    let still = vec![0.0; path.segments().len()];
+    let at_rest = Shifts { rows, shifts: still.clone(), number, axis };
+    let start = (costs(problem, known, &at_rest, placement, &still)?, at_rest);
+    let range = axis.max - axis.min;
+    let steps = CompassSteps { first: range / (GRID - 1) as f64, last: LAST_STEP * range, shrink: 2.0, rounds: STEPS };
+    // First anywhere in the range.
+    let mut reach = GRID - 1;
+    let moved = |(costs, now): &(SegmentCosts, Shifts<'a>), step: f64| {
+        let offsets: Vec<f64> = (1..=reach).flat_map(|k| [step * k as f64, -step * k as f64]).collect();
+        reach = 1;
+        let cost =
+            |offset: &f64| Some((*offset, self::costs(problem, known, now, placement, &vec![*offset; still.len()])?));
+        let tried: Vec<(f64, SegmentCosts)> = offsets.par_iter().filter_map(cost).collect();
+        let moves = if is_one { one_for_all(problem, costs, &tried) } else { for_each(problem, costs, &tried) }?;
+        let shifts = now.shifts.iter().zip(&moves).map(|(shift, by)| shift + by).collect();
+        let now = Shifts { rows: now.rows.clone(), shifts, ..*now };
+        Some((self::costs(problem, known, &now, placement, &still)?, now))
+    };
+    let (_, found) = steps.search(start, monitor, moved);
+    if found.shifts.iter().all(|shift| *shift == 0.0) {
         return None;
     }
-    better(problem, known, now.positions(problem, &vec![0.0; now.shifts.len()]))
+    better(problem, known, found.positions(problem, &still))
 }
+
+/// What each segment adds to the objective, for each choice of postures ([`Planner::segment_costs`]).
+type SegmentCosts = Vec<Vec<Option<f64>>>;
 
 /// The positions of the axes, those of one of them shifted segment by segment.
 struct Shifts<'a> {
@@ -161,7 +162,7 @@ impl Shifts<'_> {
     }
 }
 
-/// What each segment adds to the objective, for each choice of postures ([`Planner::segment_costs`]), with the axis shifted; nothing
+/// The costs with the axis shifted; nothing
 /// where the range of the axis leaves no shift.
 fn costs(
     problem: &Problem,
@@ -169,7 +170,7 @@ fn costs(
     now: &Shifts<'_>,
     placement: &Placement,
     by: &[f64],
-) -> Option<Vec<Vec<Option<f64>>>> {
+) -> Option<SegmentCosts> {
     let positions = now.positions(problem, by);
     let is_shifted = by.iter().any(|by| *by != 0.0);
     if is_shifted && positions == now.positions(problem, &vec![0.0; by.len()]) {
@@ -189,11 +190,7 @@ fn objective(problem: &Problem, costs: &[Vec<Option<f64>>]) -> f64 {
 }
 
 /// The one shift of all segments that is better than none.
-fn one_for_all(
-    problem: &Problem,
-    costs: &[Vec<Option<f64>>],
-    tried: &[(f64, Vec<Vec<Option<f64>>>)],
-) -> Option<Vec<f64>> {
+fn one_for_all(problem: &Problem, costs: &[Vec<Option<f64>>], tried: &[(f64, SegmentCosts)]) -> Option<Vec<f64>> {
     let best = tried.iter().min_by(|a, b| objective(problem, &a.1).total_cmp(&objective(problem, &b.1)))?;
     let count = costs.first()?.len();
     (objective(problem, &best.1) < objective(problem, costs) * (1.0 - ROUNDING)).then(|| vec![best.0; count])
@@ -203,7 +200,7 @@ fn one_for_all(
 const ROUNDING: f64 = 1e-9;
 
 /// The shift of each segment, in the choice of postures that is best then.
-fn for_each(problem: &Problem, costs: &[Vec<Option<f64>>], tried: &[(f64, Vec<Vec<Option<f64>>>)]) -> Option<Vec<f64>> {
+fn for_each(problem: &Problem, costs: &[Vec<Option<f64>>], tried: &[(f64, SegmentCosts)]) -> Option<Vec<f64>> {
     let of_choice = |choice: usize| {
         let mut shifts = Vec::with_capacity(costs[choice].len());
         let mut least = Vec::with_capacity(costs[choice].len());
@@ -250,7 +247,7 @@ fn along_path(
         let grid = AxisGrid { problem: coarse, axis: number, positions };
         let Some(paths) = grid.paths(&known.solution.placement) else { break };
         let found: Vec<f64> = paths.into_iter().flat_map(|path| path.positions).collect();
-        let rows = between(&set_up, &all, number, (&kept, &found));
+        let rows = between(&set_up, &all, number, &kept, &found);
         let positions = AxisPositions::shortest(rows, &problem.task);
         let candidate = better(problem, best.as_ref().unwrap_or(known), positions);
         if candidate.is_none() && narrowing > 0 {
@@ -275,8 +272,8 @@ fn around(axis: &ExternalAxis, at: f64, width: f64) -> Vec<f64> {
     positions
 }
 
-/// The points on which the axis is planned: all, or on a dense path so few that axis and beta can take a step of their grids from one to
-/// the next; every segment keeps its ends.
+/// The points on which the axis is planned: all, or on a dense path so few that axis and beta can take a step of their
+/// grids from one to the next; every segment keeps its ends.
 fn stride(problem: &Problem, axis: &ExternalAxis) -> Vec<usize> {
     let grid = (axis.max - axis.min) / (PATH_GRID - 1) as f64;
     let mut kept = Vec::new();
@@ -302,8 +299,9 @@ fn stride(problem: &Problem, axis: &ExternalAxis) -> Vec<usize> {
     kept
 }
 
-/// The positions of all axes at every point, those of one of them in proportion to the time between the points where it is known.
-fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, (kept, found): (&[usize], &[f64])) -> Vec<Vec<f64>> {
+/// The positions of all axes at every point, those of one of them in proportion to the time between the points where it
+/// is known.
+fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, kept: &[usize], found: &[f64]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     for (pair, positions) in kept.windows(2).zip(found.windows(2)) {
         let (first, last) = (pair[0], pair[1]);

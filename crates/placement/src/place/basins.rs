@@ -3,38 +3,38 @@
 use super::long_path::LongPath;
 use super::long_refinement;
 use super::refined::Refined;
-use crate::candidate::Candidate;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::refine::{found_again, planned, refine};
 use crate::search::SearchResult;
-use crate::sense::Sense;
 use crate::settings::SearchSettings;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::candidate::Candidate;
+use stead_planning::sense::{BySense, Sense};
 
 /// Basins whose means differ by less than this (relative) are equal: the one that the search ranked higher is taken, so
 /// that rounding does not choose between mirror images.
 pub(super) const TIE: f64 = 1e-5;
 
-/// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both were
-/// improved on a lookup table: refinement gains less from there.
+/// A basin whose mean after the search is this much (relative) behind the best one refined is left alone, where both
+/// were improved on a lookup table: refinement gains less from there.
 pub(super) const MAX_DEFICIT: f64 = 0.03;
 
-/// The best and, where it is looked for, the worst of the refined basins of both searches, the best by its regret where regrets are given;
-/// `None` when there is none.
+/// The best and, where it is looked for, the worst of the refined basins of both searches, the best by its regret where
+/// regrets are given; `None` when there is none.
 pub(super) fn choose(
-    basins: &[Vec<Refined>; 2],
+    basins: &BySense<Vec<Refined>>,
     regrets: Option<&[Option<f64>]>,
     settings: &SearchSettings,
 ) -> Option<(Refined, Option<Refined>)> {
-    let by_regret = regrets.and_then(least_regret).and_then(|place| basins[0].get(place));
-    let best = by_regret.or_else(|| leading(Sense::Min, &basins[0]));
+    let by_regret = regrets.and_then(least_regret).and_then(|place| basins.best.get(place));
+    let best = by_regret.or_else(|| leading(Sense::Min, &basins.best));
     if !settings.worst {
         return best.map(|best| (best.clone(), None));
     }
-    let [best, worst] = match [best, leading(Sense::Max, &basins[1])] {
+    let [best, worst] = match [best, leading(Sense::Max, &basins.worst)] {
         // Of two searches that were stopped early either may have met the better placement.
         [Some(best), Some(worst)] if by_regret.is_none() && best.solution.objective > worst.solution.objective => {
             [worst, best]
@@ -67,23 +67,24 @@ fn least_regret(regrets: &[Option<f64>]) -> Option<usize> {
 }
 
 /// What was found without the basins of the worst placement.
-pub(super) fn best_alone(found: &[SearchResult; 2]) -> [SearchResult; 2] {
-    [found[0].clone(), SearchResult { basins: Vec::new(), ..found[1].clone() }]
+pub(super) fn best_alone(found: &BySense<SearchResult>) -> BySense<SearchResult> {
+    BySense { best: found.best.clone(), worst: SearchResult { basins: Vec::new(), ..found.worst.clone() } }
 }
 
-/// Refines the basins of both searches side by side, those of the best and those of the worst placement. The first basin of
-/// each search goes ahead, to tell which of the others can still win. Best placements are then held against the plans that are found
-/// anew ([`found_again`]): last, since that can take longer than all else and is shared among the threads.
+/// Refines the basins of both searches side by side, those of the best and those of the worst placement. The first
+/// basin of each search goes ahead, to tell which of the others can still win. Best placements are then held against
+/// the plans that are found anew ([`found_again`]): last, since that can take longer than all else and is shared among
+/// the threads.
 pub(super) fn refine_basins(
     evaluator: &Evaluator<'_>,
     long: Option<&LongPath>,
-    found: &[SearchResult; 2],
+    found: &BySense<SearchResult>,
     monitor: &Monitor,
-) -> ([Vec<Refined>; 2], Vec<Refinement>) {
+) -> (BySense<Vec<Refined>>, Vec<Refinement>) {
     if let Some(path) = long {
         return long_refinement::refine_basins(path, evaluator.planner(), found, monitor);
     }
-    let jobs: usize = found.iter().map(|found| found.basins.len()).sum();
+    let jobs: usize = found.values().map(|found| found.basins.len()).iter().sum();
     let done = AtomicUsize::new(0);
     // Each basin is one step to refine and one to be planned anew.
     let report_done = |steps: usize| {
@@ -129,10 +130,10 @@ pub(super) fn refine_basins(
         let others: Vec<_> = others.into_par_iter().map(|other| planned_again(sense, other)).collect();
         first.into_iter().chain(others).collect()
     };
-    let (best, worst) = rayon::join(|| refined_of(Sense::Min, &found[0]), || refined_of(Sense::Max, &found[1]));
+    let (best, worst) = rayon::join(|| refined_of(Sense::Min, &found.best), || refined_of(Sense::Max, &found.worst));
     let (best, reports): (Vec<_>, Vec<_>) = best.into_iter().unzip();
     let (worst, others): (Vec<_>, Vec<_>) = worst.into_iter().unzip();
-    ([best, worst], reports.into_iter().chain(others).flatten().collect())
+    (BySense { best, worst }, reports.into_iter().chain(others).flatten().collect())
 }
 
 /// Refines one basin, or only plans it where the job is to stop.

@@ -1,13 +1,13 @@
 //! Every criterion against a search of all placements of a coarse grid: three arms, two paths.
 
 use super::*;
-use crate::criterion::{Aggregate, Direction};
-use crate::problem::{Interval, Placement};
-use crate::testing::five_segments;
 use nalgebra::Vector3;
 use stead_model::robot::Robot;
 use stead_model::robot::testing::robot_from;
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+use stead_planning::criterion::{Aggregate, Direction};
+use stead_planning::problem::{Interval, Placement};
+use stead_planning::testing::five_segments;
 
 /// Three arms: that of the paper, a smaller one with other springs, and one with a lateral offset at the elbow.
 fn arms() -> [Robot; 3] {
@@ -27,7 +27,7 @@ fn arms() -> [Robot; 3] {
         (90.0, 0.0, 0.0, -125.0, 125.0, 0.5),
         (-90.0, 0.0, 0.0, -350.0, 350.0, 0.3),
     ]);
-    [five_segments().robot, smaller, offset]
+    [five_segments().robot.clone(), smaller, offset]
 }
 
 /// A straight cut and a quarter of a circle with the tool tilted along the cut, each with the normal of its floor.
@@ -73,7 +73,7 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
             let mut problem = five_segments();
             (problem.robot, problem.task) = (robot.clone(), task);
             problem.redundancy.beta_count = 24;
-            problem = crate::testing::with_beta_rate(problem, 2.0);
+            problem = stead_planning::testing::with_beta_rate(problem, 2.0);
             problem.cell.position =
                 [(-0.15, 0.15), (-1.75, -1.45), (-0.3, 0.0)].map(|(min, max)| Interval { min, max });
             problem.cell.yaw = Interval { min: 0.0, max: 1.2 };
@@ -91,10 +91,11 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
                     let placement = Placement { x: at(x, 0), y: at(y, 1), z: at(z, 2), yaw: at(problem.cell.yaw, 3) };
                     let Ok(scored) = score(&problem, &placement, &transfer, &silent) else { continue };
                     compared += 1;
-                    let found = scored.best.objective;
+                    let found = scored.plans.best.objective;
                     let name = format!("{arm} {path} {direction:?} {:?}", problem.criterion.aggregate);
                     assert!(found > best * (1.0 - 1e-3) - 1e-9, "{name}: {found} below {best} at {placement:?}");
-                    // Where plans can balance the scored part to nothing, the worst placement is a spike in a flat landscape.
+                    // Where plans can balance the scored part to nothing, the worst placement is a spike in a flat
+                    // landscape.
                     assert!(found < worst * (1.0 + 2e-2) + FLAT, "{name}: {found} above {worst} at {placement:?}");
                 }
             }

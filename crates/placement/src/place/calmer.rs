@@ -1,41 +1,41 @@
 //! Whether a plan that turns the joints much less costs little.
 
-use crate::joint_travel::joint_travel;
-use crate::outcome::{CANCELLATION, Plan};
-use crate::problem::{BetaPlan, Placement, Problem};
-use crate::redundancy::Planner;
-use crate::sense::Sense;
+use crate::outcome::Plan;
 use stead_numerics::digits::figures;
 use stead_numerics::monitor::Monitor;
+use stead_planning::criterion::CANCELLATION;
+use stead_planning::joint_travel::joint_travel;
+use stead_planning::problem::{BetaPlan, Placement, Problem};
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
 
 /// A calmer plan costs less than this share of the objective.
 const COST: f64 = 0.02;
 /// It has at most this share of the joint travel.
 const TRAVEL: f64 = 0.8;
 
-/// A note where the plan with one beta for each segment, or that with joint travel weighed, turns the joints much less and costs little at a
-/// placement. They are planned on the grid of the search, and no longer once the caller asks to stop.
+/// A note where the plan with one beta for each segment, or that with joint travel weighed, turns the joints much less
+/// and costs little at a placement. They are planned on the grid of the search, and no longer once the caller asks to
+/// stop.
 pub(super) fn calmer(problem: &Problem, placement: &Placement, best: &Plan, monitor: &Monitor) -> Option<String> {
     let is_weighed = problem.criterion.joint_travel_weight > 0.0 || problem.redundancy.beta != BetaPlan::Free;
     if is_weighed || best.objective <= CANCELLATION || best.travel.total == 0.0 {
         return None;
     }
-    let mut constant = problem.untied().into_owned();
-    constant.redundancy.beta = BetaPlan::ConstantPerSegment;
-    let mut weighed = problem.untied().into_owned();
+    let without_tie_rule = problem.without_tie_rule();
+    let constant = without_tie_rule.changed(|parts| parts.redundancy.beta = BetaPlan::ConstantPerSegment);
     // So that joint travel as it is counts as much as may be lost: what the plan with it loses is no more.
     let weight = COST * best.objective * problem.stretches() / best.travel.total;
-    weighed.criterion.joint_travel_weight = rounded_down(weight * 1e3) / 1e3;
+    // Not every figure can have it added to.
+    let weighed =
+        without_tie_rule.changed(|parts| parts.criterion.joint_travel_weight = rounded_down(weight * 1e3) / 1e3);
     let key = "criterion.joint_travel_weight_mm_per_rad";
     let variants = [
         (constant, format!("redundancy.beta = \"{}\"", BetaPlan::ConstantPerSegment.name())),
         (weighed, format!("{key} = {}", figures(rounded_down(weight * 1e3)))),
     ];
     variants.into_iter().find_map(|(calm, key)| {
-        let can_be = calm.redundancy.beta != BetaPlan::Free || problem.criterion.aggregate.weighs_joint_travel();
-        if monitor.should_stop() || !can_be {
-            return None;
-        }
+        let calm = calm.ok().filter(|_| !monitor.should_stop())?;
         let planner = Planner::new(&calm);
         let plans = planner.plan(placement, Sense::Min, None, &mut planner.workspace()).ok()?;
         let travel: f64 = plans.iter().map(|plan| joint_travel(&plan.joints)).sum();
@@ -43,7 +43,8 @@ pub(super) fn calmer(problem: &Problem, placement: &Placement, best: &Plan, moni
         let cost = objective / best.objective - 1.0;
         (cost < COST && travel <= TRAVEL * best.travel.total).then(|| {
             format!(
-                "a calmer plan costs little: with {key} the joints turn by {} deg in the cut in place of {}, and the objective at this \
+                "a calmer plan costs little: with {key} the joints turn by {} deg in the cut in place of {}, and the \
+                 objective at this \
                  placement is {} mm in place of {} ({} %)",
                 whole_degrees(travel),
                 whole_degrees(best.travel.total),
@@ -78,7 +79,8 @@ pub(super) fn swing(plan: &Plan) -> Option<String> {
     let swing = plan.travel.swing.filter(|swing| swing.angle > LARGE_TURN)?;
     let [from, to] = swing.points;
     Some(format!(
-        "axis {} turns by {} deg within {} mm of the cut, from point {from} to {to}; in all the joints turn by {} deg in {} mm \
+        "axis {} turns by {} deg within {} mm of the cut, from point {from} to {to}; in all the joints turn by {} deg \
+         in {} mm \
          (redundancy.beta and criterion.joint_travel_weight_mm_per_rad make calmer programs)",
         swing.joint,
         whole_degrees(swing.angle),

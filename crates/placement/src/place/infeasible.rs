@@ -1,11 +1,11 @@
 //! The placement that comes nearest, and why it is not allowed.
 
-use crate::feasibility::{AFTER_STOP, Finding, diagnose};
-use crate::problem::Placement;
-use crate::redundancy::Planner;
-use crate::sense::Sense;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
+use stead_planning::feasibility::{AFTER_STOP, Finding, diagnose};
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
 
 /// Two shapes, or a point of the arm and a zone, that come nearer than they may in all plans tried.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,7 +44,7 @@ const RUNS_NAMED: usize = 6;
 pub struct Infeasible {
     /// The placement that comes nearest: of all tried the one with the fewest blocked points.
     pub placement: Placement,
-    /// Whether it was the only one asked for, or the nearest of a search.
+    /// Whether it was the only one requested, or the nearest of a search.
     pub searched: bool,
     /// Which constraint fails at which points there; of a search that was stopped, for some of the points.
     pub findings: Vec<Finding>,
@@ -82,7 +82,8 @@ impl std::fmt::Display for Infeasible {
 
 impl std::error::Error for Infeasible {}
 
-/// Why a placement has no plan, in any posture or in a scheme of them. Once the caller asks to stop, some of its points tell it.
+/// Why a placement has no plan, in any posture or in a scheme of them. Once the caller asks to stop, some of its points
+/// tell it.
 pub(super) fn infeasible(
     planner: &Planner<'_>,
     placement: &Placement,

@@ -1,25 +1,25 @@
-//! Long paths: the search compares placements on a subset of the path, basins are refined on a larger one, and whatever can win is
-//! planned on the whole path.
+//! Long paths: the search compares placements on a subset of the path, basins are refined on a larger one, and whatever
+//! can win is planned on the whole path.
 //!
-//! A subset ([`PathSubset`]) leaves points out, and with them what they forbid: a placement that it allows may have no plan. Such a
-//! placement names the points that decide; they join the subsets, and the search or the refinement is repeated. How far the
-//! means on a subset are off is measured ([`SubsetAccuracy`]).
+//! A subset ([`PathSubset`]) leaves points out, and with them what they forbid: a placement that it allows may have no
+//! plan. Such a placement names the points that decide; they join the subsets, and the search or the refinement is
+//! repeated. How far the means on a subset are off is measured ([`SubsetAccuracy`]).
 
 use super::infeasible::{Infeasible, infeasible};
 use super::searched::{Searched, search_cell};
-use crate::candidate::{Candidate, Objective, rank};
 use crate::evaluator::{self, Evaluator};
 use crate::outcome::{PathLevels, SubsetAccuracy};
 use crate::path_comparison::PathComparison;
 use crate::path_subset::PathSubset;
-use crate::problem::Problem;
-use crate::redundancy::Planner;
 use crate::search::{self, SearchResult};
-use crate::sense::Sense;
 use crate::settings::SearchSettings;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use stead_numerics::monitor::Monitor;
+use stead_planning::candidate::{Candidate, Objective, rank};
+use stead_planning::problem::Problem;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::{BySense, Sense};
 
 /// Points of the subset for the search, beside one for every segment.
 const SEARCH_POINTS: usize = 60;
@@ -39,7 +39,7 @@ const REPEATS: usize = 4;
 const LAST_GENERATIONS: usize = 5;
 /// with the population divided by this.
 const SHARE: usize = 2;
-/// Candidates of a search that are improved by coordinate search, for every basin asked for;
+/// Candidates of a search that are improved by coordinate search, for every basin requested;
 const IMPROVED: usize = 6;
 /// and those that are planned on the whole path.
 const PROMOTED: usize = 3;
@@ -69,7 +69,7 @@ impl LongPath {
         let all = task.points().len();
         let count = settings.path_points.unwrap_or(SEARCH_POINTS + task.segments().len());
         let is_short = match settings.path_points {
-            Some(asked) => asked >= all,
+            Some(requested) => requested >= all,
             None => all < SHORT * REFINEMENT_FACTOR * count,
         };
         if is_short || problem.cell.pinned().is_some() {
@@ -78,13 +78,19 @@ impl LongPath {
         let search = PathSubset::new(task, count);
         let refinement = PathSubset::new(task, (REFINEMENT_FACTOR * count).min(all));
         let comparison = PathComparison::draw(full, &search, settings, PAIRS, monitor);
-        // A subset that was asked for stays as it is.
+        // A subset that was requested stays as it is.
         let largest = if settings.path_points.is_some() { 0 } else { all / SHORT };
         let accurate = |subset, tolerance| accurate(problem, subset, &comparison, tolerance, largest);
         let (search, of_search) = accurate(search, TOLERANCES[0]);
         let (refinement, of_refinement) = accurate(refinement, TOLERANCES[1]);
-        let (subsets, deciding) = ([of_search, of_refinement], comparison.deciding.len());
-        let levels = PathLevels { points: all, whole: comparison.planned, subsets, deciding };
+        let deciding = comparison.deciding.len();
+        let levels = PathLevels {
+            points: all,
+            whole: comparison.planned,
+            search: of_search,
+            refinement: of_refinement,
+            deciding,
+        };
         Some(Self { search, refinement, levels, comparison })
     }
 
@@ -93,14 +99,15 @@ impl LongPath {
         let known = self.levels.deciding;
         self.levels.deciding = self.comparison.deciding.len();
         if self.levels.deciding > known {
-            let accuracy = |subset| self.comparison.accuracy(problem, subset);
-            self.levels.subsets = [&self.search, &self.refinement].map(accuracy);
+            self.levels.search = self.comparison.accuracy(problem, &self.search);
+            self.levels.refinement = self.comparison.accuracy(problem, &self.refinement);
         }
     }
 
-    /// Searches the cell on the subset, and ranks what comes out on the whole path. Where a candidate that would win has no plan
-    /// there, the points that decide join the subsets, and the search is repeated. Where none has one even then, those by which the
-    /// subsets were measured take their place, and where there are none of these, the whole path is searched: a subset never refuses.
+    /// Searches the cell on the subset, and ranks what comes out on the whole path. Where a candidate that would win
+    /// has no plan there, the points that decide join the subsets, and the search is repeated. Where none has one even
+    /// then, those by which the subsets were measured take their place, and where there are none of these, the whole
+    /// path is searched: a subset never refuses.
     ///
     /// # Errors
     /// [`Infeasible`] when nothing is met that has a plan on the whole path.
@@ -129,10 +136,10 @@ impl LongPath {
                 evaluations += improve(&thinned, &mut found, monitor);
             }
             evaluations += self.search_on(problem, &wider, &mut found, monitor);
-            let nearest = found[0].basins[0].clone();
+            let nearest = found.best.basins[0].clone();
             let mut deciding = Vec::new();
             let mut is_refused = false;
-            for (sense, found) in Sense::BOTH.into_iter().zip(&mut found) {
+            for (sense, found) in found.iter_mut() {
                 is_refused |= self.promote(&whole, sense, found, settings.basins, &mut deciding, monitor);
             }
             self.comparison.add_deciding(&deciding);
@@ -144,7 +151,7 @@ impl LongPath {
             }
             let is_without =
                 |(sense, found): &(Sense, &mut SearchResult)| settings.seeks(*sense) && found.basins.is_empty();
-            for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(is_without) {
+            for (sense, found) in found.iter_mut().filter(is_without) {
                 found.basins =
                     search::distinct(&self.search.of(problem), &self.comparison.ranked(sense), settings.basins);
             }
@@ -159,13 +166,13 @@ impl LongPath {
         }
     }
 
-    /// Goes on searching from the basins that a search found, by last generations on the subset for the refinement; returns how
-    /// many placements were evaluated.
+    /// Goes on searching from the basins that a search found, by last generations on the subset for the refinement;
+    /// returns how many placements were evaluated.
     fn search_on(
         &self,
         problem: &Problem,
         settings: &SearchSettings,
-        found: &mut [SearchResult; 2],
+        found: &mut BySense<SearchResult>,
         monitor: &Monitor,
     ) -> usize {
         let thinned = self.refinement.of(problem);
@@ -175,7 +182,7 @@ impl LongPath {
             SearchSettings { population: settings.population.div_ceil(SHARE).max(settings.basins), ..*settings };
         let first = settings.generations - settings.generations / LAST_GENERATIONS;
         let mut evaluations = 0;
-        for (sense, found) in Sense::BOTH.into_iter().zip(found).filter(|(sense, _)| settings.seeks(*sense)) {
+        for (sense, found) in found.iter_mut().filter(|(sense, _)| settings.seeks(*sense)) {
             if monitor.should_stop() {
                 break;
             }
@@ -188,9 +195,10 @@ impl LongPath {
         evaluations
     }
 
-    /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct basins, at most
-    /// `basins`; returns whether the first has none. Candidates for the best placement that a subset judged better than the whole path
-    /// does are improved on a subset that knows the points in their way, and planned again.
+    /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct
+    /// basins, at most `basins`; returns whether the first has none. Candidates for the best placement that a subset
+    /// judged better than the whole path does are improved on a subset that knows the points in their way, and planned
+    /// again.
     fn promote(
         &mut self,
         whole: &WholePath<'_, '_>,
@@ -251,8 +259,9 @@ impl LongPath {
     }
 }
 
-/// Candidates as an evaluator has them that knows more points of the path than what they were found by. For the best placement those
-/// of which it thinks otherwise are improved by coordinate search, if what was promised of them would win.
+/// Candidates as an evaluator has them that knows more points of the path than what they were found by. For the best
+/// placement those of which it thinks otherwise are improved by coordinate search, if what was promised of them would
+/// win.
 fn repaired(evaluator: &Evaluator<'_>, sense: Sense, candidates: Vec<Candidate>, monitor: &Monitor) -> Vec<Candidate> {
     let known = |workspace: &mut evaluator::Workspace, promised: Candidate| {
         let objective = evaluator.objective(&promised.placement, promised.scheme.as_deref(), workspace);
@@ -275,7 +284,7 @@ fn repaired(evaluator: &Evaluator<'_>, sense: Sense, candidates: Vec<Candidate>,
 }
 
 /// Improves the basins of both searches by coordinate search; returns how many placements were evaluated.
-fn improve(problem: &Problem, found: &mut [SearchResult; 2], monitor: &Monitor) -> usize {
+fn improve(problem: &Problem, found: &mut BySense<SearchResult>, monitor: &Monitor) -> usize {
     let (planner, finer) = (Planner::new(problem), Planner::finer(problem));
     let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
     let improved: Vec<_> = SearchResult::jobs(found)
@@ -285,20 +294,20 @@ fn improve(problem: &Problem, found: &mut [SearchResult; 2], monitor: &Monitor) 
             |workspace, (sense, _, start)| (sense, evaluator.improved(start, sense, monitor, workspace)),
         )
         .collect();
-    found.iter_mut().for_each(|found| found.basins.clear());
+    found.iter_mut().for_each(|(_, found)| found.basins.clear());
     let mut evaluations = 0;
     for (sense, (candidate, number)) in improved {
-        found[usize::from(sense == Sense::Max)].basins.push(candidate);
+        found[sense].basins.push(candidate);
         evaluations += number;
     }
-    for (sense, found) in Sense::BOTH.into_iter().zip(found) {
+    for (sense, found) in found.iter_mut() {
         found.basins.sort_by(|a, b| rank(sense, a.objective, b.objective));
     }
     evaluations
 }
 
-/// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path, and how far
-/// it is off.
+/// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path,
+/// and how far it is off.
 fn accurate(
     problem: &Problem,
     mut subset: PathSubset,

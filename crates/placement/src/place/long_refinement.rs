@@ -2,21 +2,21 @@
 
 use super::long_path::LongPath;
 use super::refined::Refined;
-use crate::candidate::Candidate;
 use crate::coordinate_search::neighbours;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
-use crate::problem::{Placement, Problem};
-use crate::redundancy::Planner;
 use crate::refine::solver::{self, Ending};
 use crate::refine::{LENGTH_UNIT, Solution, planned, refine};
 use crate::search::SearchResult;
-use crate::sense::Sense;
-use crate::symmetry::apart_about_axis_1;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::candidate::Candidate;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::symmetry::apart_about_axis_1;
 
 /// How often a refinement is repeated with more points at the most.
 const REPEATS: usize = 5;
@@ -30,7 +30,8 @@ const REFINED: usize = 2;
 const TIED: f64 = 0.004;
 /// Placements no farther apart than this, in the refinement's scaled variables, are one.
 const SAME: f64 = 0.05;
-/// How far around a refined placement its neighbours are planned, in the first steps of a coordinate search; the next only after a gain.
+/// How far around a refined placement its neighbours are planned, in the first steps of a coordinate search; the next
+/// only after a gain.
 const PROBES: [f64; 3] = [0.4, 0.4, 0.2];
 /// A neighbour is gone on from where its plan is better by more than this (relative).
 const WORTH: f64 = 1e-3;
@@ -43,19 +44,20 @@ const MAX_REFINED: usize = 10_000;
 struct Estimated<'c> {
     candidate: &'c Candidate,
     placement: Placement,
-    /// Its objective on the whole path: that on the subset, corrected by how far the subset is off on the coarse grid. m
+    /// Its objective on the whole path: that on the subset, corrected by how far the subset is off on the coarse grid.
+    /// m
     objective: f64,
     report: Refinement,
 }
 
-/// Refines the basins of both searches, on the problem of a planner, and returns those that can be the best of either with their
-/// plans on the whole path.
+/// Refines the basins of both searches, on the problem of a planner, and returns those that can be the best of either
+/// with their plans on the whole path.
 pub(super) fn refine_basins(
     path: &LongPath,
     planner: &Planner<'_>,
-    found: &[SearchResult; 2],
+    found: &BySense<SearchResult>,
     monitor: &Monitor,
-) -> ([Vec<Refined>; 2], Vec<Refinement>) {
+) -> (BySense<Vec<Refined>>, Vec<Refinement>) {
     let jobs = SearchResult::jobs(found);
     let whole = WholePath::new(planner);
     let done = AtomicUsize::new(0);
@@ -82,7 +84,7 @@ pub(super) fn refine_basins(
     let ((best, mut refinements), (worst, others)) =
         rayon::join(|| choose(Sense::Min, best), || choose(Sense::Max, worst));
     refinements.extend(others);
-    ([best, worst], refinements)
+    (BySense { best, worst }, refinements)
 }
 
 /// Refines a candidate on the subset; what the whole path does not allow adds the points that decide, and begins again.
@@ -140,8 +142,8 @@ fn estimated<'c>(
     }
 }
 
-/// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by their
-/// plans are refined on the whole path, and the best of all is taken.
+/// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by
+/// their plans are refined on the whole path, and the best of all is taken.
 fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>], monitor: &Monitor) -> Vec<Refined> {
     let Some(first) = estimates.first().map(|first| first.objective) else { return Vec::new() };
     let is_long = planner.problem().task.points().len() > MAX_REFINED;
@@ -196,9 +198,10 @@ fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
         && yaw <= SAME
 }
 
-/// Refines a basin on the whole path, and once more from a neighbour with a better plan: the sequential programme stays among the plans
-/// that its start has, and where plans of neighbours go another way through the angles it does not see them. What comes out counts as the
-/// planner plans it, so that whoever asks for the placement alone gets the same. Returns the report, continued.
+/// Refines a basin on the whole path, and once more from a neighbour with a better plan: the sequential programme stays
+/// among the plans that its start has, and where plans of neighbours go another way through the angles it does not see
+/// them. What comes out counts as the planner plans it, so that whoever asks for the placement alone gets the same.
+/// Returns the report, continued.
 fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
     let plan = |placement: &Placement| planned(planner, placement, best.scheme.as_deref(), &mut planner.workspace());
     let refined = |from: &Solution, report: &mut Refinement| {

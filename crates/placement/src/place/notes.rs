@@ -1,15 +1,16 @@
 //! What should be known about a result.
 
 use super::calmer::{calmer, swing};
-use crate::criterion::Criterion;
-use crate::feed::CutFeed;
-use crate::outcome::{CANCELLATION, Cycle, Plan};
-use crate::problem::{Placement, Problem};
-use crate::way::{ShortLine, Way};
+use crate::outcome::{Cycle, Plan};
 use stead_model::plausibility;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
+use stead_planning::criterion::CANCELLATION;
+use stead_planning::criterion::Criterion;
+use stead_planning::feed::CutFeed;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::transfer_path::{ShortLine, TransferPath};
 
 /// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
 pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
@@ -24,7 +25,8 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
 pub(super) fn of(
     problem: &Problem,
     placement: &Placement,
-    (plan, feed): (&Plan, &CutFeed),
+    plan: &Plan,
+    feed: &CutFeed,
     monitor: &Monitor,
 ) -> Vec<String> {
     let large = plausibility::deflection(plan.deflection.total.max);
@@ -73,15 +75,15 @@ pub(super) fn interruption() -> Warning {
     Warning::new("interrupted", "interrupted: the results are the best found so far, not the end of the search")
 }
 
-/// Moves between path points that the arm cannot follow, moves between segments that have no free way, and lines into and out of the cut
-/// that are shorter than they should be, of plans with their names.
+/// Moves between path points that the arm cannot follow, moves between segments that have no free way, and lines into
+/// and out of the cut that are shorter than they should be, of plans with their names.
 pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
     let ways = |plan: &(&str, &Cycle)| {
         let found =
             plan.1.transfers.iter().filter_map(|transfer| Some((transfer.after_segment, transfer.way.clone()?)));
         found.map(|found| (plan.0.to_owned(), found)).collect::<Vec<_>>()
     };
-    let all: Vec<(String, (usize, Way))> = plans.iter().flat_map(ways).collect();
+    let all: Vec<(String, (usize, TransferPath))> = plans.iter().flat_map(ways).collect();
     let blocked = all.iter().filter_map(|(plan, (segment, way))| {
         let names = way.blocked_by.as_ref()?;
         Some(format!("{plan} after segment {segment} ({} and {})", names[0], names[1]))

@@ -1,17 +1,17 @@
 //! Plans with everything that there is to say of them.
 
 use super::refined::Refined;
-use crate::collision::PlanClearance;
-use crate::evaluate::reference::{scored_part_by_parameters, state};
-use crate::joint_travel::JointTravel;
 use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
-use crate::problem::{Placement, Problem};
-use crate::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use crate::refine::planned;
-use crate::sense::Sense;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
+use stead_planning::collision::PlanClearance;
+use stead_planning::evaluate::reference::scored_part_by_parameters;
+use stead_planning::joint_travel::JointTravel;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
+use stead_planning::sense::Sense;
 
 /// What is stated at a refined placement: its best plan, or one within the tie whose moves are shorter, and its worst.
 pub(super) struct StatedPlans {
@@ -34,7 +34,8 @@ impl StatedPlans {
         let worst = || worst_plan(planner, &solution.placement, scheme);
         let (best, worst) = rayon::join(within_tie, worst);
         let best = best.map_or_else(|| solution.plans.clone(), |found| found.plans);
-        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for both.
+        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for
+        // both.
         Self { worst: worst.unwrap_or_else(|_| best.clone()), best }
     }
 }
@@ -58,7 +59,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
     let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
     for (segment, plan) in plans.iter().enumerate() {
         for (place, point) in plan.points.clone().enumerate() {
-            let Ok(s) = state(problem, point, placement, plan.betas[place], plan.posture) else { continue };
+            let Ok(s) = problem.at(placement).state(point, plan.betas[place], plan.posture) else { continue };
             let placed = problem.placed(point, placement);
             let sign = if s.own.scored < 0.0 { -1.0 } else { 1.0 };
             for (sum, slope) in slopes.iter_mut().zip(scored_part_by_parameters(problem, point, placement, &s.joints)) {

@@ -4,15 +4,15 @@ use super::infeasible::{Infeasible, infeasible};
 use super::notes::{self, cancellation};
 use super::plan::{detailed, worst_plan};
 use crate::outcome::{Case, Cycle, Plan};
-use crate::problem::{Placement, Problem};
-use crate::redundancy::Planner;
 use crate::refine::planned;
-use crate::sense::Sense;
-use crate::settings::TransferSettings;
-use crate::setup::Setup;
-use crate::transfer::cycle;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::setup::Setup;
+use stead_planning::transfer::TransferSettings;
+use stead_planning::transfer::cycle;
 
 /// What one given placement is worth.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,14 +23,12 @@ pub struct Score {
     pub setup: Setup,
     /// The name of the orientation of the part, where the run says several.
     pub orientation: Option<String>,
-    /// The best plan.
-    pub best: Plan,
-    /// The worst plan.
-    pub worst: Plan,
+    /// The best and the worst plan.
+    pub plans: BySense<Plan>,
     /// What should be known about the result though nothing is wrong, in sentences.
     pub notes: Vec<String>,
     /// Times of both plans.
-    pub cycles: [Cycle; 2],
+    pub cycles: BySense<Cycle>,
     /// Whether the caller asked to stop before all that was wanted was there.
     pub interrupted: bool,
     /// Why the result may not be what was wanted.
@@ -39,20 +37,18 @@ pub struct Score {
 
 impl Score {
     /// Both plans as cases of one placement.
-    pub fn cases(&self) -> [Case; 2] {
-        let [of_best, of_worst] = &self.cycles;
-        let case = |plan_sense, plan: &Plan, cycle: &Cycle| Case {
+    pub fn cases(&self) -> BySense<Case> {
+        BySense::from_fn(|plan_sense| Case {
             placement_sense: Sense::Min,
             plan_sense,
             placement: self.placement,
             setup: self.setup.clone(),
             orientation: self.orientation.clone(),
-            plan: plan.clone(),
-            cycle: cycle.clone(),
+            plan: self.plans[plan_sense].clone(),
+            cycle: self.cycles[plan_sense].clone(),
             active_bounds: None,
             objective_by_stiffness: None,
-        };
-        [case(Sense::Min, &self.best, of_best), case(Sense::Max, &self.worst, of_worst)]
+        })
     }
 }
 
@@ -73,17 +69,19 @@ pub fn score(
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
     let cancelled = cancellation(problem, best.objective);
-    let plan = detailed(problem, placement, &best.plans);
-    let cycles = [&best.plans, &worst].map(|plans| cycle(problem, placement, transfer, plans));
-    let warnings =
-        cancelled.into_iter().chain(notes::moves(&[("best plan", &cycles[0]), ("worst plan", &cycles[1])])).collect();
+    let plans = BySense { best: best.plans, worst };
+    let cycles = plans.as_ref().map(|plans| cycle(problem, placement, transfer, plans));
+    let plans = plans.map(|plans| detailed(problem, placement, &plans));
+    let warnings = cancelled
+        .into_iter()
+        .chain(notes::moves(&[("best plan", &cycles.best), ("worst plan", &cycles.worst)]))
+        .collect();
     Ok(Score {
         placement: *placement,
         setup: problem.setup.clone(),
         orientation: problem.orientation().map(|orientation| orientation.name.clone()),
-        notes: notes::of(problem, placement, (&plan, &cycles[0].feed), monitor),
-        best: plan,
-        worst: detailed(problem, placement, &worst),
+        notes: notes::of(problem, placement, &plans.best, &cycles.best.feed, monitor),
+        plans,
         cycles,
         interrupted: monitor.should_stop(),
         warnings,

@@ -1,32 +1,32 @@
 //! The searches for the best and the worst placement.
 
 use super::infeasible::{Infeasible, infeasible};
-use crate::candidate::Objective;
 use crate::evaluator::Evaluator;
 use crate::lookup::LookupTable;
 use crate::outcome::LookupSummary;
-use crate::redundancy::Planner;
 use crate::search::{self, SearchResult};
-use crate::sense::Sense;
 use crate::settings::{LookupUse, SearchSettings};
-use crate::symmetry::Unsupported;
 use stead_numerics::monitor::Monitor;
+use stead_planning::candidate::Objective;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::symmetry::Unsupported;
 
 /// What the searches of both senses come to.
 pub(super) struct Searched<'a> {
-    pub found: [SearchResult; 2],
+    pub found: BySense<SearchResult>,
     pub table: Option<LookupTable<'a>>,
     pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
     pub evaluations: usize,
 }
 
-/// What the searches of both senses come to, each by itself; nothing for one that is not asked for.
-fn of_sought(settings: &SearchSettings, search: impl Fn(Sense) -> SearchResult) -> [SearchResult; 2] {
-    Sense::BOTH.map(|sense| if settings.seeks(sense) { search(sense) } else { SearchResult::nothing() })
+/// What the searches of both senses come to, each by itself; nothing for one that is not requested.
+fn of_sought(settings: &SearchSettings, search: impl Fn(Sense) -> SearchResult) -> BySense<SearchResult> {
+    BySense::from_fn(|sense| if settings.seeks(sense) { search(sense) } else { SearchResult::nothing() })
 }
 
-/// Searches for the best and the worst placement on the coarse grid; a planner on the finer one, `finer`, has the last word on
-/// what is feasible.
+/// Searches for the best and the worst placement on the coarse grid; a planner on the finer one, `finer`, has the last
+/// word on what is feasible.
 pub(super) fn search_cell<'a>(
     finer: &Planner<'a>,
     settings: &SearchSettings,
@@ -35,7 +35,7 @@ pub(super) fn search_cell<'a>(
     let problem = finer.problem();
     if let Some(placement) = problem.cell.pinned() {
         let found = of_sought(settings, |sense| search::pinned(finer, placement, sense));
-        return match found[0].basins[0].objective {
+        return match found.best.basins[0].objective {
             Objective::Feasible(_) => Ok(Searched { found, table: None, lookup_summary: None, evaluations: 1 }),
             Objective::Infeasible { .. } => Err(infeasible(finer, &placement, None, false, monitor)),
         };
@@ -55,21 +55,21 @@ pub(super) fn search_cell<'a>(
         of_sought(settings, |sense| search::search(&evaluator, settings, sense, monitor))
     };
     let mut found = search(table.as_ref());
-    let mut evaluations = found.iter().map(|f| f.evaluations).sum::<usize>();
-    if found.iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
+    let mut evaluations = found.values().map(|f| f.evaluations).iter().sum::<usize>();
+    if found.values().iter().any(|f| f.lookup_rejected && !f.interrupted) && !monitor.should_stop() {
         (table, lookup_summary) = (None, Some(Err(Unsupported::Rejected)));
         found = search(None);
-        evaluations += found.iter().map(|f| f.evaluations).sum::<usize>();
+        evaluations += found.values().map(|f| f.evaluations).iter().sum::<usize>();
     }
-    if !found.iter().any(SearchResult::is_feasible) {
-        evaluations += found.iter().map(|f| f.basins.len()).sum::<usize>();
-        for (sense, found) in Sense::BOTH.into_iter().zip(&mut found).filter(|(sense, _)| settings.seeks(*sense)) {
+    if !found.values().iter().any(|f| f.is_feasible()) {
+        evaluations += found.values().map(|f| f.basins.len()).iter().sum::<usize>();
+        for (sense, found) in found.iter_mut().filter(|(sense, _)| settings.seeks(*sense)) {
             search::evaluate_finer(finer, sense, &mut found.basins, monitor);
             found.basins.truncate(settings.basins);
         }
     }
     if !SearchResult::share_basins(&mut found, settings) {
-        let nearest = &found[0].basins[0];
+        let nearest = &found.best.basins[0];
         return Err(infeasible(finer, &nearest.placement, nearest.scheme.as_deref(), true, monitor));
     }
     Ok(Searched { found, table, lookup_summary, evaluations })

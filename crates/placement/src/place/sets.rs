@@ -4,15 +4,15 @@ use super::basins::{best_alone, leading, refine_basins};
 use super::long_path::LongPath;
 use super::plan::detailed;
 use super::refined::Refined;
-use crate::criterion::Over;
 use crate::evaluator::Evaluator;
 use crate::outcome::{Case, SetBasin, SetOutcome};
-use crate::problem::Problem;
-use crate::redundancy::Planner;
 use crate::search::SearchResult;
-use crate::sense::Sense;
-use crate::sensitivity::{mean_by, with_set_alone};
+use crate::sensitivity::mean_by;
 use stead_numerics::monitor::Monitor;
+use stead_planning::criterion::Over;
+use stead_planning::problem::Problem;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::{BySense, Sense};
 
 /// The stiffness sets of a criterion, each with what is best for it alone.
 pub(super) struct Sets {
@@ -24,11 +24,12 @@ pub(super) struct Sets {
 }
 
 impl Sets {
-    /// Refines the basins of the best placement for each set alone, and holds those refined for all sets together, `refined`,
-    /// against it. Nothing where the criterion has no sets, or once the caller asks to stop.
+    /// Refines the basins of the best placement for each set alone, and holds those refined for all sets together,
+    /// `refined`, against it. Nothing where the criterion has no sets, or once the caller asks to stop.
     pub fn of(
         problem: &Problem,
-        (found, long): (&[SearchResult; 2], Option<&LongPath>),
+        found: &BySense<SearchResult>,
+        long: Option<&LongPath>,
         refined: &[Refined],
         monitor: &Monitor,
     ) -> Self {
@@ -38,9 +39,9 @@ impl Sets {
         };
         let basins = best_alone(found);
         let alone = |set| {
-            let alone = with_set_alone(problem, set);
+            let alone = problem.with_stiffness_alone(set);
             let planner = Planner::finer(&alone);
-            let ([refined, _], _) = refine_basins(&Evaluator::new(&planner, None), long, &basins, monitor);
+            let refined = refine_basins(&Evaluator::new(&planner, None), long, &basins, monitor).0.best;
             let best = leading(Sense::Min, &refined).map(|Refined { solution, .. }| {
                 mean_by(&alone, &solution.placement, &detailed(&alone, &solution.placement, &solution.plans))
             });

@@ -1,23 +1,24 @@
 //! The choice among setups: in which orientation the part lies, where the external axes stand.
 //!
-//! Every orientation, and in it a grid of positions of each axis in turn, is searched with the same settings; the best and the worst of all
-//! are kept. Then the axes of the best are improved ([`super::axes`]).
+//! Every orientation, and in it a grid of positions of each axis in turn, is searched with the same settings; the best
+//! and the worst of all are kept. Then the axes of the best are improved ([`super::axes`]).
 
 use super::axes::{GRID, improved};
 use super::infeasible::Infeasible;
 use super::refined::Refined;
 use super::{notes, place_as_set_up, stated_cases};
-use crate::joint_travel::joint_travel;
 use crate::outcome::{Case, Outcome};
-use crate::problem::{Cell, Placement, Problem};
-use crate::redundancy::{Planner, SegmentPlan};
 use crate::refine::{Solution, planned};
-use crate::sense::Sense;
-use crate::settings::{SearchSettings, TransferSettings};
-use crate::setup::{AxisPositions, Setup, TriedSetup};
+use crate::settings::SearchSettings;
 use std::ops::Range;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
+use stead_planning::joint_travel::joint_travel;
+use stead_planning::problem::{Cell, Placement, Problem};
+use stead_planning::redundancy::{Planner, SegmentPlan};
+use stead_planning::sense::{BySense, Sense};
+use stead_planning::setup::{AxisPositions, Setup, TriedSetup};
+use stead_planning::transfer::TransferSettings;
 
 /// What is searched in every setup.
 struct Job<'a> {
@@ -31,7 +32,7 @@ struct Job<'a> {
 #[derive(Default)]
 struct Found {
     best: Option<Outcome>,
-    worst: Option<[Case; 2]>,
+    worst: Option<BySense<Case>>,
     tried: Vec<TriedSetup>,
     refused: Option<Infeasible>,
     evaluations: usize,
@@ -122,11 +123,11 @@ impl Job<'_> {
             }
         };
         let best = outcome.cases.best.plan.objective;
-        let worst = outcome.cases.worst.as_ref().map(|[case, _]| case.plan.objective);
+        let worst = outcome.cases.worst.as_ref().map(|worst| worst.best.plan.objective);
         found.tried.push(tried(Some((best, worst))));
         found.evaluations += outcome.evaluations;
         found.states += outcome.states;
-        if found.worst.as_ref().is_none_or(|[known, _]| worst > Some(known.plan.objective)) {
+        if found.worst.as_ref().is_none_or(|known| worst > Some(known.best.plan.objective)) {
             found.worst = outcome.cases.worst.clone();
         }
         if found.best.as_ref().is_none_or(|known| best < known.cases.best.plan.objective) {
@@ -141,31 +142,35 @@ impl Job<'_> {
             return;
         }
         let problem = self.problem.in_setup(&outcome.cases.best.setup);
-        let untied = problem.untied();
-        let planner = Planner::finer(&untied);
+        let without_tie_rule = problem.without_tie_rule();
+        let planner = Planner::finer(&without_tie_rule);
         let start = match planned(&planner, &outcome.cases.best.placement, None, &mut planner.workspace()) {
             Some(start) if start.objective < outcome.cases.best.plan.objective => start,
-            _ => Solution::new(&untied, outcome.cases.best.placement, plans_of(&outcome.cases.best, &untied)),
+            _ => Solution::new(
+                &without_tie_rule,
+                outcome.cases.best.placement,
+                plans_of(&outcome.cases.best, &without_tie_rule),
+            ),
         };
-        let Some(found) = improved(&untied, &start, self.monitor) else { return };
+        let Some(found) = improved(&without_tie_rule, &start, self.monitor) else { return };
         let problem = self.problem.in_setup(&found.setup);
         let refined = Refined { solution: found.solution, scheme: None };
-        let untied = problem.untied();
-        let planners = (&*problem, &Planner::finer(&untied));
-        let [best, worst_plan] = stated_cases(planners, self.transfer, Sense::Min, &refined, self.monitor);
+        let without_tie_rule = problem.without_tie_rule();
+        let planner = Planner::finer(&without_tie_rule);
+        let BySense { best, worst: worst_plan } =
+            stated_cases(&problem, &planner, self.transfer, Sense::Min, &refined, self.monitor);
         if best.plan.objective < outcome.cases.best.plan.objective {
-            let stated = (&best.plan, &best.cycle.feed);
-            outcome.notes = notes::of(&problem, &best.placement, stated, self.monitor);
+            outcome.notes = notes::of(&problem, &best.placement, &best.plan, &best.cycle.feed, self.monitor);
             outcome.notes.extend((!self.settings.worst).then(notes::best_alone));
             (outcome.cases.best, outcome.cases.best_worst_plan) = (best, worst_plan);
         }
     }
 }
 
-/// The setup in which a given placement is best, the part as it lies in the problem's: each axis first on a grid over its range, then
-/// improved. The problem's own where no position that is tried has a plan.
+/// The setup in which a given placement is best, the part as it lies in the problem's: each axis first on a grid over
+/// its range, then improved. The problem's own where no position that is tried has a plan.
 pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Setup {
-    let pinned = Problem { cell: Cell::at(placement), ..problem.untied().into_owned() };
+    let pinned = problem.without_tie_rule().in_cell(Cell::at(placement));
     let at = |setup: &Setup| {
         let set_up = pinned.in_setup(setup);
         let planner = Planner::finer(&set_up);

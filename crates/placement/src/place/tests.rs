@@ -1,24 +1,24 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
 use super::super::settings::{LookupUse, PostureSearch};
-use super::super::symmetry::Unsupported;
-use super::super::testing::{five_segments, with_uncertainty};
 use super::*;
-use crate::criterion::{Over, StiffnessSets, Weights};
-use crate::evaluate::reference::state;
 use crate::evaluator::Evaluator;
 use crate::lookup::LookupTable;
 use crate::outcome::{Plan, PlanPoint};
-use crate::problem::{Cell, Interval, Placement};
-use crate::redundancy::Planner;
 use crate::search;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::robot::angles::yaw_from_q4;
+use stead_planning::criterion::{Over, StiffnessSets, Weights};
+use stead_planning::problem::{Cell, Interval, Placement};
+use stead_planning::redundancy::Planner;
+use stead_planning::symmetry::Unsupported;
+use stead_planning::testing::{five_segments, with_uncertainty};
 
 mod choice;
 mod following;
 mod long_path;
+mod setup;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }
@@ -47,7 +47,8 @@ fn four_cases_are_ordered_and_complete() {
     }
 }
 
-/// The best placement is what it is beside the worst one, bit for bit; all else that is stated of the worst is left out.
+/// The best placement is what it is beside the worst one, bit for bit; all else that is stated of the worst is left
+/// out.
 #[test]
 fn the_best_placement_is_found_without_the_worst() {
     let mut problem = five_segments();
@@ -69,7 +70,7 @@ fn the_best_placement_is_found_without_the_worst() {
 fn a_cell_out_of_reach_says_why() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 24;
-    problem.cell.position[1] = super::super::problem::Interval { min: -6.0, max: -5.0 };
+    problem.cell.position[1] = stead_planning::problem::Interval { min: -6.0, max: -5.0 };
     let nothing = place(&problem, &small(), &TransferSettings::default(), &Monitor::silent()).unwrap_err();
     assert!(nothing.searched && !nothing.findings.is_empty());
     assert!(nothing.to_string().contains("beyond the stretched arm"), "{nothing}");
@@ -93,11 +94,13 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     // The reference evaluator has the last word, and the table never costs more than it finds.
     assert!(with.cases.best.plan.mean <= without.cases.best.plan.mean * 1.001);
     assert!(with.cases.optima()[1].plan.mean >= without.cases.optima()[1].plan.mean * 0.999);
-    let mut tilted = problem.clone();
-    let mut wrenches = tilted.task.wrenches().to_vec();
+    let mut wrenches = problem.task.wrenches().to_vec();
     wrenches[3].moment.x = 0.5;
-    tilted.task = stead_model::task::Task::new(tilted.task.path().clone(), wrenches).unwrap();
-    assert_eq!(run(&tilted, LookupUse::Auto).lookup_summary, Some(Err(Unsupported::Moment { point: 3 })));
+    let task = stead_model::task::Task::new(problem.task.path().clone(), wrenches).unwrap();
+    let twisted = problem.clone().with(|parts| parts.task = task);
+    assert!(matches!(run(&twisted, LookupUse::Auto).lookup_summary, Some(Ok(_))));
+    problem.criterion.joint_travel_weight = 1e-6;
+    assert_eq!(run(&problem, LookupUse::Auto).lookup_summary, Some(Err(Unsupported::JointTravel)));
 }
 
 #[test]
@@ -108,7 +111,7 @@ fn a_search_notices_that_its_table_misleads() {
     // A table that knows nothing of a third of the force.
     let weaker = problem.task.wrenches().iter().map(|w| stead_model::task::Wrench { force: w.force / 1.5, ..*w });
     let weaker = stead_model::task::Task::new(problem.task.path().clone(), weaker.collect()).unwrap();
-    let weaker = Problem { task: weaker, ..problem.clone() };
+    let weaker = problem.clone().with(|parts| parts.task = weaker);
     let wrong = LookupTable::new(&weaker).unwrap();
     let planner = Planner::new(&problem);
     let is_rejected = |table: Option<&LookupTable<'_>>| {
@@ -140,8 +143,8 @@ fn stopping_early_still_returns_a_result() {
 
 /// Mean of |normal part| over a plan, with other compliances.
 fn mean_with(problem: &Problem, placement: &Placement, plan: &Plan, compliances: [f64; 6]) -> f64 {
-    let problem = Problem { robot: problem.robot.with_compliances(compliances).unwrap(), ..problem.clone() };
-    let normal_part = |p: &PlanPoint| state(&problem, p.point, placement, p.beta, p.posture).unwrap().normal_part;
+    let problem = problem.clone().with(|parts| parts.robot = problem.robot.with_compliances(compliances).unwrap());
+    let normal_part = |p: &PlanPoint| problem.at(placement).state(p.point, p.beta, p.posture).unwrap().normal_part;
     plan.points.iter().map(|p| normal_part(p).abs()).sum::<f64>() / plan.points.len() as f64
 }
 
@@ -159,7 +162,7 @@ fn the_mean_errs_as_all_its_points_together() {
     problem.redundancy.beta_count = 40;
     let scored = scored_at_published_optimum(&problem);
     let nominal = problem.robot.constant_compliances().unwrap();
-    for plan in [&scored.best, &scored.worst] {
+    for plan in [&scored.plans.best, &scored.plans.worst] {
         // The mean moved along each independent error; small steps, so that no normal part changes its sign.
         let h = 1e-4;
         let changes = problem.robot.uncertainty().unwrap().directions().iter().map(|direction| {
@@ -182,8 +185,8 @@ fn the_mean_errs_as_all_its_points_together() {
 fn score_agrees_with_the_prototype() {
     let problem = five_segments();
     let scored = scored_at_published_optimum(&problem);
-    assert!((scored.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
-    assert!((scored.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
+    assert!((scored.plans.best.mean * 1e3 / 0.5357 - 1.0).abs() < 0.01);
+    assert!((scored.plans.worst.mean * 1e3 / 0.594 - 1.0).abs() < 0.01);
 }
 
 /// A problem drawn by number: its cell, its arm's speeds, and its rate of beta against the spacing of its points.
@@ -223,7 +226,7 @@ fn what_score_finds_feasible_place_finds_in_a_pinned_cell() {
                 feasible += 1;
                 assert_eq!(placed.evaluations, 1);
                 assert_eq!(placed.cases.best.placement, placement);
-                let difference = (placed.cases.best.plan.mean - scored.best.mean).abs();
+                let difference = (placed.cases.best.plan.mean - scored.plans.best.mean).abs();
                 assert!(difference < 1e-9 * 1e-3 + 1e-10, "{number}: {difference}");
             }
             (Err(scored), Err(placed)) => assert_eq!(scored.findings, placed.findings),
@@ -245,7 +248,7 @@ fn score_agrees_with_place_at_every_placement() {
         for plans in placed.all().chunks(2) {
             let [best, worst] = *plans else { panic!("two plans of each placement") };
             let scored = score(&problem, &best.placement, &transfer, &silent).unwrap();
-            for (case, plan) in [(best, &scored.best), (worst, &scored.worst)] {
+            for (case, plan) in [(best, &scored.plans.best), (worst, &scored.plans.worst)] {
                 // To the digits of the files, in mm.
                 let printed = |mean: f64| (mean * 1e10).round();
                 assert_eq!(printed(case.plan.mean), printed(plan.mean), "{weights:?} case {}", case.number());
@@ -313,7 +316,7 @@ fn the_worst_over_sets_is_never_above_the_plain_placements_and_one_set_gives_the
         .plan
         .points
         .iter()
-        .map(|p| state(&several, p.point, &plain.cases.best.placement, p.beta, p.posture).unwrap().score())
+        .map(|p| several.at(&plain.cases.best.placement).state(p.point, p.beta, p.posture).unwrap().score())
         .sum::<f64>()
         / 105.0;
     assert!(worst.cases.best.plan.mean <= plain_plan * (1.0 + 1e-6), "{} {plain_plan}", worst.cases.best.plan.mean);

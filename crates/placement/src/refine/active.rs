@@ -1,20 +1,20 @@
 //! Which bounds hold an optimum, and what moving them would gain.
 //!
-//! For the best placement that is the multiplier of each bound in the convex subproblem at the optimum: how fast the objective
-//! falls when the bound gives way. For the worst placement a wall of the cell counts by the one-sided derivative of the
-//! objective across it, since the objective is a minimum over plans.
+//! For the best placement that is the multiplier of each bound in the convex subproblem at the optimum: how fast the
+//! objective falls when the bound gives way. For the worst placement a wall of the cell counts by the one-sided
+//! derivative of the objective across it, since the objective is a minimum over plans.
 
 use super::ascent::touching;
 use super::linearise::{Curvature, linearise};
 use super::programme::pose_bounds;
-use super::rooms::{NEAR_STEPS, Room};
-use super::subproblem::{Answer, Question, solve};
+use super::slacks::{NEAR_STEPS, Slack};
+use super::subproblem::{Step, StepRequest, solve};
 use super::{LENGTH_UNIT, Solution, UNITS, planned};
-use crate::limit::{ActiveBound, Limit, Side};
-use crate::problem::{Placement, Problem};
-use crate::redundancy::Planner;
 use nalgebra::{DMatrix, Vector4};
 use stead_model::robot::Posture;
+use stead_planning::limit::{ActiveBound, Limit, Side};
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::Planner;
 
 /// Half width of the neighbourhood in which bounds are seen, in scaled variables.
 const NEIGHBOURHOOD: f64 = 1e-3;
@@ -25,15 +25,15 @@ const TOUCHED: f64 = 1e-5;
 /// Shapes that a step of this length brings together are touched: refinements end a little before them. Scaled
 const TOUCHED_SHAPES: f64 = 1e-4;
 
-/// The bounds that hold a best placement, the largest gains first; none where the subproblem has no solution, so that they are not
-/// known.
+/// The bounds that hold a best placement, the largest gains first; none where the subproblem has no solution, so that
+/// they are not known.
 pub fn active_bounds(problem: &Problem, solution: &Solution) -> Option<Vec<ActiveBound>> {
-    let locals = linearise(problem, solution, (Curvature::Beta, NEAR_STEPS))?;
+    let locals = linearise(problem, solution, Curvature::Beta, NEAR_STEPS)?;
     // Without its curvature the model of a long path is better scaled in so small a neighbourhood.
     let answers = [true, false].into_iter().filter_map(|curved| {
-        solve(problem, solution, &locals, Question { trust: NEIGHBOURHOOD, curved, pose_stays: false }).ok()
+        solve(problem, solution, &locals, StepRequest { trust: NEIGHBOURHOOD, curved, pose_stays: false }).ok()
     });
-    let Answer { multipliers: mut gains, .. } = { answers }.next()?;
+    let Step { multipliers: mut gains, .. } = { answers }.next()?;
     gains.iter_mut().for_each(|(side, point, _)| side.limit = behind(problem, *side, *point));
     // The gains of all points that one bound holds add up.
     gains.sort_by_key(|(side, point, _)| (*side, *point));
@@ -58,7 +58,8 @@ fn behind(problem: &Problem, side: Side, point: usize) -> Limit {
     }
 }
 
-/// By how much a bound at a point gives way, in the unit of its multiplier, when the limit does by one unit of [`ActiveBound::gain`].
+/// By how much a bound at a point gives way, in the unit of its multiplier, when the limit does by one unit of
+/// [`ActiveBound::gain`].
 fn loosened(problem: &Problem, solution: &Solution, side: Side, point: usize) -> f64 {
     match side.limit {
         Limit::CellX | Limit::CellY | Limit::CellZ => 1.0 / LENGTH_UNIT,
@@ -105,8 +106,8 @@ fn loosened_turn(problem: &Problem, side: Side, point: usize, limit: Limit) -> f
 /// How far the difference reaches that measures the gain of a wall at a worst placement, in scaled variables.
 const STEP: f64 = 1e-3;
 
-/// The walls and shapes of the cell that hold a worst placement, the largest gains first: for each that it touches everything is planned
-/// anew a little away from it, along the others.
+/// The walls and shapes of the cell that hold a worst placement, the largest gains first: for each that it touches
+/// everything is planned anew a little away from it, along the others.
 pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Posture]>) -> Vec<ActiveBound> {
     let problem = planner.problem();
     let touched: Vec<Touched> = walls(problem, worst).into_iter().chain(shapes(problem, worst)).collect();
@@ -114,7 +115,7 @@ pub fn active_walls(planner: &Planner<'_>, worst: &Solution, scheme: Option<&[Po
         return Vec::new();
     }
     let inward = DMatrix::from_fn(touched.len(), 4, |row, k| touched[row].inward[k]);
-    // Along the column of each the room to it grows by one, and that to the others stays; equal ones share.
+    // Along the column of each the slack to it grows by one, and that to the others stays; equal ones share.
     let Ok(away) = inward.pseudo_inverse(PARALLEL) else { return Vec::new() };
     let mut workspace = planner.workspace();
     let mut gain = |(place, touched): (usize, &Touched)| {
@@ -139,7 +140,7 @@ struct Touched {
     side: Side,
     /// The direction away from it, in scaled variables.
     inward: Vector4<f64>,
-    /// By how much the room to it grows in a step of one along that. m or rad
+    /// By how much the slack to it grows in a step of one along that. m or rad
     unit: f64,
 }
 
@@ -148,8 +149,8 @@ const PARALLEL: f64 = 1e-3;
 
 /// The walls of the cell that a placement touches.
 fn walls(problem: &Problem, worst: &Solution) -> Vec<Touched> {
-    let rooms = pose_bounds(problem, &worst.placement);
-    let sides = |k: usize| [(k, true, rooms[k].max, -rooms[k].min), (k, false, -rooms[k].min, rooms[k].max)];
+    let slacks = pose_bounds(problem, &worst.placement);
+    let sides = |k: usize| [(k, true, slacks[k].max, -slacks[k].min), (k, false, -slacks[k].min, slacks[k].max)];
     let touched = |(k, is_upper, near, far): (usize, bool, f64, f64)| {
         let sign = if is_upper { -1.0 } else { 1.0 };
         let inward = Vector4::from_fn(|j, _| if j == k { sign } else { 0.0 });
@@ -161,10 +162,10 @@ fn walls(problem: &Problem, worst: &Solution) -> Vec<Touched> {
 
 /// The shapes of the cell that the part or its fixture touches at a placement.
 fn shapes(problem: &Problem, worst: &Solution) -> Vec<Touched> {
-    let touched = |(room, inward): (Room, Vector4<f64>)| Touched {
-        side: Side { limit: room.limit, is_upper: false },
+    let touched = |(slack, inward): (Slack, Vector4<f64>)| Touched {
+        side: Side { limit: slack.limit, is_upper: false },
         inward,
-        unit: room.pose_slopes().norm(),
+        unit: slack.pose_slopes().norm(),
     };
     touching(problem, worst, TOUCHED_SHAPES).map(touched).collect()
 }

@@ -1,22 +1,22 @@
 //! Ascent to the worst placement: a maximum over the placement of the minimum over all plans.
 //!
-//! The gradient of that minimum with respect to the placement is exact (envelope theorem): it is the multiplier of "the placement
-//! stays" in the subproblem. Curvature is learnt from gradients (damped BFGS); the step maximises the model inside the cell
-//! and a trust region, again by clarabel, and leads to a placement where everything is planned anew.
+//! The gradient of that minimum with respect to the placement is exact (envelope theorem): it is the multiplier of "the
+//! placement stays" in the subproblem. Curvature is learnt from gradients (damped BFGS); the step maximises the model
+//! inside the cell and a trust region, again by clarabel, and leads to a placement where everything is planned anew.
 
 use super::super::outcome::RefinementStatus;
-use super::super::problem::{Placement, Problem};
-use super::super::redundancy::{Planner, Workspace};
 use super::linearise::{Curvature, linearise};
 use super::programme::{pose_bounds, pose_step, shortest};
-use super::rooms::{NEAR_STAYING, Room, placement_rooms};
+use super::slacks::{NEAR_STAYING, Slack, placement_rooms};
 use super::solver::Run;
-use super::subproblem::{Question, solve};
+use super::subproblem::{StepRequest, solve};
 use super::{Solution, UNITS, planned};
 use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::{Planner, Workspace};
 
 /// The trust region at the start, at the most and at the end, in scaled variables.
 const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);
@@ -94,23 +94,23 @@ fn learn(curvature: &mut Matrix4<f64>, step: &Vector4<f64>, change: &Vector4<f64
 
 /// Gradient of the mean score of the best plan with respect to the placement, postures fixed. m per scaled unit
 pub(super) fn pose_gradient(problem: &Problem, solution: &Solution) -> Option<Vector4<f64>> {
-    let locals = linearise(problem, solution, (Curvature::Beta, NEAR_STAYING))?;
-    let question = Question { trust: 1e-3, curved: true, pose_stays: true };
-    let answer = solve(problem, solution, &locals, question).ok()?;
-    Some(Vector4::from(answer.pose_gradient))
+    let locals = linearise(problem, solution, Curvature::Beta, NEAR_STAYING)?;
+    let request = StepRequest { trust: 1e-3, curved: true, pose_stays: true };
+    let answered = solve(problem, solution, &locals, request).ok()?;
+    Some(Vector4::from(answered.pose_gradient))
 }
 
-/// The pairs of the part and what stands in the cell that a step of a scaled length can bring together: their slopes, and the
-/// direction in which they part.
+/// The pairs of the part and what stands in the cell that a step of a scaled length can bring together: their slopes,
+/// and the direction in which they part.
 pub(super) fn touching(
     problem: &Problem,
     solution: &Solution,
     within: f64,
-) -> impl Iterator<Item = (Room, Vector4<f64>)> {
-    placement_rooms(problem, &solution.placement).into_iter().filter_map(move |room| {
-        let slopes = room.pose_slopes();
+) -> impl Iterator<Item = (Slack, Vector4<f64>)> {
+    placement_rooms(problem, &solution.placement).into_iter().filter_map(move |slack| {
+        let slopes = slack.pose_slopes();
         let steepest = slopes.norm();
-        (steepest > 0.0 && room.room < within * steepest).then(|| (room, slopes / steepest))
+        (steepest > 0.0 && slack.slack < within * steepest).then(|| (slack, slopes / steepest))
     })
 }
 
@@ -119,10 +119,10 @@ const SAMPLING: f64 = 2e-3;
 
 /// First-order optimality of a worst placement: m of mean score per scaled unit, zero at a maximum.
 ///
-/// The minimum over plans has ridges, where two plans tie and each has a gradient of its own. So the gradients of the best
-/// plans of the neighbours are sampled (Burke, Lewis and Overton 2005), and the residual is the shortest vector that a
-/// convex combination of them makes with the outward normals of what holds the placement: walls of the cell, and shapes that
-/// the part or its fixture touches. `None` once the caller asks to stop.
+/// The minimum over plans has ridges, where two plans tie and each has a gradient of its own. So the gradients of the
+/// best plans of the neighbours are sampled (Burke, Lewis and Overton 2005), and the residual is the shortest vector
+/// that a convex combination of them makes with the outward normals of what holds the placement: walls of the cell, and
+/// shapes that the part or its fixture touches. `None` once the caller asks to stop.
 pub fn kkt_residual(
     planner: &Planner<'_>,
     solution: &Solution,
@@ -134,8 +134,8 @@ pub fn kkt_residual(
     let mut normals: Vec<Vector4<f64>> = touching(problem, solution, SAMPLING).map(|(_, inward)| -inward).collect();
     let mut sampled = Vec::new();
     for k in 0..4 {
-        for (side, room) in [(-1.0, -bounds[k].min), (1.0, bounds[k].max)] {
-            if room < SAMPLING {
+        for (side, slack) in [(-1.0, -bounds[k].min), (1.0, bounds[k].max)] {
+            if slack < SAMPLING {
                 normals.push(Vector4::from_fn(|j, _| if j == k { side } else { 0.0 }));
                 continue;
             }

@@ -1,15 +1,16 @@
-//! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the scores.
+//! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the
+//! scores.
 
-use super::super::criterion::Criterion;
-use super::super::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores, state};
-use super::super::problem::{Placement, Problem};
-use super::rooms::{Room, rooms};
+use super::slacks::{Slack, slacks};
 use super::{LOCAL, Solution, UNITS};
-use crate::redundancy::SegmentPlan;
 use nalgebra::{Matrix5, SymmetricEigen};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
+use stead_planning::criterion::Criterion;
+use stead_planning::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores};
+use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::SegmentPlan;
 
 /// One path point of a solution, linearised in scaled variables.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,10 +22,9 @@ pub struct Local {
     /// Real joint angles. rad
     pub joints: [f64; 6],
     /// The shapes that are near each other.
-    pub rooms: Vec<Room>,
-    /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the negative part
-    /// left out; over several sets their mean, or that of the worst.
-    /// m per square unit
+    pub slacks: Vec<Slack>,
+    /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the
+    /// negative part left out; over several sets their mean, or that of the worst. m per square unit
     pub curvature: Matrix5<f64>,
 }
 
@@ -33,7 +33,8 @@ pub struct Local {
 pub struct LocalScore {
     /// See [`SetScore::scored`]. m
     pub scored: Dual<LOCAL>,
-    /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near. m
+    /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near.
+    /// m
     pub added: Dual<LOCAL>,
     /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
     /// criterion asks, whose Euclidean norm is [`SetScore::margin`]. Empty elsewhere. m
@@ -46,7 +47,7 @@ pub struct LocalScore {
 /// Step from gradient to gradient for the curvature, in scaled variables.
 const CURVATURE_STEP: f64 = 1e-4;
 
-/// How much of the curvature is asked for: each variable costs an evaluation.
+/// How much of the curvature is requested: each variable costs an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Curvature {
     /// None: it is left at zero.
@@ -60,12 +61,13 @@ pub enum Curvature {
 /// Points that one thread linearises at least.
 const MIN_SHARE: usize = 200;
 
-/// All path points of a solution, in order, with as much curvature as asked for and the shapes that have less room than a limit (m);
-/// `None` when one cannot be reached, which a solution rules out.
-pub fn linearise(problem: &Problem, solution: &Solution, asked: (Curvature, f64)) -> Option<Vec<Local>> {
+/// All path points of a solution, in order, with as much curvature as requested and the shapes that have less slack
+/// than a limit (m); `None` when one cannot be reached, which a solution rules out.
+pub fn linearise(problem: &Problem, solution: &Solution, order: Curvature, within: f64) -> Option<Vec<Local>> {
     let of_plan = |plan: &'_ SegmentPlan| {
         let points: Vec<usize> = plan.points.clone().collect();
-        let local = |(place, point): (usize, usize)| local(problem, &solution.placement, plan, place, point, asked);
+        let local =
+            |(place, point): (usize, usize)| local(problem, &solution.placement, plan, place, point, order, within);
         points.into_par_iter().enumerate().with_min_len(MIN_SHARE).map(local).collect::<Option<Vec<_>>>()
     };
     let plans: Option<Vec<_>> = solution.plans.par_iter().map(of_plan).collect();
@@ -79,7 +81,8 @@ fn local(
     plan: &SegmentPlan,
     place: usize,
     point: usize,
-    (asked, within): (Curvature, f64),
+    order: Curvature,
+    within: f64,
 ) -> Option<Local> {
     let at = [placement.x, placement.y, placement.z, placement.yaw, plan.betas[place]];
     let mut centre = gradient(problem, point, at, plan.posture)?;
@@ -90,13 +93,13 @@ fn local(
             }
         }
     }
-    let curvature = curvature(problem, point, at, plan.posture, &centre, asked);
+    let curvature = curvature(problem, point, at, plan.posture, &centre, order);
     let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
         let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
         LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
     });
-    let rooms = rooms(problem, (point, plan.betas[place]), placement, plan.posture, within);
-    Some(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], rooms, curvature })
+    let slacks = slacks(problem, point, plan.betas[place], placement, plan.posture, within);
+    Some(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], slacks, curvature })
 }
 
 /// A norm that steps of this size could bring to zero has its kink near; in scaled variables.
@@ -135,7 +138,7 @@ fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture)
     });
     let [x, y, z, yaw, beta] = variables;
     let placement = Placement::from([x, y, z, yaw]);
-    let found = state(problem, point, &placement, beta, posture).ok()?;
+    let found = problem.at(&placement).state(point, beta, posture).ok()?;
     let Criterion { confidence, force_uncertainty, weights, stiffness, .. } = &problem.criterion;
     let robots = problem.scored_robots();
     let scores = match stiffness {
@@ -169,9 +172,9 @@ fn curvature(
     at: [f64; LOCAL],
     posture: Posture,
     centre: &Differentiated,
-    asked: Curvature,
+    order: Curvature,
 ) -> Matrix5<f64> {
-    let from = match asked {
+    let from = match order {
         Curvature::None => return Matrix5::zeros(),
         Curvature::Beta => LOCAL - 1,
         Curvature::Full => 0,
@@ -216,7 +219,7 @@ fn curvature(
             hessian[(j, k)] = (slope(&there, j) - slope(centre, j)) / CURVATURE_STEP;
         }
     }
-    if asked == Curvature::Beta {
+    if order == Curvature::Beta {
         let beta = LOCAL - 1;
         if hessian[(beta, beta)] <= 0.0 {
             return Matrix5::zeros();

@@ -1,45 +1,50 @@
 //! Gradient refinement of a placement: placement and all betas together.
 //!
-//! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by a
-//! sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph variables,
-//! so that the kinks of |c_i| are no obstacle; joint limits, joint steps, conditioning, c_max, the rate of beta and the
-//! cell and the distances of shapes are linearised; a trust region keeps the step where the model is right ([`subproblem`],
-//! solved by clarabel). Derivatives are exact but those of distances ([`linearise`], [`rooms`]). Then postures, turns and betas
-//! are planned anew, and so on until neither changes.
+//! **Best placement.** With postures and turns fixed, the mean score is minimised over x, y, z, yaw and every beta_i by
+//! a sequential convex programme ([`solver`], an argmin solver): scores enter a convex subproblem through epigraph
+//! variables, so that the kinks of |c_i| are no obstacle; joint limits, joint steps, conditioning, c_max, the rate of
+//! beta and the cell and the distances of shapes are linearised; a trust region keeps the step where the model is right
+//! ([`subproblem`], solved by clarabel). Derivatives are exact but those of distances ([`linearise`], [`slacks`]). Then
+//! postures, turns and betas are planned anew, and so on until neither changes.
 //!
-//! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of the
-//! constraint "the placement stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned anew.
+//! **Worst placement.** That is a maximum over the placement of a minimum over beta. Its gradient is the multiplier of
+//! the constraint "the placement stays" in the same subproblem ([`ascent`]); steps along it are taken with beta planned
+//! anew.
 //!
-//! A step is only ever taken to a state that the reference evaluator finds allowed and better, so the result is never worse
-//! or less feasible than the start.
+//! A step is only ever taken to a state that the reference evaluator finds allowed and better, so the result is never
+//! worse or less feasible than the start.
 //!
-//! **The KKT residual** is in m of mean score per scaled unit, one unit being [`LENGTH_UNIT`] in position and one radian in
-//! yaw and beta; it is zero at a first-order optimum. For the best placement it is the decrease that the linear model still
-//! promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can have over all multipliers.
-//! For the worst placement, which likes to sit on a ridge between two plans, see [`ascent::kkt_residual`].
+//! **The KKT residual** is in m of mean score per scaled unit, one unit being [`LENGTH_UNIT`] in position and one
+//! radian in yaw and beta; it is zero at a first-order optimum. For the best placement it is the decrease that the
+//! linear model still promises per unit of trust region: the smallest 1-norm that the gradient of the Lagrangian can
+//! have over all multipliers. For the worst placement, which likes to sit on a ridge between two plans, see
+//! [`ascent::kkt_residual`].
 
 pub mod active;
 mod agreement;
 pub mod ascent;
 pub mod linearise;
 pub mod programme;
-pub mod rooms;
 mod rows;
+pub mod slacks;
 pub mod solver;
 pub mod subproblem;
 
 pub use agreement::found_again;
 
 use super::evaluator::{self, Evaluator};
-use super::lookup::Look;
-use super::outcome::{CANCELLATION, Refinement, RefinementStatus};
-use super::problem::{BetaPlan, Placement, Problem};
-use super::redundancy::{Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free, settled_together};
-use super::sense::Sense;
-use super::way::whole_lines;
+use super::lookup::CollisionEffort;
+use super::outcome::{Refinement, RefinementStatus};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
+use stead_planning::criterion::CANCELLATION;
+use stead_planning::problem::{BetaPlan, Placement, Problem};
+use stead_planning::redundancy::{
+    Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free, settled_together,
+};
+use stead_planning::sense::Sense;
+use stead_planning::transfer_path::whole_lines;
 
 /// The unit of position in scaled variables. m
 pub const LENGTH_UNIT: f64 = 0.1;
@@ -82,8 +87,8 @@ pub fn planned(
     Some(Solution::new(planner.problem(), *placement, plans))
 }
 
-/// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the placement has no
-/// plan to start from. Once the caller asks to stop, it ends with what it has.
+/// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the
+/// placement has no plan to start from. Once the caller asks to stop, it ends with what it has.
 pub fn refine(
     evaluator: &Evaluator<'_>,
     start: &Placement,
@@ -128,8 +133,8 @@ pub fn refine(
         };
         report.iterations += iterations;
         report.statuses.push(status);
-        // Plan anew at the new placement. For the best placement a better plan is welcome; for the worst one every plan is
-        // already the best at its placement.
+        // Plan anew at the new placement. For the best placement a better plan is welcome; for the worst one every plan
+        // is already the best at its placement.
         if sense == Sense::Min
             && !monitor.should_stop()
             && let Some(anew) = planned(planner, &best.placement, scheme, &mut workspace)
@@ -148,7 +153,7 @@ pub fn refine(
     }
     report.kkt_residual = match sense {
         _ if monitor.should_stop() => None,
-        // Nothing is smaller than nothing.
+        // At zero deflection the residual is zero by definition.
         _ if is_cancelled(&best) => Some(0.0),
         Sense::Min => Some(subproblem::kkt_residual(problem, &best)),
         Sense::Max => ascent::kkt_residual(planner, &best, scheme, monitor),
@@ -163,10 +168,11 @@ pub fn refine(
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.
 const POLLS: [f64; 2] = [0.03, 0.006];
-/// A neighbour that a wall of the cell leaves nearer than this share of the distance asked for is not tried.
+/// A neighbour that a wall of the cell leaves nearer than this share of the distance requested is not tried.
 const NEAR: f64 = 0.01;
 
-/// The placements a distance (in scaled variables) before and behind another along x, y, z and yaw, as far as the cell allows.
+/// The placements a distance (in scaled variables) before and behind another along x, y, z and yaw, as far as the cell
+/// allows.
 fn neighbours(problem: &Problem, centre: &Placement, distance: f64) -> Vec<Placement> {
     let along = (0..4).flat_map(|k| [(k, -1.0), (k, 1.0)]);
     let moved = |(k, side): (usize, f64)| {
@@ -196,10 +202,11 @@ fn poll(
     let look = |placement: &Placement, within: [f64; 2], space: &mut evaluator::Workspace| {
         evaluator.approximate(placement, scheme, within, space)
     };
-    let here = look(&centre.placement, Look::ALL.within, &mut evaluator.workspace());
+    let here = look(&centre.placement, CollisionEffort::ALL.within, &mut evaluator.workspace());
     // Collisions only make a mean larger.
     let most = here.filter(|_| sense == Sense::Min).unwrap_or(f64::INFINITY);
-    // A neighbour that an approximation, which errs far less from one neighbour to the next, sees to be no better is not planned.
+    // A neighbour that an approximation, which errs far less from one neighbour to the next, sees to be no better is
+    // not planned.
     let is_no_better = |(here, there): (f64, f64)| (there - here) * sign >= 0.0;
     let planned_if_better = |(workspace, space): &mut (Workspace, evaluator::Workspace),
                              placement: &Placement|
@@ -250,8 +257,8 @@ fn signature(solution: &Solution) -> Vec<(Posture, [i32; 6])> {
 
 /// A solution moved by a step of all variables (placement, then every beta), if there is an allowed one near there.
 ///
-/// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new placement the betas settle in a
-/// narrow spacing around their step (a second-order correction).
+/// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new placement the betas
+/// settle in a narrow spacing around their step (a second-order correction).
 fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[f64]) -> Option<Solution> {
     let mut plans = Vec::with_capacity(solution.plans.len());
     let stepped = |plan: &SegmentPlan| {
@@ -266,7 +273,7 @@ fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[
     for plan in &solution.plans {
         let shifted = stepped(plan);
         let kept = Kept { lines: whole_lines(problem, &solution.placement, plan), moves: false };
-        let shifted = settled_among_free(problem, &placement, Sense::Min, (SETTLING, kept), &shifted);
+        let shifted = settled_among_free(problem, &placement, Sense::Min, SETTLING, kept, &shifted);
         if !shifted.cost.is_finite() {
             return None;
         }

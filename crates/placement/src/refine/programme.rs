@@ -1,9 +1,8 @@
 //! Convex programmes, solved by clarabel: the general form, and two small ones over the pose.
 
 use super::LENGTH_UNIT;
-use super::rooms::placement_rooms;
 use super::rows::Rows;
-use crate::problem::{Interval, Placement, Problem};
+use super::slacks::placement_rooms;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolution, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
@@ -11,6 +10,7 @@ use clarabel::solver::{
 };
 use nalgebra::{Matrix4, Vector4};
 use stead_model::robot::angles::wrap;
+use stead_planning::problem::{Interval, Placement, Problem};
 
 /// clarabel refused a programme or found no solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -34,8 +34,8 @@ pub(super) fn programme(
     }
 }
 
-/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled, with the part clear of
-/// what stands in the cell; `None` when clarabel found none.
+/// The step that maximises `gradient . d - d^T curvature d / 2` inside the cell and a trust region, all scaled, with
+/// the part clear of what stands in the cell; `None` when clarabel found none.
 pub fn pose_step(
     problem: &Problem,
     placement: &Placement,
@@ -56,8 +56,8 @@ pub fn pose_step(
         rows.add([(k, 1.0)], bound.max.min(trust));
         rows.add([(k, -1.0)], (-bound.min).min(trust));
     }
-    for room in placement_rooms(problem, placement) {
-        rows.add((0..4).map(|k| (k, -room.slopes[k])), room.spare());
+    for slack in placement_rooms(problem, placement) {
+        rows.add((0..4).map(|k| (k, -slack.slopes[k])), slack.spare());
     }
     let count = rows.bound.len();
     let matrix = CscMatrix::new_from_triplets(count, 4, rows.row, rows.column, rows.value);
@@ -65,8 +65,8 @@ pub fn pose_step(
     Some(Vector4::from_fn(|k, _| bounds[k].clamp(found.x[k])))
 }
 
-/// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not negative;
-/// infinite when there is no gradient or clarabel found none.
+/// Length of the shortest vector `sum_i l_i gradient_i - sum_j m_j normal_j` with l on the unit simplex and m not
+/// negative; infinite when there is no gradient or clarabel found none.
 pub fn shortest(gradients: &[Vector4<f64>], normals: &[Vector4<f64>]) -> f64 {
     let unit = gradients.iter().map(|g| g.norm()).fold(0.0, f64::max);
     if gradients.is_empty() || unit == 0.0 {

@@ -1,8 +1,8 @@
 //! Matrices of a convex programme, as they are being built.
 
 use super::linearise::Local;
-use crate::limit::{Limit, Side};
 use clarabel::algebra::CscMatrix;
+use stead_planning::limit::{Limit, Side};
 
 /// Coefficients of inequalities `row . x <= bound`.
 #[derive(Default)]
@@ -11,7 +11,7 @@ pub(super) struct Rows {
     pub column: Vec<usize>,
     pub value: Vec<f64>,
     pub bound: Vec<f64>,
-    /// Which bound of the problem stands behind a row, and at which point; ascending by row, none behind those of the model.
+    /// Which bound of the problem a row is of, and at which point; ascending by row, none behind those of the model.
     pub bounds: Vec<(usize, (Side, usize))>,
 }
 
@@ -27,14 +27,7 @@ impl Rows {
     }
 
     /// `low <= terms <= high` at a point, each side only if a change of at most `swing` can reach it.
-    pub fn add_between(
-        &mut self,
-        (limit, point): (Limit, usize),
-        terms: &[(usize, f64)],
-        low: f64,
-        high: f64,
-        swing: f64,
-    ) {
+    pub fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
         if high < swing {
             self.bounds.push((self.bound.len(), (Side { limit, is_upper: true }, point)));
             self.add(terms.iter().copied(), high);
@@ -66,8 +59,8 @@ impl Triplets {
     }
 }
 
-/// The curvature of the objective, each point's by its share of `whole`, its beta being in the column given: an arrow of the pose block, its
-/// coupling with every beta, and the diagonal.
+/// The curvature of the objective, each point's by its share of `whole`, its beta being in the column given: an arrow
+/// of the pose block, its coupling with every beta, and the diagonal.
 pub(super) fn curvature(locals: &[Local], betas: &[usize], shares: &[f64], whole: f64) -> Triplets {
     let mut entries = Triplets::default();
     let mut pose = [[0.0; 4]; 4];

@@ -5,15 +5,15 @@
 
 use super::super::outcome::RefinementStatus;
 use super::linearise::{Curvature, Local, linearise};
-use super::rooms::NEAR_STEPS;
-use super::subproblem::{Question, solve};
+use super::slacks::NEAR_STEPS;
+use super::subproblem::{StepRequest, solve};
 use super::{Solution, moved};
-use crate::problem::{Placement, Problem};
 use argmin::core::{
     Error, Executor, IterState, KV, Problem as ArgminProblem, Solver, State, TerminationReason, TerminationStatus,
 };
 use argmin::kv;
 use stead_numerics::monitor::Monitor;
+use stead_planning::problem::{Placement, Problem};
 
 /// argmin's state of this solver.
 pub type Iterate = IterState<Solution, (), (), (), (), f64>;
@@ -67,31 +67,20 @@ pub struct Run {
     pub iterations: usize,
 }
 
-/// Runs the programme from a solution, without observers, until its end or until the caller asks to stop.
+/// Runs the programme from a solution until its end or until the caller asks to stop.
 pub fn run(problem: &Problem, start: &Solution, ending: Ending, monitor: &Monitor) -> Run {
-    run_observed(problem, start, ending, monitor, |executor| executor)
-}
-
-/// Runs the programme with an executor that the caller may give observers.
-pub fn run_observed<'a>(
-    problem: &'a Problem,
-    start: &Solution,
-    ending: Ending,
-    monitor: &Monitor,
-    observe: impl FnOnce(Executor<(), SequentialConvex<'a>, Iterate>) -> Executor<(), SequentialConvex<'a>, Iterate>,
-) -> Run {
     let monitor = monitor.clone();
     let solver = SequentialConvex { problem, ending, trust: FIRST_TRUST, lazy: 0, status: None, monitor };
     let executor = Executor::new((), solver)
         .configure(|state| state.param(start.clone()).max_iters(ending.max_iterations))
         .timer(false);
-    match observe(executor).run() {
+    match executor.run() {
         Ok(mut result) => Run {
             solution: result.state.take_param().unwrap_or_else(|| start.clone()),
             status: result.solver.status.unwrap_or(RefinementStatus::MaxIterations),
             iterations: result.state.get_iter() as usize,
         },
-        // An observer failed.
+        // No step of ours fails.
         Err(_) => Run { solution: start.clone(), status: RefinementStatus::SubproblemFailed, iterations: 0 },
     }
 }
@@ -113,7 +102,7 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
             self.status = Some(RefinementStatus::Interrupted);
             return Ok((state.param(known).cost(mean), None));
         }
-        let Some(locals) = linearise(self.problem, &known, (Curvature::Full, NEAR_STEPS)) else {
+        let Some(locals) = linearise(self.problem, &known, Curvature::Full, NEAR_STEPS) else {
             self.status = Some(RefinementStatus::NotLinearised);
             return Ok((state.param(known).cost(mean), None));
         };
@@ -138,28 +127,29 @@ impl Solver<(), Iterate> for SequentialConvex<'_> {
 }
 
 impl SequentialConvex<'_> {
-    /// A better solution inside the trust region, which shrinks until there is one or it is gone; the linearisation stays.
+    /// A better solution inside the trust region, which shrinks until there is one or it is gone; the linearisation
+    /// stays.
     fn step(&mut self, known: &Solution, mean: f64, locals: &[Local]) -> Option<Solution> {
         while self.trust >= self.ending.last_trust && !self.monitor.should_stop() {
-            let question = Question { trust: self.trust, curved: true, pose_stays: false };
-            let Ok(answer) = solve(self.problem, known, locals, question) else {
+            let request = StepRequest { trust: self.trust, curved: true, pose_stays: false };
+            let Ok(answered) = solve(self.problem, known, locals, request) else {
                 self.status = Some(RefinementStatus::SubproblemFailed);
                 self.trust /= 4.0;
                 continue;
             };
-            if answer.promised < PROMISE * self.ending.min_gain * mean {
+            if answered.promised < PROMISE * self.ending.min_gain * mean {
                 self.status = Some(RefinementStatus::NoFirstOrderGain);
                 return None;
             }
             self.status = None;
-            let placement = Placement::from(std::array::from_fn(|k| known.placement[k] + answer.placement[k]));
+            let placement = Placement::from(std::array::from_fn(|k| known.placement[k] + answered.placement[k]));
             let placement = self.problem.cell.clamp(&placement);
-            let betas = known.plans.iter().flat_map(|plan| &plan.betas).zip(&answer.betas);
+            let betas = known.plans.iter().flat_map(|plan| &plan.betas).zip(&answered.betas);
             let betas: Vec<f64> = betas.map(|(beta, step)| beta + step).collect();
             let gained = |candidate: &Solution| mean - candidate.objective;
             match moved(self.problem, known, placement, &betas) {
-                Some(candidate) if gained(&candidate) > 0.1 * answer.promised => {
-                    if gained(&candidate) > 0.7 * answer.promised {
+                Some(candidate) if gained(&candidate) > 0.1 * answered.promised => {
+                    if gained(&candidate) > 0.7 * answered.promised {
                         self.trust = (2.0 * self.trust).min(MAX_TRUST);
                     }
                     return Some(candidate);

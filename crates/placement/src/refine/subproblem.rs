@@ -1,32 +1,31 @@
 //! The convex subproblem of the refinement, solved by clarabel.
 //!
-//! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective), and
-//! where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus the
-//! curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score
-//! adds to |c_i|); then joint limits, joint steps, conditioning, c_max and the distances of shapes, linearised, the limits on beta,
-//! the cell, the trust region.
-//! Rows that cannot become active inside the trust region are left out. Where the margin of a
-//! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is
-//! not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
-//! likewise for the norm of the parts where several directions are scored.
+//! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective),
+//! and where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus
+//! the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score adds to |c_i|); then
+//! joint limits, joint steps, conditioning, c_max and the distances of shapes, linearised, the limits on beta, the
+//! cell, the trust region. Rows that cannot become active inside the trust region are left out. Where the margin of a
+//! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and
+//! s_i is not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no
+//! obstacle either; likewise for the norm of the parts where several directions are scored.
 
 use super::linearise::{Curvature, Local, linearise};
 use super::programme::{Unsolved, pose_bounds, programme};
-use super::rooms::NEAR_STEPS;
 use super::rows::{Rows, Triplets, curvature};
+use super::slacks::NEAR_STEPS;
 use super::{LOCAL, Solution, UNITS};
-use crate::criterion::Aggregate;
-use crate::limit::{Limit, Side};
-use crate::problem::{BetaPlan, Problem};
-use crate::redundancy::SegmentPlan;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, SupportedConeT, ZeroConeT};
 use std::ops::Range;
 use stead_numerics::scalar::Dual;
+use stead_planning::criterion::Aggregate;
+use stead_planning::limit::{Limit, Side};
+use stead_planning::problem::{BetaPlan, Problem};
+use stead_planning::redundancy::SegmentPlan;
 
 /// What a subproblem is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Question {
+pub struct StepRequest {
     /// Half width of the trust region in scaled variables.
     pub trust: f64,
     /// Whether the objective has the curvature of the scores.
@@ -37,7 +36,7 @@ pub struct Question {
 
 /// What it answers.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
+pub struct Step {
     /// Step of x, y, z (m) and yaw (rad).
     pub placement: [f64; 4],
     /// Steps of all betas. rad
@@ -46,8 +45,8 @@ pub struct Answer {
     pub promised: f64,
     /// Gradient of the model's minimum with respect to the pose, where the pose had to stay. m per scaled unit
     pub pose_gradient: [f64; 4],
-    /// How much smaller the model's minimum becomes where a bound gives way, for every bound near enough to bind and every
-    /// point (from 0; 0 for walls of the cell) it holds at. m per scaled unit, or per unit of the constraint
+    /// How much smaller the model's minimum becomes where a bound gives way, for every bound near enough to bind and
+    /// every point (from 0; 0 for walls of the cell) it holds at. m per scaled unit, or per unit of the constraint
     pub multipliers: Vec<(Side, usize, f64)>,
 }
 
@@ -59,8 +58,8 @@ pub fn solve<'p>(
     problem: &'p Problem,
     solution: &'p Solution,
     locals: &'p [Local],
-    question: Question,
-) -> Result<Answer, Unsolved> {
+    request: StepRequest,
+) -> Result<Step, Unsolved> {
     let vectors = |(i, local): (usize, &'p Local)| {
         let sets = local.sets.iter().enumerate();
         sets.flat_map(move |(set, of)| [&of.changes[..], &of.parts[..]].map(|vector| ((i, set), vector)))
@@ -71,14 +70,14 @@ pub fn solve<'p>(
         problem,
         solution,
         locals,
-        question,
+        request,
         kinked,
         unit: solution.objective,
         rows,
         betas: beta_columns(problem),
         travel: Travel::new(problem, solution.objective),
     };
-    if question.pose_stays {
+    if request.pose_stays {
         (0..4).for_each(|k| build.rows.add([(k, 1.0)], 0.0));
     }
     let equalities = build.rows.bound.len();
@@ -89,17 +88,17 @@ pub fn solve<'p>(
     let inequalities = build.rows.bound.len() - equalities;
     let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
     cones.extend(build.cones());
-    build.answer(&cones)
+    build.answered(&cones)
 }
 
-/// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each of the
-/// n points, the score of each point (the epigraph variables), the norms that have a kink there, and the largest score where
-/// that is minimised.
+/// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each
+/// of the n points, the score of each point (the epigraph variables), the norms that have a kink there, and the largest
+/// score where that is minimised.
 struct Build<'a> {
     problem: &'a Problem,
     solution: &'a Solution,
     locals: &'a [Local],
-    question: Question,
+    request: StepRequest,
     /// Points, and sets of compliances, whose score has the norm of a vector in it that needs a second-order cone.
     kinked: Vec<((usize, usize), &'a [Dual<LOCAL>])>,
     /// Scores are in this unit. m
@@ -123,8 +122,8 @@ fn beta_columns(problem: &Problem) -> Vec<usize> {
     problem.task.segments().iter().flat_map(of_segment).collect()
 }
 
-/// The joint travel in the objective. Where a step of a joint may change its direction inside the trust region, one more variable is not less
-/// than its size; elsewhere it is linear.
+/// The joint travel in the objective. Where a step of a joint may change its direction inside the trust region, one
+/// more variable is not less than its size; elsewhere it is linear.
 #[derive(Debug, Default)]
 struct Travel {
     /// What a radian of it counts. Units of the objective
@@ -184,10 +183,11 @@ impl Build<'_> {
         (0..4).map(|k| (k, gradient[k])).chain([(self.betas[i], gradient[4])]).collect()
     }
 
-    /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for safety.
-    fn add_between(&mut self, limit: (Limit, usize), terms: &[(usize, f64)], low: f64, high: f64) {
-        let swing = 2.0 * self.question.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
-        self.rows.add_between(limit, terms, low, high, swing);
+    /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for
+    /// safety.
+    fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64) {
+        let swing = 2.0 * self.request.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
+        self.rows.add_between(limit, point, terms, low, high, swing);
     }
 
     /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
@@ -204,21 +204,21 @@ impl Build<'_> {
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
-        self.add_between((Limit::Conditioning, i), &self.terms(i, &condition.gradient), -spare, f64::INFINITY);
+        self.add_between(Limit::Conditioning, i, &self.terms(i, &condition.gradient), -spare, f64::INFINITY);
         if self.problem.constraints.min_base_distance > 0.0 {
             let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
             let terms = self.terms(i, &local.state.base_distance.gradient);
-            self.add_between((Limit::BaseDistance, i), &terms, -spare, f64::INFINITY);
+            self.add_between(Limit::BaseDistance, i, &terms, -spare, f64::INFINITY);
         }
         // Where the placement stays, the part and what stands in the cell stay as far apart.
-        let pose_stays = self.question.pose_stays;
-        for room in local.rooms.iter().filter(|room| room.is_of_joints || !pose_stays) {
-            self.add_between((room.limit, i), &self.terms(i, &room.slopes), -room.spare(), f64::INFINITY);
+        let pose_stays = self.request.pose_stays;
+        for slack in local.slacks.iter().filter(|slack| slack.is_of_joints || !pose_stays) {
+            self.add_between(slack.limit, i, &self.terms(i, &slack.slopes), -slack.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
             let terms = self.terms(i, &local.state.joints[j].gradient);
-            self.add_between((Limit::Joint(j as u8 + 1), i), &terms, joint.min - q, joint.max - q);
+            self.add_between(Limit::Joint(j as u8 + 1), i, &terms, joint.min - q, joint.max - q);
         }
     }
 
@@ -253,8 +253,8 @@ impl Build<'_> {
                 let off = allowed.off_middle(plan.betas[place] - plan.betas[place - 1]);
                 let row = [(column, 1.0), (last, -1.0)];
                 let [lower, upper] = self.problem.beta_step_ends(i, &allowed);
-                self.add_between((upper, i), &row, f64::NEG_INFINITY, allowed.half - off);
-                self.add_between((lower, i), &row, -allowed.half - off, f64::INFINITY);
+                self.add_between(upper, i, &row, f64::NEG_INFINITY, allowed.half - off);
+                self.add_between(lower, i, &row, -allowed.half - off, f64::INFINITY);
             }
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
@@ -267,7 +267,7 @@ impl Build<'_> {
                 }
                 let step = at.joints[j] - before.joints[j];
                 self.step_size(step, &row);
-                self.add_between((Limit::JointStep(j as u8 + 1), i), &row, -limits[j] - step, limits[j] - step);
+                self.add_between(Limit::JointStep(j as u8 + 1), i, &row, -limits[j] - step, limits[j] - step);
             }
         }
     }
@@ -277,7 +277,7 @@ impl Build<'_> {
         if self.travel.weight == 0.0 {
             return;
         }
-        let swing = self.question.trust * row.iter().map(|(_, v)| v.abs()).sum::<f64>();
+        let swing = self.request.trust * row.iter().map(|(_, v)| v.abs()).sum::<f64>();
         if step.abs() > swing {
             let weight = self.travel.weight * step.signum();
             self.travel.here += weight * step;
@@ -295,13 +295,13 @@ impl Build<'_> {
 
     /// The cell, and how far the placement and every beta may go in one step.
     fn trust_region(&mut self) {
-        let trust = self.question.trust;
+        let trust = self.request.trust;
         for (k, bounds) in pose_bounds(self.problem, &self.solution.placement).into_iter().enumerate() {
-            for (is_upper, sign, room) in [(true, 1.0, bounds.max), (false, -1.0, -bounds.min)] {
-                if room < trust {
+            for (is_upper, sign, slack) in [(true, 1.0, bounds.max), (false, -1.0, -bounds.min)] {
+                if slack < trust {
                     self.rows.bounds.push((self.rows.bound.len(), (Side { limit: Limit::ALL_WALLS[k], is_upper }, 0)));
                 }
-                self.rows.add([(k, sign)], room.min(trust));
+                self.rows.add([(k, sign)], slack.min(trust));
             }
         }
         for i in 0..self.locals.len() {
@@ -337,8 +337,8 @@ impl Build<'_> {
         cones
     }
 
-    /// What a change of each point's score counts in the objective, to first order, times the sum of all weights: none where the
-    /// largest score is minimised, since which points decide then is for the subproblem to find.
+    /// What a change of each point's score counts in the objective, to first order, times the sum of all weights: none
+    /// where the largest score is minimised, since which points decide then is for the subproblem to find.
     fn shares(&self) -> Vec<f64> {
         let share = |i: usize| match self.aggregate() {
             Aggregate::Mean => self.problem.point_weight(i),
@@ -349,13 +349,13 @@ impl Build<'_> {
     }
 
     /// Minimises the objective: of the mean square half of it, so that its slopes are those of its root.
-    fn answer(self, cones: &[SupportedConeT<f64>]) -> Result<Answer, Unsolved> {
-        let (n, unit, question) = (self.locals.len(), self.unit, self.question);
+    fn answered(self, cones: &[SupportedConeT<f64>]) -> Result<Step, Unsolved> {
+        let (n, unit, request) = (self.locals.len(), self.unit, self.request);
         let variables = self.variables();
         let mut linear = vec![0.0; variables];
         let copies = self.copies() as f64;
         let (shares, total) = (self.shares(), self.problem.total_weight());
-        let mut quadratic = match question.curved {
+        let mut quadratic = match request.curved {
             true => curvature(self.locals, &self.betas, &shares, unit * total),
             false => Triplets::default(),
         };
@@ -383,12 +383,12 @@ impl Build<'_> {
         let mut pose = [0.0; 4];
         let mut pose_gradient = [0.0; 4];
         for k in 0..4 {
-            pose[k] = if question.pose_stays { 0.0 } else { found.x[k] * UNITS[k] };
-            if question.pose_stays {
+            pose[k] = if request.pose_stays { 0.0 } else { found.x[k] * UNITS[k] };
+            if request.pose_stays {
                 pose_gradient[k] = -found.z[k] * unit;
             }
         }
-        Ok(Answer {
+        Ok(Step {
             placement: pose,
             betas: self.betas.iter().map(|column| found.x[*column]).collect(),
             promised: ((1.0 - value) * unit).max(0.0),
@@ -401,11 +401,11 @@ impl Build<'_> {
 /// Trust region in which the linear model is asked what it still promises.
 const KKT_TRUST: f64 = 1e-2;
 
-/// The first-order optimality of a solution with postures and turns fixed: see [`super`]. m per scaled unit; infinite when
-/// the subproblem could not be solved.
+/// The first-order optimality of a solution with postures and turns fixed: see [`super`]. m per scaled unit; infinite
+/// when the subproblem could not be solved.
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
-    let question = Question { trust: KKT_TRUST, curved: false, pose_stays: false };
-    linearise(problem, solution, (Curvature::None, NEAR_STEPS))
-        .and_then(|locals| solve(problem, solution, &locals, question).ok())
-        .map_or(f64::INFINITY, |answer| answer.promised / KKT_TRUST)
+    let request = StepRequest { trust: KKT_TRUST, curved: false, pose_stays: false };
+    linearise(problem, solution, Curvature::None, NEAR_STEPS)
+        .and_then(|locals| solve(problem, solution, &locals, request).ok())
+        .map_or(f64::INFINITY, |answered| answered.promised / KKT_TRUST)
 }

@@ -1,12 +1,12 @@
 //! The refinement: exact gradients, never worse, never infeasible.
 
-use super::rooms::NEAR_STEPS;
+use super::slacks::NEAR_STEPS;
 use super::*;
-use crate::problem::{BetaPlan, Interval};
-use crate::testing::{five_segments, five_segments_compensated};
 use nalgebra::DMatrix;
 use stead_model::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
 use stead_numerics::monitor::Monitor;
+use stead_planning::problem::{BetaPlan, Interval};
+use stead_planning::testing::{assert_sound, corners, five_segments, five_segments_compensated, with_turn_limits};
 
 fn published_optimum() -> Placement {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
@@ -63,12 +63,12 @@ fn margins_may_be_driven_to_their_kink() {
     problem.redundancy.beta_count = 40;
     problem.criterion.confidence = 3.0;
     let known = Uncertainty::new(vec![Parameter::Compliance(4)], DMatrix::from_element(1, 1, 4e-12)).unwrap();
-    problem.robot = problem.robot.with_uncertainty(known).unwrap();
+    problem.robot = problem.robot.clone().with_uncertainty(known).unwrap();
     let planner = Planner::new(&problem);
     let (solution, report) = refined(&planner, &published_optimum(), Sense::Min).unwrap();
     assert!(report.end_mean < report.start_mean * 0.95, "{report:?}");
     assert_allowed(&problem, &solution);
-    let locals = linearise::linearise(&problem, &solution, (linearise::Curvature::Full, NEAR_STEPS)).unwrap();
+    let locals = linearise::linearise(&problem, &solution, linearise::Curvature::Full, NEAR_STEPS).unwrap();
     let margins = || locals.iter().map(|local| local.state.own.margin.value);
     assert!(margins().filter(|margin| *margin < 1e-8).count() > 10, "{:?}", margins().collect::<Vec<_>>());
     for local in locals.iter().filter(|local| !local.sets[0].changes.is_empty()) {
@@ -155,7 +155,7 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
     for problem in [five_segments(), five_segments_compensated()] {
         let planner = Planner::finer(&problem);
         let here = planned(&planner, &published_optimum(), None, &mut planner.workspace()).unwrap();
-        let locals = linearise::linearise(&problem, &here, (linearise::Curvature::Full, NEAR_STEPS)).unwrap();
+        let locals = linearise::linearise(&problem, &here, linearise::Curvature::Full, NEAR_STEPS).unwrap();
         for plan in &here.plans {
             for (place, point) in plan.points.clone().enumerate().step_by(4) {
                 for k in 0..LOCAL {
@@ -166,7 +166,7 @@ fn local_gradients_agree_with_differences_of_the_ordinary_evaluator() {
                             4 => beta += side * h,
                             _ => placement[k] += side * h * UNITS[k],
                         }
-                        crate::evaluate::reference::state(&problem, point, &placement, beta, plan.posture).unwrap()
+                        problem.at(&placement).state(point, beta, plan.posture).unwrap()
                     };
                     let difference = (at(1.0).normal_part - at(-1.0).normal_part) / (2.0 * h);
                     assert!((locals[point].state.normal_part.gradient[k] - difference).abs() < 1e-8);
@@ -190,35 +190,6 @@ fn a_cell_without_room_is_refined_in_beta_alone() {
         assert!(report.end_mean <= report.start_mean * (1.0 + 1e-12));
         assert!((0..4).all(|k| (solution.placement[k] - placement[k]).abs() < 1e-12), "{:?}", solution.placement);
     }
-}
-
-#[test]
-fn argmin_observers_see_every_iteration() {
-    use argmin::core::observers::{Observe, ObserverMode};
-    use argmin::core::{Error, KV};
-    use std::sync::{Arc, Mutex};
-
-    struct Costs(Arc<Mutex<Vec<f64>>>);
-    impl Observe<solver::Iterate> for Costs {
-        fn observe_iter(&mut self, state: &solver::Iterate, _: &KV) -> Result<(), Error> {
-            self.0.lock().unwrap().push(state.get_cost());
-            Ok(())
-        }
-    }
-
-    let problem = five_segments();
-    let planner = Planner::finer(&problem);
-    let start = planned(&planner, &Placement::from([0.0, -1.7, -0.4, 0.7]), None, &mut planner.workspace()).unwrap();
-    let costs = Arc::new(Mutex::new(Vec::new()));
-    let observer = Costs(Arc::clone(&costs));
-    let run = solver::run_observed(&problem, &start, solver::Ending::TIGHT, &Monitor::silent(), |executor| {
-        executor.add_observer(observer, ObserverMode::Always)
-    });
-    let costs = costs.lock().unwrap();
-    assert_eq!(costs.len(), run.iterations);
-    assert!(costs.len() > 2 && costs.windows(2).all(|pair| pair[1] <= pair[0]));
-    assert_eq!(costs.last().copied(), Some(run.solution.objective));
-    assert_ne!(run.status, RefinementStatus::MaxIterations);
 }
 
 #[test]
@@ -262,5 +233,19 @@ fn joint_travel_and_betas_that_stay_are_refined_with_the_placement() {
             let size = gradient.norm();
             assert!((slope - gradient[k]).abs() < 0.1 * size, "{k} {slope} {gradient:?} {:?}", problem.redundancy.beta);
         }
+    }
+}
+
+#[test]
+fn refinement_keeps_the_turn_of_the_spindle() {
+    for lean in [0.0, 0.15] {
+        let mut problem = with_turn_limits(corners(lean), 120, None, 3.0);
+        problem.redundancy.feed /= 4.0;
+        let planner = Planner::new(&problem);
+        let evaluator = Evaluator::new(&planner, None);
+        let start = Placement::from([0.0, -1.8, -0.4, 1.2]);
+        let (refined, report) = refine(&evaluator, &start, Sense::Min, None, &Monitor::silent()).unwrap();
+        assert!(report.end_mean <= report.start_mean);
+        assert_sound(&problem, &refined.placement, &refined.plans);
     }
 }

@@ -1,8 +1,8 @@
 use super::super::lookup::LookupTable;
 use super::super::path_subset::PathSubset;
-use super::super::redundancy::Planner;
-use super::super::testing::five_segments;
 use super::*;
+use stead_planning::redundancy::Planner;
+use stead_planning::testing::five_segments;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 24, generations: 6, ..SearchSettings::default() }

@@ -2,10 +2,10 @@
 
 mod json;
 mod page;
-mod tables;
+pub(crate) mod tables;
 mod text;
 
-pub use json::{assess_json, summary_json};
+pub use json::{AssessmentFigures, assess_json, summary_json};
 pub use text::assessment_text;
 
 use super::output::{Folder, ReportError};
@@ -34,9 +34,9 @@ pub struct AssessmentContext {
 }
 
 /// Writes everything that an assessment reports into a folder: for each robot `map-ROBOT.csv` and `map-ROBOT.svg`; then
-/// `circularity.csv`, `optimal-zones.csv`, `middle-zones.csv`, `accuracy.csv`, `selection.csv` (Klimchik 2017, Tables 5 to
-/// 9), `indicators.svg` and `summary.json`; and, where forces were computed, `cutting.svg`, `cutting-engagement.csv` and
-/// `cutting-turn.csv`; last the page, `report.html`. Returns the paths in that order.
+/// `circularity.csv`, `optimal-zones.csv`, `middle-zones.csv`, `accuracy.csv`, `selection.csv` (Klimchik 2017, Tables 5
+/// to 9), `indicators.svg` and `summary.json`; and, where forces were computed, `cutting.svg`, `cutting-engagement.csv`
+/// and `cutting-turn.csv`; last the page, `report.html`. Returns the paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -86,8 +86,8 @@ pub fn assessment_files(
 /// Longest piece of a robot's name in a file name.
 const MAX_NAME_LENGTH: usize = 80;
 
-/// The name of a robot as part of a file name: small letters, digits and hyphens, and its number where an earlier robot has
-/// the same.
+/// The name of a robot as part of a file name: small letters, digits and hyphens, and its number where an earlier robot
+/// has the same.
 fn file_name(assessment: &Assessment, index: usize) -> String {
     let plain = |index: usize| {
         let name = assessment.robots[index].name.to_lowercase();

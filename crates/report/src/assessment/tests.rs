@@ -3,8 +3,8 @@ use crate::document::Timing;
 use serde_json::Value;
 use std::path::Path;
 use stead_assessment::comparison::assess;
-use stead_format::read_assessment;
 use stead_numerics::monitor::Monitor;
+use stead_run_files::read_assessment;
 
 /// The published study, table-compatible, on a coarse map, with one piece of the file replaced.
 fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {

@@ -6,9 +6,9 @@ use crate::units::{figures, fixed};
 use stead_assessment::comparison::{Assessment, Configuration, RobotResult};
 use stead_assessment::published::{PublishedTables, Quantity};
 
-/// Every configuration with its smallest, largest and middle circularity and the best zone of each size (published values
-/// in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the published
-/// tables agree.
+/// Every configuration with its smallest, largest and middle circularity and the best zone of each size (published
+/// values in parentheses where there are any), the robots for each wanted accuracy and force, and how far ours and the
+/// published tables agree.
 pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
     let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let mut text = aligned(&configuration_rows(assessment, published), &[0, 1, 2]);
@@ -73,8 +73,8 @@ fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, published: 
     }
 }
 
-/// Robots by accuracies: the largest of the forces at which a robot reaches the accuracy. A robot that does at one force does
-/// at any smaller one.
+/// Robots by accuracies: the largest of the forces at which a robot reaches the accuracy. A robot that does at one
+/// force does at any smaller one.
 fn selection_rows(assessment: &Assessment) -> Vec<Vec<String>> {
     let mut accuracies: Vec<f64> = Vec::new();
     for cell in &assessment.capable {

@@ -1,50 +1,75 @@
 //! `certificate.json`.
 
-use crate::document::{Document, placement};
-use crate::units::Unit;
-use serde_json::{Value, json};
+use crate::document::{Document, PlacementFigures};
+use crate::figure::{DeflectionMm, Plain, TimeS};
+use serde_json::Value;
+use stead_certify::{Certificate, NoProof, Proof, Status};
 use stead_format::input::InputFile;
-use stead_placement::certify::{Certificate, NoProof, Proof};
+
+records! {
+    /// What is proved of the best and of the worst placement.
+    pub struct CertificateFigures of (certificate: &Certificate, wall_s: Option<TimeS>) {
+        let [best, worst] = [&certificate.best, &certificate.worst];
+        let reason = |side: &Result<Proof, NoProof>| match side {
+            Ok(proof) => proof.shortfall(&certificate.settings),
+            Err(reason) => Some(reason.to_string()),
+        };
+    } with {
+        /// The gap that was requested. %
+        gap_percent_asked: Plain = Plain(certificate.settings.gap * 100.0),
+        /// Time after which the search for a proof ends. s
+        time_limit_s: Option<f64> = certificate.settings.time_limit,
+        /// Memory that it may use. GB
+        memory_gb: f64 = certificate.settings.memory as f64 / 1e9,
+        /// The proof of the best placement; null where nothing is known.
+        best: Option<ProofFigures> = best.as_ref().ok().map(Into::into),
+        /// Why there is none, or why the bound is farther off than requested.
+        best_reason: Option<String> = reason(best),
+        /// The proof of the worst placement.
+        worst: Option<ProofFigures> = worst.as_ref().ok().map(Into::into),
+        /// Why there is none, or why the bound is farther off than requested.
+        worst_reason: Option<String> = reason(worst),
+        /// Boxes of placements examined.
+        nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum(),
+        /// Time on the clock.
+        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = wall_s,
+    }
+
+    /// What is proved of a placement.
+    pub struct ProofFigures from proof: &Proof {
+        /// The placement that it is compared with.
+        placement: PlacementFigures = (&proof.placement).into(),
+        /// Mean score of the placement found, with the same constraints relaxed.
+        found_mm: DeflectionMm = proof.found.into(),
+        /// Mean score that the bound is compared with.
+        value_mm: DeflectionMm = proof.bound.value.into(),
+        /// No placement is better, or worse, than this. mm
+        bound_mm: f64 = proof.bound_mm(),
+        /// Difference of value and bound. %
+        gap_percent: f64 = proof.gap_percent(),
+        /// Whether the rate of beta is kept.
+        with_beta_rate: bool = proof.bound.with_rate,
+        /// Limits that the bound does not keep.
+        limits_relaxed: Vec<String> = proof.relaxed_words(),
+        /// How the search for the proof ended.
+        #[schemars(with = "String")] status: Status = proof.bound.status,
+        /// Boxes that may hold a placement better, or worse, by more than the gap.
+        open_boxes: usize = proof.bound.open.len(),
+        /// Boxes examined.
+        nodes: usize = proof.bound.nodes,
+    }
+}
 
 /// What `stead place --json` prints under `certificate`: the content of `certificate.json`, and how long it took.
 pub fn certificate_json(certificate: &Certificate, inputs: &[InputFile]) -> Value {
-    let mut document = certificate_content(certificate, inputs);
-    document["wall_s"] = json!(Unit::TIME_S.number(certificate.wall));
-    document
+    document(certificate, inputs, Some(certificate.wall.into()))
 }
 
-/// The content of `certificate.json`: the same in every run, unless a time limit or the user ended it. `best` and `worst` are null where
-/// nothing is known; `best_reason` and `worst_reason` say why, or why a bound is farther off than was asked for.
+/// The content of `certificate.json`: the same in every run, unless a time limit or the user ended it.
 pub(super) fn certificate_content(certificate: &Certificate, inputs: &[InputFile]) -> Value {
-    let [best, worst] = [&certificate.best, &certificate.worst];
-    let nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum();
-    let reason = |side: &Result<Proof, NoProof>| match side {
-        Ok(proof) => proof.shortfall(&certificate.settings),
-        Err(reason) => Some(reason.to_string()),
-    };
-    Document::new(inputs).warnings(&certificate.warnings).with(json!({
-        "gap_percent_asked": Unit::PLAIN.number(certificate.settings.gap * 100.0),
-        "time_limit_s": certificate.settings.time_limit,
-        "memory_gb": certificate.settings.memory as f64 / 1e9,
-        "best": best.as_ref().map_or(Value::Null, side),
-        "best_reason": reason(best),
-        "worst": worst.as_ref().map_or(Value::Null, side),
-        "worst_reason": reason(worst),
-        "nodes": nodes,
-    }))
+    document(certificate, inputs, None)
 }
 
-fn side(proof: &Proof) -> Value {
-    json!({
-        "placement": placement(&proof.placement),
-        "found_mm": Unit::DEFLECTION_MM.number(proof.found),
-        "value_mm": Unit::DEFLECTION_MM.number(proof.bound.value),
-        "bound_mm": proof.bound_mm(),
-        "gap_percent": proof.gap_percent(),
-        "with_beta_rate": proof.bound.with_rate,
-        "limits_relaxed": proof.relaxed_words(),
-        "status": proof.bound.status,
-        "open_boxes": proof.bound.open.len(),
-        "nodes": proof.bound.nodes,
-    })
+fn document(certificate: &Certificate, inputs: &[InputFile], wall_s: Option<TimeS>) -> Value {
+    Document::new(inputs).warnings(&certificate.warnings).with(CertificateFigures::of(certificate, wall_s))
 }

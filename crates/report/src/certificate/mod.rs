@@ -1,13 +1,13 @@
 //! Certificates as files and sentences.
 
 mod json;
-mod tables;
+pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 mod text;
 
 use json::certificate_content;
-pub use json::certificate_json;
+pub use json::{CertificateFigures, certificate_json};
 pub use tables::open_region;
 pub use text::certificate_text;
 
@@ -17,9 +17,9 @@ use crate::document::bytes;
 use crate::page::{PAGE, put_page};
 use crate::placement::{PLACE, SUMMARY};
 use std::path::PathBuf;
+use stead_certify::{Certificate, NoProof, Proof};
 use stead_format::input::InputFile;
-use stead_placement::certify::{Certificate, NoProof, Proof};
-use stead_placement::problem::Problem;
+use stead_planning::problem::Problem;
 
 /// The file that states what is proved.
 const CERTIFICATE: &str = "certificate.json";
@@ -34,11 +34,12 @@ pub fn has_certificate(folder: &Folder) -> Result<bool, ReportError> {
 
 /// Writes everything that is known into a folder: `certificate.json`, `open-region.csv`, and `open-region.svg` and
 /// `open-region-worst.svg` as far as there is a proof; pictures of an earlier one are removed. They join the results of
-/// the run that has left the files `run`, and its page, if it has one, is made again with them. Returns the paths in that order.
+/// the run that has left the files `run`, and its page, if it has one, is made again with them. Returns the paths in
+/// that order.
 ///
 /// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, or where results of another run are; no file is ever left half
-/// written.
+/// [`ReportError`]: nothing is written when a file cannot be made, or where results of another run are; no file is ever
+/// left half written.
 pub fn write_certificate(
     folder: &Folder,
     problem: &Problem,

@@ -1,40 +1,44 @@
 //! `open-region.csv`.
 
-use crate::csv_file::table;
+use crate::csv_file::rows_or;
+use crate::figure::{AngleDeg, MmDeflection, PlaceMm};
 use crate::names;
 use crate::output::ReportError;
-use crate::units::{Unit, fixed};
-use stead_placement::certify::{Certificate, OpenBox};
-use stead_placement::problem::Problem;
+use stead_certify::{Certificate, OpenBox, Proof};
+use stead_planning::problem::Problem;
 
-/// `open-region.csv`: the boxes of placements that may still hold one better (or worse) than the value found by more than the
-/// gap asked for. Radius and azimuth of the workpiece origin are about axis 1; z and yaw are those of the robot base frame.
-/// `bound_mm` is empty where nothing is known of a box.
+records! {
+    /// A box of placements that may still hold one better (or worse) than the value found by more than the gap
+    /// requested. Radius and azimuth of the workpiece origin are about axis 1; z and yaw are those of the robot base
+    /// frame.
+    #[derive(Default)]
+    pub struct OpenBoxRow of (proof: &Proof, open: &OpenBox) {
+        /// `best` or `worst`.
+        search: &'static str = names::sense(proof.sense),
+        /// Least radius.
+        radius_from_mm: PlaceMm = open.radius[0].into(),
+        /// Largest radius.
+        radius_to_mm: PlaceMm = open.radius[1].into(),
+        /// Least z.
+        z_from_mm: PlaceMm = open.z[0].into(),
+        /// Largest z.
+        z_to_mm: PlaceMm = open.z[1].into(),
+        /// Least difference of yaw and azimuth.
+        yaw_less_azimuth_from_deg: AngleDeg = open.turn[0].into(),
+        /// Largest difference of yaw and azimuth.
+        yaw_less_azimuth_to_deg: AngleDeg = open.turn[1].into(),
+        /// No placement in the box is better; empty where nothing is known.
+        bound_mm: Option<MmDeflection> =
+            Some(MmDeflection(proof.rounded_mm(open.bound))).filter(|bound| bound.0.is_finite()),
+    }
+}
+
+/// `open-region.csv`: an `OpenBoxRow` for each box.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn open_region(problem: &Problem, certificate: &Certificate) -> Result<Vec<u8>, ReportError> {
-    let header = [
-        "search",
-        "radius_from_mm",
-        "radius_to_mm",
-        "z_from_mm",
-        "z_to_mm",
-        "yaw_less_azimuth_from_deg",
-        "yaw_less_azimuth_to_deg",
-        "bound_mm",
-    ];
     let proofs = [&certificate.best, &certificate.worst].into_iter().flatten();
-    let rows = proofs.flat_map(|proof| {
-        proof.open_boxes(problem).into_iter().map(|open| {
-            let OpenBox { radius, z, turn, bound } = open;
-            let mut row = vec![names::sense(proof.sense).to_owned()];
-            row.extend([radius, z].into_iter().flatten().map(|value| Unit::PLACE_MM.text(value)));
-            row.extend(turn.map(|value| Unit::ANGLE_DEG.text(value)));
-            let bound = proof.rounded_mm(bound);
-            row.push(if bound.is_finite() { fixed(bound, Unit::DEFLECTION_MM.decimals) } else { String::new() });
-            row
-        })
-    });
-    table("the table of the open region", header, rows)
+    let boxes = proofs.flat_map(|proof| proof.open_boxes(problem).into_iter().map(|open| OpenBoxRow::of(proof, &open)));
+    rows_or("the table of the open region", &OpenBoxRow::default(), boxes)
 }

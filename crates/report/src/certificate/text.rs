@@ -2,14 +2,14 @@
 
 use crate::names;
 use crate::units::{Unit, fixed};
-use stead_placement::certify::{Certificate, Proof};
-use stead_placement::sense::Sense;
+use stead_certify::{Certificate, Proof};
+use stead_planning::sense::Sense;
 
 /// Widest line.
 const WIDTH: usize = 110;
 
-/// What is known of both placements, what that assumes, and what is not known and why. Lines are at most 110 characters wide
-/// and end with a line break.
+/// What is known of both placements, what that assumes, and what is not known and why. Lines are at most 110 characters
+/// wide and end with a line break.
 pub fn certificate_text(certificate: &Certificate) -> String {
     let mut text = String::new();
     for (side, name) in [(&certificate.best, "best"), (&certificate.worst, "worst")] {

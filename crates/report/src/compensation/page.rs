@@ -3,7 +3,7 @@
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
 use stead_calibration::compensation::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, reduction};
-use stead_format::CompensateRun;
+use stead_run_files::CompensateRun;
 
 /// Figures before and after, both along the path, and which points keep their target.
 pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
@@ -23,12 +23,13 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
         lead.push_str(&format!("; {} of {count} points keep their target", kept.len()));
     }
     lead.push('.');
-    let page = Page::new(run.job.robot.name(), subtitle, lead, &run.inputs)
+    let mut page = Page::new(run.job.robot.name(), subtitle, lead, &run.inputs)
         .messages(&outcome.warnings, &[run.notes.as_slice(), &outcome.notes].concat())
-        .with(tiles(outcome))
-        .with(along("Deflection before and after", outcome, |deflection| deflection.linear.norm()))
-        .with(along("Normal to the feed before and after", outcome, |deflection| deflection.normal.abs()))
-        .with(correction(outcome));
+        .with(tiles(outcome));
+    for chart in before_and_after(outcome) {
+        page = page.with(Card::Chart(chart));
+    }
+    page = page.with(correction(outcome));
     if kept.is_empty() {
         return page;
     }
@@ -65,16 +66,32 @@ fn tiles(outcome: &CompensatedPath) -> Card {
     Card::Tiles(Tiles { tiles })
 }
 
+/// The deflection along the path, and its part normal to the feed.
+pub(super) fn before_and_after(outcome: &CompensatedPath) -> [Chart; 2] {
+    [
+        along("Deflection before and after", outcome, outcome.deflections(), |deflection| deflection.linear.norm()),
+        along("Normal to the feed before and after", outcome, outcome.normal_parts(), |deflection| {
+            deflection.normal.abs()
+        }),
+    ]
+}
+
 /// A part of the deflection over the points, without and with the commands.
-fn along(title: &str, outcome: &CompensatedPath, part: fn(&Deflection) -> f64) -> Card {
+fn along(title: &str, outcome: &CompensatedPath, pair: [MeanAndMax; 2], part: fn(&Deflection) -> f64) -> Chart {
+    let [before, after] = pair.map(|sizes| figures(sizes.mean * 1e3));
+    let change = reduction(pair).map_or_else(String::new, |share| {
+        let word = if share < 0.0 { "more" } else { "less" };
+        format!(", {} % {word}", fixed(share.abs() * 100.0, 1))
+    });
     let curve = |name: &str, color: usize, of: fn(&CompensatedPoint) -> &Option<Deflection>| {
         let value = |point: &CompensatedPoint| of(point).as_ref().map(part).filter(|part| *part > 0.0);
         Series::curve(name, color, by_segment(outcome, |point| value(point).map_or(f64::NAN, |part| part * 1e3)))
     };
-    Card::Chart(Chart {
+    Chart {
         title: title.to_owned(),
+        detail: format!("mean magnitude {before} mm before, {after} mm after{change}"),
         x: Axis::new("path point"),
-        y: Axis::log("mm"),
+        y: Axis::log("deflection (mm)"),
         series: vec![
             curve("target commanded", 1, |point| &point.before),
             curve("corrected command", 0, |point| &point.after),
@@ -82,7 +99,7 @@ fn along(title: &str, outcome: &CompensatedPath, part: fn(&Deflection) -> f64) -
         marks: starts(outcome),
         is_wide: true,
         ..Chart::default()
-    })
+    }
 }
 
 /// By how much the command differs from the target.
@@ -124,4 +141,42 @@ fn starts(outcome: &CompensatedPath) -> Vec<Mark> {
     pairs
         .map(|(k, pair)| Mark { is_level: false, at: k as f64 + 0.5, label: format!("segment {}", pair[1].segment) })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::charts;
+    use crate::testing::assert_well_formed;
+    use std::path::Path;
+    use stead_calibration::compensation::compensate;
+    use stead_run_files::read_compensation;
+
+    fn outcome() -> CompensatedPath {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
+        let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
+        compensate(&run.job, &stead_numerics::monitor::Monitor::silent()).unwrap()
+    }
+
+    #[test]
+    fn the_picture_is_well_formed_small_the_same_each_time_and_labelled() {
+        let outcome = outcome();
+        let svg = charts(&before_and_after(&outcome));
+        assert_eq!(svg, charts(&before_and_after(&outcome)));
+        assert_well_formed(&svg);
+        assert!(svg.len() < 100_000, "{}", svg.len());
+        for label in ["deflection (mm)", "Normal to the feed", "target commanded", "path point", "77.0 % more"] {
+            assert!(svg.contains(label), "{label}");
+        }
+    }
+
+    #[test]
+    fn a_path_of_one_point_is_a_dot() {
+        let mut outcome = outcome();
+        outcome.points.truncate(1);
+        let svg = charts(&before_and_after(&outcome));
+        assert_well_formed(&svg);
+        assert!(svg.contains("<circle"));
+    }
 }

@@ -2,55 +2,235 @@
 
 use super::{URAD, key, rounded};
 use crate::document::Document;
-use crate::units::Unit;
-use serde_json::{Map, Value, json};
-use stead_calibration::identification::law::Quantity;
+use crate::figure::{AngleDeg, PlaceMm, each, some};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+use stead_calibration::identification::law::{ArmParameter, Quantity};
 use stead_calibration::identification::model::Parameter;
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{Held, Identified, RowResult};
-use stead_format::IdentifyRun;
-use stead_model::robot::Compliance;
+use stead_model::robot::{Compensator, Compliance};
+use stead_run_files::IdentifyRun;
 
 /// Significant digits of estimates.
 const DIGITS: usize = 12;
 
+records! {
+    /// An identified arm. Estimates have twelve significant digits.
+    pub struct IdentificationFigures of (run: &IdentifyRun, found: &Identified) {
+        let sheet = &run.problem.sheet;
+    } with {
+        /// Name of the robot.
+        robot: String = found.robot.name().to_owned(),
+        /// Configurations measured.
+        configurations: usize = sheet.configurations.len(),
+        /// Readings.
+        readings: usize = sheet.readings.len(),
+        /// Every compliance, one for each distinct angle of the joint beside a compensator.
+        compliances: Vec<ComplianceFigures> =
+            found.compliances.iter().map(|estimate| ComplianceFigures::of(found, estimate)).collect(),
+        /// The joint beside a compensator.
+        compensator: Option<CompensatorFigures> = compensator(found),
+        /// The parameters of the robot file.
+        arm: Vec<ParameterFigures> = found.arm.iter().map(Into::into).collect(),
+        /// Joints that keep the compliance of the robot file, from 1.
+        held: Vec<usize> = held(found),
+        /// Standard deviation of a reading. mm
+        noise_mm: f64 = millimetres(found.noise),
+        /// Whether it was estimated from the readings.
+        noise_estimated: bool = found.is_noise_estimated,
+        /// Standard deviation of the residuals for that of the readings.
+        noise_ratio: f64 = rounded(libm::sqrt(found.variance_ratio), 6),
+        /// Readings less parameters.
+        degrees_of_freedom: usize = found.degrees_of_freedom,
+        /// Residuals, root mean square. mm
+        residual_rms_mm: f64 = millimetres(found.residual_rms),
+        /// Readings left out.
+        outliers: Vec<OutlierFigures> = found.outliers().map(|row| OutlierFigures::of(run, row)).collect(),
+        /// Whether outliers were searched.
+        outliers_searched: bool = found.are_outliers_searched,
+        /// Probability of such residuals if the law of the compensator holds.
+        law_probability: Option<f64> = found.law_probability.map(|probability| rounded(probability, 6)),
+        /// How configurations are predicted from all others.
+        leave_one_out: PredictionFigures = PredictionFigures::of(run, found),
+        /// Where tracker and reference points are.
+        setup: SetupFigures = SetupFigures::of(run, found),
+    }
+
+    /// A compliance.
+    pub struct ComplianceFigures of (found: &Identified, estimate: &Estimate<Parameter>) {
+        let [urad_per_nm, std_urad_per_nm, low_urad_per_nm, high_urad_per_nm] = numbers(estimate, URAD, DIGITS);
+        let joint = found.joint(estimate.parameter);
+    } with {
+        /// The joint, from 1.
+        joint: usize = joint + 1,
+        /// Joint angle at which the compliance holds; only for the joint beside a compensator.
+        #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = some(estimate.angle),
+        /// The same angle under the name of joint 2; only where that joint is beside the compensator.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        q2_deg: Option<AngleDeg> = some(estimate.angle.filter(|_| joint == 1)),
+        /// Estimated compliance. urad/(N m)
+        urad_per_nm: f64 = urad_per_nm,
+        /// Standard deviation of the estimate. urad/(N m)
+        std_urad_per_nm: f64 = std_urad_per_nm,
+        /// Lower end of the 95 % confidence interval. urad/(N m)
+        low_urad_per_nm: f64 = low_urad_per_nm,
+        /// Upper end of the 95 % confidence interval. urad/(N m)
+        high_urad_per_nm: f64 = high_urad_per_nm,
+    }
+}
+
+records! {
+    /// A joint beside a compensator.
+    pub struct CompensatorFigures of (found: &Identified, joint: usize, alone: f64, spring: &Compensator) {
+        let deviation = |quantity: Quantity, factor: f64| {
+            let estimate = found.arm.iter().find(|e| e.parameter.joint == joint && e.parameter.quantity == quantity);
+            estimate.map(|estimate| rounded(estimate.deviation * factor, DIGITS))
+        };
+    } with {
+        /// The joint, from 1.
+        joint: usize = joint + 1,
+        /// Compliance of the joint without the spring. urad/(N m)
+        compliance_urad_per_nm: f64 = rounded(alone * URAD, DIGITS),
+        /// Standard deviation of `compliance_urad_per_nm`; null where it was not estimated. urad/(N m)
+        std_compliance_urad_per_nm: Option<f64> = deviation(Quantity::Compliance, URAD),
+        /// Stiffness of the joint without the spring. MN m/rad
+        stiffness_mnm_per_rad: f64 = rounded(1e-6 / alone, DIGITS),
+        /// Stiffness of the spring of the compensator. N/mm
+        spring_stiffness_n_per_mm: f64 = rounded(spring.spring_stiffness / 1e3, DIGITS),
+        /// Standard deviation of `spring_stiffness_n_per_mm`; null where it was not estimated. N/mm
+        std_spring_stiffness_n_per_mm: Option<f64> = deviation(Quantity::SpringStiffness, 1e-3),
+        /// Length of the unloaded spring. mm
+        free_length_mm: f64 = rounded(spring.free_length * 1e3, DIGITS),
+        /// Standard deviation of `free_length_mm`; null where it was not estimated. mm
+        std_free_length_mm: Option<f64> = deviation(Quantity::FreeLength, 1e3),
+        /// Distance from the joint axis to the end of the spring on the base side. mm
+        a_mm: f64 = rounded(spring.a * 1e3, DIGITS),
+        /// Distance from the joint axis to the end of the spring on the moving link. mm
+        l_mm: f64 = rounded(spring.l * 1e3, DIGITS),
+        /// Angle between the lines from the joint axis to both ends of the spring, at joint angle 0. deg
+        alpha_deg: f64 = rounded(spring.alpha.to_degrees(), DIGITS),
+    }
+}
+
+records! {
+    /// A parameter of the robot file, in the unit of its key.
+    pub struct ParameterFigures from estimate: &Estimate<ArmParameter> {
+        let (parameter, factor) = key(&estimate.parameter);
+        let [value, std, low, high] = numbers(estimate, factor, DIGITS);
+    } with {
+        /// Key of the parameter in the robot file.
+        parameter: String = parameter,
+        /// Estimated value.
+        value: f64 = value,
+        /// Standard deviation of the estimate.
+        std: f64 = std,
+        /// Lower end of the 95 % confidence interval.
+        low: f64 = low,
+        /// Upper end of the 95 % confidence interval.
+        high: f64 = high,
+    }
+
+    /// A reading left out.
+    pub struct OutlierFigures of (run: &IdentifyRun, row: &RowResult) {
+        let sheet = &run.problem.sheet;
+    } with {
+        /// Line of the reading in the sheet, from 1.
+        line: usize = row.line,
+        /// Name of the configuration.
+        configuration: String = sheet.configurations[row.configuration].name.clone(),
+        /// Name of the reference point.
+        point: String = sheet.points[row.point].clone(),
+        /// Magnitude of the residual: read less predicted deflection. mm
+        residual_mm: f64 = millimetres((row.measured - row.predicted).norm()),
+        /// The residual divided by its own standard deviation.
+        studentised: f64 = rounded(row.studentised, 6),
+    }
+
+    /// How configurations are predicted from all others.
+    pub struct PredictionFigures of (run: &IdentifyRun, found: &Identified) {
+        let sheet = &run.problem.sheet;
+        let name = |index: usize| sheet.configurations[index].name.clone();
+        let prediction = &found.prediction;
+        let worst = |(index, rms)| WorstConfiguration { configuration: name(index), rms_mm: millimetres(rms) };
+    } with {
+        /// Root mean square of the prediction errors over all configurations. mm
+        rms_mm: f64 = millimetres(prediction.rms),
+        /// The configuration with the largest prediction error.
+        worst: Option<WorstConfiguration> = prediction.worst.map(worst),
+        /// Names of configurations that cannot be predicted, since without them a compliance is not identifiable.
+        unpredicted: Vec<String> = prediction.unpredicted.iter().map(|index| name(*index)).collect(),
+    }
+}
+
+/// The configuration that is predicted worst.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct WorstConfiguration {
+    /// Name of the configuration.
+    configuration: String,
+    /// Root mean square of its prediction errors. mm
+    rms_mm: f64,
+}
+
+records! {
+    /// Where tracker and reference points are.
+    pub struct SetupFigures of (run: &IdentifyRun, found: &Identified) {
+        /// Pose of the robot base in the frame of the tracker.
+        tracker_from_base: PoseFigures = PoseFigures::of(found),
+        /// The reference points.
+        points: Vec<ReferencePoint> =
+            run.problem.sheet.points.iter().zip(&found.setup.points).zip(&found.setup_fit.point_deviations)
+            .map(|((name, place), std)| ReferencePoint {
+                point: name.clone(),
+                flange_mm: each((*place).into()),
+                std_mm: millimetres(*std),
+            })
+            .collect(),
+        /// Root mean square of the residuals of the readings without a load. mm
+        residual_rms_mm: f64 = millimetres(found.setup.residual_rms),
+        /// The reading without a load that has the largest residual.
+        worst: WorstReading = WorstReading::of(found),
+    }
+
+    /// A pose.
+    pub struct PoseFigures of (found: &Identified) {
+        let base = &found.setup.tracker_from_base;
+    } with {
+        /// Origin of the frame.
+        xyz_mm: [PlaceMm; 3] = each(base.translation.into()),
+        /// Rotation matrix, row by row.
+        rotation: [[f64; 3]; 3] =
+            [0, 1, 2].map(|row| [0, 1, 2].map(|column| rounded(base.rotation[(row, column)], DIGITS))),
+    }
+}
+
+/// A reference point.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ReferencePoint {
+    /// Name of the point.
+    point: String,
+    /// Place of the point in the flange frame.
+    flange_mm: [PlaceMm; 3],
+    /// Standard deviation of that place in the direction in which it is largest. mm
+    std_mm: f64,
+}
+
+records! {
+    /// A reading with its residual.
+    pub struct WorstReading of (found: &Identified) {
+        let (line, distance) = found.setup_fit.worst;
+    } with {
+        /// Line of the reading in the sheet, from 1.
+        line: usize = line,
+        /// Magnitude of its residual. mm
+        mm: f64 = millimetres(distance),
+    }
+}
+
 /// The document: compliances, compensator, arm with covariance, residuals, outliers, prediction error.
 pub fn identify_json(run: &IdentifyRun, found: &Identified) -> Value {
-    let sheet = &run.problem.sheet;
-    let worst = found
-        .prediction
-        .worst
-        .map(|(index, rms)| json!({ "configuration": sheet.configurations[index].name, "rms_mm": millimetres(rms) }));
-    let unpredicted: Vec<&str> =
-        found.prediction.unpredicted.iter().map(|index| sheet.configurations[*index].name.as_str()).collect();
-    Document::new(&run.inputs).notes(&run.notes).warnings(&found.warnings).with(json!({
-        "robot": found.robot.name(),
-        "configurations": sheet.configurations.len(),
-        "readings": sheet.readings.len(),
-        "compliances": found.compliances.iter().map(|estimate| compliance(found, estimate)).collect::<Vec<_>>(),
-        "compensator": compensator(found),
-        "arm": found.arm.iter().map(|estimate| {
-            let (name, factor) = key(&estimate.parameter);
-            let mut map = Map::from_iter([("parameter".to_owned(), json!(name))]);
-            map.extend(numbers(estimate, factor, ["value", "std", "low", "high"]));
-            Value::Object(map)
-        }).collect::<Vec<_>>(),
-        "held": held(found),
-        "noise_mm": millimetres(found.noise),
-        "noise_estimated": found.is_noise_estimated,
-        "noise_ratio": rounded(libm::sqrt(found.variance_ratio), 6),
-        "degrees_of_freedom": found.degrees_of_freedom,
-        "residual_rms_mm": millimetres(found.residual_rms),
-        "outliers": found.outliers().map(|row| outlier(run, row)).collect::<Vec<_>>(),
-        "outliers_searched": found.are_outliers_searched,
-        "law_probability": found.law_probability.map(|probability| rounded(probability, 6)),
-        "leave_one_out": {
-            "rms_mm": millimetres(found.prediction.rms),
-            "worst": worst,
-            "unpredicted": unpredicted,
-        },
-        "setup": setup(run, found),
-    }))
+    Document::new(&run.inputs).notes(&run.notes).warnings(&found.warnings).with(IdentificationFigures::of(run, found))
 }
 
 /// Lengths, with the digits of any deflection and more where they are tiny.
@@ -67,74 +247,18 @@ fn held(found: &Identified) -> Vec<usize> {
     found.held.iter().filter_map(joint).collect()
 }
 
-fn numbers<P>(estimate: &Estimate<P>, factor: f64, names: [&str; 4]) -> [(String, Value); 4] {
+/// Value, standard deviation and 95 % interval, rounded in a unit.
+pub(super) fn numbers<P>(estimate: &Estimate<P>, factor: f64, digits: usize) -> [f64; 4] {
     let [low, high] = estimate.interval;
-    let values = [estimate.value, estimate.deviation, low, high];
-    std::array::from_fn(|k| (names[k].to_owned(), json!(rounded(values[k] * factor, DIGITS))))
+    [estimate.value, estimate.deviation, low, high].map(|value| rounded(value * factor, digits))
 }
 
-fn compliance(found: &Identified, estimate: &Estimate<Parameter>) -> Value {
-    let joint = found.joint(estimate.parameter);
-    let mut map = Map::from_iter([("joint".to_owned(), json!(joint + 1))]);
-    if let Some(angle) = estimate.angle {
-        let angle = json!(Unit::ANGLE_DEG.number(angle));
-        if joint == 1 {
-            map.insert("q2_deg".to_owned(), angle.clone());
+fn compensator(found: &Identified) -> Option<CompensatorFigures> {
+    let joint = found.varying?;
+    match &found.robot.joints()[joint].compliance {
+        Compliance::Compensated { alone, compensator } => {
+            Some(CompensatorFigures::of(found, joint, *alone, compensator))
         }
-        map.insert("angle_deg".to_owned(), angle);
+        _ => None,
     }
-    map.extend(numbers(estimate, URAD, ["urad_per_nm", "std_urad_per_nm", "low_urad_per_nm", "high_urad_per_nm"]));
-    Value::Object(map)
-}
-
-fn compensator(found: &Identified) -> Value {
-    let Some(joint) = found.varying else { return Value::Null };
-    let Compliance::Compensated { alone, compensator } = found.robot.joints()[joint].compliance else {
-        return Value::Null;
-    };
-    let deviation = |quantity: Quantity, factor: f64| {
-        let estimate = found.arm.iter().find(|e| e.parameter.joint == joint && e.parameter.quantity == quantity);
-        estimate.map(|estimate| rounded(estimate.deviation * factor, DIGITS))
-    };
-    json!({
-        "joint": joint + 1,
-        "compliance_urad_per_nm": rounded(alone * URAD, DIGITS),
-        "std_compliance_urad_per_nm": deviation(Quantity::Compliance, URAD),
-        "stiffness_mnm_per_rad": rounded(1e-6 / alone, DIGITS),
-        "spring_stiffness_n_per_mm": rounded(compensator.spring_stiffness / 1e3, DIGITS),
-        "std_spring_stiffness_n_per_mm": deviation(Quantity::SpringStiffness, 1e-3),
-        "free_length_mm": rounded(compensator.free_length * 1e3, DIGITS),
-        "std_free_length_mm": deviation(Quantity::FreeLength, 1e3),
-        "a_mm": rounded(compensator.a * 1e3, DIGITS),
-        "l_mm": rounded(compensator.l * 1e3, DIGITS),
-        "alpha_deg": rounded(compensator.alpha.to_degrees(), DIGITS),
-    })
-}
-
-fn outlier(run: &IdentifyRun, row: &RowResult) -> Value {
-    let sheet = &run.problem.sheet;
-    json!({
-        "line": row.line,
-        "configuration": sheet.configurations[row.configuration].name,
-        "point": sheet.points[row.point],
-        "residual_mm": millimetres((row.measured - row.predicted).norm()),
-        "studentised": rounded(row.studentised, 6),
-    })
-}
-
-fn setup(run: &IdentifyRun, found: &Identified) -> Value {
-    let triple = |v: &nalgebra::Vector3<f64>| json!([v.x, v.y, v.z].map(|v| Unit::PLACE_MM.number(v)));
-    let base = &found.setup.tracker_from_base;
-    let rotation: Vec<Value> =
-        base.rotation.row_iter().map(|row| row.iter().map(|v| rounded(*v, DIGITS)).collect()).collect();
-    let points = run.problem.sheet.points.iter().zip(&found.setup.points).zip(&found.setup_fit.point_deviations);
-    let (line, distance) = found.setup_fit.worst;
-    json!({
-        "tracker_from_base": { "xyz_mm": triple(&base.translation), "rotation": rotation },
-        "points": points
-            .map(|((name, place), std)| json!({ "point": name, "flange_mm": triple(place), "std_mm": millimetres(*std) }))
-            .collect::<Vec<_>>(),
-        "residual_rms_mm": millimetres(found.setup.residual_rms),
-        "worst": { "line": line, "mm": millimetres(distance) },
-    })
 }

@@ -1,15 +1,16 @@
-//! Reports of `stead identify fit`, and in [`plan`] those of `stead identify plan`: the robot file, the report for programs, tables, the picture, the table for people.
+//! Reports of `stead identify fit`, and in [`plan`] those of `stead identify plan`: the robot file, the report for
+//! programs, tables, the picture, the table for people.
 
 mod json;
 mod page;
 pub mod plan;
 mod robot_file;
-mod tables;
+pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use json::identify_json;
+pub use json::{IdentificationFigures, identify_json};
 pub use robot_file::robot_file;
 pub use text::identify_text;
 
@@ -21,10 +22,10 @@ use super::{Files, named};
 use std::path::PathBuf;
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
-use stead_format::IdentifyRun;
+use stead_run_files::IdentifyRun;
 
-/// Writes `robot-identified.toml`, `report.json`, `compliances.csv`, `residuals.csv`, `deflections.svg` and `report.html` into a folder and
-/// returns their paths in that order.
+/// Writes `robot-identified.toml`, `report.json`, `compliances.csv`, `residuals.csv`, `deflections.svg` and
+/// `report.html` into a folder and returns their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -43,7 +44,10 @@ pub fn identified_files(run: &IdentifyRun, found: &Identified) -> Result<Files, 
         ("report.json", documents::bytes(&identify_json(run, found))),
         ("compliances.csv", tables::compliances(found)?),
         ("residuals.csv", tables::residuals(run, found)?),
-        ("deflections.svg", picture::deflections(found).into_bytes()),
+        (
+            "deflections.svg",
+            picture::charts(&[page::agreement(run, found), page::residuals_chart(run, found)]).into_bytes(),
+        ),
         (PAGE, page::page(run, found).html()),
     ]))
 }

@@ -5,7 +5,7 @@ use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, St
 use crate::units::{figures, fixed};
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{Identified, RowResult};
-use stead_format::IdentifyRun;
+use stead_run_files::IdentifyRun;
 
 /// Compliances with their intervals, how well they explain the readings, and every reading.
 pub(super) fn page(run: &IdentifyRun, found: &Identified) -> Page {
@@ -25,7 +25,9 @@ pub(super) fn page(run: &IdentifyRun, found: &Identified) -> Page {
     if found.varying.is_some() {
         page = page.with(arm(found));
     }
-    page.with(agreement(run, found)).with(residuals_chart(run, found)).with(residuals(run, found))
+    page.with(Card::Chart(agreement(run, found)))
+        .with(Card::Chart(residuals_chart(run, found)))
+        .with(residuals(run, found))
 }
 
 fn tiles(found: &Identified) -> Card {
@@ -138,7 +140,8 @@ fn dots(run: &IdentifyRun, found: &Identified, height: fn(f64, f64) -> f64) -> V
     series
 }
 
-fn agreement(run: &IdentifyRun, found: &Identified) -> Card {
+/// Every component of every deflection, read over predicted, with the line on which both are the same.
+pub(super) fn agreement(run: &IdentifyRun, found: &Identified) -> Chart {
     let components = found
         .rows
         .iter()
@@ -146,18 +149,19 @@ fn agreement(run: &IdentifyRun, found: &Identified) -> Card {
     let reach = components.fold(0.0_f64, |reach, part| reach.max(part.abs())) * 1e3;
     let mut series = dots(run, found, |measured, _| measured);
     series.push(Series::curve("read as predicted", 4, [[-reach, -reach], [reach, reach]]).styled(Style::Dashed));
-    Card::Chart(Chart {
+    Chart {
         title: "Deflection read and by the identified arm".to_owned(),
         x: Axis::new("predicted component (mm)"),
         y: Axis::new("component read (mm)"),
         series,
         is_even: true,
         ..Chart::default()
-    })
+    }
 }
 
-fn residuals_chart(run: &IdentifyRun, found: &Identified) -> Card {
-    Card::Chart(Chart {
+/// What is left of it, over the predicted one.
+pub(super) fn residuals_chart(run: &IdentifyRun, found: &Identified) -> Chart {
+    Chart {
         title: "Residuals".to_owned(),
         detail: format!("{} mm rms", figures(found.residual_rms * 1e3)),
         x: Axis::new("predicted component (mm)"),
@@ -165,7 +169,7 @@ fn residuals_chart(run: &IdentifyRun, found: &Identified) -> Card {
         series: dots(run, found, |measured, predicted| measured - predicted),
         marks: vec![Mark { is_level: true, at: 0.0, label: String::new() }],
         ..Chart::default()
-    })
+    }
 }
 
 fn residuals(run: &IdentifyRun, found: &Identified) -> Card {

@@ -13,9 +13,9 @@ const COMPLIANCE: &str = "compliance_urad_per_nm";
 const COMPENSATOR: &str = "compensator";
 const COVARIANCE: &str = "covariance";
 
-/// The text of the robot file with new compliances, compensator and `[covariance]`; comments and all else are kept. A joint that
-/// was given by its stiffness is given by its compliance, in the same place. The covariance is in the products of the units of
-/// its parameters.
+/// The text of the robot file with new compliances, compensator and `[covariance]`; comments and all else are kept. A
+/// joint that was given by its stiffness is given by its compliance, in the same place. The covariance is in the
+/// products of the units of its parameters.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the text is not that of a robot file.

@@ -1,63 +1,93 @@
 //! The CSV files of an identification.
 
 use super::super::output::ReportError;
-use super::{URAD, key, rounded, unit};
-use crate::csv_file::table;
-use crate::units::{Unit, fixed};
+use super::json::numbers;
+use super::{URAD, key, unit};
+use crate::csv_file::rows_or;
+use crate::figure::{AngleDeg, DeflectionMm, Studentised, each, some};
+use nalgebra::Vector3;
 use stead_calibration::identification::Identified;
-use stead_format::IdentifyRun;
+use stead_calibration::identification::outcome::RowResult;
+use stead_run_files::IdentifyRun;
 
 /// Significant digits of estimates.
 const DIGITS: usize = 9;
 
-fn number(value: f64) -> String {
-    rounded(value, DIGITS).to_string()
+records! {
+    /// An estimate, with nine significant digits.
+    #[derive(Default)]
+    pub struct EstimateRow of (parameter: String, unit: &'static str, angle: Option<f64>, numbers: [f64; 4]) {
+        /// A compliance that was seen, or a key of the robot file.
+        parameter: String = parameter,
+        /// Its unit.
+        unit: &'static str = unit,
+        /// The angle that it is at, of a joint beside a compensator.
+        angle_deg: Option<AngleDeg> = some(angle),
+        /// The estimate.
+        value: f64 = numbers[0],
+        /// Its standard deviation.
+        std: f64 = numbers[1],
+        /// Lower end of its 95 % interval.
+        low: f64 = numbers[2],
+        /// Upper end of its 95 % interval.
+        high: f64 = numbers[3],
+    }
 }
 
-/// `compliances.csv`: first every compliance (one for each distinct angle of the joint beside a compensator), then the
-/// parameters of the robot file, each with its standard deviation and 95 % interval.
+/// `compliances.csv`: an [`EstimateRow`] first for every compliance (one for each distinct angle of the joint beside a
+/// compensator), then for the parameters of the robot file.
 pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
-    let header = "parameter,unit,angle_deg,value,std,low,high";
     let seen = found.compliances.iter().map(|estimate| {
-        let joint = found.joint(estimate.parameter);
-        let angle = estimate.angle.map_or_else(String::new, |angle| Unit::ANGLE_DEG.text(angle));
-        let mut row = vec![format!("seen.joints[{}].compliance", joint + 1), "urad/(N m)".to_owned(), angle];
-        row.extend(
-            [estimate.value, estimate.deviation, estimate.interval[0], estimate.interval[1]]
-                .map(|value| number(value * URAD)),
-        );
-        row
+        let name = format!("seen.joints[{}].compliance", found.joint(estimate.parameter) + 1);
+        EstimateRow::of(name, "urad/(N m)", estimate.angle, numbers(estimate, URAD, DIGITS))
     });
     let arm = found.arm.iter().map(|estimate| {
         let (name, factor) = key(&estimate.parameter);
-        let mut row = vec![name, unit(estimate.parameter.quantity).to_owned(), String::new()];
-        row.extend(
-            [estimate.value, estimate.deviation, estimate.interval[0], estimate.interval[1]]
-                .map(|value| number(value * factor)),
-        );
-        row
+        EstimateRow::of(name, unit(estimate.parameter.quantity), None, numbers(estimate, factor, DIGITS))
     });
-    table("the table of compliances", header.split(','), seen.chain(arm))
+    rows_or("the table of compliances", &EstimateRow::default(), seen.chain(arm))
 }
 
-/// `residuals.csv`: every reading, its deflection read and by the identified arm (base frame), and whether it was left out.
+records! {
+    /// A reading: its deflection read and by the identified arm, in the base frame.
+    #[derive(Default)]
+    pub struct ResidualRow of (row: &RowResult, run: &IdentifyRun) {
+        let sheet = &run.problem.sheet;
+    } with {
+        /// Its line in the sheet.
+        line: usize = row.line,
+        /// Its configuration.
+        configuration: String = sheet.configurations[row.configuration].name.clone(),
+        /// Its reference point.
+        point: String = sheet.points[row.point].clone(),
+        /// The deflection read.
+        measured: Deflection = row.measured.into(),
+        /// That of the identified arm.
+        predicted: Deflection = row.predicted.into(),
+        /// The difference.
+        residual: Deflection = (row.measured - row.predicted).into(),
+        /// The studentised residual.
+        studentised: Studentised = row.studentised.into(),
+        /// Whether it was left out.
+        outlier: bool = row.is_outlier,
+    }
+
+    /// A deflection in a row.
+    #[derive(Copy, Default)]
+    struct Deflection from deflection: Vector3<f64> {
+        let [x_mm, y_mm, z_mm] = each(deflection.into());
+    } with {
+        /// x.
+        x_mm: DeflectionMm = x_mm,
+        /// y.
+        y_mm: DeflectionMm = y_mm,
+        /// z.
+        z_mm: DeflectionMm = z_mm,
+    }
+}
+
+/// `residuals.csv`: a [`ResidualRow`] for every reading.
 pub(super) fn residuals(run: &IdentifyRun, found: &Identified) -> Result<Vec<u8>, ReportError> {
-    let header = "\
-        line,configuration,point,measured_x_mm,measured_y_mm,measured_z_mm,predicted_x_mm,predicted_y_mm,\
-         predicted_z_mm,residual_x_mm,residual_y_mm,residual_z_mm,studentised,outlier";
-    let sheet = &run.problem.sheet;
-    let rows = found.rows.iter().map(|row| {
-        let mut fields = vec![
-            row.line.to_string(),
-            sheet.configurations[row.configuration].name.clone(),
-            sheet.points[row.point].clone(),
-        ];
-        for vector in [row.measured, row.predicted, row.measured - row.predicted] {
-            fields.extend(vector.iter().map(|value| Unit::DEFLECTION_MM.text(*value)));
-        }
-        fields.push(fixed(row.studentised, 4));
-        fields.push(row.is_outlier.to_string());
-        fields
-    });
-    table("the table of residuals", header.split(','), rows)
+    let readings = found.rows.iter().map(|row| ResidualRow::of(row, run));
+    rows_or("the table of residuals", &ResidualRow::default(), readings)
 }

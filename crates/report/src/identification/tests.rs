@@ -1,12 +1,12 @@
 use super::*;
 use std::path::Path;
 use stead_calibration::identification::identify;
-use stead_format::read_identification;
+use stead_run_files::read_identification;
 
 fn example() -> (IdentifyRun, Identified) {
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/identify-example.toml");
     let run = read_identification(&config).unwrap();
-    let found = identify(&run.problem).unwrap();
+    let found = identify(&run.problem, &stead_numerics::monitor::Monitor::silent()).unwrap();
     (run, found)
 }
 
@@ -79,6 +79,6 @@ fn tables_and_text_tell_every_estimate_and_every_reading() {
     assert!(text.contains("60 readings of 3 points in 20 configurations") && !text.contains("outlier"), "{text}");
     let rows = String::from_utf8(tables::residuals(&run, &found).unwrap()).unwrap();
     assert!(rows.lines().all(|line| line.split(',').count() == 14) && rows.lines().count() == 61);
-    let svg = crate::picture::deflections(&found);
-    assert!(svg.contains("residual 0.04") && !svg.contains("readings left out"));
+    let svg = crate::picture::charts(&[page::agreement(&run, &found), page::residuals_chart(&run, &found)]);
+    assert!(svg.contains("\n0.04") && svg.contains(" mm rms\n") && !svg.contains("left out"));
 }

@@ -5,10 +5,10 @@ use crate::columns::aligned;
 use crate::units::fixed;
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{Identified, RowResult};
-use stead_format::IdentifyRun;
+use stead_run_files::IdentifyRun;
 
-/// Compliances with their 95 % intervals, the parameters of the robot file, how well they explain and predict the readings,
-/// outliers, and warnings.
+/// Compliances with their 95 % intervals, the parameters of the robot file, how well they explain and predict the
+/// readings, outliers, and warnings.
 pub fn identify_text(run: &IdentifyRun, found: &Identified) -> String {
     let sheet = &run.problem.sheet;
     let mut text = format!(

@@ -24,13 +24,13 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Takes a folder, making it and its parents where they are missing, and tries whether a file can be written to it. Temporary
-    /// files of runs that were killed are removed.
+    /// Takes a folder, making it and its parents where they are missing, and tries whether a file can be written to it.
+    /// Temporary files of runs that were killed are removed.
     ///
     /// # Errors
     /// [`ReportError::Folder`] when there is none and none can be made, or when no file can be written to it;
-    /// [`ReportError::Locked`] when another run holds it; [`ReportError::OtherManifest`] when results would replace a `manifest.json`
-    /// that is none of stead.
+    /// [`ReportError::Locked`] when another run holds it; [`ReportError::OtherManifest`] when results would replace a
+    /// `manifest.json` that is none of stead.
     pub fn create(path: &Path) -> Result<Self, ReportError> {
         let fail = |cause| ReportError::Folder { path: path.to_owned(), cause };
         if path.exists() && !path.is_dir() {
@@ -81,8 +81,9 @@ impl Folder {
         self
     }
 
-    /// The folder for results of an interrupted run of a command where finished ones of that command are in this folder, which they shall
-    /// not replace: the one beside it, named with `.interrupted` behind. None where they belong here.
+    /// The folder for results of an interrupted run of a command where finished ones of that command are in this
+    /// folder, which they shall not replace: the one beside it, named with `.interrupted` behind. None where they
+    /// belong here.
     ///
     /// # Errors
     /// As [`Folder::create`].
@@ -90,8 +91,8 @@ impl Folder {
         (is_interrupted && self.shields(command, |_| true)?).then(|| Self::create(&self.interrupted_path())).transpose()
     }
 
-    /// Whether a finished run of a command has left this file, too, among its results here, so that an interrupted run shall not replace
-    /// them.
+    /// Whether a finished run of a command has left this file, too, among its results here, so that an interrupted run
+    /// shall not replace them.
     ///
     /// # Errors
     /// [`ReportError`] for a manifest that cannot be read.
@@ -99,8 +100,8 @@ impl Folder {
         self.shields(command, |set| set.file(file).is_some())
     }
 
-    /// Whether finished results of a command, of which something else holds, are here and shall not be replaced by those of an interrupted
-    /// run.
+    /// Whether finished results of a command, of which something else holds, are here and shall not be replaced by
+    /// those of an interrupted run.
     fn shields(&self, command: &str, holds: impl Fn(&ResultSet) -> bool) -> Result<bool, ReportError> {
         if self.keeps_partial {
             return Ok(false);

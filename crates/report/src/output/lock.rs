@@ -1,4 +1,4 @@
-//! A lock file that tells who holds it, and goes with the lock.
+//! A lock file that states who holds it, and goes with the lock.
 
 use std::fs::File;
 use std::io::{Read, Seek, Write};
@@ -30,19 +30,20 @@ pub enum LockError {
 const ATTEMPTS: usize = 100;
 
 impl Lock {
-    /// Takes the lock on a file, which is made where there is none. Does not wait. On a file system that knows no locks nothing is
-    /// locked: see [`Lock::is_locked`].
+    /// Takes the lock on a file, which is made where there is none. Does not wait. On a file system that knows no locks
+    /// nothing is locked: see [`Lock::is_locked`].
     ///
     /// # Errors
-    /// [`LockError::Held`] when another process, or another `Lock` of this one, has it; [`LockError::System`] when the file cannot be
-    /// made.
+    /// [`LockError::Held`] when another process, or another `Lock` of this one, has it; [`LockError::System`] when the
+    /// file cannot be made.
     pub fn take(path: &Path) -> Result<Self, LockError> {
         for _ in 0..ATTEMPTS {
             let mut lock = match files::Lock::attempt(path)? {
                 TryLock::Taken(lock) => lock,
                 TryLock::Held(mut file) => return Err(LockError::Held { process: holder(&mut file) }),
             };
-            // The holder before may have removed the file between the two: a lock on a file without a name keeps nobody out.
+            // The holder before may have removed the file between the two: a lock on a file without a name keeps nobody
+            // out.
             if is_at(&lock.file, path) {
                 // For the message of whoever comes next: a disk without room for it is no reason to stop.
                 let _ = lock.file.set_len(0).and_then(|()| write!(lock.file, "{}", std::process::id()));
@@ -65,7 +66,8 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // While it is locked still, and not where whoever waits could not tell that it has gone. One that stays keeps nobody out.
+        // While it is locked still, and not where whoever waits could not tell that it has gone. One that stays keeps
+        // nobody out.
         if cfg!(unix) && self.lock.is_locked && is_at(&self.lock.file, &self.path) {
             let _ = std::fs::remove_file(&self.path);
         }

@@ -1,8 +1,8 @@
 //! The folder that results go to, and the error of this room.
 //!
-//! One process at a time writes to a [`Folder`] (`lock`). The files of a run are put in place as one set (`transaction`), with
-//! `manifest.json` ([`stead_format::manifest`]) last: a run that is killed leaves the results of the run before, or a folder that every
-//! reader refuses, and the next run clears up what it has left.
+//! One process at a time writes to a [`Folder`] (`lock`). The files of a run are put in place as one set
+//! (`transaction`), with `manifest.json` ([`stead_format::manifest`]) last: a run that is killed leaves the results of
+//! the run before, or a folder that every reader refuses, and the next run clears up what it has left.
 
 mod folder;
 mod lock;
@@ -18,8 +18,8 @@ use stead_format::files::is_full;
 /// Why a result could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The output folder is not there and cannot be made, something else stands in its place, or nothing can be written to
-    /// it.
+    /// The output folder is not there and cannot be made, something else stands in its place, or nothing can be written
+    /// to it.
     #[error("{}: results cannot be written here: {cause}; allowed: a folder that can be made or written to", path.display())]
     Folder {
         /// The folder.
@@ -54,10 +54,11 @@ pub enum ReportError {
         path.display()
     )]
     OtherRun {
-        /// The file by which the runs were told apart.
+        /// The file by which the runs were distinguished.
         path: PathBuf,
     },
-    /// A file cannot be written. What stood at the path before is left as it was, or the folder is marked as incomplete.
+    /// A file cannot be written. What stood at the path before is left as it was, or the folder is marked as
+    /// incomplete.
     #[error("{}: cannot be written: {cause}", path.display())]
     File {
         /// The file.

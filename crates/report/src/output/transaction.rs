@@ -1,8 +1,9 @@
 //! The files of one run put in place as one set.
 //!
-//! All files are written under temporary names first, so that a disk that is full changes nothing. Then names are given, and nothing is
-//! written any more: the manifest with the command's entry marked as incomplete, the files, the manifest as it is to stay. Names are put
-//! on disk between these three, so that the order holds for a loss of power too.
+//! All files are written under temporary names first, so that a disk that is full changes nothing. Then names are
+//! given, and nothing is written any more: the manifest with the command's entry marked as incomplete, the files, the
+//! manifest as it is to stay. Names are put on disk between these three, so that the order holds for a loss of power
+//! too.
 
 use super::ReportError;
 use std::path::{Path, PathBuf};
@@ -10,8 +11,8 @@ use stead_format::files::{self, PREFIX, Staged};
 use stead_format::input::{InputFile, sha256};
 use stead_format::manifest::{Found, MANIFEST, Manifest, ResultFile, ResultSet, RunInput};
 
-/// The results of a run, about to be written. Files of the last run of the same command that this one does not write are removed,
-/// as its manifest lists them; no other file is touched.
+/// The results of a run, about to be written. Files of the last run of the same command that this one does not write
+/// are removed, as its manifest lists them; no other file is touched.
 #[derive(Debug)]
 pub struct Transaction<'a> {
     folder: &'a Path,
@@ -92,11 +93,12 @@ impl<'a> Transaction<'a> {
         self
     }
 
-    /// Writes the files, over older ones of their names, and the manifest. Returns their paths, without that of the manifest.
+    /// Writes the files, over older ones of their names, and the manifest. Returns their paths, without that of the
+    /// manifest.
     ///
     /// # Errors
-    /// [`ReportError::File`] with the path of the file: the folder is as it was, or its manifest says that it is incomplete.
-    /// [`ReportError::OtherRun`] where files are to join results of another run.
+    /// [`ReportError::File`] with the path of the file: the folder is as it was, or its manifest says that it is
+    /// incomplete. [`ReportError::OtherRun`] where files are to join results of another run.
     pub fn write<N: AsRef<str>>(self, files: &[(N, Vec<u8>)]) -> Result<Vec<PathBuf>, ReportError> {
         for step in self.steps(files)? {
             self.take(step)?;

@@ -3,11 +3,16 @@
 use super::table::Table;
 use super::{PageError, map_data};
 use crate::Files;
-use serde_json::{Map, Value, json};
+use crate::document::value;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// `page-data.json`.
 pub(super) const DATA: &str = "page-data.json";
-/// The boxes that a certificate has not excluded.
+/// What a certificate proves.
+const CERTIFICATE: &str = "certificate.json";
+/// The boxes that it has not excluded.
 const OPEN_REGION: &str = "open-region.csv";
 /// Longer paths are thinned for drawing.
 const MAX_POINTS: usize = 6000;
@@ -35,7 +40,8 @@ const KINDS: [Kind; 2] = [
     },
 ];
 
-/// The files that the page of a command is made of, `page-data.json` and its document first; those that it must have are told.
+/// The files that the page of a command is made of, `page-data.json` and its document first; those that it must have
+/// are told.
 pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     let Some(kind) = KINDS.iter().find(|kind| kind.command == command) else { return Vec::new() };
     let mut names = vec![(DATA, true), (kind.document, true)];
@@ -43,7 +49,7 @@ pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     names.extend(kind.plans.iter().enumerate().map(|(number, name)| (*name, number < 2)));
     let optional = ["deflection-map-best.csv", "deflection-map-worst.csv", "deflection-map.csv"];
     names.extend(optional.iter().chain(kind.stability).map(|name| (*name, false)));
-    names.extend(["convergence.csv", "certificate.json", OPEN_REGION].map(|name| (name, false)));
+    names.extend(["convergence.csv", CERTIFICATE, OPEN_REGION].map(|name| (name, false)));
     names
 }
 
@@ -85,47 +91,71 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         let name = entry["table"].as_str().unwrap_or_default();
         maps.push(map_data::content(entry, &table(name)?)?);
     }
-    let mut optional = Map::new();
-    if let Some(found) = bytes("convergence.csv") {
-        let table = Table::read("convergence.csv", found)?;
-        optional.insert("convergence".to_owned(), table.content(&["search"], None)?);
-    }
+    let read = |name: &'static str| bytes(name).map(|found| Table::read(name, found)).transpose();
     let depths: Vec<&str> = kind.stability.iter().copied().filter(|name| bytes(name).is_some()).collect();
-    if !depths.is_empty() {
-        let words = ["stable", "kind"];
-        let columns = depths.iter().map(|name| table(name)?.content(&words, chosen.as_deref()));
-        optional.insert("depths".to_owned(), columns.collect::<Result<_, _>>()?);
-    }
-    if let Some(found) = bytes("certificate.json") {
-        optional.insert("certificate".to_owned(), json_file("certificate.json", found)?);
-    }
-    if let Some(found) = bytes(OPEN_REGION) {
-        optional.insert("open_region".to_owned(), open_region(&Table::read(OPEN_REGION, found)?)?);
-    }
-    let mut page = json!({
-        "document": document,
-        "plans": plans,
-        "thinned": chosen.as_ref().map(|chosen| json!({ "points": points, "shown": chosen.len() })),
-    });
+    let depths = depths.iter().map(|name| table(name)?.content(&["stable", "kind"], chosen.as_deref()));
     let mut data = data;
     if let Some(chosen) = &chosen {
         for key in ["position_mm", "feed", "axis"] {
             let all = data["task"][key].as_str().unwrap_or_default();
-            data["task"][key] = json!(vectors(all, chosen));
+            data["task"][key] = vectors(all, chosen).into();
         }
     }
-    if let (Value::Object(page), Value::Object(data)) = (&mut page, data) {
-        page.extend(data);
-        page.extend(optional);
-        page.insert("maps".to_owned(), Value::Array(maps));
-    }
-    Ok(page)
+    data["maps"] = maps.into();
+    Ok(value(&Content {
+        document,
+        plans,
+        thinned: chosen.as_ref().map(|chosen| Thinned { points, shown: chosen.len() }),
+        convergence: read("convergence.csv")?.map(|table| table.content(&["search"], None)).transpose()?,
+        depths: depths.collect::<Result<_, _>>()?,
+        certificate: bytes(CERTIFICATE).map(|found| json_file(CERTIFICATE, found)).transpose()?,
+        open_region: read(OPEN_REGION)?.map(|boxes| open_region(&boxes)).transpose()?,
+        data,
+    }))
 }
 
+/// What the script reads.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Content {
+    /// The document of the run.
+    document: Value,
+    /// The tables of its plans, by their columns.
+    plans: Vec<Value>,
+    /// How many points of a long path are shown.
+    thinned: Option<Thinned>,
+    /// The table of the convergence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    convergence: Option<Value>,
+    /// The tables of critical depths.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    depths: Vec<Value>,
+    /// The certificate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    certificate: Option<Value>,
+    /// What it has not excluded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    open_region: Option<Regions>,
+    /// `page-data.json`, its maps with their tables.
+    #[serde(flatten)]
+    data: Value,
+}
+
+/// Points of a long path.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Thinned {
+    /// All.
+    points: usize,
+    /// Those shown.
+    shown: usize,
+}
+
+/// For `best` and `worst` the ends of radius, z and yaw less azimuth.
+type Regions = BTreeMap<&'static str, BTreeMap<&'static str, [f64; 2]>>;
+
 /// For each search the extent of all its boxes.
-fn open_region(boxes: &Table<'_>) -> Result<Value, PageError> {
+fn open_region(boxes: &Table<'_>) -> Result<Regions, PageError> {
     let searches = boxes.texts("search")?;
-    let mut regions = Map::new();
+    let mut regions = Regions::new();
     for [key, from, to] in [
         ["radius_mm", "radius_from_mm", "radius_to_mm"],
         ["z_mm", "z_from_mm", "z_to_mm"],
@@ -138,11 +168,11 @@ fn open_region(boxes: &Table<'_>) -> Result<Value, PageError> {
             };
             let (low, high) = (of(&from, f64::INFINITY, f64::min), of(&to, f64::NEG_INFINITY, f64::max));
             if low.is_finite() && high.is_finite() {
-                regions.entry(name).or_insert_with(|| json!({}))[key] = json!([low, high]);
+                regions.entry(name).or_default().insert(key, [low, high]);
             }
         }
     }
-    Ok(Value::Object(regions))
+    Ok(regions)
 }
 
 /// Those chosen of a list of three singles each in Base64, which are sixteen characters.

@@ -19,14 +19,15 @@ pub enum RewriteError {
     Output(#[from] ReportError),
 }
 
-/// What is asked for, where something else is found.
+/// What is requested, where something else is found.
 const ALLOWED: &str = "a folder that `stead place` or `stead score --out` has written with a page";
 
-/// Writes `report.html` and `cell.glb` of a folder again: the same bytes as the run has left, from its files. Returns the paths.
+/// Writes `report.html` and `cell.glb` of a folder again: the same bytes as the run has left, from its files. Returns
+/// the paths.
 ///
 /// # Errors
-/// [`RewriteError::Input`] for a folder that lacks a file, mixes two runs, is of another format or was changed since, with the file;
-/// nothing is written then.
+/// [`RewriteError::Input`] for a folder that lacks a file, mixes two runs, is of another format or was changed since,
+/// with the file; nothing is written then.
 pub fn rewrite(path: &Path) -> Result<Vec<PathBuf>, RewriteError> {
     let missing = |problem: String| InputError::new(path, problem).allowed(ALLOWED);
     if !path.is_dir() {

@@ -1,73 +1,46 @@
 //! The page as one file: markup, style, script and data, with a security policy that allows nothing else.
 
-use super::base64::base64;
-use serde_json::Value;
+use super::packed::base64;
+use super::script::script;
 use stead_format::input::sha256;
 
 const MARKUP: &str = include_str!("page.html");
 /// The style of all pages.
-pub(super) const STYLE: &str = concat!(include_str!("base.css"), include_str!("page.css"));
+const STYLE: &str = concat!(include_str!("base.css"), include_str!("page.css"), include_str!("cards.css"));
 
-/// The script, module by module; each uses only what stands above it when it is loaded.
-const MODULES: [&str; 28] = [
-    include_str!("script/data.js"),
-    include_str!("script/linear.js"),
-    include_str!("script/path.js"),
-    include_str!("script/kinematics.js"),
-    include_str!("script/external-axes.js"),
-    include_str!("script/colour.js"),
-    include_str!("script/state.js"),
-    include_str!("script/dom.js"),
-    include_str!("script/mesh.js"),
-    include_str!("script/bodies.js"),
-    include_str!("script/path-mesh.js"),
-    include_str!("script/surroundings.js"),
-    include_str!("script/axis-tracks.js"),
-    include_str!("script/shaders.js"),
-    include_str!("script/gpu.js"),
-    include_str!("script/camera.js"),
-    include_str!("script/scene.js"),
-    include_str!("script/scene-card.js"),
-    include_str!("script/plot.js"),
-    include_str!("script/line-chart.js"),
-    include_str!("script/charts.js"),
-    include_str!("script/map.js"),
-    include_str!("script/header.js"),
-    include_str!("script/transport.js"),
-    include_str!("script/readings.js"),
-    include_str!("script/cases.js"),
-    include_str!("script/cards.js"),
-    include_str!("script/main.js"),
-];
+/// What the main module of the placement page is.
+pub(super) const RUN: &str = "run/main.js";
+/// What that of pages of cards is.
+pub(super) const CARDS: &str = "cards/main.js";
 
-/// The script as it stands in a page.
-pub(super) fn script() -> String {
-    format!("(() => {{\n'use strict';\n{}}})();\n", MODULES.concat())
+/// A page with this title, script and content.
+pub(super) fn html(title: &str, main: &str, content: &str) -> String {
+    document(title, &script_of(main), content)
 }
 
-/// The page with this title and content.
-pub(super) fn html(title: &str, content: &Value) -> String {
-    document(title, STYLE, &script(), &content.to_string())
+/// The script as it stands in a page. All pages can be joined, as the tests of `script` have it; one that could not
+/// would say why.
+fn script_of(main: &str) -> String {
+    script(main).unwrap_or_else(|error| format!("throw new Error({:?});\n", error.to_string()))
 }
 
-/// A page with this title, style and script, and with data in JSON.
-pub(super) fn document(title: &str, style: &str, script: &str, data: &str) -> String {
+fn document(title: &str, script: &str, data: &str) -> String {
     let digest = |text: &str| format!("sha256-{}", base64(&from_hex(&sha256(text.as_bytes()))));
     let policy = format!(
         "default-src 'none'; script-src '{}'; style-src '{}'; img-src data:; base-uri 'none'; form-action 'none'",
         digest(script),
-        digest(style)
+        digest(STYLE)
     );
     // In JSON the sign stands only within texts.
     let data = data.replace('<', "\\u003c");
     let parts = [
         ("{{policy}}", policy.as_str()),
         ("{{title}}", &escaped(title)),
-        ("{{style}}", style),
+        ("{{style}}", STYLE),
         ("{{data}}", &data),
         ("{{script}}", script),
     ];
-    let mut page = String::with_capacity(data.len() + script.len() + style.len() + MARKUP.len());
+    let mut page = String::with_capacity(data.len() + script.len() + STYLE.len() + MARKUP.len());
     let mut rest = MARKUP;
     for (mark, text) in parts {
         let (before, behind) = rest.split_once(mark).unwrap_or((rest, ""));
@@ -95,7 +68,8 @@ mod tests {
 
     #[test]
     fn all_marks_are_filled_and_nothing_ends_the_script_or_the_data() {
-        let page = html("<b>&", &json!({ "name": "</script><script>alert(1)</script>" }));
+        let content = json!({ "name": "</script><script>alert(1)</script>" });
+        let page = html("<b>&", RUN, &content.to_string());
         assert!(
             ["policy", "title", "style", "data", "script"]
                 .iter()
@@ -105,7 +79,7 @@ mod tests {
         // One for the data, one for the script.
         assert_eq!(page.matches("</script").count(), 2);
         assert!(page.contains(r"\u003c/script>"));
-        assert!(!STYLE.contains("</") && !script().contains("</") && !script().contains("<!--"));
+        assert!(!STYLE.contains("</"));
     }
 
     #[test]

@@ -1,13 +1,14 @@
-//! The deflection map in the page: joint angles of its states, from the problem, and scores and reasons, from its table.
+//! The deflection map in the page: joint angles of its states, from the problem, and scores and reasons, from its
+//! table.
 
 use super::PageError;
 use super::packed::{SecondDifferences, Varints};
 use super::table::Table;
-use serde_json::{Value, json};
+use serde_json::Value;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::Range;
-use stead_placement::feasibility::DeflectionMap;
-use stead_placement::problem::{Placement, Problem};
+use stead_planning::feasibility::DeflectionMap;
+use stead_planning::problem::{Placement, Problem};
 
 /// Joint angles in the page are multiples of this. deg
 const ANGLE_STEP_DEG: f64 = 0.02;
@@ -22,39 +23,45 @@ fn columns(points: usize) -> Vec<usize> {
     (0..points).step_by(step).collect()
 }
 
-/// The entry of a map in `page-data.json`: `points` that it shows, `beta_count`, and the `joints` of its allowed states: for each joint
-/// the second differences along beta, in steps of `angle_step_deg`, begun anew behind a state that is not allowed or has another posture.
-pub(super) fn joints(problem: &Problem, placement: &Placement, map: &DeflectionMap, table: &str) -> Value {
-    let points = columns(map.rows.len());
-    let mut packed = Varints::default();
-    for &point in &points {
-        let mut last: Option<Posture> = None;
-        let mut sequences = [SecondDifferences::default(); 6];
-        for (k, cell) in map.rows[point].iter().enumerate() {
-            let posture = cell.as_ref().ok().map(|cell| cell.posture);
-            if posture != last {
-                sequences.iter_mut().for_each(SecondDifferences::restart);
-            }
-            last = posture;
-            let Some(posture) = posture else { continue };
-            let angles = state(problem, placement, point, problem.redundancy.beta(k), posture);
-            for (sequence, angle) in sequences.iter_mut().zip(angles) {
-                packed.push(sequence.next((angle.to_degrees() / ANGLE_STEP_DEG).round() as i64));
+records! {
+    /// A deflection map in `page-data.json`.
+    pub struct MapData of (problem: &Problem, placement: &Placement, map: &DeflectionMap, table: &str) {
+        let points = columns(map.rows.len());
+        let mut packed = Varints::default();
+        for &point in &points {
+            let mut last: Option<Posture> = None;
+            let mut sequences = [SecondDifferences::default(); 6];
+            for (k, cell) in map.rows[point].iter().enumerate() {
+                let posture = cell.as_ref().ok().map(|cell| cell.posture);
+                if posture != last {
+                    sequences.iter_mut().for_each(SecondDifferences::restart);
+                }
+                last = posture;
+                let Some(posture) = posture else { continue };
+                let angles = state(problem, placement, point, problem.redundancy.beta(k), posture);
+                for (sequence, angle) in sequences.iter_mut().zip(angles) {
+                    packed.push(sequence.next((angle.to_degrees() / ANGLE_STEP_DEG).round() as i64));
+                }
             }
         }
+    } with {
+        /// The table of its scores.
+        table: String = table.to_owned(),
+        /// The path points that it shows, from 0.
+        points: Vec<usize> = points,
+        /// Angles about the tool axis at each point.
+        beta_count: usize = map.beta_count,
+        /// Joint angles are multiples of this. deg
+        angle_step_deg: f64 = ANGLE_STEP_DEG,
+        /// Joint angles of its allowed states: for each joint the second differences along beta, begun anew behind a
+        /// state that is not allowed or has another posture.
+        joints: String = packed.text(),
     }
-    json!({
-        "table": table,
-        "points": points,
-        "beta_count": map.beta_count,
-        "angle_step_deg": ANGLE_STEP_DEG,
-        "joints": packed.text(),
-    })
 }
 
 /// The joint angles of an allowed state, in the turn nearest to their ranges. rad
 fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, posture: Posture) -> [f64; 6] {
-    let flange = problem.base_from_flange(point, placement, beta);
+    let flange = problem.at(placement).base_from_flange(point, beta);
     let mut angles = problem.robot.inverse(&flange, posture).unwrap_or_default();
     for (angle, joint) in angles.iter_mut().zip(problem.robot.joints()) {
         *angle = Range::of(joint).nearest(*angle).0;
@@ -62,9 +69,9 @@ fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, post
     angles
 }
 
-/// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for each (the posture,
-/// or 16 and the number of its reason), and the `scores` of the allowed ones. Of the table only the rows that are shown are kept: that of a
-/// long path has millions.
+/// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for
+/// each (the posture, or 16 and the number of its reason), and the `scores` of the allowed ones. Of the table only the
+/// rows that are shown are kept: that of a long path has millions.
 pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageError> {
     let wrong = || PageError::data("maps", "is no description of a deflection map");
     let points = entry["points"].as_array().ok_or_else(wrong)?;
@@ -94,16 +101,17 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
         }
     }
     let mut value = entry.clone();
-    value["codes"] = json!(super::base64::base64(&codes));
-    value["reasons"] = json!(names);
-    value["score_step_mm"] = json!(SCORE_STEP_MM);
-    value["scores"] = json!(packed.text());
+    value["codes"] = super::packed::base64(&codes).into();
+    value["reasons"] = names.into();
+    value["score_step_mm"] = SCORE_STEP_MM.into();
+    value["scores"] = packed.text().into();
     Ok(value)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn rows_that_are_not_shown_are_not_looked_at() {
@@ -118,7 +126,7 @@ mod tests {
         let entry = json!({ "points": shown, "beta_count": beta_count });
         let content = |text: &str| content(&entry, &Table::read("map.csv", text.as_bytes())?);
         assert_eq!(shown.len(), COLUMNS);
-        let codes = super::super::base64::base64(&[2; 3 * COLUMNS]);
+        let codes = super::super::packed::base64(&[2; 3 * COLUMNS]);
         assert_eq!(content(&text).unwrap()["codes"], codes.as_str());
         let cut: String = text.lines().take(100).map(|line| format!("{line}\n")).collect();
         assert!(content(&cut).unwrap_err().to_string().contains("has fewer states"));

@@ -1,13 +1,25 @@
 //! Lists of numbers in few characters: what the page's script unpacks in `data.js`.
 
-use super::base64::base64;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+/// Bytes as Base64 with padding (RFC 4648, section 4).
+pub(super) fn base64(bytes: &[u8]) -> String {
+    STANDARD.encode(bytes)
+}
+
+/// The bytes behind such a text; none where it is no Base64.
+pub(super) fn bytes_of(text: &str) -> Vec<u8> {
+    STANDARD.decode(text).unwrap_or_default()
+}
 
 /// Numbers in single precision, little endian, as Base64.
 pub(super) fn singles(values: impl IntoIterator<Item = f64>) -> String {
     base64(&values.into_iter().flat_map(|value| (value as f32).to_le_bytes()).collect::<Vec<u8>>())
 }
 
-/// Whole numbers that change little from one to the next: each as seven bits a byte, the lowest first, the sign in bit 0.
+/// Whole numbers that change little from one to the next: each as seven bits a byte, the lowest first, the sign in
+/// bit 0.
 #[derive(Debug, Default)]
 pub(super) struct Varints(Vec<u8>);
 
@@ -28,7 +40,8 @@ impl Varints {
     }
 }
 
-/// The second differences of a sequence, which are small where it is smooth; [`SecondDifferences::restart`] begins a new one.
+/// The second differences of a sequence, which are small where it is smooth; [`SecondDifferences::restart`] begins a
+/// new one.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct SecondDifferences {
     last: Option<(i64, i64)>,

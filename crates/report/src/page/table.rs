@@ -2,9 +2,10 @@
 
 use super::PageError;
 use super::packed::singles;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
-/// A table in the bytes of its file: the rows of a long path are many times as large once they are taken apart, and few of them are shown.
+/// A table in the bytes of its file: the rows of a long path are many times as large once they are taken apart, and few
+/// of them are shown.
 #[derive(Debug, Clone)]
 pub(super) struct Table<'a> {
     name: String,
@@ -59,7 +60,8 @@ impl<'a> Table<'a> {
         self.each(None, |row| Ok(row.text(column).to_owned()))
     }
 
-    /// The columns named, of the rows chosen, in ascending order (all, where none are): numbers as singles, words as they are.
+    /// The columns named, of the rows chosen, in ascending order (all, where none are): numbers as singles, words as
+    /// they are.
     pub(super) fn content(&self, words: &[&str], chosen: Option<&[usize]>) -> Result<Value, PageError> {
         let is_words: Vec<bool> = self.header.iter().map(|name| words.contains(&name.as_str())).collect();
         let mut texts = vec![Vec::new(); self.header.len()];
@@ -76,7 +78,7 @@ impl<'a> Table<'a> {
         let mut columns = Map::new();
         let values = texts.into_iter().zip(numbers);
         for ((name, is_word), (texts, numbers)) in self.header.iter().zip(is_words).zip(values) {
-            columns.insert(name.clone(), if is_word { json!(texts) } else { json!(singles(numbers)) });
+            columns.insert(name.clone(), if is_word { texts.into() } else { singles(numbers).into() });
         }
         Ok(Value::Object(columns))
     }
@@ -117,14 +119,14 @@ pub(super) struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// Goes on to the next row; false where there is none.
+    /// Moves to the next row; false where there is none.
     fn next(&mut self) -> Result<bool, PageError> {
         let is_there = self.reader.read_record(&mut self.record).map_err(|cause| no_table(self.name, &cause))?;
         self.read += usize::from(is_there);
         Ok(is_there)
     }
 
-    /// Goes on to a row, from 0, which must not lie behind; false where there is none.
+    /// Moves to a row, from 0, which must not lie behind; false where there is none.
     pub(super) fn go_to(&mut self, row: usize) -> Result<bool, PageError> {
         while self.read <= row {
             if !self.next()? {
@@ -169,6 +171,6 @@ mod tests {
         let message = table.numbers("b").unwrap_err().to_string();
         assert_eq!(message, "t.csv: is no finite number in row 1 of the column b, found 'x'");
         assert_eq!(table.numbers("d").unwrap_err().to_string(), "t.csv: has no column d");
-        assert_eq!(table.content(&["b"], Some(&[1])).unwrap()["b"], json!(["y"]));
+        assert_eq!(table.content(&["b"], Some(&[1])).unwrap()["b"], serde_json::json!(["y"]));
     }
 }

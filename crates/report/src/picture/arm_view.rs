@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use stead_cell::{Poses, Shape};
 use stead_model::robot::{Frames, Robot, Spindle};
 use stead_placement::overview::Overview;
-use stead_placement::problem::{Cell, Problem};
+use stead_planning::problem::{Cell, Problem};
 
 const SIZE: Pixel = (1110, 640);
 /// Left edges of the two panels.
@@ -31,8 +31,8 @@ struct Surroundings<'a> {
     shapes: Vec<(&'a Shape, Poses, bool)>,
 }
 
-/// The arm of a run at the first path point that it reaches with the workpiece in the middle of its cell, or in the middle of its
-/// joint ranges where it reaches none.
+/// The arm of a run at the first path point that it reaches with the workpiece in the middle of its cell, or in the
+/// middle of its joint ranges where it reaches none.
 pub fn arm_of_run(problem: &Problem, overview: &Overview) -> String {
     let base_from_workpiece = overview.middle.placement.base_from_workpiece();
     let points = problem.task.points();
@@ -121,7 +121,8 @@ fn drawn(
             TextStyle::new(12.0),
         );
         if surroundings.is_some_and(|surroundings| !surroundings.shapes.is_empty()) {
-            let legend = "outlines: shapes, grey where they stand, blue with the workpiece, pale on the arm, red where they hit another";
+            let legend = "outlines: shapes, grey where fixed, blue with the workpiece, pale on the arm, red where \
+                          they hit another";
             canvas.text(legend, (COLUMNS[0], 632), TextStyle::new(12.0));
         }
     })

@@ -12,8 +12,8 @@ use stead_model::robot::Pose;
 use stead_model::task::Wrench;
 use stead_numerics::monitor::Monitor;
 
-/// The benchmark of Klimchik 2017 for two of its robots, the tool along the flange axis and towards the plane, over a grid of
-/// so many steps to the metre.
+/// The benchmark of Klimchik 2017 for two of its robots, the tool along the flange axis and towards the plane, over a
+/// grid of so many steps to the metre.
 fn comparison(steps: usize) -> Comparison {
     let robots = ["kr500", "kr120-r3900"];
     let robots = robots.map(|name| {

@@ -85,9 +85,10 @@ impl Ticks {
         Self { values: (first..=last).map(|k| k as f64 * step).collect(), decimals, ..Self::none() }
     }
 
-    /// Whole exponents on a scale of common logarithms.
+    /// Whole exponents on a scale of common logarithms: of many decades every second, third and so on.
     pub fn decades(scale: &Scale) -> Self {
-        Self { of_ten: true, ..Self::every(scale, 1.0, 0) }
+        let step = ((scale.to - scale.from) / 8.0).ceil().max(1.0);
+        Self { of_ten: true, ..Self::every(scale, step, 0) }
     }
 
     /// Names at 0, 1, 2 and so on.
@@ -99,6 +100,9 @@ impl Ticks {
     pub fn label(&self, value: f64) -> String {
         if let Some(name) = self.names.get(value as usize) {
             return name.clone();
+        }
+        if self.of_ten && value < -4.0 {
+            return format!("1e{}", fixed(value, 0));
         }
         if self.of_ten {
             let decimals = (-value).max(0.0).round() as usize;
@@ -203,6 +207,9 @@ mod tests {
         let ticks = Ticks::decades(&Scale::new(-2.3, 1.7, 0, 100));
         let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
         assert_eq!(labels, ["0.01", "0.1", "1", "10"]);
+        let ticks = Ticks::decades(&Scale::new(-9.5, 1.2, 0, 100));
+        let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
+        assert_eq!(labels, ["1e-8", "1e-6", "0.0001", "0.01", "1"]);
         let ticks = Ticks::named(["low", "high"].map(str::to_owned).to_vec());
         let labels: Vec<_> = ticks.values.iter().map(|v| ticks.label(*v)).collect();
         assert_eq!(labels, ["low", "high"]);

@@ -33,8 +33,6 @@ pub(super) struct TextStyle {
 
 /// Whole numbers of the SVG document to a pixel.
 const FINENESS: i32 = 4;
-/// Font sizes are multiplied and divided by this: without it they would differ in the last digit from those of earlier files.
-const FONT_SCALE: f64 = 1.24;
 
 impl TextStyle {
     /// Black text that starts at its place.
@@ -185,7 +183,7 @@ impl Canvas {
     /// A text.
     pub fn text(&mut self, text: &str, place: Pixel, style: TextStyle) {
         let (x, y) = raster(place);
-        let size = style.size * FONT_SCALE * f64::from(FINENESS) / FONT_SCALE;
+        let size = style.size * f64::from(FINENESS);
         let anchor = match style.anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",

@@ -7,7 +7,7 @@ use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_placement::outcome::{Case, Outcome};
-use stead_placement::problem::Problem;
+use stead_planning::problem::Problem;
 
 const SIZE: Pixel = (1110, 1180);
 /// Left edges of the two columns of panels.
@@ -29,8 +29,8 @@ struct Shown<'a> {
     path: &'static str,
 }
 
-/// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger, with
-/// the tool path as it lies and the direction to the wrist centre in the middle of each segment.
+/// The cell from above in the robot base frame: a view with the robot, and the surroundings of both placements larger,
+/// with the tool path as it lies and the direction to the wrist centre in the middle of each segment.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
     let names = [
         (GREEN, "Best placement", "tool path at the best placement"),

@@ -30,10 +30,10 @@ const MARGIN: f64 = 0.04;
 /// The arm is shown where that widens the view by no more than this share.
 const WIDENED: f64 = 0.5;
 
-/// The circularity of a robot under the test load over the plane of the study, for both elbows to the same scales: colours
-/// and contour lines in mm, optimal zones and zones about the middle of each size, the most accurate place, and the robot's
-/// axis 1 and shoulder where they lie in the plane and near the map. The axes show the part of the grid that has values. A
-/// map of more than 240 nodes along an axis is thinned out evenly.
+/// The circularity of a robot under the test load over the plane of the study, for both elbows to the same scales:
+/// colours and contour lines in mm, optimal zones and zones about the middle of each size, the most accurate place, and
+/// the robot's axis 1 and shoulder where they lie in the plane and near the map. The axes show the part of the grid
+/// that has values. A map of more than 240 nodes along an axis is thinned out evenly.
 pub fn circularity_map(comparison: &Comparison, result: &RobotResult) -> String {
     let picture_of = Picture::new(comparison, result);
     picture((WIDTH, picture_of.height()), |canvas| picture_of.draw(canvas))

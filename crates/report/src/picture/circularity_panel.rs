@@ -1,4 +1,5 @@
-//! The circularity over a plane for one elbow: the map as colours and contour lines, zones, and the most accurate place.
+//! The circularity over a plane for one elbow: the map as colours and contour lines, zones, and the most accurate
+//! place.
 
 use super::axes::{Panel, Ticks, Window, around};
 use super::canvas::{Canvas, Pixel, Place, exact, nearest};

@@ -1,7 +1,7 @@
 //! Colours.
 
 use std::fmt;
-use stead_placement::constraints::ConstraintKind;
+use stead_planning::constraints::ConstraintKind;
 
 /// Red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +35,15 @@ pub(super) const BLUE: Colour = Colour(110, 140, 190);
 
 /// Components along x, y and z, distinct for the colour-blind too (Okabe and Ito 2008).
 pub(super) const COMPONENTS: [Colour; 3] = [Colour(0, 114, 178), Colour(213, 94, 0), Colour(0, 158, 115)];
+/// Series of a chart: those of the pages in daylight.
+pub(super) const SERIES: [Colour; 6] = [
+    Colour(59, 76, 192),
+    Colour(31, 143, 138),
+    Colour(194, 106, 0),
+    Colour(160, 48, 127),
+    Colour(90, 125, 0),
+    Colour(122, 74, 43),
+];
 /// Indicators of a robot: accuracy, working radius, payload, price (Okabe and Ito 2008).
 pub(super) const INDICATORS: [Colour; 4] =
     [Colour(0, 114, 178), Colour(0, 158, 115), Colour(230, 159, 0), Colour(204, 121, 167)];

@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
-/// A line through positions counted in steps of the grid, along the first axis and along the second. A closed line ends where
-/// it begins.
+/// A line through positions counted in steps of the grid, along the first axis and along the second. A closed line ends
+/// where it begins.
 pub(super) type Line = Vec<[f64; 2]>;
 
-/// Edges of the grid, by number: that from node `k` along the first axis is `2 k`, that along the second axis `2 k + 1`.
+/// Edges of the grid, by number: that from node `k` along the first axis is `2 k`, that along the second axis
+/// `2 k + 1`.
 type Edge = usize;
 
 /// The lines on which a function has the value `level`, linear along the edges of the grid.
 ///
-/// `values` are those of the nodes, along the first axis fastest, `columns` to a row, infinite or NaN where there is none; a
-/// cell with such a corner is left out, so that lines end at its border. In a cell whose diagonals lie on different sides of
-/// the level the mean of its corners decides which corners belong together. Open lines come first, each group in the order
-/// of its first edges.
+/// `values` are those of the nodes, along the first axis fastest, `columns` to a row, infinite or NaN where there is
+/// none; a cell with such a corner is left out, so that lines end at its border. In a cell whose diagonals lie on
+/// different sides of the level the mean of its corners decides which corners belong together. Open lines come first,
+/// each group in the order of its first edges.
 pub(super) fn contour(columns: usize, values: &[f64], level: f64) -> Vec<Line> {
     let mut links: BTreeMap<Edge, [Option<Edge>; 2]> = BTreeMap::new();
     if columns < 2 {
@@ -118,7 +119,8 @@ mod tests {
             let [line] = &lines[..] else { panic!("{} lines", lines.len()) };
             assert_eq!(line.first(), line.last());
             for [x, y] in line {
-                // Between nodes 0.1 apart the chord of x^2 is off by 0.1^2 / 4 at most, and so is the square of the radius.
+                // Between nodes 0.1 apart the chord of x^2 is off by 0.1^2 / 4 at most, and so is the square of the
+                // radius.
                 let squared = ((x / 10.0 - 2.0).powi(2) + (y / 10.0 - 2.0).powi(2) - radius * radius).abs();
                 assert!(squared <= 0.0025 + 1e-12, "{squared}");
             }
@@ -148,7 +150,8 @@ mod tests {
             let lines = contour(41, &field(|x, y| if gap(x, y) { none } else { x * x + y * y }), 1.0);
             let [line] = &lines[..] else { panic!("{} lines", lines.len()) };
             assert_ne!(line.first(), line.last());
-            // The masked nodes are rows 19 to 21 from column 30: cells from column 29 and from row 18 to 21 are left out.
+            // The masked nodes are rows 19 to 21 from column 30: cells from column 29 and from row 18 to 21 are left
+            // out.
             let inside = |[x, y]: &[f64; 2]| *x > 29.0 && *y > 18.0 && *y < 22.0;
             assert!(!line.iter().any(inside));
             assert!(line.iter().flatten().all(|position| position.is_finite()));
@@ -175,8 +178,8 @@ mod tests {
     }
 
     proptest! {
-        /// Every edge of the grid whose ends lie on different sides, beside a cell with four values, is crossed once by one
-        /// line; lines end only at the border of what has values.
+        /// Every edge of the grid whose ends lie on different sides, beside a cell with four values, is crossed once by
+        /// one line; lines end only at the border of what has values.
         #[test]
         fn every_crossing_is_on_one_line(
             columns in 2..9_usize,

@@ -26,9 +26,9 @@ const QUANTITIES: [Quantity; 2] = [
     Quantity { label: "moment (N m)", of: |wrench| wrench.moment },
 ];
 
-/// What the work does to the tool. Left: the means over a turn of cuts that go from 0 to an angle; right: all teeth of this cut
-/// over one turn, with their means. Force above, moment about the tool centre point below. The arcs on which a tooth of this cut
-/// is in the work are shaded.
+/// What the work does to the tool. Left: the means over a turn of cuts that go from 0 to an angle; right: all teeth of
+/// this cut over one turn, with their means. Force above, moment about the tool centre point below. The arcs on which a
+/// tooth of this cut is in the work are shaded.
 pub fn cutting(force_history: &ForceHistory) -> String {
     picture(SIZE, |canvas| {
         head(canvas, force_history);
@@ -104,8 +104,8 @@ fn curve_legend(canvas: &mut Canvas, left: i32) {
 }
 
 impl Quantity {
-    /// A chart between these columns and rows over these angles, up to and every so many degrees, with room for all components
-    /// and the magnitude, the arcs of this cut shaded, and a line at zero.
+    /// A chart between these columns and rows over these angles, up to and every so many degrees, with room for all
+    /// components and the magnitude, the arcs of this cut shaded, and a line at zero.
     fn chart(
         &self,
         force_history: &ForceHistory,

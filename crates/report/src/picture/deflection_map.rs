@@ -8,10 +8,10 @@ use super::heat_map::{ColourBar, ColourRange, HeatMap};
 use crate::names;
 use crate::units::fixed;
 use std::collections::BTreeSet;
-use stead_placement::constraints::ConstraintKind;
-use stead_placement::feasibility::{DeflectionMap, MapCell};
 use stead_placement::outcome::{Case, Plan};
-use stead_placement::problem::Problem;
+use stead_planning::constraints::ConstraintKind;
+use stead_planning::feasibility::{DeflectionMap, MapCell};
+use stead_planning::problem::Problem;
 
 const SIZE: Pixel = (1120, 710);
 const LEFT: i32 = 80;
@@ -25,9 +25,9 @@ const MEDIUM: i32 = 75;
 /// Most columns of the picture: a longer path is thinned out to keep the file small.
 const COLUMNS: usize = 240;
 
-/// A heat map of the smallest allowed score over path point and beta, with the best and the worst plan of that placement.
-/// States without an allowed posture have a pale ground that tells the reason. A path of more than 240 points is thinned
-/// out evenly, the plans are not. `place` is what the placement is called: "the best placement".
+/// A heat map of the smallest allowed score over path point and beta, with the best and the worst plan of that
+/// placement. States without an allowed posture have a pale ground that tells the reason. A path of more than 240
+/// points is thinned out evenly, the plans are not. `place` is what the placement is called: "the best placement".
 pub fn deflection_map(problem: &Problem, map: &DeflectionMap, plans: [&Case; 2], place: &str) -> String {
     picture(SIZE, |canvas| Picture::new(problem, map, plans, place).draw(canvas))
 }
@@ -94,7 +94,8 @@ impl<'a> Picture<'a> {
         let [x, y, z] = [place.x, place.y, place.z].map(|value| fixed(value * 1e3, 1));
         let (q4, yaw) = (fixed(place.q4(), 4), fixed(place.yaw.to_degrees(), 1));
         let subtitle = format!(
-            "x = {x} mm, y = {y} mm, z = {z} mm, yaw = {yaw} deg (Q4 {q4}); for each state the smallest over the allowed postures"
+            "x = {x} mm, y = {y} mm, z = {z} mm, yaw = {yaw} deg (Q4 {q4}); for each state the smallest over the \
+             allowed postures"
         );
         canvas.text(&subtitle, (LEFT, 47), TextStyle::new(12.0).coloured(INK))
     }
@@ -211,7 +212,8 @@ fn scores(map: &DeflectionMap) -> impl Iterator<Item = f64> + '_ {
     map.rows.iter().flatten().flatten().map(|cell| cell.score)
 }
 
-/// The cells of the map: of very many points every so many, and beta at -180 deg half at the bottom and half at the top.
+/// The cells of the map: of very many points every so many, and beta at -180 deg half at the bottom and half at the
+/// top.
 fn cells(map: &DeflectionMap, panel: &Panel, colours: ColourRange) -> HeatMap<Cell> {
     let points = map.rows.len();
     let stride = points.div_ceil(COLUMNS).max(1);

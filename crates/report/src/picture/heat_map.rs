@@ -1,4 +1,5 @@
-//! Coloured cells over two axes, the scale of their colours, and the bar that explains it: what the maps have in common.
+//! Coloured cells over two axes, the scale of their colours, and the bar that explains it: what the maps have in
+//! common.
 
 use super::axes::{Scale, Ticks};
 use super::canvas::{Canvas, Pixel, TextStyle};
@@ -63,8 +64,8 @@ pub(crate) struct ColourRange {
 }
 
 impl ColourRange {
-    /// The range from a value to the largest of some (ascending), but where few are far above all others, to the one that 97
-    /// of 100 do not pass, so that a peak does not leave the rest in the dark.
+    /// The range from a value to the largest of some (ascending), but where few are far above all others, to the one
+    /// that 97 of 100 do not pass, so that a peak does not leave the rest in the dark.
     pub fn below_peaks(from: f64, ascending: &[f64]) -> Self {
         let largest = ascending.last().copied().unwrap_or(0.0);
         let common = ascending.get(ascending.len() * 97 / 100).copied().unwrap_or(0.0);

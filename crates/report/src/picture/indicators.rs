@@ -67,8 +67,8 @@ const ALL: [Indicator; 4] = [
 ];
 
 /// Bars of accuracy (under the test load, at the best place), working radius, payload and price for every robot, each
-/// relative to the best robot, which has 1; the values themselves stand at the bars. An indicator that no robot has is left
-/// out; a robot without a value has a dash in place of the bar. Six robots stand in a row, more in more rows.
+/// relative to the best robot, which has 1; the values themselves stand at the bars. An indicator that no robot has is
+/// left out; a robot without a value has a dash in place of the bar. Six robots stand in a row, more in more rows.
 pub fn indicators(assessment: &Assessment) -> String {
     let rows = assessment.robots.chunks(ROBOTS_PER_ROW);
     let height = ROWS[0] + ROWS[2] * rows.len().max(1) as i32;

@@ -1,4 +1,5 @@
-//! Figures and labels of pictures: numbers of few digits, lines of a given width, and labels that do not cover each other.
+//! Figures and labels of pictures: numbers of few digits, lines of a given width, and labels that do not cover each
+//! other.
 
 use super::canvas::{Canvas, Pixel, TextStyle};
 use super::colour::Colour;

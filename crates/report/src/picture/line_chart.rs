@@ -1,7 +1,7 @@
 //! Curves over two axes: what the charts over time, path point, angle, frequency and speed have in common.
 
 use super::axes::Panel;
-use super::canvas::{Canvas, Pixel, Place, TextStyle};
+use super::canvas::{Canvas, Place, TextStyle};
 use super::colour::{Colour, INK, SHADE};
 use std::borrow::Cow;
 
@@ -23,13 +23,12 @@ pub(super) enum Mark {
     Curve(Vec<[f64; 2]>, Colour),
     /// A disc of a radius in pixels about a point.
     Dot([f64; 2], i32, Colour),
-    /// The range of a densely sampled series in each column of pixels, each joined to the one before or not.
-    Ranges(Vec<(i32, [f64; 2])>, bool, Colour),
     /// A line across the chart at a height.
     Horizontal(f64, Colour),
     /// A dashed line across the chart at a height.
     Dashed(f64, Colour),
-    /// A line from the bottom to the top, with a label over the chart that is left out where it would run into the one before.
+    /// A line from the bottom to the top, with a label over the chart that is left out where it would run into the one
+    /// before.
     Vertical(f64, Colour, Option<String>),
 }
 
@@ -52,36 +51,6 @@ impl LineChart {
         }
     }
 
-    /// Adds a densely sampled series as its range in each column of pixels; `index` gives the sample at a number of the
-    /// horizontal axis.
-    pub fn ranges(&mut self, values: &[f64], index: impl Fn(f64) -> f64, is_joined: bool, colour: Colour) {
-        let columns = (self.panel.x.start..self.panel.x.end).filter_map(|column| {
-            let [from, to] = [column, column + 1].map(|pixel| index(self.panel.x.number(f64::from(pixel))));
-            let [from, to] = [from, to].map(|index| (index.max(0.0) as usize).min(values.len()));
-            let inside = values[from..to.max(from)].iter();
-            let [min, max] = inside.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-            (min <= max).then_some((column, [min, max]))
-        });
-        self.marks.push(Mark::Ranges(columns.collect(), is_joined, colour));
-    }
-
-    /// Adds pale lines between the segments of a path, and for each segment what `curves` adds to its points.
-    pub fn by_segment(
-        &mut self,
-        segments: impl IntoIterator<Item = usize>,
-        colour: Colour,
-        mut curves: impl FnMut(&mut Self, std::ops::Range<usize>),
-    ) {
-        let mut first = 0;
-        for points in segments {
-            if first > 0 {
-                self.marks.push(Mark::Vertical(first as f64 - 0.5, colour, None));
-            }
-            curves(self, first..first + points);
-            first += points;
-        }
-    }
-
     /// Draws the chart.
     pub fn draw(&self, canvas: &mut Canvas) {
         let Panel { x, y, .. } = &self.panel;
@@ -98,7 +67,6 @@ impl LineChart {
                 }
                 Mark::Curve(points, colour) => canvas.curve_or_dot(&self.places(points), *colour, 2),
                 Mark::Dot([x, y], radius, colour) => canvas.dot(self.panel.place(*x, *y), *radius, *colour),
-                Mark::Ranges(columns, is_joined, colour) => self.draw_ranges(canvas, columns, *is_joined, *colour),
                 Mark::Horizontal(at, colour) => {
                     let at = y.pixel(*at);
                     canvas.line(&[(x.start, at), (x.end, at)], *colour, 1);
@@ -126,15 +94,6 @@ impl LineChart {
     fn places(&self, points: &[[f64; 2]]) -> Vec<Place> {
         points.iter().map(|[x, y]| self.panel.place(*x, *y)).collect()
     }
-
-    fn draw_ranges(&self, canvas: &mut Canvas, columns: &[(i32, [f64; 2])], is_joined: bool, colour: Colour) {
-        let mut before: Option<Pixel> = None;
-        for (column, range) in columns {
-            let ends = range.map(|value| (*column, self.panel.y.pixel(value)));
-            canvas.line(&before.into_iter().chain(ends).collect::<Vec<_>>(), colour, 1);
-            before = is_joined.then_some(ends[1]);
-        }
-    }
 }
 
 /// What stands before a label in a legend.
@@ -143,6 +102,8 @@ pub(super) enum Sign {
     Line(Colour),
     /// A piece of a dashed line.
     Dashed(Colour),
+    /// A dot.
+    Dot(Colour),
     /// A piece of shaded ground.
     Ground(Colour),
 }
@@ -154,6 +115,7 @@ pub(super) fn legend(canvas: &mut Canvas, y: i32, entries: &[(i32, Sign, &str)])
         match sign {
             Sign::Line(colour) => canvas.line(&[from, to], *colour, 2),
             Sign::Dashed(colour) => canvas.dashed(from, to, *colour),
+            Sign::Dot(colour) => canvas.dot((f64::from(left + 14), f64::from(y)), 4, *colour),
             Sign::Ground(colour) => canvas.fill((from.0, y - 7), (to.0, y + 7), *colour),
         }
         canvas.text(label, (left + 36, y), TextStyle::new(12.0));
@@ -197,17 +159,6 @@ mod tests {
         let dot = "<circle cx=\"40\" cy=\"240\" r=\"12\" fill=\"#6E8CBE\" stroke=\"none\" stroke-width=\"1\"/>";
         let line = "<polyline fill=\"none\" stroke=\"#6E8CBE\" stroke-width=\"8\" points=\"120,200 160,160 \"/>";
         assert_eq!(drawn(&chart, "#6E8CBE"), [dot, line]);
-    }
-
-    #[test]
-    fn a_dense_series_is_drawn_by_its_range_in_each_column() {
-        let mut chart = chart();
-        // Three samples to a column: 0, 5 and 2.5 over and over.
-        let values: Vec<f64> = (0..300).map(|k| [0.0, 5.0, 2.5][k % 3]).collect();
-        chart.ranges(&values, |x| x * 30.0 + 1e-9, false, RED);
-        let lines = drawn(&chart, "#D6141E");
-        assert_eq!(lines.len(), 100);
-        assert!(lines[3].contains("points=\"52,280 52,80 \""), "{}", lines[3]);
     }
 
     #[test]

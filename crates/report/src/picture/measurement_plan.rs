@@ -19,9 +19,9 @@ const VIEWS: (i32, i32) = (500, 450);
 /// Length of the arrow of a load. Pixels
 const ARROW: f64 = 34.0;
 
-/// Above: expected standard deviation of every compliance in per cent of it, from the plan, the best and the median of the random
-/// sets; for the joint with several compliances by its law. Below: the arm in all configurations of the plan with the load on it,
-/// from above and in the vertical plane through axis 1 and the load point.
+/// Above: expected standard deviation of every compliance in per cent of it, from the plan, the best and the median of
+/// the random sets; for the joint with several compliances by its law. Below: the arm in all configurations of the plan
+/// with the load on it, from above and in the vertical plane through axis 1 and the load point.
 pub fn measurement_plan(request: &Request, plan: &Design) -> String {
     picture((1100, 1020), |canvas| {
         let title = format!("Expected errors of {} configurations", plan.load_cases.len());

@@ -33,8 +33,8 @@ impl<T> MergedCells<T> {
     }
 }
 
-/// The polygons of a grid with `columns` cells to a row; cells without a content belong to none. Every other cell is in exactly
-/// one polygon.
+/// The polygons of a grid with `columns` cells to a row; cells without a content belong to none. Every other cell is in
+/// exactly one polygon.
 pub(super) fn merged_cells<T: Copy + PartialEq>(columns: usize, cells: &[Option<T>]) -> Vec<MergedCells<T>> {
     let mut polygons: Vec<MergedCells<T>> = Vec::new();
     // Those with a run in the row before, in the order of their columns.

@@ -6,11 +6,11 @@ use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, RED, viridis};
 use super::heat_map::HeatMap;
 use crate::units::fixed;
+use stead_certify::{OpenBox, Proof};
 use stead_model::robot::angles::wrap;
-use stead_placement::certify::{OpenBox, Proof};
-use stead_placement::problem::Problem;
-use stead_placement::sense::Sense;
-use stead_placement::symmetry::about_axis_1;
+use stead_planning::problem::Problem;
+use stead_planning::sense::Sense;
+use stead_planning::symmetry::about_axis_1;
 
 /// Pixels between panels, and the side of a panel.
 const LEFT: [i32; 2] = [85, 635];
@@ -21,8 +21,8 @@ const CELLS: usize = 160;
 /// Narrower ranges are drawn this wide. mm
 const MIN_WIDTH: f64 = 10.0;
 
-/// The boxes of placements that a certificate leaves open: where the workpiece origin may stand, from above, and over the yaw
-/// less the azimuth, each place in the colour of the most promising box there. The dot is the placement found.
+/// The boxes of placements that a certificate leaves open: where the workpiece origin may stand, from above, and over
+/// the yaw less the azimuth, each place in the colour of the most promising box there. The dot is the placement found.
 pub fn open_region(problem: &Problem, proof: &Proof) -> String {
     picture((1110, 690), |canvas| {
         let boxes = proof.open_boxes(problem);

@@ -15,8 +15,8 @@ const PLANE_LABELS: [&str; 2] = ["along the plane's first axis (mm)", "along the
 /// Unit vectors that differ by less are the same; so are places of the plane's size, in m.
 const SAME: f64 = 1e-9;
 
-/// A view straight onto a plane. Coordinates shown are those of the base frame where an axis of the plane is one of the base
-/// frame, else those of the plane.
+/// A view straight onto a plane. Coordinates shown are those of the base frame where an axis of the plane is one of the
+/// base frame, else those of the plane.
 pub(crate) struct PlaneView {
     plane: Plane,
     /// Coordinates shown of the origin of the plane. m
@@ -61,8 +61,8 @@ impl PlaneView {
         format!("plane through ({}) mm, normal ({})", triple(origin, 1e3, 0), triple(&normal, 1.0, 3))
     }
 
-    /// What lies in the plane of an arm that reaches towards a place of the plane (m): `None` where axis 1 is not in the
-    /// plane.
+    /// What lies in the plane of an arm that reaches towards a place of the plane (m): `None` where axis 1 is not in
+    /// the plane.
     pub fn arm(&self, robot: &Robot, towards: [f64; 2]) -> Option<ArmInPlane> {
         let geometry = robot.geometry();
         let axis = geometry.base_from_root.column(2).into_owned();

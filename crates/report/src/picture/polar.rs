@@ -25,8 +25,8 @@ const ARC: f64 = PI / 180.0;
 /// Points farther apart than this are not joined: so many times their mean distance, but no less than 2 deg.
 const GAP: f64 = 3.0;
 
-/// The profile about the centre of the minimum zone circles: the deviation from the mean of both circles, magnified so that
-/// the zone fills a fixed part of the picture. Points left out are shown apart, those beyond the rim on it.
+/// The profile about the centre of the minimum zone circles: the deviation from the mean of both circles, magnified so
+/// that the zone fills a fixed part of the picture. Points left out are shown apart, those beyond the rim on it.
 pub fn polar(name: &str, found: &Roundness) -> String {
     picture((1000, 800), |canvas| {
         let plot = Plot::new(found);

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use stead_cell::{Attachment, Poses, Scene, Shape, Solid};
 use stead_model::robot::Pose;
 use stead_placement::outcome::{Case, PlanPoint};
-use stead_placement::problem::Problem;
+use stead_planning::problem::Problem;
 
 /// Left edges of the two views.
 const COLUMNS: [i32; 2] = [85, 635];
@@ -23,8 +23,8 @@ const VIEWS: [(&str, [&str; 2], [usize; 2]); 2] =
 /// Corners of the circles that round forms are drawn by.
 const CORNERS: usize = 16;
 
-/// All shapes with the arm in the middle of each segment, for each case a row: the best placement, and the worst. `None` where the run has
-/// no shapes.
+/// All shapes with the arm in the middle of each segment, for each case a row: the best placement, and the worst.
+/// `None` where the run has no shapes.
 pub fn surroundings(problem: &Problem, cases: &[(&Case, &str)]) -> Option<String> {
     let scene = problem.scene.as_deref()?;
     let height = ROWS.0 + ROWS.1 * cases.len() as i32;

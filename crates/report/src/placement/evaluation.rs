@@ -1,91 +1,95 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
 use super::Context;
-use super::json::{plan_clearance, unfollowed_moves};
-use super::setup::{lines, put_setup};
+use super::case::PlanFigures;
+use super::setup::{SetupFigures, lines};
 use super::text::least_room;
 use crate::columns::{aligned, line};
-use crate::document::{
-    cut_feed, deflection_mm, joint_travel, placement as placement_json, placement_exact, put_deviation,
-};
+use crate::document::{PlacementExact, PlacementFigures};
+use crate::figure::{FineAngleDeg, FineDeflectionMm, Plain, each, some};
 use crate::names;
-use crate::units::{Unit, fixed};
-use serde_json::{Value, json};
-use stead_placement::feasibility::{Explanation, Finding};
-use stead_placement::outcome::{Cycle, Plan};
+use crate::stability::path::PathStabilityFigures;
+use crate::units::fixed;
+use serde_json::Value;
+use stead_model::robot::Posture;
+use stead_placement::outcome::Plan;
 use stead_placement::place::{BlockingPair, Infeasible, Score};
-use stead_placement::problem::Placement;
+use stead_planning::feasibility::{Explanation, Finding};
+use stead_planning::problem::Placement;
+use stead_planning::sense::BySense;
 
-/// Degrees with the digits that a comparison with another program needs.
-const FINE_DEG: Unit = Unit { decimals: 6, ..Unit::ANGLE_DEG };
-/// Millimetres likewise.
-const FINE_MM: Unit = Unit { decimals: 9, ..Unit::DEFLECTION_MM };
-
-/// What `stead score --json` prints, with the critical depths along both plans where they were asked for.
-pub fn score_json(score: &Score, context: &Context) -> Value {
-    let plan = |plan: &Plan, cycle: &Cycle| {
-        let mut value = json!({
-            "objective_mm": Unit::DEFLECTION_MM.number(plan.objective),
-            "mean_mm": Unit::DEFLECTION_MM.number(plan.mean),
-            "max_mm": Unit::DEFLECTION_MM.number(plan.max),
-            "p50_mm": Unit::DEFLECTION_MM.number(plan.percentiles[0]),
-            "p95_mm": Unit::DEFLECTION_MM.number(plan.percentiles[1]),
-            "deflection_mm": deflection_mm(&plan.deflection),
-            "postures": plan.postures,
-            "joint_travel": joint_travel(&plan.travel),
-            "feed": cut_feed(&cycle.feed),
-            "cutting_s": Unit::TIME_S.number(cycle.cutting),
-            "cycle_s": cycle.total().map(|time| Unit::TIME_S.number(time)),
-            "unfollowed_moves": unfollowed_moves(cycle),
-        });
-        if let Some(clearance) = &plan.clearance {
-            value["clearance"] = plan_clearance(clearance);
-        }
-        put_deviation(&mut value, "mean_std_mm", Unit::DEFLECTION_MM, plan.mean_deviation);
-        value
-    };
-    let mut entries = json!({
-        "placement": placement_json(&score.placement),
-        "placement_exact": placement_exact(&score.placement),
-        "feasible": true,
-        "interrupted": score.interrupted,
-        "best": plan(&score.best, &score.cycles[0]),
-        "worst": plan(&score.worst, &score.cycles[1]),
-    });
-    put_setup(&mut entries, score.orientation.as_ref(), &score.setup, &score.best.axes);
-    if let Some(stability) = &context.stability {
-        entries["stability"] = crate::stability::path::document(stability, true);
+records! {
+    /// A placement that was evaluated.
+    pub struct ScoreFigures of (score: &Score, context: &Context) {
+        let BySense { best, worst } = &score.cycles;
+    } with {
+        /// The placement.
+        placement: PlacementFigures = (&score.placement).into(),
+        /// The placement with every digit.
+        placement_exact: PlacementExact = (&score.placement).into(),
+        /// Whether the path can be milled there.
+        feasible: bool = true,
+        /// Whether the evaluation was ended before its time.
+        interrupted: bool = score.interrupted,
+        /// The best plan; null where nothing is feasible.
+        best: Option<PlanFigures> = Some(PlanFigures::of(&score.plans.best, best)),
+        /// The worst plan.
+        worst: Option<PlanFigures> = Some(PlanFigures::of(&score.plans.worst, worst)),
+        #[serde(flatten)] setup: Option<SetupFigures> =
+            Some(SetupFigures::of(score.orientation.as_ref(), &score.setup, &score.plans.best.axes)),
+        /// Critical depths along both plans, where they were requested.
+        #[serde(skip_serializing_if = "Option::is_none")] stability: Option<PathStabilityFigures> =
+            context.stability.as_ref().map(|found| PathStabilityFigures::of(found, true)),
+        /// Why nothing is feasible.
+        #[serde(skip_serializing_if = "Option::is_none")] findings: Option<Vec<FindingFigures>> = None,
+        /// Pairs of shapes that hit in all plans.
+        #[serde(skip_serializing_if = "Vec::is_empty")] collisions: Vec<CollisionFigures> = Vec::new(),
     }
-    context.document().with(entries)
+
+    /// Points of a segment that cannot be milled.
+    pub struct FindingFigures of (finding: &Finding) {
+        /// The segment, from 1.
+        segment: usize = finding.segment,
+        /// The first of the points, from 0.
+        first_point: usize = finding.points.0,
+        /// The last of them.
+        last_point: usize = finding.points.1,
+        /// Why not.
+        message: String = finding.to_string(),
+    }
+
+    /// A pair of shapes that hits.
+    pub struct CollisionFigures of (pair: &BlockingPair) {
+        /// The two.
+        pair: [String; 2] = pair.names.clone(),
+        /// The path points where they hit, from 0.
+        points: Vec<usize> = pair.points.clone(),
+    }
+}
+
+/// What `stead score --json` prints, with the critical depths along both plans where they were requested.
+pub fn score_json(score: &Score, context: &Context) -> Value {
+    context.document().with(ScoreFigures::of(score, context))
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
 pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
-    let finding = |finding: &Finding| {
-        json!({
-            "segment": finding.segment,
-            "first_point": finding.points.0,
-            "last_point": finding.points.1,
-            "message": finding.to_string(),
-        })
-    };
-    let mut document = json!({
-        "placement": placement_json(&nothing.placement),
-        "placement_exact": placement_exact(&nothing.placement),
-        "feasible": false,
-        "interrupted": nothing.interrupted,
-        "best": Value::Null,
-        "worst": Value::Null,
-        "findings": nothing.findings.iter().map(finding).collect::<Vec<_>>(),
-    });
-    if !nothing.collisions.is_empty() {
-        let pair = |pair: &BlockingPair| json!({ "pair": pair.names, "points": pair.points });
-        document["collisions"] = nothing.collisions.iter().map(pair).collect();
-    }
-    context.document().with(document)
+    context.document().with(ScoreFigures {
+        placement: (&nothing.placement).into(),
+        placement_exact: (&nothing.placement).into(),
+        feasible: false,
+        interrupted: nothing.interrupted,
+        best: None,
+        worst: None,
+        setup: None,
+        stability: None,
+        findings: Some(nothing.findings.iter().map(FindingFigures::of).collect()),
+        collisions: nothing.collisions.iter().map(CollisionFigures::of).collect(),
+    })
 }
 
-/// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is known.
+/// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is
+/// known.
 pub fn score_text(score: &Score, context: &Context) -> String {
     let row = |name: &str, plan: &Plan| {
         let total = plan.deflection.total;
@@ -96,29 +100,68 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         row
     };
     let mut header = vec!["plan", "mean mm", "max mm", "total mm", "max total"];
-    header.extend(score.best.mean_deviation.map(|_| "std mm"));
+    header.extend(score.plans.best.mean_deviation.map(|_| "std mm"));
     header.push("postures");
     let last = header.len() - 1;
     let header = header.into_iter().map(str::to_owned).collect();
-    let rows = [header, row("best", &score.best), row("worst", &score.worst)];
+    let rows = [header, row("best", &score.plans.best), row("worst", &score.plans.worst)];
     let stability = context
         .stability
         .as_ref()
         .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
     let mut feed = String::new();
-    for (plan, name) in [(&score.best, "best plan"), (&score.worst, "worst plan")] {
+    for (plan, name) in [(&score.plans.best, "best plan"), (&score.plans.worst, "worst plan")] {
         least_room(plan, name).iter().for_each(|row| line(&mut feed, row));
     }
-    super::text::highest_feed(&score.cycles[0].feed).iter().for_each(|row| line(&mut feed, row));
-    line(&mut feed, &super::text::joint_travel(&score.best));
+    super::text::highest_feed(&score.cycles.best.feed).iter().for_each(|row| line(&mut feed, row));
+    line(&mut feed, &super::text::joint_travel(&score.plans.best));
     let feed = format!("\n{feed}");
     let stability = stability.unwrap_or_default();
-    let setup: String = lines("this placement", score.orientation.as_ref(), &score.best.axes)
+    let setup: String = lines("this placement", score.orientation.as_ref(), &score.plans.best.axes)
         .iter()
         .map(|row| format!("{row}\n"))
         .collect();
     let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
     format!("{}\n{setup}\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
+}
+
+records! {
+    /// The eight states of a path point.
+    pub struct ExplainFigures of (placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) {
+        /// The placement.
+        placement: PlacementFigures = placement.into(),
+        /// The path point, from 0.
+        point: usize = point,
+        /// Angle about the tool axis.
+        beta_deg: FineAngleDeg = beta.into(),
+        /// Every posture.
+        postures: Vec<ExplainedPosture> = postures.iter().map(Into::into).collect(),
+    }
+
+    /// A posture at a path point; its figures are null where it is out of reach.
+    pub struct ExplainedPosture from explanation: &Explanation {
+        let state = explanation.state.as_ref();
+    } with {
+        /// The posture, 1 to 8.
+        #[schemars(with = "u8")] posture: Posture = explanation.posture,
+        /// Joint angles.
+        joints_deg: Option<[FineAngleDeg; 6]> = state.map(|s| each(s.joints)),
+        /// Inverse of the condition number of the Jacobian.
+        inverse_condition: Option<Plain> = state.map(|s| s.inverse_condition.into()),
+        /// Size of the deflection normal to the wall.
+        normal_deflection_mm: Option<FineDeflectionMm> = state.map(|s| s.normal_part.abs().into()),
+        /// Size of the deflection.
+        total_deflection_mm: Option<FineDeflectionMm> = state.map(|s| s.deflection.norm().into()),
+        /// The scored part of the deflection.
+        score_mm: Option<FineDeflectionMm> = state.map(|s| s.score().into()),
+        /// Standard deviation of the scored part, where the robot's uncertainty is known.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        std_mm: Option<FineDeflectionMm> = some(state.and_then(|s| s.own.deviation)),
+        /// Whether the state is allowed.
+        feasible: bool = explanation.is_allowed(),
+        /// The constraints that it breaks.
+        violations: Vec<String> = explanation.violations.iter().map(ToString::to_string).collect(),
+    }
 }
 
 /// What `stead explain --json` prints.
@@ -129,27 +172,7 @@ pub fn explain_json(
     postures: &[Explanation; 8],
     context: &Context,
 ) -> Value {
-    let posture = |e: &Explanation| {
-        let state = e.state.as_ref();
-        let mut value = json!({
-            "posture": e.posture,
-            "joints_deg": state.map(|s| s.joints.map(|angle| FINE_DEG.number(angle))),
-            "inverse_condition": state.map(|s| Unit::PLAIN.number(s.inverse_condition)),
-            "normal_deflection_mm": state.map(|s| FINE_MM.number(s.normal_part.abs())),
-            "total_deflection_mm": state.map(|s| FINE_MM.number(s.deflection.norm())),
-            "score_mm": state.map(|s| FINE_MM.number(s.score())),
-            "feasible": e.is_allowed(),
-            "violations": e.violations.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        });
-        put_deviation(&mut value, "std_mm", FINE_MM, state.and_then(|s| s.own.deviation));
-        value
-    };
-    context.document().with(json!({
-        "placement": placement_json(placement),
-        "point": point,
-        "beta_deg": FINE_DEG.number(beta),
-        "postures": postures.iter().map(posture).collect::<Vec<_>>(),
-    }))
+    context.document().with(ExplainFigures::of(placement, point, beta, postures))
 }
 
 /// The table of `stead explain`.

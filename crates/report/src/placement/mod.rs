@@ -1,15 +1,17 @@
 //! Reports of `stead place`, and in [`evaluation`] those of single evaluations, `stead score` and `stead explain`.
 
-mod cell_json;
+mod case;
 pub mod evaluation;
 mod json;
+pub(crate) mod plan_row;
+mod settings;
 pub(crate) mod setup;
 pub mod tables;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use json::{place_json, summary_json};
+pub use json::{PlaceFigures, SummaryFigures, place_json, summary_json};
 pub use text::placement_text;
 
 use crate::document::{Document, bytes};
@@ -19,15 +21,17 @@ use crate::page::data::{MapOf, Placed, page_data};
 use crate::{Files, named, picture};
 use serde_json::Value;
 use std::path::PathBuf;
-use stead_format::Run;
 use stead_format::input::InputFile;
 use stead_model::published::Published;
 use stead_numerics::message::Warning;
-use stead_placement::feasibility::DeflectionMap;
 use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::place::Score;
-use stead_placement::problem::Problem;
-use stead_placement::settings::{SearchSettings, TransferSettings};
+use stead_placement::settings::SearchSettings;
+use stead_planning::feasibility::DeflectionMap;
+use stead_planning::problem::Problem;
+use stead_planning::sense::BySense;
+use stead_planning::transfer::TransferSettings;
+use stead_run_files::Run;
 use stead_study::PathStability;
 
 /// What the reports state besides the problem and its result.
@@ -47,7 +51,7 @@ pub struct Context {
     pub transfer: TransferSettings,
     /// Figures to compare with, where there are any.
     pub reference: Option<Published<[f64; 4]>>,
-    /// How deep may be cut along the path, where that was asked for.
+    /// How deep may be cut along the path, where that was requested.
     pub stability: Option<PathStability>,
     /// Whether a page is left with the files.
     pub page: bool,
@@ -138,9 +142,9 @@ fn map_files(
 }
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
-/// `placement.svg`, with shapes of the cell `surroundings.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was asked for
-/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without, `page-data.json`,
-/// `report.html` and `cell.glb`. Returns the paths.
+/// `placement.svg`, with shapes of the cell `surroundings.svg`, with the map of the placement `deflection-map.csv` and
+/// `deflection-map.svg`, and where stability was requested `stability-best-plan.csv`, `stability-worst-plan.csv` and
+/// `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -169,7 +173,7 @@ pub fn score_files(
     map: Option<&DeflectionMap>,
     context: &Context,
 ) -> Result<Files, ReportError> {
-    let [best, worst] = score.cases();
+    let BySense { best, worst } = score.cases();
     let scene = problem.scene.as_deref();
     let mut files = vec![
         ("best-plan.csv", tables::plan(&best.plan, scene)?),
@@ -183,7 +187,12 @@ pub fn score_files(
     }
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);
-        files.extend(crate::stability::path::files(stability, &[&score.best, &score.worst], tables, names)?);
+        files.extend(crate::stability::path::files(
+            stability,
+            &[&score.plans.best, &score.plans.worst],
+            tables,
+            names,
+        )?);
     }
     let placed: Placed<'_> = (&score.placement, &score.setup);
     let maps: Vec<MapOf<'_>> = map.iter().map(|map| (placed, *map, SCORE_MAP[0])).collect();
@@ -193,9 +202,10 @@ pub fn score_files(
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4; without the worst placement those of it are left out), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, with shapes of the cell `surroundings.svg`; and where stability
-/// was asked for, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does
-/// without, `page-data.json`, `report.html` and `cell.glb`. Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
+/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, with shapes
+/// of the cell `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv`
+/// (cases 1 and 3) and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
+/// Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -234,7 +244,7 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];
-    if let Some([worst, worst_worst_plan]) = worst {
+    if let Some(BySense { best: worst, worst: worst_worst_plan }) = worst {
         files.push(("worst.csv", tables::plan(&worst.plan, scene)?));
         files.push(("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan, scene)?));
     }
@@ -246,7 +256,7 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         let plans: Vec<_> = optima.iter().map(|case| &case.plan).collect();
         files.extend(crate::stability::path::files(stability, &plans, tables, names)?);
     }
-    let plans = [[best, best_worst_plan]].into_iter().chain(worst.iter().map(|[best, worst]| [best, worst]));
+    let plans = [[best, best_worst_plan]].into_iter().chain(worst.iter().map(BySense::values));
     let mut maps = Vec::new();
     for ((map, plans), (names, place)) in outcome.maps.iter().flatten().zip(plans).zip(MAPS.into_iter().zip(PLACES)) {
         files.extend(map_files(problem, map, plans, names, place)?);

@@ -1,13 +1,17 @@
-//! How part and external axes are set up, in documents, tables and words; nothing where a run has neither orientations nor axes.
+//! How part and external axes are set up, in documents, tables and words; nothing where a run has neither orientations
+//! nor axes.
 
 use super::PLACES;
 use crate::columns::aligned;
+use crate::csv_file::Columns;
+use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, some};
 use crate::units::{Unit, fixed};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use stead_model::external_axis::AxisKind;
 use stead_placement::outcome::{Case, Outcome};
-use stead_placement::problem::Problem;
-use stead_placement::setup::{AxisPath, AxisPositions, Setup, TriedSetup};
+use stead_planning::problem::Problem;
+use stead_planning::setup::{AxisPath, AxisPositions, Setup, TriedSetup};
 
 /// The unit of the positions of an axis.
 pub(crate) fn unit(kind: AxisKind) -> Unit {
@@ -38,14 +42,35 @@ pub(crate) fn column(number: usize, kind: AxisKind) -> String {
     format!("e{}_{}", number + 1, unit_name(kind))
 }
 
-/// The columns of the positions of axes.
-pub(super) fn columns(axes: &[AxisPath]) -> Vec<String> {
-    axes.iter().enumerate().map(|(number, axis)| column(number, axis.kind)).collect()
+/// The positions of axes as columns of a row: `e1_mm` or `e1_deg` and so on.
+pub(super) type AxisColumns = Columns<Option<AxisFigure>>;
+
+/// A position of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub(super) enum AxisFigure {
+    Rail(PlaceMm),
+    Turntable(AngleDeg),
 }
 
-/// Positions of axes at a path point, as the plan files state them.
-pub(super) fn at_point(axes: &[AxisPath], point: usize) -> Vec<String> {
-    axes.iter().map(|axis| axis.positions.get(point).map_or_else(String::new, |at| unit(axis.kind).text(*at))).collect()
+/// Positions at a path point.
+pub(super) fn at_point(axes: &[AxisPath], point: usize) -> AxisColumns {
+    columns(axes, |axis| axis.positions.get(point).copied())
+}
+
+/// The positions of the axes that are the same along the path.
+pub(super) fn fixed_positions(axes: &[AxisPath]) -> AxisColumns {
+    columns(axes, one_position)
+}
+
+fn columns(axes: &[AxisPath], position: impl Fn(&AxisPath) -> Option<f64>) -> AxisColumns {
+    let figure = |axis: &AxisPath, at: f64| match axis.kind {
+        AxisKind::Rail => AxisFigure::Rail(at.into()),
+        AxisKind::Turntable => AxisFigure::Turntable(at.into()),
+    };
+    let named =
+        |(number, axis): (usize, &AxisPath)| (column(number, axis.kind), position(axis).map(|at| figure(axis, at)));
+    Columns(axes.iter().enumerate().map(named).collect())
 }
 
 /// The position of each axis that stands still along the path.
@@ -58,43 +83,65 @@ fn one_position(axis: &AxisPath) -> Option<f64> {
     axis.positions.iter().all(|position| *position == first).then_some(first)
 }
 
-/// Adds orientation and axes to an entry, where there are such.
-pub(crate) fn put_setup(entry: &mut Value, orientation: Option<&String>, setup: &Setup, axes: &[AxisPath]) {
-    let Value::Object(map) = entry else { return };
-    if let Some(name) = orientation {
-        map.insert("orientation".to_owned(), json!(name));
+records! {
+    /// How part and external axes are set up; empty where a run has neither orientations nor axes.
+    pub struct SetupFigures of (orientation: Option<&String>, setup: &Setup, axes: &[AxisPath]) {
+        let exact = |position: f64, kind: AxisKind| match kind {
+            AxisKind::Rail => position * 1e3,
+            AxisKind::Turntable => position.to_degrees(),
+        };
+        let row = |row: &Vec<f64>| row.iter().zip(axes).map(|(at, axis)| exact(*at, axis.kind)).collect::<Vec<f64>>();
+        let external_axes = || {
+            let (for_each, positions) = match &setup.positions {
+                AxisPositions::Same(one) => ("path", vec![row(one)]),
+                AxisPositions::PerSegment(all) => ("segment", all.iter().map(row).collect()),
+                AxisPositions::PerPoint(all) => ("point", all.iter().map(row).collect()),
+            };
+            ExternalAxisFigures { axes: axes.iter().map(AxisFigures::of).collect(), for_each, positions }
+        };
+    } with {
+        /// Name of the orientation of the part.
+        #[serde(skip_serializing_if = "Option::is_none")] orientation: Option<String> = orientation.cloned(),
+        /// External axes and their positions.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        external_axes: Option<ExternalAxisFigures> = (!axes.is_empty()).then(external_axes),
     }
-    if axes.is_empty() {
-        return;
-    }
-    let exact = |position: f64, kind: AxisKind| match kind {
-        AxisKind::Rail => position * 1e3,
-        AxisKind::Turntable => position.to_degrees(),
-    };
-    let row = |row: &Vec<f64>| -> Value { row.iter().zip(axes).map(|(at, axis)| exact(*at, axis.kind)).collect() };
-    let (each, rows) = match &setup.positions {
-        AxisPositions::Same(one) => ("path", json!([row(one)])),
-        AxisPositions::PerSegment(all) => ("segment", all.iter().map(row).collect()),
-        AxisPositions::PerPoint(all) => ("point", all.iter().map(row).collect()),
-    };
-    let named = |axis: &AxisPath| json!({ "name": axis.name, "kind": word(axis.kind), "unit": unit_name(axis.kind) });
-    let value = json!({ "axes": axes.iter().map(named).collect::<Vec<_>>(), "for_each": each, "positions": rows });
-    map.insert("external_axes".to_owned(), value);
 }
 
-/// The setups that were searched, with the objectives of their best and worst placements.
-pub(super) fn tried(problem: &Problem, outcome: &Outcome) -> Option<Value> {
-    let entry = |TriedSetup { setup, objectives }: &TriedSetup| {
+/// Positions of external axes.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct ExternalAxisFigures {
+    /// The axes.
+    axes: Vec<AxisFigures>,
+    /// What each row of positions is for: the `path`, a `segment` or a `point`.
+    for_each: &'static str,
+    /// Rows of positions with every digit, in the units of the axes.
+    positions: Vec<Vec<f64>>,
+}
+
+records! {
+    /// An external axis.
+    pub struct AxisFigures of (axis: &AxisPath) {
+        /// Its name.
+        name: String = axis.name.clone(),
+        /// `rail` or `turntable`.
+        kind: &'static str = word(axis.kind),
+        /// Unit of its positions.
+        unit: &'static str = unit_name(axis.kind),
+    }
+
+    /// A setup that was searched.
+    pub struct TriedFigures of (problem: &Problem, tried: &TriedSetup) {
+        let TriedSetup { setup, objectives } = tried;
         let problem = problem.in_setup(setup);
-        let mut value = json!({
-            "best_objective_mm": objectives.map(|(best, _)| Unit::DEFLECTION_MM.number(best)),
-            "worst_objective_mm": objectives.and_then(|(_, worst)| worst).map(|worst| Unit::DEFLECTION_MM.number(worst)),
-        });
-        let name = problem.orientation().map(|orientation| orientation.name.clone());
-        put_setup(&mut value, name.as_ref(), setup, &problem.axis_paths());
-        value
-    };
-    (!outcome.tried_setups.is_empty()).then(|| outcome.tried_setups.iter().map(entry).collect())
+    } with {
+        /// Objective of its best placement; null where none is feasible.
+        best_objective_mm: Option<DeflectionMm> = objectives.map(|(best, _)| best.into()),
+        /// Objective of its worst placement.
+        worst_objective_mm: Option<DeflectionMm> = some(objectives.and_then(|(_, worst)| worst)),
+        #[serde(flatten)] setup: SetupFigures =
+            SetupFigures::of(problem.orientation().map(|orientation| &orientation.name), setup, &problem.axis_paths()),
+    }
 }
 
 /// How part and axes are set up for a case, a line each.

@@ -74,7 +74,11 @@ fn placements_state_ratios_references_and_times() {
 fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
     let mut known = outcome().clone();
     let Cases { best, best_worst_plan, worst } = &mut known.cases;
-    for (k, case) in [best, best_worst_plan].into_iter().chain(worst.iter_mut().flatten()).enumerate() {
+    for (k, case) in [best, best_worst_plan]
+        .into_iter()
+        .chain(worst.iter_mut().flat_map(|worst| [&mut worst.best, &mut worst.worst]))
+        .enumerate()
+    {
         case.plan.mean_deviation = Some(1e-6 * (k + 1) as f64);
         case.plan.points.iter_mut().for_each(|point| point.deviation = Some(2e-6 * (point.point + 1) as f64));
     }

@@ -5,20 +5,22 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_placement::collision::PlanClearance;
-use stead_placement::criterion::Over;
-use stead_placement::feed::{CutFeed, FeedLimit};
-use stead_placement::joint_travel::Swing;
-use stead_placement::outcome::{CANCELLATION, Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
-use stead_placement::problem::Problem;
-use stead_placement::symmetry::Unsupported;
+use stead_placement::outcome::{Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
+use stead_planning::collision::PlanClearance;
+use stead_planning::criterion::CANCELLATION;
+use stead_planning::criterion::Over;
+use stead_planning::feed::{CutFeed, FeedLimit};
+use stead_planning::joint_travel::Swing;
+use stead_planning::problem::Problem;
+use stead_planning::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;
 
-/// The four cases, or the first two of them where the worst placement was not looked for: first placements and posture schemes, then mean and largest score and total deflection, the ratio to case 1 beside the
-/// published figures where there are any, and times, and the standard deviation of the mean of c_i where the robot's
-/// uncertainty is known; last the size of the search. Lines are at most 110 characters wide and end with a line break.
+/// The four cases, or the first two of them where the worst placement was not looked for: first placements and posture
+/// schemes, then mean and largest score and total deflection, the ratio to case 1 beside the published figures where
+/// there are any, and times, and the standard deviation of the mean of c_i where the robot's uncertainty is known; last
+/// the size of the search. Lines are at most 110 characters wide and end with a line break.
 pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
     let (points, segments) = (problem.task.points().len(), problem.task.segments().len());
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
@@ -79,7 +81,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
 
 /// By how many points of a long path placements were compared, and how far that is off.
 fn path_levels(levels: &PathLevels) -> String {
-    let [search, refinement] = levels.subsets;
+    let (search, refinement) = (levels.search, levels.refinement);
     let error = search.error.map_or(String::new(), |error| {
         format!(
             ": means are off by up to {} % there ({} placements planned both ways)",

@@ -1,93 +1,177 @@
 //! The JSON documents of a simulated pass.
 
-use super::super::stability::{HERTZ, RATE, RPM, SHARE};
-use super::{HEIGHT_UM, MOMENT_S, Making, end_words};
+use super::{Making, end_words};
 use crate::document::Document;
-use crate::units::Unit;
-use serde_json::{Value, json};
-use stead_format::SimulationRun;
+use crate::figure::{
+    ForceN, FrequencyHz, HeightUm, MomentS, PlaceMm, RatePerS, Share, SpeedRpm, StepS, TimeS, each, some,
+};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
+use stead_run_files::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::outcome::{Simulation, Statistics};
 use stead_simulation::roughness::Roughness;
 
+records! {
+    /// A simulated pass.
+    pub struct SimulationFigures of (run: &SimulationRun, found: &Simulation, making: &Making) {
+        let (end, reason) = end_words(&found.run.end);
+        let forces =
+            |forces: &Option<[Statistics; 2]>, axis: usize| forces.as_ref().map(|forces| (&forces[axis]).into());
+    } with {
+        /// Name of the robot.
+        robot: String = run.setup.robot.name().to_owned(),
+        /// The model of the arm.
+        variant: &'static str = run.setup.variant.word(),
+        /// What the damping of the robot file is multiplied by.
+        damping_scale: f64 = run.setup.damping_scale,
+        /// Whether the fast integrator was used.
+        fast: bool = making.is_fast,
+        /// Spindle speed.
+        spindle_rpm: SpeedRpm = run.cut.spindle_speed.into(),
+        /// Slices of the tool along its axis.
+        slices: usize = run.cut.slices,
+        /// Steps in a turn of the tool.
+        steps_per_turn: usize = run.cut.steps_per_turn,
+        /// Time of a step.
+        step_s: StepS = found.run.step.into(),
+        /// Steps.
+        steps: usize = found.run.samples.len().saturating_sub(1),
+        /// Evaluations of the equations of motion.
+        evaluations: usize = found.run.evaluations,
+        /// How the run ended.
+        end: String = end.to_string(),
+        /// Why it ended early.
+        end_reason: Option<String> = reason,
+        /// Whether the cut is stable.
+        stable: bool = found.is_stable(),
+        /// What was judged of the cut.
+        judgement: &'static str = found.judgement.word(),
+        /// How far turns differ from each other.
+        unrest: Option<Share> = some(found.turn_variation),
+        /// The same where all teeth are taken for alike.
+        unrest_of_teeth_alike: Option<Share> = some(found.period_variation),
+        /// What small motions do.
+        small_motions: SmallMotions = SmallMotions::of(run, found),
+        /// The times between which the cut was judged.
+        window_s: [MomentS; 2] = each(found.window),
+        /// The force along the feed.
+        force_x: Option<ForceFigures> = forces(&found.forces, 0),
+        /// The force towards the wall.
+        force_y: Option<ForceFigures> = forces(&found.forces, 1),
+        /// The profile of the wall.
+        profile: Option<ProfileFigures> =
+            found.roughness.as_ref().map(|[raw, filtered]| ProfileFigures::of(raw, filtered, run)),
+        /// The modes of the arm.
+        modes: Vec<PassMode> = found.modes.iter().map(PassMode::of).collect(),
+        /// Published figures.
+        published: Option<PublishedFigures> = run.published.as_ref().map(|published| PublishedFigures {
+            source: published.source.clone(),
+            force_x: forces(&published.figures.forces, 0),
+            force_y: forces(&published.figures.forces, 1),
+            profile: published.figures.roughness.as_ref().map(Into::into),
+        }),
+        /// Time on the clock.
+        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = None,
+        /// Time of the pass for each second on the clock.
+        #[serde(skip_serializing_if = "Option::is_none")] real_time_factor: Option<Option<TimeS>> = None,
+    }
+
+    /// What small motions do in the middle of the pass and where `stead stability` analyses it.
+    pub struct SmallMotions of (run: &SimulationRun, found: &Simulation) {
+        /// What they do.
+        kind: &'static str = found.verdict.kind().word(),
+        /// The rate at which they grow.
+        growth_rate_per_s: RatePerS = found.verdict.growth_rate().into(),
+        /// Where `stead stability` analyses the cut.
+        where_stability_looks: SmallMotionsAt = SmallMotionsAt::of(run, found),
+    }
+
+    /// What small motions do at a place.
+    pub struct SmallMotionsAt of (run: &SimulationRun, found: &Simulation) {
+        /// How far along the path.
+        way_mm: PlaceMm = run.evaluation.analysis_distance.into(),
+        /// What they do.
+        kind: &'static str = found.analysis_verdict.kind().word(),
+        /// The rate at which they grow.
+        growth_rate_per_s: RatePerS = found.analysis_verdict.growth_rate().into(),
+    }
+
+    /// A force over time.
+    pub struct ForceFigures from statistics: &Statistics {
+        let Statistics { min, max, mean, root_mean_square } = *statistics;
+    } with {
+        /// Least.
+        min_n: ForceN = min.into(),
+        /// Largest.
+        max_n: ForceN = max.into(),
+        /// Mean.
+        mean_n: ForceN = mean.into(),
+        /// Root mean square.
+        rms_n: ForceN = root_mean_square.into(),
+    }
+
+    /// Roughness of a profile.
+    pub struct RoughnessFigures from roughness: &Roughness {
+        /// Mean height.
+        ra_um: HeightUm = roughness.mean.into(),
+        /// Root mean square height.
+        rq_um: HeightUm = roughness.root_mean_square.into(),
+        /// Total height.
+        rt_um: HeightUm = roughness.total.into(),
+    }
+
+    /// The profile of a wall.
+    pub struct ProfileFigures of (raw: &Roughness, filtered: &Roughness, run: &SimulationRun) {
+        #[serde(flatten)] filtered: RoughnessFigures = filtered.into(),
+        /// The same without the filter.
+        raw: RoughnessFigures = raw.into(),
+        /// Height of the profile above the tip of the tool.
+        height_mm: PlaceMm = run.evaluation.height.into(),
+        /// Cutoff of the Gaussian filter.
+        cutoff_mm: PlaceMm = run.evaluation.cutoff.into(),
+    }
+
+    /// A mode of the arm.
+    pub struct PassMode of (mode: &Mode) {
+        /// Natural frequency.
+        frequency_hz: FrequencyHz = mode.natural_frequency().into(),
+        /// Share of the critical damping.
+        damping_ratio: Share = mode.damping_ratio.into(),
+    }
+}
+
+/// Published figures of a pass.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct PublishedFigures {
+    /// Where they are from.
+    source: String,
+    /// The force along the feed.
+    force_x: Option<ForceFigures>,
+    /// The force towards the wall.
+    force_y: Option<ForceFigures>,
+    /// The profile of the wall.
+    profile: Option<RoughnessFigures>,
+}
+
+fn document(run: &SimulationRun, found: &Simulation, figures: SimulationFigures) -> Value {
+    Document::new(&run.inputs).notes(&found.notes).warnings(&found.warnings).with(figures)
+}
+
 /// The content of `summary.json`: byte for byte the same for the same inputs.
 pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
-    let (end, reason) = end_words(&found.run.end);
-    let forces = |axis: usize| found.forces.as_ref().map(|forces| statistics(&forces[axis]));
-    Document::new(&run.inputs).notes(&found.notes).warnings(&found.warnings).with(json!({
-        "robot": run.setup.robot.name(),
-        "variant": run.setup.variant.word(),
-        "damping_scale": run.setup.damping_scale,
-        "fast": making.is_fast,
-        "spindle_rpm": RPM.number(run.cut.spindle_speed),
-        "slices": run.cut.slices,
-        "steps_per_turn": run.cut.steps_per_turn,
-        "step_s": Unit { factor: 1.0, decimals: 10 }.number(found.run.step),
-        "steps": found.run.samples.len().saturating_sub(1),
-        "evaluations": found.run.evaluations,
-        "end": end,
-        "end_reason": reason,
-        "stable": found.is_stable(),
-        "judgement": found.judgement.word(),
-        "unrest": found.turn_variation.map(|variation| SHARE.number(variation)),
-        "unrest_of_teeth_alike": found.period_variation.map(|variation| SHARE.number(variation)),
-        "small_motions": {
-            "kind": found.verdict.kind().word(),
-            "growth_rate_per_s": RATE.number(found.verdict.growth_rate()),
-            "where_stability_looks": {
-                "way_mm": Unit::PLACE_MM.number(run.evaluation.analysis_distance),
-                "kind": found.analysis_verdict.kind().word(),
-                "growth_rate_per_s": RATE.number(found.analysis_verdict.growth_rate()),
-            },
-        },
-        "window_s": found.window.map(|time| MOMENT_S.number(time)),
-        "force_x": forces(0),
-        "force_y": forces(1),
-        "profile": found.roughness.as_ref().map(|[raw, filtered]| {
-            let mut profile = roughness(filtered);
-            profile["raw"] = roughness(raw);
-            profile["height_mm"] = json!(Unit::PLACE_MM.number(run.evaluation.height));
-            profile["cutoff_mm"] = json!(Unit::PLACE_MM.number(run.evaluation.cutoff));
-            profile
-        }),
-        "modes": found.modes.iter().map(mode).collect::<Vec<_>>(),
-        "published": run.published.as_ref().map(|published| json!({
-            "source": published.source,
-            "force_x": published.figures.forces.as_ref().map(|forces| statistics(&forces[0])),
-            "force_y": published.figures.forces.as_ref().map(|forces| statistics(&forces[1])),
-            "profile": published.figures.roughness.as_ref().map(roughness),
-        })),
-    }))
+    document(run, found, SimulationFigures::of(run, found, making))
 }
 
 /// What `stead simulate --json` prints: the summary, and how long the run took.
 pub fn timed_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
-    let mut document = simulation_json(run, found, making);
     let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
-    document["wall_s"] = json!(Unit::TIME_S.number(making.wall));
-    document["real_time_factor"] =
-        if making.wall > 0.0 { json!(Unit::TIME_S.number(duration / making.wall)) } else { Value::Null };
-    document
-}
-
-fn statistics(statistics: &Statistics) -> Value {
-    let Statistics { min, max, mean, root_mean_square } = statistics;
-    json!({
-        "min_n": Unit::FORCE_N.number(*min),
-        "max_n": Unit::FORCE_N.number(*max),
-        "mean_n": Unit::FORCE_N.number(*mean),
-        "rms_n": Unit::FORCE_N.number(*root_mean_square),
-    })
-}
-
-fn roughness(roughness: &Roughness) -> Value {
-    json!({
-        "ra_um": HEIGHT_UM.number(roughness.mean),
-        "rq_um": HEIGHT_UM.number(roughness.root_mean_square),
-        "rt_um": HEIGHT_UM.number(roughness.total),
-    })
-}
-
-fn mode(mode: &Mode) -> Value {
-    json!({ "frequency_hz": HERTZ.number(mode.natural_frequency()), "damping_ratio": SHARE.number(mode.damping_ratio) })
+    let factor = (making.wall > 0.0).then(|| TimeS(duration / making.wall));
+    let timing = SimulationFigures {
+        wall_s: Some(making.wall.into()),
+        real_time_factor: Some(factor),
+        ..SimulationFigures::of(run, found, making)
+    };
+    document(run, found, timing)
 }

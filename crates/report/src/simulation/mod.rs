@@ -3,10 +3,10 @@
 
 mod json;
 mod page;
-mod tables;
+pub(crate) mod tables;
 mod text;
 
-pub use json::{simulation_json, timed_json};
+pub use json::{SimulationFigures, simulation_json, timed_json};
 pub use tables::{series, wall};
 pub use text::simulation_text;
 
@@ -14,16 +14,10 @@ use super::output::{Folder, ReportError};
 use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
-use crate::units::Unit;
 use std::path::PathBuf;
-use stead_format::SimulationRun;
+use stead_run_files::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::outcome::Simulation;
-
-/// Lengths of a wall and of deflections, from m to um.
-pub(super) const HEIGHT_UM: Unit = Unit { factor: 1e6, decimals: 4 };
-/// Times of single steps, in s.
-pub(super) const MOMENT_S: Unit = Unit { factor: 1.0, decimals: 7 };
 
 /// How a run was made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +28,8 @@ pub struct Making {
     pub wall: f64,
 }
 
-/// Writes `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg` and `report.html`. Returns their paths in that order.
+/// Writes `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg` and `report.html`. Returns
+/// their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -57,9 +52,9 @@ pub fn simulation_files(run: &SimulationRun, found: &Simulation, making: &Making
         ("series.csv", series(found)?),
         ("wall.csv", wall(found)?),
         ("summary.json", crate::document::bytes(&simulation_json(run, found, making))),
-        ("forces.svg", picture::forces(found).into_bytes()),
-        ("turns.svg", picture::turns(found, run.cut.spindle_speed).into_bytes()),
-        ("wall.svg", picture::wall(found).into_bytes()),
+        ("forces.svg", picture::charts(&[page::forces(found)]).into_bytes()),
+        ("turns.svg", picture::charts(&[page::turns(found, run.cut.spindle_speed)]).into_bytes()),
+        ("wall.svg", picture::charts(&page::walls(found)).into_bytes()),
         (PAGE, page::page(run, found).html()),
     ]))
 }

@@ -1,11 +1,11 @@
 //! `report.html` of a simulated pass.
 
 use super::end_words;
-use crate::page::cards::{Axis, Card, Chart, Mark, Page, Series, Style, Tile, Tiles};
+use crate::page::cards::{Axis, Card, Chart, Mark, Page, Series, Tile, Tiles};
 use crate::stability::page::modes;
 use crate::units::{figures, fixed};
 use std::f64::consts::TAU;
-use stead_format::SimulationRun;
+use stead_run_files::SimulationRun;
 use stead_simulation::outcome::Simulation;
 use stead_simulation::roughness::Profile;
 
@@ -28,14 +28,11 @@ pub(super) fn page(run: &SimulationRun, found: &Simulation) -> Page {
     let mut page = Page::new(run.setup.robot.name(), subtitle, lead, &run.inputs)
         .messages(&found.warnings, &found.notes)
         .with(tiles(found))
-        .with(forces(found))
-        .with(turns(found, run.cut.spindle_speed))
-        .with(deflections(found));
-    for (title, profile, color) in [
-        ("Wall: height over the nominal wall", &found.wall, 3),
-        ("Roughness: without what is longer than the cutoff", &found.filtered, 1),
-    ] {
-        page = page.with(wall(title, profile, color));
+        .with(Card::Chart(forces(found)))
+        .with(Card::Chart(turns(found, run.cut.spindle_speed)))
+        .with(Card::Chart(deflections(found)));
+    for wall in walls(found) {
+        page = page.with(Card::Chart(wall));
     }
     page.with(modes(&found.modes))
 }
@@ -73,7 +70,7 @@ fn tiles(found: &Simulation) -> Card {
 /// Along the feed and towards the wall, as the tables have them.
 const NAMES: [&str; 2] = ["along the feed", "towards the wall"];
 
-fn forces(found: &Simulation) -> Card {
+pub(super) fn forces(found: &Simulation) -> Chart {
     let curve = |axis: usize, sign: f64| {
         let samples = found.run.samples.iter().enumerate();
         Series::curve(
@@ -84,7 +81,7 @@ fn forces(found: &Simulation) -> Card {
     };
     let window = ["forces are summed up from here", "to here"].into_iter().zip(found.window);
     let inside = 0.0..=found.run.step * found.run.samples.len() as f64;
-    Card::Chart(Chart {
+    Chart {
         title: "Forces on the tool over the pass".to_owned(),
         detail: "smallest and largest of each stretch".to_owned(),
         x: Axis::new("time (s)"),
@@ -96,11 +93,12 @@ fn forces(found: &Simulation) -> Card {
             .collect(),
         is_wide: true,
         ..Chart::default()
-    })
+    }
 }
 
-/// Every sample of three turns of the spindle in the middle of what is summed up, or at the end of a run that ended before.
-fn turns(found: &Simulation, spindle_speed: f64) -> Card {
+/// Every sample of three turns of the spindle in the middle of what is summed up, or at the end of a run that ended
+/// before.
+pub(super) fn turns(found: &Simulation, spindle_speed: f64) -> Chart {
     let turn = TAU / spindle_speed / found.run.step;
     let count = found.run.samples.len();
     let middle = (found.window[0] + found.window[1]) / 2.0 / found.run.step;
@@ -114,17 +112,17 @@ fn turns(found: &Simulation, spindle_speed: f64) -> Card {
             samples.map(move |(k, sample)| [k as f64 / turn * 360.0, sign * sample.force[axis]]),
         )
     };
-    Card::Chart(Chart {
+    Chart {
         title: "Forces over three turns".to_owned(),
         detail: format!("from {} s", fixed(start as f64 * found.run.step, 4)),
         x: Axis::new("angle of the spindle (deg)"),
         y: Axis::new("force (N)"),
         series: vec![curve(0, 1.0), curve(1, -1.0)],
         ..Chart::default()
-    })
+    }
 }
 
-fn deflections(found: &Simulation) -> Card {
+fn deflections(found: &Simulation) -> Chart {
     let curve = |axis: usize, sign: f64| {
         let samples = found.run.samples.iter().enumerate();
         let point = move |(k, sample): (usize, &stead_simulation::coupled::Sample)| {
@@ -132,23 +130,31 @@ fn deflections(found: &Simulation) -> Card {
         };
         Series::curve(NAMES[axis], axis, samples.map(point))
     };
-    Card::Chart(Chart {
+    Chart {
         title: "Tool centre off its path".to_owned(),
         x: Axis::new("time (s)"),
         y: Axis::new("deflection (um)"),
         series: vec![curve(0, 1.0), curve(1, -1.0)],
         ..Chart::default()
-    })
+    }
 }
 
-fn wall(title: &str, profile: &Profile, color: usize) -> Card {
-    let heights = profile.heights.iter().enumerate();
-    let points = heights.map(|(k, height)| [(profile.start + k as f64 * profile.spacing) * 1e3, height * 1e6]);
-    Card::Chart(Chart {
-        title: title.to_owned(),
-        x: Axis::new("along the feed (mm)"),
-        y: Axis::new("height (um)"),
-        series: vec![Series::curve("", color, points).styled(Style::Line)],
-        ..Chart::default()
-    })
+/// The wall along the feed, and what the filter leaves of it.
+pub(super) fn walls(found: &Simulation) -> [Chart; 2] {
+    let wall = |title: &str, profile: &Profile, color: usize| {
+        let heights = profile.heights.iter().enumerate();
+        let points = heights.map(|(k, height)| [(profile.start + k as f64 * profile.spacing) * 1e3, height * 1e6]);
+        Chart {
+            title: title.to_owned(),
+            detail: if profile.heights.is_empty() { "no wall was made".to_owned() } else { String::new() },
+            x: Axis::new("along the feed (mm)"),
+            y: Axis::new("height (um)"),
+            series: vec![Series::curve("", color, points)],
+            ..Chart::default()
+        }
+    };
+    [
+        wall("Wall: height over the nominal wall", &found.wall, 3),
+        wall("Roughness: without what is longer than the cutoff", &found.filtered, 1),
+    ]
 }

@@ -3,15 +3,15 @@
 use super::{Making, end_words};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
-use stead_format::SimulationRun;
+use stead_run_files::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::judgement::{Judgement, MAX_PERIOD_VARIATION};
 use stead_simulation::outcome::{Simulation, Statistics};
 use stead_simulation::roughness::Roughness;
 use stead_simulation::stability::{Kind, Verdict};
 
-/// Forces in the window and roughness of the wall, beside published figures where there are any; whether the cut stayed calm.
-/// Lines end with a line break.
+/// Forces in the window and roughness of the wall, beside published figures where there are any; whether the cut stayed
+/// calm. Lines end with a line break.
 pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making) -> String {
     let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
     let model = if making.is_fast { "condensed model" } else { "full model" };
@@ -70,8 +70,8 @@ fn roughness(run: &SimulationRun, found: &Simulation) -> String {
     format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
 }
 
-/// How the pass went, what its forces show of it, and what small motions do: in the middle of the work, and where the stability
-/// analysis looks at the arm if that is another answer.
+/// How the pass went, what its forces show of it, and what small motions do: in the middle of the work, and where the
+/// stability analysis looks at the arm if that is another answer.
 fn verdict(run: &SimulationRun, found: &Simulation) -> String {
     let (_, reason) = end_words(&found.run.end);
     let how = match found.judgement {

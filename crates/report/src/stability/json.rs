@@ -1,68 +1,90 @@
 //! The JSON document of a stability analysis.
 
-use super::{DEPTH_MM, HERTZ, RATE, RPM, SHARE};
-use crate::document::{Document, joined};
-use crate::units::Unit;
-use serde_json::{Value, json};
-use stead_format::SimulationRun;
+use crate::document::Document;
+use crate::figure::{DepthMm, Exponent, FrequencyHz, PlaceMm, RatePerS, Share, SpeedRpm, TimeS, some};
+use serde_json::Value;
+use stead_run_files::SimulationRun;
 use stead_simulation::modes::Mode;
+use stead_simulation::stability::Lobe;
 use stead_simulation::stability_analysis::{CutStability, StabilityAnalysis};
+
+records! {
+    /// A stability analysis.
+    pub struct StabilityFigures of (run: &SimulationRun, analysis: &StabilityAnalysis) {
+        /// Name of the robot.
+        robot: String = run.setup.robot.name().to_owned(),
+        /// The model of the arm.
+        variant: &'static str = run.setup.variant.word(),
+        /// What the damping of the robot file is multiplied by.
+        damping_scale: f64 = run.setup.damping_scale,
+        /// Distance along the pass at which the arm is linearised.
+        way_mm: PlaceMm = run.analysis.distance.into(),
+        /// Spindle speed.
+        spindle_rpm: SpeedRpm = run.cut.spindle_speed.into(),
+        /// Axial depth of the cut.
+        axial_depth_mm: DepthMm = run.cut.section.axial_depth.into(),
+        /// Depths are searched up to this.
+        max_depth_mm: DepthMm = run.analysis.max_depth.into(),
+        /// Time of the pass.
+        pass_time_s: TimeS = analysis.pass_time.into(),
+        /// Growth of small motions in that time, as an exponent.
+        growth_in_pass: Exponent = Exponent(analysis.cut_stability.verdict.growth_rate() * analysis.pass_time),
+        /// The modes.
+        modes: Vec<ModeFigures> = analysis.modes.iter().map(Into::into).collect(),
+        /// Critical depths over the spindle speed.
+        lobes: Vec<LobeFigures> = analysis.lobes.iter().map(Into::into).collect(),
+        #[serde(flatten)] verdict: VerdictFigures = (&analysis.cut_stability).into(),
+    }
+}
 
 /// What `stead stability --json` prints, and the content of `summary.json`.
 pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Value {
-    let rate = analysis.cut_stability.verdict.growth_rate();
-    let result = json!({
-        "robot": run.setup.robot.name(),
-        "variant": run.setup.variant.word(),
-        "damping_scale": run.setup.damping_scale,
-        "way_mm": Unit::PLACE_MM.number(run.analysis.distance),
-        "spindle_rpm": RPM.number(run.cut.spindle_speed),
-        "axial_depth_mm": DEPTH_MM.number(run.cut.section.axial_depth),
-        "max_depth_mm": DEPTH_MM.number(run.analysis.max_depth),
-        "pass_time_s": Unit::TIME_S.number(analysis.pass_time),
-        "growth_in_pass": RATE.number(rate * analysis.pass_time),
-        "modes": modes(&analysis.modes),
-        "lobes": lobes(analysis),
-    });
-    Document::new(&run.inputs).notes(&analysis.notes).with(joined(result, verdict(&analysis.cut_stability)))
+    Document::new(&run.inputs).notes(&analysis.notes).with(StabilityFigures::of(run, analysis))
 }
 
-/// Critical depths and verdict.
-pub(crate) fn verdict(depths: &CutStability) -> Value {
-    let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
-    let verdict = &depths.verdict;
-    json!({
-        "critical_depth_mm": {
-            "semi_discretisation": depth(depths.semi_discretisation),
-            "zero_order": depth(depths.zero_order),
-        },
-        "stable": verdict.is_stable(),
-        "kind": verdict.kind().word(),
-        "growth_rate_per_s": RATE.number(verdict.growth_rate()),
-    })
-}
+records! {
+    /// Critical depths and verdict of a cut.
+    pub struct VerdictFigures from depths: &CutStability {
+        let verdict = &depths.verdict;
+    } with {
+        /// Critical depths; null where all depths up to the largest are stable.
+        critical_depth_mm: CriticalDepths = CriticalDepths::of(depths),
+        /// Whether the cut is stable.
+        stable: bool = verdict.is_stable(),
+        /// What small motions do.
+        kind: &'static str = verdict.kind().word(),
+        /// The rate at which small motions grow.
+        growth_rate_per_s: RatePerS = verdict.growth_rate().into(),
+    }
 
-/// Frequencies, damping and shapes.
-pub(crate) fn modes(modes: &[Mode]) -> Value {
-    let mode = |mode: &Mode| {
-        json!({
-            "frequency_hz": HERTZ.number(mode.natural_frequency()),
-            "damping_ratio": SHARE.number(mode.damping_ratio),
-            "joints": mode.joints.iter().map(|amplitude| SHARE.number(*amplitude)).collect::<Vec<_>>(),
-            "tip_mm_per_rad": mode.tip.iter().map(|part| Unit::PLACE_MM.number(*part)).collect::<Vec<_>>(),
-        })
-    };
-    modes.iter().map(mode).collect()
-}
+    /// Critical depths by two methods.
+    pub struct CriticalDepths of (depths: &CutStability) {
+        /// By semi-discretisation.
+        semi_discretisation: Option<DepthMm> = some(depths.semi_discretisation),
+        /// By the zero-order solution.
+        zero_order: Option<DepthMm> = some(depths.zero_order),
+    }
 
-fn lobes(analysis: &StabilityAnalysis) -> Value {
-    let depth = |depth: Option<f64>| depth.map(|depth| DEPTH_MM.number(depth));
-    let lobe = |lobe: &stead_simulation::stability::Lobe| {
-        json!({
-            "spindle_rpm": RPM.number(lobe.spindle_speed),
-            "critical_depth_mm": depth(lobe.semi_discretisation),
-            "zero_order_mm": depth(lobe.zero_order),
-        })
-    };
-    analysis.lobes.iter().map(lobe).collect()
+    /// A mode of the arm.
+    pub struct ModeFigures from mode: &Mode {
+        /// Natural frequency.
+        frequency_hz: FrequencyHz = mode.natural_frequency().into(),
+        /// Share of the critical damping.
+        damping_ratio: Share = mode.damping_ratio.into(),
+        /// Amplitudes of the joints, the largest 1.
+        joints: Vec<Share> = mode.joints.iter().map(|amplitude| Share(*amplitude)).collect(),
+        /// Amplitude of the tip in the base frame, for a joint that swings by 1 rad.
+        tip_mm_per_rad: Vec<PlaceMm> = mode.tip.iter().map(|part| PlaceMm(*part)).collect(),
+    }
+
+    /// Critical depths at a spindle speed.
+    #[derive(Default)]
+    pub struct LobeFigures from lobe: &Lobe {
+        /// The spindle speed.
+        spindle_rpm: SpeedRpm = lobe.spindle_speed.into(),
+        /// Critical depth by semi-discretisation; none where all depths up to the largest are stable.
+        critical_depth_mm: Option<DepthMm> = some(lobe.semi_discretisation),
+        /// Critical depth by the zero-order solution.
+        zero_order_mm: Option<DepthMm> = some(lobe.zero_order),
+    }
 }

@@ -1,15 +1,15 @@
-//! Reports of a stability analysis: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`, `summary.json`,
-//! `report.html`, and a text for people.
+//! Reports of a stability analysis: `modes.csv`, `frequency-response.csv` and `.svg`, `lobes.csv` and `.svg`,
+//! `summary.json`, `report.html`, and a text for people.
 
 mod json;
 pub(crate) mod page;
 pub(crate) mod path;
-mod tables;
+pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use json::stability_json;
+pub use json::{LobeFigures, StabilityFigures, stability_json};
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
@@ -19,21 +19,11 @@ use super::picture;
 use super::{Files, named};
 use crate::units::Unit;
 use std::path::PathBuf;
-use stead_format::SimulationRun;
+use stead_run_files::SimulationRun;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
-/// Frequencies in Hz.
-pub(super) const HERTZ: Unit = Unit { factor: 1.0, decimals: 4 };
-/// Shares of the critical damping.
-pub(super) const SHARE: Unit = Unit { factor: 1.0, decimals: 6 };
 /// Spindle speeds, from rad/s to turns a minute.
 pub(super) const RPM: Unit = Unit { factor: 30.0 / std::f64::consts::PI, decimals: 2 };
-/// Depths of cut, from m to mm.
-pub(super) const DEPTH_MM: Unit = Unit { factor: 1e3, decimals: 5 };
-/// Answers to a force, from m/N to um/N.
-pub(super) const RESPONSE: Unit = Unit { factor: 1e6, decimals: 6 };
-/// Rates of growth in 1/s.
-pub(super) const RATE: Unit = Unit { factor: 1.0, decimals: 4 };
 
 /// Writes `modes.csv`, `frequency-response.csv`, `lobes.csv`, `summary.json`, `frequency-response.svg`, `lobes.svg` and
 /// `report.html`. Returns their paths in that order.
@@ -59,8 +49,8 @@ pub fn stability_files(run: &SimulationRun, analysis: &StabilityAnalysis) -> Res
         ("frequency-response.csv", responses(analysis)?),
         ("lobes.csv", lobes(analysis)?),
         ("summary.json", crate::document::bytes(&stability_json(run, analysis))),
-        ("frequency-response.svg", picture::frequency_response(analysis).into_bytes()),
-        ("lobes.svg", picture::lobes(analysis, &run.cut, run.analysis.max_depth).into_bytes()),
+        ("frequency-response.svg", picture::charts(&[page::response(analysis)]).into_bytes()),
+        ("lobes.svg", picture::charts(&[page::lobes(run, analysis)]).into_bytes()),
         (PAGE, page::page(run, analysis).html()),
     ]))
 }

@@ -3,7 +3,7 @@
 use super::RPM;
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
-use stead_format::SimulationRun;
+use stead_run_files::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability::Lobe;
 use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
@@ -22,8 +22,8 @@ pub(super) fn page(run: &SimulationRun, analysis: &StabilityAnalysis) -> Page {
     Page::new(run.setup.robot.name(), subtitle, lead, &run.inputs)
         .messages(&[] as &[&str], &analysis.notes)
         .with(tiles(run, analysis))
-        .with(lobes(run, analysis))
-        .with(response(analysis))
+        .with(Card::Chart(lobes(run, analysis)))
+        .with(Card::Chart(response(analysis)))
         .with(modes(&analysis.modes))
 }
 
@@ -50,15 +50,18 @@ fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
     })
 }
 
-fn lobes(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
+/// Critical depth of cut over spindle speed by both methods, and the cut at hand. No value: all depths up to the
+/// largest are stable.
+pub(super) fn lobes(run: &SimulationRun, analysis: &StabilityAnalysis) -> Chart {
     let curve = |name: &str, color: usize, of: fn(&Lobe) -> Option<f64>| {
         let speed = |lobe: &Lobe| lobe.spindle_speed * RPM.factor;
         let points = analysis.lobes.iter().map(|lobe| [speed(lobe), of(lobe).map_or(f64::NAN, |depth| depth * 1e3)]);
         Series::curve(name, color, points)
     };
     let (speed, depth) = (run.cut.spindle_speed * RPM.factor, run.cut.section.axial_depth * 1e3);
-    let cut = Series::dots("this cut", 3, [[speed, depth]]);
-    Card::Chart(Chart {
+    let verdict = if analysis.cut_stability.verdict.is_stable() { "stable" } else { "chatters" };
+    let cut = Series::dots(format!("this cut, {} mm: {verdict}", fixed(depth, 2)), 3, [[speed, depth]]);
+    Chart {
         title: "Stability lobes".to_owned(),
         detail: "cuts below the curve are stable; no value: all depths up to the largest asked for are".to_owned(),
         x: Axis::new("spindle speed (rpm)"),
@@ -71,19 +74,26 @@ fn lobes(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
         marks: vec![Mark { is_level: true, at: depth, label: "depth of this cut".to_owned() }],
         is_wide: true,
         ..Chart::default()
-    })
+    }
 }
 
-fn response(analysis: &StabilityAnalysis) -> Card {
+/// Decades of the response that are shown.
+const DECADES: f64 = 1e4;
+
+/// Magnitude of the response at the tip over the frequency of the force, with a line at each mode.
+pub(super) fn response(analysis: &StabilityAnalysis) -> Chart {
     let curve = |name: &str, color: usize, of: fn(&FrequencyResponse) -> f64| {
         let points = analysis.frequency_response.iter().map(|at| [at.frequency, of(at) * 1e6]);
         Series::curve(name, color, points)
     };
-    Card::Chart(Chart {
+    let all = analysis.frequency_response.iter().flat_map(|at| [at.feed, at.normal]);
+    let largest = all.map(|part| part.norm() * 1e6).fold(1e-12, f64::max);
+    let highest = libm::pow(10.0, libm::log10(largest).ceil());
+    Chart {
         title: "Frequency response of the tip".to_owned(),
-        detail: "dashed: the modes of the arm".to_owned(),
+        detail: "with the frequencies of the modes".to_owned(),
         x: Axis::new("frequency (Hz)"),
-        y: Axis::log("answer (um/N)"),
+        y: Axis { range: Some([highest / DECADES, highest]), ..Axis::log("answer (um/N)") },
         series: vec![
             curve("along the feed", 0, |at| at.feed.norm()),
             curve("normal to the wall", 1, |at| at.normal.norm()),
@@ -92,12 +102,12 @@ fn response(analysis: &StabilityAnalysis) -> Card {
         marks: analysis
             .modes
             .iter()
-            .zip(1_usize..)
-            .map(|(mode, number)| Mark { is_level: false, at: mode.natural_frequency(), label: number.to_string() })
+            .map(|mode| mode.natural_frequency())
+            .map(|at| Mark { is_level: false, at, label: fixed(at, 1) })
             .collect(),
         is_wide: true,
         ..Chart::default()
-    })
+    }
 }
 
 /// The modes of an arm by frequency and damping.

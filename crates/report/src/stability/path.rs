@@ -2,13 +2,11 @@
 
 use super::super::output::ReportError;
 use super::super::picture;
-use super::json::verdict;
-use super::{DEPTH_MM, RATE, RPM};
-use crate::csv_file::table;
-use crate::document::joined;
+use super::json::VerdictFigures;
+use crate::csv_file::rows;
+use crate::figure::{DepthMm, RatePerS, SpeedRpm, some};
 use crate::units::fixed;
-use serde_json::{Value, json};
-use stead_placement::outcome::Plan;
+use stead_placement::outcome::{Plan, PlanPoint};
 use stead_simulation::path_stability::smallest;
 use stead_simulation::stability_analysis::CutStability;
 use stead_study::PathStability;
@@ -30,28 +28,44 @@ pub fn files(
     Ok(files)
 }
 
-/// The setting and, for each plan, the smallest critical depth, where it is, and how many points chatter; with `points` all
-/// of them too.
-pub fn document(stability: &PathStability, points: bool) -> Value {
-    let plan = |depths: &Vec<CutStability>| {
+records! {
+    /// Critical depths along plans, and the setting that they are for.
+    pub struct PathStabilityFigures of (stability: &PathStability, with_points: bool) {
+        let analysis = &stability.analysis;
+        let plan = |depths: &Vec<_>| PlanStability::of(depths, with_points);
+    } with {
+        /// The model of the arm.
+        variant: &'static str = analysis.variant.word(),
+        /// What the damping of the robot file is multiplied by.
+        damping_scale: f64 = analysis.damping_scale,
+        /// Spindle speed.
+        spindle_rpm: SpeedRpm = analysis.cut.spindle_speed.into(),
+        /// Axial depth of the cut.
+        axial_depth_mm: DepthMm = analysis.cut.section.axial_depth.into(),
+        /// Depths are searched up to this.
+        max_depth_mm: DepthMm = analysis.max_depth.into(),
+        /// The best plan.
+        best: Option<PlanStability> = stability.plans.first().map(plan),
+        /// The worst plan, or that of the worst placement.
+        worst: Option<PlanStability> = stability.plans.get(1).map(plan),
+    }
+
+    /// Critical depths along a plan.
+    pub struct PlanStability of (depths: &[CutStability], with_points: bool) {
         let min = smallest(depths);
-        let value = json!({
-            "smallest_critical_depth_mm": min.map(|(_, depth)| DEPTH_MM.number(depth)),
-            "at_point": min.map(|(point, _)| point),
-            "stable": depths.iter().all(|at| at.verdict.is_stable()),
-            "points_that_chatter": chattering(depths),
-        });
-        if points { joined(value, json!({ "points": depths.iter().map(verdict).collect::<Value>() })) } else { value }
-    };
-    json!({
-        "variant": stability.analysis.variant.word(),
-        "damping_scale": stability.analysis.damping_scale,
-        "spindle_rpm": RPM.number(stability.analysis.cut.spindle_speed),
-        "axial_depth_mm": DEPTH_MM.number(stability.analysis.cut.section.axial_depth),
-        "max_depth_mm": DEPTH_MM.number(stability.analysis.max_depth),
-        "best": stability.plans.first().map(plan),
-        "worst": stability.plans.get(1).map(plan),
-    })
+    } with {
+        /// The smallest critical depth; null where all depths up to the largest are stable.
+        smallest_critical_depth_mm: Option<DepthMm> = min.map(|(_, depth)| depth.into()),
+        /// The path point where it is, from 0.
+        at_point: Option<usize> = min.map(|(point, _)| point),
+        /// Whether the cut is stable at every point.
+        stable: bool = depths.iter().all(|at| at.verdict.is_stable()),
+        /// How many points chatter.
+        points_that_chatter: usize = chattering(depths),
+        /// Every point.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        points: Option<Vec<VerdictFigures>> = with_points.then(|| depths.iter().map(Into::into).collect()),
+    }
 }
 
 /// A line for each of the two plans, by what they are called.
@@ -77,15 +91,27 @@ fn chattering(depths: &[CutStability]) -> usize {
     depths.iter().filter(|at| !at.verdict.is_stable()).count()
 }
 
-/// One row for each path point; depths are empty where all depths up to the largest are stable.
+records! {
+    /// The critical depths at a path point; empty where all depths up to the largest are stable.
+    pub struct PathStabilityRow of (point: &PlanPoint, at: &CutStability) {
+        /// Path point, from 0.
+        point: usize = point.point,
+        /// Segment, from 1.
+        segment: usize = point.segment,
+        /// Critical depth by semi-discretisation.
+        critical_depth_mm: Option<DepthMm> = some(at.semi_discretisation),
+        /// Critical depth by the zero-order solution.
+        zero_order_mm: Option<DepthMm> = some(at.zero_order),
+        /// Whether the cut is stable.
+        stable: bool = at.verdict.is_stable(),
+        /// What small motions do.
+        kind: &'static str = at.verdict.kind().word(),
+        /// The rate at which small motions grow.
+        growth_rate_per_s: RatePerS = at.verdict.growth_rate().into(),
+    }
+}
+
 fn along(plan: &Plan, depths: &[CutStability]) -> Result<Vec<u8>, ReportError> {
-    const HEADER: &str = "point,segment,critical_depth_mm,zero_order_mm,stable,kind,growth_rate_per_s";
-    let rows = plan.points.iter().zip(depths).map(|(point, at)| {
-        let mut row = vec![point.point.to_string(), point.segment.to_string()];
-        row.extend([at.semi_discretisation, at.zero_order].map(|depth| DEPTH_MM.text_or_empty(depth)));
-        row.push(at.verdict.is_stable().to_string());
-        row.extend([at.verdict.kind().word().to_owned(), RATE.text(at.verdict.growth_rate())]);
-        row
-    });
-    table("the table of critical depths", HEADER.split(','), rows)
+    let row = |(point, at): (&PlanPoint, &CutStability)| PathStabilityRow::of(point, at);
+    rows("the table of critical depths", plan.points.iter().zip(depths).map(row))
 }

@@ -1,30 +1,42 @@
 //! The CSV tables of a stability analysis.
 
 use super::super::output::ReportError;
-use super::{DEPTH_MM, HERTZ, RESPONSE, RPM, SHARE};
-use crate::csv_file::table;
-use crate::units::Unit;
-use stead_simulation::stability_analysis::StabilityAnalysis;
+use super::json::LobeFigures;
+use crate::csv_file::{Columns, rows_or};
+use crate::figure::{FrequencyHz, ResponseUmPerN, Share, TipMm, each};
+use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
 
-/// Amplitudes of the tip, from m to mm, for a joint that swings by 1 rad.
-const TIP_MM: Unit = Unit { factor: 1e3, decimals: 4 };
+records! {
+    /// A mode of the arm. Behind these columns is the amplitude of every joint, the largest 1: `joint1` and so on.
+    #[derive(Default)]
+    pub struct ModeRow of (mode: &stead_simulation::modes::Mode, number: usize) {
+        let (count, joints) = (mode.joints.len(), mode.joints.iter().enumerate());
+        let [tip_x_mm_per_rad, tip_y_mm_per_rad, tip_z_mm_per_rad] = each(mode.tip.into());
+    } with {
+        /// Its number, from 1.
+        mode: usize = number,
+        /// Natural frequency.
+        frequency_hz: FrequencyHz = mode.natural_frequency().into(),
+        /// Share of the critical damping.
+        damping_ratio: Share = mode.damping_ratio.into(),
+        /// x of the amplitude of the tip in the base frame, for a joint that swings by 1 rad.
+        tip_x_mm_per_rad: TipMm = tip_x_mm_per_rad,
+        /// y of it.
+        tip_y_mm_per_rad: TipMm = tip_y_mm_per_rad,
+        /// z of it.
+        tip_z_mm_per_rad: TipMm = tip_z_mm_per_rad,
+        #[serde(flatten)] joints: Columns<Share> =
+            Columns(joints.map(|(k, amplitude)| (joint_name(k, count), Share(*amplitude))).collect()),
+    }
+}
 
-/// `modes.csv`: one row for each mode: natural frequency, share of the critical damping, amplitude of the tip in the base frame,
-/// and of every joint, the largest 1. With springs normal to the axes every `joint` is followed by its `x` and `y`.
+/// `modes.csv`: one row for each mode. With springs normal to the axes every `joint` is followed by its `x` and `y`.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn modes(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
-    let count = analysis.modes.first().map_or(0, |mode| mode.joints.len());
-    const FIXED: &str = "mode,frequency_hz,damping_ratio,tip_x_mm_per_rad,tip_y_mm_per_rad,tip_z_mm_per_rad";
-    let header = FIXED.split(',').map(str::to_owned).chain((0..count).map(|k| joint_name(k, count)));
-    let rows = analysis.modes.iter().zip(1..).map(|(mode, number): (_, usize)| {
-        let mut row = vec![number.to_string(), HERTZ.text(mode.natural_frequency()), SHARE.text(mode.damping_ratio)];
-        row.extend(mode.tip.iter().map(|part| TIP_MM.text(*part)));
-        row.extend(mode.joints.iter().map(|amplitude| SHARE.text(*amplitude)));
-        row
-    });
-    table("the table of modes", header, rows)
+    let row = |(mode, number): (&stead_simulation::modes::Mode, usize)| ModeRow::of(mode, number);
+    rows_or("the table of modes", &ModeRow::default(), analysis.modes.iter().zip(1..).map(row))
 }
 
 /// `joint1` and so on; with three joints a motor `joint1`, `joint1_x`, `joint1_y`.
@@ -33,33 +45,43 @@ pub(super) fn joint_name(index: usize, count: usize) -> String {
     format!("joint{}{}", index / each + 1, ["", "_x", "_y"][index % each])
 }
 
-/// `frequency-response.csv`: the complex frequency response of the tip: along the feed to a force along the feed, along the
-/// normal of the wall to a force along it, and across.
+records! {
+    /// The complex frequency response of the tip.
+    #[derive(Default)]
+    pub struct ResponseRow of (response: &FrequencyResponse) {
+        /// Frequency.
+        frequency_hz: FrequencyHz = response.frequency.into(),
+        /// Along the feed to a force along the feed, real part.
+        feed_re_um_per_n: ResponseUmPerN = response.feed.re.into(),
+        /// Its imaginary part.
+        feed_im_um_per_n: ResponseUmPerN = response.feed.im.into(),
+        /// Along the normal of the wall to a force along it, real part.
+        normal_re_um_per_n: ResponseUmPerN = response.normal.re.into(),
+        /// Its imaginary part.
+        normal_im_um_per_n: ResponseUmPerN = response.normal.im.into(),
+        /// Across, real part.
+        cross_re_um_per_n: ResponseUmPerN = response.cross.re.into(),
+        /// Its imaginary part.
+        cross_im_um_per_n: ResponseUmPerN = response.cross.im.into(),
+    }
+}
+
+/// `frequency-response.csv`: a `ResponseRow` for each frequency.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn responses(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
-    const HEADER: &str = "\
-        frequency_hz,feed_re_um_per_n,feed_im_um_per_n,normal_re_um_per_n,normal_im_um_per_n,cross_re_um_per_n,\
-         cross_im_um_per_n";
-    let rows = analysis.frequency_response.iter().map(|response| {
-        let mut row = vec![HERTZ.text(response.frequency)];
-        let parts = [response.feed, response.normal, response.cross];
-        row.extend(parts.iter().flat_map(|part| [part.re, part.im]).map(|value| RESPONSE.text(value)));
-        row
-    });
-    table("the table of the frequency response", HEADER.split(','), rows)
+    rows_or(
+        "the table of the frequency response",
+        &ResponseRow::default(),
+        analysis.frequency_response.iter().map(ResponseRow::of),
+    )
 }
 
-/// `lobes.csv`: critical depth over spindle speed, empty where all depths up to the largest are stable.
+/// `lobes.csv`: a [`LobeFigures`] for each spindle speed.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn lobes(analysis: &StabilityAnalysis) -> Result<Vec<u8>, ReportError> {
-    const HEADER: &str = "spindle_rpm,critical_depth_mm,zero_order_mm";
-    let rows = analysis.lobes.iter().map(|lobe| {
-        let depths = [lobe.semi_discretisation, lobe.zero_order].map(|depth| DEPTH_MM.text_or_empty(depth));
-        std::iter::once(RPM.text(lobe.spindle_speed)).chain(depths).collect()
-    });
-    table("the table of lobes", HEADER.split(','), rows)
+    rows_or("the table of lobes", &LobeFigures::default(), analysis.lobes.iter().map(Into::into))
 }

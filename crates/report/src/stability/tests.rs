@@ -2,7 +2,8 @@ use super::super::testing::assert_well_formed;
 use super::*;
 use std::path::Path;
 use std::sync::OnceLock;
-use stead_format::{Overrides, read_simulation};
+use stead_numerics::monitor::Monitor;
+use stead_run_files::{Overrides, read_simulation};
 use stead_simulation::stability_analysis::analyse;
 
 /// The shipped steel cut with few lobes.
@@ -12,7 +13,7 @@ fn found() -> &'static (SimulationRun, StabilityAnalysis) {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/umons-steel.toml");
         let mut run = read_simulation(&file, &Overrides::default()).unwrap();
         run.analysis.points = 3;
-        let analysis = analyse(&run.setup, &run.cutter, &run.cut, &run.analysis).unwrap();
+        let analysis = analyse(&run.setup, &run.cutter, &run.cut, &run.analysis, &Monitor::silent()).unwrap();
         (run, analysis)
     })
 }
@@ -63,7 +64,7 @@ fn depths_without_a_limit_leave_no_number() {
     assert!(document["lobes"][1]["critical_depth_mm"].is_null());
     assert!(document["critical_depth_mm"]["semi_discretisation"].is_null());
     assert!(stability_text(run, &analysis).contains("beyond 22.000 mm by semi-discretisation"));
-    assert_well_formed(&picture::lobes(&analysis, &run.cut, run.analysis.max_depth));
+    assert_well_formed(&picture::charts(&[page::lobes(run, &analysis)]));
 }
 
 #[test]
@@ -94,10 +95,10 @@ fn the_text_says_what_there_is() {
 #[test]
 fn pictures_are_well_formed_small_the_same_each_time_and_labelled() {
     let (run, analysis) = found();
-    let draw = || [picture::frequency_response(analysis), picture::lobes(analysis, &run.cut, run.analysis.max_depth)];
+    let draw = || [page::response(analysis), page::lobes(run, analysis)].map(|chart| picture::charts(&[chart]));
     let labels = [
         ["frequency (Hz)", "answer (um/N)", "along the feed", "15.8"],
-        ["spindle speed (rpm)", "depth of cut (mm)", "zero-order solution", "1.60 mm: chatters"],
+        ["spindle speed (rpm)", "critical depth of cut (mm)", "zero-order solution", "1.60 mm: chatters"],
     ];
     for ((svg, again), labels) in draw().iter().zip(draw()).zip(labels) {
         assert_eq!(*svg, again);

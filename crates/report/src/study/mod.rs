@@ -3,15 +3,17 @@
 
 mod json;
 mod page;
-mod tables;
+mod status;
+pub(crate) mod tables;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use json::{status_json, study_json};
+pub use json::{StudyFigures, study_json};
 pub use page::CasePages;
+pub use status::{StatusFigures, status_json};
 pub use tables::{effects_table, front_table, ranking_table};
 pub use text::study_text;
 
@@ -24,8 +26,8 @@ use std::path::PathBuf;
 use stead_format::input::InputFile;
 use stead_study::analysis::{Analysis, Layout};
 
-/// Writes the files of a report into the folder of its study and returns their paths; the page leads to the pages of kept cases. A front of nothing, a map of a single axis and
-/// effects of no axis have no files.
+/// Writes the files of a report into the folder of its study and returns their paths; the page leads to the pages of
+/// kept cases. A front of nothing, a map of a single axis and effects of no axis have no files.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.

@@ -5,7 +5,7 @@ use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series,
 use crate::units::figures;
 use std::collections::BTreeMap;
 use stead_format::input::InputFile;
-use stead_placement::sense::Sense;
+use stead_planning::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure};
 
 /// The pages of the cases that are kept, by the numbers of the cases: paths from the folder of the study.

@@ -52,7 +52,8 @@ fn an_axis_alone_is_told_by_its_ends() {
     let mut table = table();
     table.rows.truncate(2);
     let text = study_text("cells", &Analysis::of(&table, &Question::default()).unwrap());
-    let expected = "\nOnly height varies: objective_mm is from 1.0000 at 100 to 2.0000 at 200; along a straight line it changes by \
+    let expected = "\nOnly height varies: objective_mm is from 1.0000 at 100 to 2.0000 at 200; along a straight line \
+                    it changes by \
                     0.010000 per unit of height.\n";
     assert!(text.contains(expected), "{text}");
     assert!(!text.contains("of the variance"), "{text}");

@@ -82,7 +82,8 @@ fn gravity_about_joint_5_is_that_of_the_levers() {
     }
 }
 
-/// Eq. 9 knows of no joint 4: compensators carry all of gravity where the arm is in a plane, and what they would there elsewhere.
+/// Eq. 9 knows of no joint 4: compensators carry all of gravity where the arm is in a plane, and what they would there
+/// elsewhere.
 #[test]
 fn compensators_take_the_gravity_of_an_arm_in_a_plane() {
     let arm = six(Variant::Gravity);

@@ -1,14 +1,14 @@
 //! The fast model: mass matrix and Jacobian frozen along the pass, each step condensed to the two unknowns of the tip.
 //!
-//! With `u` the angles by which springs have yielded, the arm obeys `M u'' + D u' + K(u) = r(t) + J^T F`, where r is what gravity
-//! and the commanded motion ask for. Intervals of a few millimetres have M, the slope of gravity and J; between
-//! two, M is that of the middle and J is interpolated. A step of Newmark's method is then linear but for the force, and the tip
-//! moves as `u_tip = free + G F(u_tip)` with a matrix G of two rows (and three columns: the force along the tool axis moves the tip in
-//! the plane of the cut as well), so that the force alone is iterated on, and an arm of eighteen
-//! joints costs little more than one of six.
+//! With `u` the angles by which springs have yielded, the arm obeys `M u'' + D u' + K(u) = r(t) + J^T F`, where r is
+//! what gravity and the commanded motion ask for. Intervals of a few millimetres have M, the slope of gravity and J;
+//! between two, M is that of the middle and J is interpolated. A step of Newmark's method is then linear but for the
+//! force, and the tip moves as `u_tip = free + G F(u_tip)` with a matrix G of two rows (and three columns: the force
+//! along the tool axis moves the tip in the plane of the cut as well), so that the force alone is iterated on, and an
+//! arm of eighteen joints costs little more than one of six.
 //!
-//! With backlash springs act or not. For every set of springs that act the step is linear as well; its matrices are made when it
-//! first occurs, and a step is repeated until the springs that it assumes to act are those that do.
+//! With backlash springs act or not. For every set of springs that act the step is linear as well; its matrices are
+//! made when it first occurs, and a step is repeated until the springs that it assumes to act are those that do.
 
 use super::{CutPlane, End, Job, JobError, Process, Run};
 use crate::arm::Arm;
@@ -16,6 +16,7 @@ use crate::integrator::StepError;
 use crate::milling::Force;
 use crate::motion::Motion;
 use nalgebra::{Matrix2x3, SMatrix, SVector, Vector2, Vector3};
+use stead_numerics::monitor::Monitor;
 
 /// Longest interval. m
 const SPACING: f64 = 5e-3;
@@ -71,7 +72,7 @@ struct Frozen<'a, const N: usize> {
     intervals: Vec<Interval<N>>,
     tick: f64,
     /// r at every tick. N m
-    asked: Vec<SVector<f64, N>>,
+    requested: Vec<SVector<f64, N>>,
     /// Numbers of the joints with backlash.
     loose: Vec<usize>,
 }
@@ -107,9 +108,9 @@ impl<'a, const N: usize> Frozen<'a, N> {
         let duration = step * steps as f64;
         let ticks = (duration / TICK).ceil().max(1.0) as usize;
         let tick = duration / ticks as f64;
-        let asked = (0..=ticks).map(|k| asked(arm, motion, tick * k as f64));
-        let (tips, intervals, asked) = (tips.collect(), intervals.collect(), asked.collect());
-        Self { arm, step, spacing, tips, intervals, tick, asked, loose }
+        let requested = (0..=ticks).map(|k| requested(arm, motion, tick * k as f64));
+        let (tips, intervals, requested) = (tips.collect(), intervals.collect(), requested.collect());
+        Self { arm, step, spacing, tips, intervals, tick, requested, loose }
     }
 
     /// The interval at a distance (m) along the pass, and the tip there.
@@ -123,17 +124,17 @@ impl<'a, const N: usize> Frozen<'a, N> {
         (index, Tip { jacobian, axial, offset: from.offset + (to.offset - from.offset) * share })
     }
 
-    fn asked(&self, time: f64) -> SVector<f64, N> {
+    fn requested(&self, time: f64) -> SVector<f64, N> {
         let place = time / self.tick;
-        let index = (place as usize).min(self.asked.len() - 2);
+        let index = (place as usize).min(self.requested.len() - 2);
         let share = place - index as f64;
-        self.asked[index] + (self.asked[index + 1] - self.asked[index]) * share
+        self.requested[index] + (self.requested[index + 1] - self.requested[index]) * share
     }
 }
 
-/// What gravity and the commanded motion ask of the springs at a time: `r`, with the slope of gravity times what the springs have
-/// yielded at rest added, since the equation of motion takes that slope times all that they yield. N m
-fn asked<const N: usize>(arm: &Arm<N>, motion: &Motion, time: f64) -> SVector<f64, N> {
+/// What gravity and the commanded motion ask of the springs at a time: `r`, with the slope of gravity times what the
+/// springs have yielded at rest added, since the equation of motion takes that slope times all that they yield. N m
+fn requested<const N: usize>(arm: &Arm<N>, motion: &Motion, time: f64) -> SVector<f64, N> {
     let (angles, speeds) = motion.motors(time);
     let (reference, speed) = (Arm::<N>::spread(&angles), Arm::<N>::spread(&speeds));
     let apart = 1e-5;
@@ -199,11 +200,12 @@ fn side(angle: f64, gap: f64) -> f64 {
 /// Simulates a pass.
 ///
 /// # Errors
-/// [`JobError`] before the first step.
-pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError> {
+/// [`JobError`] before the first step, or when `monitor` asked to stop.
+pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>, monitor: &Monitor) -> Result<Run, JobError> {
     let mut process = Process::new(job)?;
     let (steps, h) = (process.steps(), process.step);
     let motion = process.motion;
+    monitor.go_on()?;
     let mut frozen = Frozen::new(arm, motion, &process.plane, h, steps);
     let reference = Arm::<N>::spread(&motion.motors(0.0).0);
     let mut state =
@@ -216,6 +218,7 @@ pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError>
         if end != End::Complete {
             break;
         }
+        process.watched(monitor)?;
         let time = index as f64 * h;
         end = match stepped(&mut frozen, &mut process, &mut state, time, force) {
             Ok(Ended { place, velocity, force: found }) => {
@@ -249,7 +252,7 @@ fn stepped<const N: usize>(
     let nominal = Vector2::from(process.plane.nominal(process.motion, distance)) + tip.offset;
     let u = state.u + state.speed * h + state.acceleration * (h * h / 4.0);
     let speed = state.speed + state.acceleration * (h / 2.0);
-    let mut free = frozen.asked(time) - arm.drive.damping.component_mul(&speed);
+    let mut free = frozen.requested(time) - arm.drive.damping.component_mul(&speed);
     if let Some(gravity) = &frozen.intervals[index].gravity {
         free -= gravity * u;
     }

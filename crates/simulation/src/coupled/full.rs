@@ -5,6 +5,7 @@ use crate::arm::{Arm, Compensation};
 use crate::integrator::{MotionState, Newmark, Settings, System, Tangent};
 use crate::milling::Force;
 use nalgebra::SVector;
+use stead_numerics::monitor::Monitor;
 
 /// The arm under the forces of milling.
 struct Coupled<'a, const N: usize> {
@@ -45,8 +46,8 @@ impl<const N: usize> System<N> for Coupled<'_, N> {
 /// Simulates a pass.
 ///
 /// # Errors
-/// [`JobError`] before the first step.
-pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError> {
+/// [`JobError`] before the first step, or when `monitor` asked to stop.
+pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>, monitor: &Monitor) -> Result<Run, JobError> {
     let process = Process::new(job)?;
     let (steps, step) = (process.steps(), process.step);
     let (angles, speeds) = process.motion.motors(0.0);
@@ -65,6 +66,7 @@ pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>) -> Result<Run, JobError>
         if end != End::Complete {
             break;
         }
+        system.process.watched(monitor)?;
         if let Err(error) = newmark.step(&mut system, index as f64 * step, step, &mut state) {
             end = End::Step(error);
             break;

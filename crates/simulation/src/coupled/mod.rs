@@ -1,8 +1,8 @@
 //! Coupled simulation of a pass: the arm under the milling force, which depends on the motion of its tip.
 //!
-//! [`full`] moves the whole chain with its changing mass matrix; [`condensed`] freezes that along the pass and condenses each
-//! step to the two unknowns of the tip. Both give a [`Run`]: forces and places over time, the work that was left, and how
-//! it ended. Where the milling model is no longer valid the run ends, with the reason.
+//! [`full`] moves the whole chain with its changing mass matrix; [`condensed`] freezes that along the pass and
+//! condenses each step to the two unknowns of the tip. Both give a [`Run`]: forces and places over time, the work that
+//! was left, and how it ended. Where the milling model is no longer valid the run ends, with the reason.
 
 pub mod condensed;
 pub mod full;
@@ -11,13 +11,15 @@ mod tests;
 
 use super::arm::{AnyArm, Missing};
 use super::integrator::StepError;
-use super::milling::{CutError, Force, Limit, Limits, MaterialRemoval, PassCut};
+use super::milling::{Force, Limit, Limits, MaterialRemoval};
 use super::motion::Motion;
 use super::setup::Setup;
 use super::surface::{Node, Trail};
 use nalgebra::Vector3;
 use serde::Serialize;
+use stead_model::cutting::{CutError, PassCut};
 use stead_model::cutting::{CutFrame, Cutter};
+use stead_numerics::monitor::{Monitor, Progress, Stop};
 
 /// What is to be simulated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,17 +82,21 @@ pub enum JobError {
     /// At the start the arm cannot be set in motion.
     #[error("{0}")]
     Start(#[from] StepError),
+    /// The caller asked to stop.
+    #[error("{0}")]
+    Stopped(#[from] Stop),
 }
 
 impl Job<'_> {
     /// Simulates the pass with the whole chain.
     ///
     /// # Errors
-    /// [`JobError`] before the first step; what happens later is the [`End`] of the run.
-    pub fn run(&self) -> Result<Run, JobError> {
+    /// [`JobError`] before the first step, or when `monitor` asked to stop; what else happens later is the [`End`] of
+    /// the run.
+    pub fn run(&self, monitor: &Monitor) -> Result<Run, JobError> {
         match self.setup.arm()? {
-            AnyArm::Six(arm) => full::run(self, &arm),
-            AnyArm::Eighteen(arm) => full::run(self, &arm),
+            AnyArm::Six(arm) => full::run(self, &arm, monitor),
+            AnyArm::Eighteen(arm) => full::run(self, &arm, monitor),
         }
     }
 
@@ -98,10 +104,10 @@ impl Job<'_> {
     ///
     /// # Errors
     /// As [`Job::run`].
-    pub fn run_fast(&self) -> Result<Run, JobError> {
+    pub fn run_fast(&self, monitor: &Monitor) -> Result<Run, JobError> {
         match self.setup.arm()? {
-            AnyArm::Six(arm) => condensed::run(self, &arm),
-            AnyArm::Eighteen(arm) => condensed::run(self, &arm),
+            AnyArm::Six(arm) => condensed::run(self, &arm, monitor),
+            AnyArm::Eighteen(arm) => condensed::run(self, &arm, monitor),
         }
     }
 }
@@ -151,6 +157,9 @@ impl CutPlane {
     }
 }
 
+/// Steps from one report to the next.
+const WATCHED: usize = 256;
+
 /// The milling of a run, and its samples.
 #[derive(Debug)]
 struct Process<'a> {
@@ -181,6 +190,16 @@ impl<'a> Process<'a> {
     /// Steps of the pass.
     fn steps(&self) -> usize {
         (self.motion.duration() / self.step + 1e-9) as usize
+    }
+
+    /// Reports now and then how many steps are done, and asks whether to go on.
+    fn watched(&self, monitor: &Monitor) -> Result<(), Stop> {
+        let done = self.samples.len();
+        if done % WATCHED != 1 {
+            return Ok(());
+        }
+        monitor.report(Progress::Steps { stage: "simulating", done, total: 1 + self.steps() });
+        monitor.go_on()
     }
 
     /// The force at a time (s) with the tool centre at a place.

@@ -7,7 +7,36 @@ use crate::outcome::{EvaluationSettings, Simulation, Statistics, statistics};
 use crate::stability::SemiDiscretisation;
 use crate::stability_analysis::linear_at;
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::cutting::{Coefficients, Cut, MillingDirection as Way, Rotation, Tooth};
+use stead_numerics::monitor::StopHandle;
+
+/// A monitor that is stopped by its own report of this number, from 0.
+fn stopped_at(report: usize) -> Monitor {
+    let (handle, count) = (StopHandle::default(), AtomicUsize::new(0));
+    let stop = handle.clone();
+    let watch = move |progress: &Progress| {
+        assert!(matches!(progress, Progress::Steps { stage: "simulating", done, total } if done < total));
+        if count.fetch_add(1, Ordering::Relaxed) == report {
+            stop.stop();
+        }
+    };
+    Monitor::new(watch).with_stop(handle)
+}
+
+#[test]
+fn a_stop_before_or_during_a_pass_leaves_none() {
+    let (setup, cutter) = (setup(Variant::Springs, 1.0, 1e-2, 0.1), cutter(180.0, 0.0, 800e6, 300e6));
+    let cut = cut(18000.0, 60, 1);
+    let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    for run in [Job::run, Job::run_fast] {
+        for monitor in [&stopped, &stopped_at(0), &stopped_at(2)] {
+            assert_eq!(run(&job, monitor).unwrap_err(), JobError::Stopped(Stop::Asked));
+        }
+    }
+}
 
 /// The arm on the published pass of a length (m) at a feed (m/s).
 fn setup(variant: Variant, damping_scale: f64, feed: f64, length: f64) -> Setup {
@@ -39,7 +68,7 @@ fn aluminium(variant: Variant, steps_per_turn: usize, is_fast: bool) -> Run {
     let setup = setup(variant, 1.0, 3.7 / 60.0, 0.09);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), cut(18_700.0, steps_per_turn, 32));
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
-    let run = if is_fast { job.run_fast() } else { job.run() }.unwrap();
+    let run = if is_fast { job.run_fast(&Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap();
     assert_eq!(run.end, End::Complete);
     run
 }
@@ -53,8 +82,8 @@ fn near(found: f64, expected: f64, tolerance: f64) -> bool {
     (found - expected).abs() <= tolerance * expected.abs()
 }
 
-/// Table 10: smallest, largest, mean and rms of F_x, then of F_y. What is not reached is said: the smallest F_x, which hangs on
-/// the width of cut, differs by up to 21 %.
+/// Table 10: smallest, largest, mean and rms of F_x, then of F_y. What is not reached is said: the smallest F_x, which
+/// hangs on the width of cut, differs by up to 21 %.
 #[test]
 fn the_aluminium_table_comes_out() {
     for (variant, tolerance, x, y) in [
@@ -109,7 +138,7 @@ fn the_axial_force_bends_the_condensed_arm_too() {
     let cut = PassCut { length: 0.03, ..cut(18_700.0, 90, 8) };
     let [full, fast, without] = [(&pulled, false), (&pulled, true), (&plain, true)].map(|(cutter, is_fast)| {
         let job = Job { setup: &setup, cutter, cut: &cut, gap: 0.5e-3 };
-        if is_fast { job.run_fast() } else { job.run() }.unwrap()
+        if is_fast { job.run_fast(&Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap()
     });
     let apart = |other: &Run| {
         let pairs = full.samples.iter().zip(&other.samples);
@@ -137,7 +166,7 @@ fn a_quarter_of_the_steps_is_enough() {
 fn steel(damping_scale: f64) -> Run {
     let setup = setup(Variant::Springs, damping_scale, 0.28 / 60.0, 0.05);
     let (cutter, cut) = (cutter(180.0, 6.929e-6, 3333e6, 2289e6), cut(3100.0, 90, 8));
-    Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 }.run_fast().unwrap()
+    Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 }.run_fast(&Monitor::silent()).unwrap()
 }
 
 /// As published: steel is unstable, and bounded with ten times the damping.
@@ -152,8 +181,8 @@ fn steel_is_unstable_and_bounded_with_ten_times_the_damping() {
     assert!(near(late.min, early.min, 0.05), "{early:?} {late:?}");
 }
 
-/// An arm without damping that cuts steel as deep as it goes is thrown out of what is represented: that is stated, and the run is
-/// kept up to there.
+/// An arm without damping that cuts steel as deep as it goes is thrown out of what is represented: that is stated, and
+/// the run is kept up to there.
 #[test]
 fn a_run_beyond_what_is_represented_ends_with_the_reason() {
     let setup = setup(Variant::Springs, 0.0, 3.0 / 60.0, 0.1);
@@ -162,7 +191,7 @@ fn a_run_beyond_what_is_represented_ends_with_the_reason() {
     cut.section.axial_depth = 20e-3;
     for is_fast in [false, true] {
         let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
-        let run = if is_fast { job.run_fast() } else { job.run() }.unwrap();
+        let run = if is_fast { job.run_fast(&Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap();
         assert!(matches!(run.end, End::Limit(_)), "{:?}", run.end);
         assert!(run.samples.len() > 10 && run.samples.len() == run.trail.nodes().len());
     }
@@ -174,7 +203,7 @@ fn without_work_the_arm_follows_its_path() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.05);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), cut(18_700.0, 90, 8));
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.2 };
-    let (full, fast) = (job.run().unwrap(), job.run_fast().unwrap());
+    let (full, fast) = (job.run(&Monitor::silent()).unwrap(), job.run_fast(&Monitor::silent()).unwrap());
     for (full, fast) in full.samples.iter().zip(&fast.samples) {
         assert_eq!((full.force, fast.force), ([0.0; 3], [0.0; 3]));
         for axis in 0..2 {
@@ -184,14 +213,15 @@ fn without_work_the_arm_follows_its_path() {
     }
 }
 
-/// What small motions do is told for the middle of the work, wherever on the pass that is; modes are those of the start.
+/// What small motions do is told for the middle of the work, wherever on the pass that is; modes are those of the
+/// start.
 #[test]
 fn small_motions_are_those_in_the_middle_of_the_work() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.08);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), PassCut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
     let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, analysis_distance: 0.005 };
-    let found = Simulation::of(&job, &look, job.run_fast().unwrap()).unwrap();
+    let found = Simulation::of(&job, &look, job.run_fast(&Monitor::silent()).unwrap()).unwrap();
     let frame = setup.motion.cut_frame(cut.wall(&cutter));
     let verdict_at = |distance: f64| {
         let plant = linear_at(&setup, distance).unwrap().plant(&frame).unwrap();

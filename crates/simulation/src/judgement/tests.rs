@@ -16,8 +16,8 @@ fn run(force: impl Fn(usize) -> f64) -> Run {
     }
 }
 
-/// A tooth that is in the work for a third of a period (in steps): the force jumps in and falls to nothing; each other tooth has
-/// this much more of it.
+/// A tooth that is in the work for a third of a period (in steps): the force jumps in and falls to nothing; each other
+/// tooth has this much more of it.
 fn pulses(period: f64, more: f64) -> Run {
     run(|index| {
         let turned = index as f64 / period;

@@ -47,8 +47,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Whether the model is valid at a time (s): the thickest chip (m), how far the tool is off its path (m) and how fast it moves
-    /// (m/s).
+    /// Whether the model is valid at a time (s): the thickest chip (m), how far the tool is off its path (m) and how
+    /// fast it moves (m/s).
     ///
     /// # Errors
     /// The [`Limit`] that is passed; what is not a number is as well.

@@ -1,27 +1,25 @@
 //! Milling force from the actual chip thickness at every tooth and slice.
 //!
-//! The cutter is cut into slices along its axis. In every slice a tooth at psi (0 towards the wall, a quarter turn along the
-//! feed) cuts what its ray has of the work between the surface left by earlier teeth and its own edge, h thick. The force on
-//! the tool is the sum over slices dz and teeth of
+//! The cutter is cut into slices along its axis. In every slice a tooth at psi (0 towards the wall, a quarter turn
+//! along the feed) cuts what its ray has of the work between the surface left by earlier teeth and its own edge, h
+//! thick. The force on the tool is the sum over slices dz and teeth of
 //!
 //! `h dz [K_t cos psi - K_r sin psi, K_t sin psi + K_r cos psi, K_a]`
 //!
-//! in down milling, where psi falls; in up milling K_t has the other sign. Frame: x along the feed, y along the outward normal
-//! of the wall, z along the tool axis from the work to the spindle. (UMONS paper, eq. 13 and 14, with db = dz; its tables
-//! print F_x and -F_y.)
+//! in down milling, where psi falls; in up milling K_t has the other sign. Frame: x along the feed, y along the outward
+//! normal of the wall, z along the tool axis from the work to the spindle. (UMONS paper, eq. 13 and 14, with db = dz;
+//! its tables print F_x and -F_y.)
 
-mod cut;
 mod limit;
 #[cfg(test)]
 mod tests;
 
-pub use cut::{CutError, PassCut, min_steps};
 pub use limit::{Limit, Limits};
 
 use super::surface::{LANES, Node, Passes, Predecessor, Rays, Stock, ToothQuery, Trail, starts};
 use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
-use stead_model::cutting::{Coefficients, Cutter};
+use stead_model::cutting::{Coefficients, CutError, Cutter, PassCut};
 use stead_numerics::simd::{Instructions, Lanes};
 
 /// Turns in a stretch of the trail.
@@ -31,7 +29,8 @@ const STRETCH: usize = 6;
 #[derive(Debug, Clone)]
 pub struct MaterialRemoval {
     teeth: Vec<Edge>,
-    /// Sine and cosine of each slice's lag, in the sense in which psi changes. Bundles are filled up with slices that cut nothing.
+    /// Sine and cosine of each slice's lag, in the sense in which psi changes. Bundles are filled up with slices that
+    /// cut nothing.
     lags: Vec<[[f64; LANES]; 2]>,
     /// Slices in the last bundle.
     rest: usize,
@@ -155,8 +154,8 @@ impl MaterialRemoval {
         Force { on_tool, chip: chips.thickest.iter().fold(0.0, |thickest, &chip| chip.max(thickest)) }
     }
 
-    /// The chips of all teeth: the same to the last bit with any instructions of the processor, since nothing is fused or
-    /// reordered.
+    /// The chips of all teeth: the same to the last bit with any instructions of the processor, since nothing is fused
+    /// or reordered.
     #[inline(always)]
     fn chips<S: Simd>(&mut self, simd: S, time: f64, centre: [f64; 2]) -> Chips {
         let mut chips = Chips::default();
@@ -189,9 +188,9 @@ impl MaterialRemoval {
         chips
     }
 
-    /// Above this height nothing is left behind the tool centre: every place there was passed, within an advance, by an edge at
-    /// its lowest, and up to the top of the work by an edge at its highest. Infinite where work may have been left above the
-    /// tool, as in a slot, and if the tool did not come from outside the work. m
+    /// Above this height nothing is left behind the tool centre: every place there was passed, within an advance, by an
+    /// edge at its lowest, and up to the top of the work by an edge at its highest. Infinite where work may have been
+    /// left above the tool, as in a slot, and if the tool did not come from outside the work. m
     fn ledge(&self) -> f64 {
         match (self.trail.nodes().first(), self.trail.extents().last()) {
             (Some(first), Some(extent)) if first.place[0] < -self.largest => {
@@ -202,8 +201,8 @@ impl MaterialRemoval {
         }
     }
 
-    /// Where the tool centre is at the end of the next step, the first time at step 0: what it swept is gone. The tool has to
-    /// be outside the work in its first turn: passes within a radian of the start are not known.
+    /// Where the tool centre is at the end of the next step, the first time at step 0: what it swept is gone. The tool
+    /// has to be outside the work in its first turn: passes within a radian of the start are not known.
     pub fn remember(&mut self, node: Node) {
         let nodes = self.trail.nodes();
         if let Some(before) = nodes.len().checked_sub(self.turn as usize).and_then(|index| nodes.get(index)) {
@@ -212,7 +211,8 @@ impl MaterialRemoval {
         self.trail.push(node);
     }
 
-    /// By how much the force may change with the place of the tool, at most: all teeth in the work over the whole depth. N/m
+    /// By how much the force may change with the place of the tool, at most: all teeth in the work over the whole
+    /// depth. N/m
     pub fn stiffness(&self) -> f64 {
         let Coefficients { tangential, radial, .. } = self.coefficients;
         (tangential.abs() + radial.abs()) * self.slice * self.slices as f64 * self.teeth.len() as f64

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 use stead_model::cutting::{Cut, Engagement, MillingDirection as Way, Rotation, Tooth};
 
+mod pass_cut;
 mod strips;
 
 const K: Coefficients = Coefficients::new(661.553e6, 253.458e6, 0.1e9);
@@ -70,7 +71,8 @@ fn statistics(forces: &[(f64, [f64; 2])], part: usize) -> [f64; 4] {
     [found[0] / count, (found[1] / count).sqrt(), found[2], found[3]]
 }
 
-/// Published for the rigid arm (to the digits given): F_x mean 8.74, rms 16.29, max 38.4; F_y mean -25.90, rms 44.7, min -113.
+/// Published for the rigid arm (to the digits given): F_x mean 8.74, rms 16.29, max 38.4; F_y mean -25.90, rms 44.7,
+/// min -113.
 #[test]
 fn a_rigid_arm_gives_the_forces_known_for_aluminium() {
     let fine = rigid_pass(&aluminium(128, 1440), 1.4);
@@ -95,9 +97,9 @@ fn a_rigid_arm_gives_the_forces_known_for_aluminium() {
     }
 }
 
-/// Of three teeth with unequal pitches and radii each comes its own pitch after the one before it, and cuts the feed over that
-/// pitch and what it is longer than that one: with the teeth in another order, or each pitch counted to the tooth that follows, both
-/// are others.
+/// Of three teeth with unequal pitches and radii each comes its own pitch after the one before it, and cuts the feed
+/// over that pitch and what it is longer than that one: with the teeth in another order, or each pitch counted to the
+/// tooth that follows, both are others.
 #[test]
 fn each_tooth_follows_the_one_before_it_at_its_own_pitch() {
     let (pitches, runouts, feed) = ([100.0, 120.0, 140.0], [6e-6, 0.0, -4e-6], 0.3e-3);
@@ -127,8 +129,9 @@ fn each_tooth_follows_the_one_before_it_at_its_own_pitch() {
     }
 }
 
-/// A tool of one tooth that stands still while the tooth cuts and is moved on by the feed while it does not leaves circles. The
-/// chip between two of them is `R + f sin(psi) - sqrt(R^2 - f^2 cos^2(psi))`, or ends at the top of the stock.
+/// A tool of one tooth that stands still while the tooth cuts and is moved on by the feed while it does not leaves
+/// circles. The chip between two of them is `R + f sin(psi) - sqrt(R^2 - f^2 cos^2(psi))`, or ends at the top of the
+/// stock.
 #[test]
 fn a_cut_of_circular_arcs_has_its_closed_form() {
     let feed = 0.2e-3;
@@ -194,7 +197,8 @@ fn the_mean_force_is_that_of_the_engagement_for_a_small_feed() {
             Way::Conventional => Engagement::up(4e-3, 2.0 * RADIUS),
         };
         let [arc] = engagement.unwrap().arcs()[..] else { panic!() };
-        // Midpoints: the integral of the force on one tooth over its arc, by phi; the wall is at phi = pi in down milling.
+        // Midpoints: the integral of the force on one tooth over its arc, by phi; the wall is at phi = pi in down
+        // milling.
         let (mut sum, parts) = ([0.0; 2], 10_000);
         let width = (arc.exit - arc.entry) / parts as f64;
         for part in 0..parts {
@@ -211,8 +215,8 @@ fn the_mean_force_is_that_of_the_engagement_for_a_small_feed() {
     }
 }
 
-/// The area cleared in a turn is the width of cut times the feed. A tooth clears `h (R - h / 2) dpsi` by turning, less what its
-/// centre moves on meanwhile in the sense in which it does not turn.
+/// The area cleared in a turn is the width of cut times the feed. A tooth clears `h (R - h / 2) dpsi` by turning, less
+/// what its centre moves on meanwhile in the sense in which it does not turn.
 #[test]
 fn what_is_cut_is_what_is_fed() {
     let (cutter, turn) = (cutter(&[170.0, 190.0], &[0.0; 2], 0.0), 3600);
@@ -260,9 +264,9 @@ impl Wild {
     }
 }
 
-/// Where the work begins on a ray from the centre at a time: the farthest crossing with any earlier edge, found by following
-/// each edge in small steps over all its earlier turns. A pass counts if its tooth was turned as on the ray, about a fixed
-/// centre, more than a radian after the start.
+/// Where the work begins on a ray from the centre at a time: the farthest crossing with any earlier edge, found by
+/// following each edge in small steps over all its earlier turns. A pass counts if its tooth was turned as on the ray,
+/// about a fixed centre, more than a radian after the start.
 fn brute_force(wild: &Wild, cutter: &Cutter, sense: f64, time: f64, psi: f64) -> f64 {
     let centre = wild.node(time).place;
     let (sine, cosine) = libm::sincos(psi);
@@ -302,8 +306,8 @@ fn brute_force(wild: &Wild, cutter: &Cutter, sense: f64, time: f64, psi: f64) ->
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Whatever the tool does: vibration that leaves the cut, runout, unequal pitch, down and up milling. What is left, up to 7e-10 m,
-    /// is what cubics between steps miss of the vibration.
+    /// Whatever the tool does: vibration that leaves the cut, runout, unequal pitch, down and up milling. What is left,
+    /// up to 7e-10 m, is what cubics between steps miss of the vibration.
     #[test]
     fn chips_are_those_that_a_search_by_brute_force_finds(
         feed in 0.02e-3..0.3e-3_f64,

@@ -1,12 +1,14 @@
-//! Directional coefficients: derivative of the milling force with respect to the motion of the tip, over each part of a turn.
+//! Directional coefficients: derivative of the milling force with respect to the motion of the tip, over each part of a
+//! turn.
 
-use crate::milling::PassCut;
 use nalgebra::Matrix3x2;
 use std::f64::consts::{PI, TAU};
+use stead_model::cutting::PassCut;
 use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, MillingDirection};
 use stead_model::cutting::{Coefficients, Cutter};
 
-/// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`. N/m
+/// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`.
+/// N/m
 ///
 /// With the tooth at psi the chip grows by `u_x sin psi - u_y cos psi`, and the force follows as
 /// [`milling`](crate::milling) says. Runout is left out: it changes who cuts, not how the chip changes.
@@ -57,6 +59,7 @@ impl Directional {
     }
 
     /// Every part replaced by the mean of all, tooth by tooth.
+    #[cfg(test)]
     pub(super) fn mean(mut self) -> Self {
         let count = (self.parts.len() / self.teeth) as f64;
         for tooth in 0..self.teeth {

@@ -2,13 +2,13 @@
 
 use super::directional::{Directional, exit};
 use super::plant::Plant;
-use crate::milling::PassCut;
 use crate::modes::eigenvalues;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
+use stead_model::cutting::PassCut;
 
 /// Kind of instability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -66,10 +66,10 @@ impl Verdict {
 
 /// A cutter in a cut at a spindle speed, with the tool tip of a plant, for any depth of cut.
 ///
-/// The turn is cut into equal intervals. In each, `K_j` is its exact mean, and present and delayed motion of the tip are
-/// interpolated linearly, while the plant moves exactly (semi-discretisation with first-order terms, Insperger and Stépán 2004,
-/// in the form of Ding et al. 2010 that also interpolates the present motion, so that one matrix exponential does for all
-/// intervals and depths). Errors fall with the square of the interval.
+/// The turn is cut into equal intervals. In each, `K_j` is its exact mean, and present and delayed motion of the tip
+/// are interpolated linearly, while the plant moves exactly (semi-discretisation with first-order terms, Insperger and
+/// Stépán 2004, in the form of Ding et al. 2010 that also interpolates the present motion, so that one matrix
+/// exponential does for all intervals and depths). Errors fall with the square of the interval.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SemiDiscretisation<'a> {
     cutter: &'a Cutter,
@@ -83,15 +83,13 @@ pub struct SemiDiscretisation<'a> {
     intervals: usize,
     /// After so many intervals everything repeats.
     period: usize,
-    /// Whether `K_j` is taken as its mean over a turn: for comparison in tests.
-    mean: bool,
 }
 
 /// Intervals between two teeth, at least.
 const INTERVALS_PER_TOOTH: usize = 60;
 /// Intervals in a period of the fastest mode that swings, at least, as far as [`MAX_INTERVALS`] allows.
 const INTERVALS_PER_SWING: f64 = 32.0;
-/// Intervals in a turn, at most, unless more are asked for.
+/// Intervals in a turn, at most, unless more are requested.
 const MAX_INTERVALS: usize = 1200;
 
 impl<'a> SemiDiscretisation<'a> {
@@ -105,8 +103,8 @@ impl<'a> SemiDiscretisation<'a> {
         Self::with_intervals(plant, cutter, cut, for_modes.max(INTERVALS_PER_TOOTH * cutter.teeth().len()))
     }
 
-    /// With at least so many intervals in a turn, and some between teeth: the next number with which the teeth repeat after
-    /// whole intervals.
+    /// With at least so many intervals in a turn, and some between teeth: the next number with which the teeth repeat
+    /// after whole intervals.
     ///
     /// # Errors
     /// [`EngagementError`] for a width of cut that is none.
@@ -130,30 +128,39 @@ impl<'a> SemiDiscretisation<'a> {
             delays: cutter.teeth().iter().map(|tooth| tooth.pitch / TAU * intervals as f64).collect(),
             intervals,
             period,
-            mean: false,
         })
-    }
-
-    /// The same with the mean of `K_j` over a turn in its place.
-    #[cfg(test)]
-    pub(super) fn with_mean_coefficients(self) -> Self {
-        Self { mean: true, ..self }
     }
 
     /// The largest multiplier at a depth of cut. m
     pub fn verdict(&self, depth: f64) -> Verdict {
-        let map = Map::new(self, depth);
+        self.verdict_of(self.directional(depth))
+    }
+
+    /// The directional coefficients at a depth of cut (m), interval by interval.
+    fn directional(&self, depth: f64) -> Directional {
+        Directional::new(self.cutter, self.cut, self.exit, depth, self.intervals)
+    }
+
+    /// The largest multiplier with these directional coefficients.
+    fn verdict_of(&self, directional: Directional) -> Verdict {
+        let map = Map::new(self, directional);
         let period = TAU / self.cut.spindle_speed * self.period as f64 / self.intervals as f64;
         Verdict { multiplier: map.largest_multiplier(), period }
     }
 
-    /// The smallest depth of cut at which small motions do not die out, to a thousandth; `None` if there is none up to `max_depth`. m
+    /// The smallest depth of cut at which small motions do not die out, to a thousandth; `None` if there is none up to
+    /// `max_depth`. m
     ///
-    /// Depths are examined from a thousandth of `max_depth` up, each a fifth larger than the one before, so a narrow island of
-    /// instability may be missed.
+    /// Depths are examined from a thousandth of `max_depth` up, each a fifth larger than the one before, so a narrow
+    /// island of instability may be missed.
     pub fn critical_depth(&self, max_depth: f64) -> Option<f64> {
+        self.critical_depth_of(max_depth, |depth| self.verdict(depth))
+    }
+
+    /// The same for a verdict on depths of cut that may rest on other coefficients.
+    fn critical_depth_of(&self, max_depth: f64, verdict: impl Fn(f64) -> Verdict) -> Option<f64> {
         let [mut low, mut high] = [0.0, max_depth / 1000.0];
-        while self.verdict(high).is_stable() {
+        while verdict(high).is_stable() {
             if high >= max_depth {
                 return None;
             }
@@ -161,9 +168,17 @@ impl<'a> SemiDiscretisation<'a> {
         }
         while high - low > 1e-3 * high && high > max_depth * 1e-9 {
             let middle = (low + high) / 2.0;
-            if self.verdict(middle).is_stable() { low = middle } else { high = middle }
+            if verdict(middle).is_stable() { low = middle } else { high = middle }
         }
         Some(high)
+    }
+}
+
+#[cfg(test)]
+impl SemiDiscretisation<'_> {
+    /// The critical depth with the mean of `K_j` over a turn in its place.
+    pub(super) fn critical_depth_by_the_mean(&self, max_depth: f64) -> Option<f64> {
+        self.critical_depth_of(max_depth, |depth| self.verdict_of(self.directional(depth).mean()))
     }
 }
 
@@ -179,11 +194,7 @@ struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    fn new(method: &'a SemiDiscretisation<'a>, depth: f64) -> Self {
-        let mut directional = Directional::new(method.cutter, method.cut, method.exit, depth, method.intervals);
-        if method.mean {
-            directional = directional.mean();
-        }
+    fn new(method: &'a SemiDiscretisation<'a>, directional: Directional) -> Self {
         let [e, w0, w1] = &method.step;
         let c = method.plant.c();
         let seen = [e, w0, w1].map(|part| c * part);
@@ -250,8 +261,8 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// The largest eigenvalue of the map, by Arnoldi's method on ever larger subspaces, until two agree or the whole space is
-    /// reached.
+    /// The largest eigenvalue of the map, by Arnoldi's method on ever larger subspaces, until two agree or the whole
+    /// space is reached.
     fn largest_multiplier(&self) -> Complex<f64> {
         let size = self.size();
         let mut basis: Vec<Vec<f64>> = vec![start(size)];

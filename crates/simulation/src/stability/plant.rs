@@ -3,8 +3,8 @@
 use crate::modes::{LinearArm, eigenvalues, is_within_reach};
 use nalgebra::{Complex, DMatrix, Matrix2x3, Vector3};
 
-/// `x' = A x + B F`, `u = C x`: force F (N) on the tool tip along the feed, the outward normal of the wall and the tool axis, and
-/// motion u (m) of it along feed and normal.
+/// `x' = A x + B F`, `u = C x`: force F (N) on the tool tip along the feed, the outward normal of the wall and the tool
+/// axis, and motion u (m) of it along feed and normal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plant {
     a: DMatrix<f64>,
@@ -34,7 +34,8 @@ impl Plant {
     /// A plant of its matrices. B may have two columns: then a force along the tool axis does nothing.
     ///
     /// # Errors
-    /// [`PlantError`] for shapes that do not fit, entries that are not finite or too large, and a matrix A without eigenvalues.
+    /// [`PlantError`] for shapes that do not fit, entries that are not finite or too large, and a matrix A without
+    /// eigenvalues.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>) -> Result<Self, PlantError> {
         let n = a.nrows();
         if n == 0 || a.shape() != (n, n) || b.nrows() != n || !(2..=3).contains(&b.ncols()) || c.shape() != (2, n) {
@@ -47,11 +48,12 @@ impl Plant {
         Ok(Self { a, b: b.resize_horizontally(3, 0.0), c, poles })
     }
 
-    /// Small motions of an arm's tip under forces along three directions in the base frame: the feed, the outward normal of the
-    /// wall and the tool axis.
+    /// Small motions of an arm's tip under forces along three directions in the base frame: the feed, the outward
+    /// normal of the wall and the tool axis.
     ///
     /// # Errors
-    /// [`PlantError`] for an arm whose mass matrix has no inverse, or whose stiffness and damping are beyond all numbers.
+    /// [`PlantError`] for an arm whose mass matrix has no inverse, or whose stiffness and damping are beyond all
+    /// numbers.
     pub fn of_arm<const N: usize>(arm: &LinearArm<N>, directions: [Vector3<f64>; 3]) -> Result<Self, PlantError> {
         let a = arm.state_matrix().ok_or(PlantError::Singular)?;
         let tip = DMatrix::from_fn(3, N, |row, joint| directions[row].dot(&arm.tip.column(joint)));
@@ -82,8 +84,8 @@ impl Plant {
         &self.poles
     }
 
-    /// Motion (m, complex amplitude) for a force (N) that swings with `omega` (rad/s): `C (i omega - A)^-1 B`; none in a resonance
-    /// without damping.
+    /// Motion (m, complex amplitude) for a force (N) that swings with `omega` (rad/s): `C (i omega - A)^-1 B`; none in
+    /// a resonance without damping.
     pub fn response(&self, omega: f64) -> Option<Matrix2x3<Complex<f64>>> {
         let n = self.states();
         let matrix = DMatrix::from_fn(n, n, |row, column| {

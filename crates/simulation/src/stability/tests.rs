@@ -2,11 +2,12 @@
 
 use super::*;
 use crate::arm::{Arm, Variant, testing};
-use crate::milling::{MaterialRemoval, PassCut};
+use crate::milling::MaterialRemoval;
 use crate::modes::LinearArm;
 use crate::surface::Node;
 use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
 use std::f64::consts::{PI, TAU};
+use stead_model::cutting::PassCut;
 use stead_model::cutting::{Coefficients, Cut, Cutter, MillingDirection as Way, Rotation, Tooth};
 
 mod time_domain;
@@ -23,7 +24,8 @@ fn benchmark_plant() -> Plant {
     Plant::new(a, b, DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0])).unwrap()
 }
 
-/// Its two teeth, K_t = 600 MPa and K_n = 200 MPa; a force along the tool axis, which does nothing to a tool that does not lean.
+/// Its two teeth, K_t = 600 MPa and K_n = 200 MPa; a force along the tool axis, which does nothing to a tool that does
+/// not lean.
 fn benchmark_cutter(pitches_deg: &[f64], helix_deg: f64) -> Cutter {
     let teeth = pitches_deg.iter().map(|pitch| Tooth { pitch: pitch.to_radians(), radius: RADIUS });
     let coefficients = Coefficients::new(6e8, 2e8, 2e8);
@@ -40,9 +42,9 @@ fn cut(direction: Way, immersion: f64, rpm: f64) -> PassCut {
     }
 }
 
-/// The largest multiplier of the benchmark in a slot, by integrating the delay equation itself: the fourth-order Runge-Kutta method
-/// with cubics between past motions, for every motion of the past that one period can start from, and the eigenvalues of what
-/// that maps to. Nothing of it is shared with semi-discretisation.
+/// The largest multiplier of the benchmark in a slot, by integrating the delay equation itself: the fourth-order
+/// Runge-Kutta method with cubics between past motions, for every motion of the past that one period can start from,
+/// and the eigenvalues of what that maps to. Nothing of it is shared with semi-discretisation.
 fn integrated(rpm: f64, depth: f64, steps: usize) -> f64 {
     let h = 30.0 / rpm / steps as f64;
     let feedback = |step: f64| {
@@ -81,9 +83,10 @@ fn integrated(rpm: f64, depth: f64, steps: usize) -> f64 {
     map.complex_eigenvalues().iter().fold(0.0, |most, value| value.norm().max(most))
 }
 
-/// The slot at 5000 rpm by which methods are compared (Ding et al. 2010, after Insperger and Stépán 2004). That paper has 0.8192, 1.0726
-/// and 1.4040 at 0.2, 0.5 and 1 mm as we remember it; we could not look them up, so they are no more than a hint here. They
-/// are what 200 intervals a tooth give; what these approach is what the delay equation gives when it is integrated.
+/// The slot at 5000 rpm by which methods are compared (Ding et al. 2010, after Insperger and Stépán 2004). That paper
+/// has 0.8192, 1.0726 and 1.4040 at 0.2, 0.5 and 1 mm as we remember it; we could not look them up, so they are no more
+/// than a hint here. They are what 200 intervals a tooth give; what these approach is what the delay equation gives
+/// when it is integrated.
 #[test]
 fn multipliers_of_a_slot_are_those_of_the_delay_equation() {
     let (plant, cutter, cut) = (benchmark_plant(), benchmark_cutter(&[180.0; 2], 0.0), cut(Way::Climb, 1.0, 5000.0));
@@ -181,8 +184,8 @@ fn errors_fall_with_the_square_of_the_interval() {
     assert!((3.0..6.0).contains(&ratio), "{coarse} {middle} {fine}");
 }
 
-/// With its mean in place of `K(t)`, semi-discretisation solves the very equation that the zero order solves in closed form: one
-/// direction and two, equal and unequal pitch.
+/// With its mean in place of `K(t)`, semi-discretisation solves the very equation that the zero order solves in closed
+/// form: one direction and two, equal and unequal pitch.
 #[test]
 fn the_zero_order_solution_is_that_of_mean_coefficients() {
     let (k, c) = (OMEGA * OMEGA, 2.0 * DAMPING * OMEGA);
@@ -202,8 +205,8 @@ fn the_zero_order_solution_is_that_of_mean_coefficients() {
     ] {
         let (cutter, cut) = (benchmark_cutter(&pitches, 0.0), cut(direction, immersion, rpm));
         let zero_order = ZeroOrder::new(&plant).critical_depth(&cutter, &cut, 0.1).unwrap().unwrap();
-        let method = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap().with_mean_coefficients();
-        let depth = method.critical_depth(0.1).unwrap();
+        let method = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap();
+        let depth = method.critical_depth_by_the_mean(0.1).unwrap();
         assert!((zero_order / depth - 1.0).abs() < 5e-3, "{zero_order} {depth} {direction:?} {immersion}");
     }
 }
@@ -257,7 +260,8 @@ fn a_plant_of_the_wrong_shape_is_refused() {
     assert_eq!(Plant::new(zeros(2, 2) * f64::NAN, zeros(2, 2), zeros(2, 2)), Err(PlantError::NotFinite));
 }
 
-/// However stiff or damped, an analysis ends: with what there is of modes that can swing with a cutter, or with the reason.
+/// However stiff or damped, an analysis ends: with what there is of modes that can swing with a cutter, or with the
+/// reason.
 #[test]
 fn what_no_machine_has_ends_all_the_same() {
     let plant = |stiffness: f64, damping: f64| {

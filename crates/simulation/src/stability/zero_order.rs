@@ -2,17 +2,17 @@
 
 use super::directional::{exit, mean};
 use super::plant::Plant;
-use crate::milling::PassCut;
 use nalgebra::{Complex, Matrix2x3, Matrix3x2};
 use std::f64::consts::TAU;
 use stead_model::cutting::Cutter;
 use stead_model::cutting::EngagementError;
+use stead_model::cutting::PassCut;
 
 /// The frequency response of a tool tip, from which the zero-order solution is read at any spindle speed.
 ///
-/// With `F = b K q(omega) u`, K the mean coefficients of all teeth and `q = mean_j (1 - e^(-i omega tau_j))`, motion of a frequency
-/// omega keeps its size where `b q(omega) lambda(omega) = 1` for an eigenvalue lambda of `K G(i omega)` (Altintas and Budak 1995,
-/// here for a given speed, which allows for unequal pitch).
+/// With `F = b K q(omega) u`, K the mean coefficients of all teeth and `q = mean_j (1 - e^(-i omega tau_j))`, motion of
+/// a frequency omega keeps its size where `b q(omega) lambda(omega) = 1` for an eigenvalue lambda of `K G(i omega)`
+/// (Altintas and Budak 1995, here for a given speed, which allows for unequal pitch).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZeroOrder {
     responses: Vec<(f64, Matrix2x3<Complex<f64>>)>,
@@ -73,8 +73,8 @@ impl ZeroOrder {
     /// The smallest depth of cut at which some motion keeps its size; `None` if there is none up to `max_depth`. m
     ///
     /// # Errors
-    /// [`ZeroOrderError`] for a width of cut that is none, and for a spindle so slow beside the modes of the arm that the delays cannot be
-    /// followed.
+    /// [`ZeroOrderError`] for a width of cut that is none, and for a spindle so slow beside the modes of the arm that
+    /// the delays cannot be followed.
     pub fn critical_depth(
         &self,
         cutter: &Cutter,

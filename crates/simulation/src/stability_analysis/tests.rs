@@ -5,6 +5,7 @@ use crate::path_stability::{PathConfiguration, PathStabilityAnalysis, smallest};
 use crate::stability::Kind;
 use std::f64::consts::{PI, TAU};
 use stead_model::cutting::{Coefficients, Cut, MillingDirection, Rotation, Tooth};
+use stead_numerics::monitor::{Progress, StopHandle};
 
 fn setup(variant: Variant, damping_scale: f64) -> Setup {
     let pass = Pass { start: start(), direction: Vector3::x(), length: 0.1 };
@@ -36,7 +37,7 @@ fn settings(cut: &PassCut) -> AnalysisSettings {
 #[test]
 fn stability_of_the_published_steel_cut() {
     let (cutter, cut) = steel();
-    let found = analyse(&setup(Variant::Springs, 1.0), &cutter, &cut, &settings(&cut)).unwrap();
+    let found = analyse(&setup(Variant::Springs, 1.0), &cutter, &cut, &settings(&cut), &Monitor::silent()).unwrap();
     assert_eq!(found.modes.len(), 6);
     assert_eq!(found.cut_stability.verdict.kind(), Kind::Flip);
     let critical = found.cut_stability.semi_discretisation.unwrap();
@@ -46,12 +47,12 @@ fn stability_of_the_published_steel_cut() {
     assert!((found.lobes[1].spindle_speed / cut.spindle_speed - 1.2).abs() < 1e-12);
     assert!((found.pass_time - 0.09 / (0.28 / 60.0)).abs() < 1e-9);
     // Ten times the damping is nearly enough, twenty times is.
-    let damped = analyse(&setup(Variant::Springs, 10.0), &cutter, &cut, &settings(&cut)).unwrap();
+    let damped = analyse(&setup(Variant::Springs, 10.0), &cutter, &cut, &settings(&cut), &Monitor::silent()).unwrap();
     let growth = |found: &StabilityAnalysis| found.cut_stability.verdict.growth_rate();
     assert!(
         damped.cut_stability.semi_discretisation.unwrap() > 2.0 * critical && growth(&damped) < growth(&found) / 5.0
     );
-    let calm = analyse(&setup(Variant::Springs, 20.0), &cutter, &cut, &settings(&cut)).unwrap();
+    let calm = analyse(&setup(Variant::Springs, 20.0), &cutter, &cut, &settings(&cut), &Monitor::silent()).unwrap();
     assert!(calm.cut_stability.verdict.is_stable() && growth(&calm) < 0.0);
     assert!(calm.modes[0].damping_ratio > 5.0 * found.modes[0].damping_ratio);
 }
@@ -61,7 +62,7 @@ fn stability_of_the_published_steel_cut() {
 fn answers_and_stations_are_those_of_the_arm() {
     let (cutter, cut) = steel();
     let setup = setup(Variant::Gravity, 1.0);
-    let found = analyse(&setup, &cutter, &cut, &settings(&cut)).unwrap();
+    let found = analyse(&setup, &cutter, &cut, &settings(&cut), &Monitor::silent()).unwrap();
     let arm = Arm::six(&tx200(), &spindle(), Variant::Springs, &start()).unwrap();
     let jacobian = arm.chain.at(&start().into()).tip_jacobian();
     let along = |row: usize| (0..6).map(|j| jacobian[(row, j)].powi(2) / arm.drive.stiffness[j]).sum::<f64>();
@@ -89,6 +90,26 @@ fn what_is_missing_is_said() {
     let (cutter, cut) = steel();
     let still = crate::arm::testing::massless(&tx200());
     let setup = Setup { robot: still, ..setup(Variant::Springs, 1.0) };
-    let error = analyse(&setup, &cutter, &cut, &settings(&cut));
+    let error = analyse(&setup, &cutter, &cut, &settings(&cut), &Monitor::silent());
     assert_eq!(error, Err(StabilityError::Missing(Missing::Dynamics)));
+}
+
+#[test]
+fn a_stop_before_or_during_an_analysis_leaves_none() {
+    let (cutter, cut) = steel();
+    let analysed = |monitor: &Monitor| {
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        alone.install(|| analyse(&setup(Variant::Springs, 1.0), &cutter, &cut, &settings(&cut), monitor))
+    };
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    assert_eq!(analysed(&stopped), Err(StabilityError::Stopped(Stop::Asked)));
+    // Stopped by its own first report, which says how far it is.
+    let handle = StopHandle::default();
+    let stop = handle.clone();
+    let watch = move |progress: &Progress| {
+        assert!(matches!(progress, Progress::Steps { stage: "stability lobes", done: 1, .. }));
+        stop.stop();
+    };
+    assert_eq!(analysed(&Monitor::new(watch).with_stop(handle)), Err(StabilityError::Stopped(Stop::Asked)));
 }

@@ -35,7 +35,7 @@ pub struct ToothQuery<'a> {
     pub steps_per_radian: f64,
 }
 
-/// The earlier passes as one tooth meets them at one moment, looked up when asked for.
+/// The earlier passes as one tooth meets them at one moment, looked up when requested.
 #[derive(Debug, Clone, Default)]
 pub struct Passes {
     met: Vec<Met>,
@@ -52,8 +52,8 @@ struct Met {
     older: Option<Extents>,
 }
 
-/// So far (in steps) the cubic of a step is used beyond its ends, for rays that lie a little beside it. There the next step's
-/// cubic has the same place and motion, and differs in the curvature of the way alone.
+/// So far (in steps) the cubic of a step is used beyond its ends, for rays that lie a little beside it. There the next
+/// step's cubic has the same place and motion, and differs in the curvature of the way alone.
 const BESIDE: f64 = 0.25;
 
 impl Passes {
@@ -81,8 +81,8 @@ impl Passes {
         self.met.get(index).copied()
     }
 
-    /// Moves the beginning of each ray to where earlier teeth have cleared it: as far as need be, to the end of the ray at
-    /// most. m
+    /// Moves the beginning of each ray to where earlier teeth have cleared it: as far as need be, to the end of the ray
+    /// at most. m
     #[inline(always)]
     pub fn clear<S: Simd>(&mut self, simd: S, query: &ToothQuery<'_>, rays: &mut Rays) {
         let mut index = 0;
@@ -108,8 +108,8 @@ const STRAY: f64 = 2e-5;
 /// Where the centre was when an earlier tooth was on each ray: x and y. m
 ///
 /// The tooth was there, turned by delta more than when it had turned as far as the present one has now, when
-/// `(c(t') - c) x e + R' sin(delta) = 0`. One step of Newton's method finds that, since the centre moves much slower than the edge,
-/// unless it is swift or just now on the turn.
+/// `(c(t') - c) x e + R' sin(delta) = 0`. One step of Newton's method finds that, since the centre moves much slower
+/// than the edge, unless it is swift or just now on the turn.
 #[inline(always)]
 fn centres<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, rays: &Rays) -> [[f64; LANES]; 2] {
     let [vx, vy] = met.centre.motion.map(|motion| motion * query.steps_per_radian / met.radius);
@@ -138,9 +138,9 @@ fn centres<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, rays: &Rays) -> 
     found
 }
 
-/// When an earlier tooth was on each ray, in steps, if the centre was at a place and moved on from there by a share of the radius
-/// for each radian that the tooth turned: `1 / (1 + v)` as `1 - v + v^2`, and the series of the arcsine, since the centre comes
-/// less far than a radius between passes.
+/// When an earlier tooth was on each ray, in steps, if the centre was at a place and moved on from there by a share of
+/// the radius for each radian that the tooth turned: `1 / (1 + v)` as `1 - v + v^2`, and the series of the arcsine,
+/// since the centre comes less far than a radius between passes.
 #[inline(always)]
 fn times<S: Simd>(
     simd: S,
@@ -211,9 +211,10 @@ fn advance<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, [xs, ys]: &[[f64
 
 /// Whether a pass older than all that an extent tells of could clear more of a ray that is not cleared yet.
 ///
-/// Its centre is at least `behind` back along the feed, and so much higher or lower. A ray ahead (sin(psi) >= 0) is cleared up to
-/// `d . e + R - (d x e)^2 / 2R` at most, with the nearest centre. A ray a little astern is cleared most by a centre farther back,
-/// unless that is as near as they come. A ray far astern is only known to be no further cleared than any edge came down.
+/// Its centre is at least `behind` back along the feed, and so much higher or lower. A ray ahead (sin(psi) >= 0) is
+/// cleared up to `d . e + R - (d x e)^2 / 2R` at most, with the nearest centre. A ray a little astern is cleared most
+/// by a centre farther back, unless that is as near as they come. A ray far astern is only known to be no further
+/// cleared than any edge came down.
 #[inline(always)]
 fn may_reach<S: Simd>(simd: S, older: &Extent, query: &ToothQuery<'_>, rays: &Rays) -> bool {
     let ([x, y], radius) = (query.centre, query.largest);

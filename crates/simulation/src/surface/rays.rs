@@ -21,8 +21,8 @@ pub struct Stock {
     pub top: f64,
 }
 
-/// Directions from the tool centre and what is known of the work along them. The angle psi of a ray is 0 towards the wall and
-/// a quarter turn along the feed.
+/// Directions from the tool centre and what is known of the work along them. The angle psi of a ray is 0 towards the
+/// wall and a quarter turn along the feed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rays {
     /// sin(psi)
@@ -49,8 +49,8 @@ impl Rays {
         rays
     }
 
-    /// Limits the rays to the block, from a centre to a radius (m). `ledge` is a height above which nothing is left behind the
-    /// centre (m). Whether there is anything left to cut.
+    /// Limits the rays to the block, from a centre to a radius (m). `ledge` is a height above which nothing is left
+    /// behind the centre (m). Whether there is anything left to cut.
     #[inline(always)]
     pub fn enter<S: Simd>(&mut self, simd: S, stock: &Stock, [x, y]: [f64; 2], radius: f64, ledge: f64) -> bool {
         let zero = Lanes::splat(simd, 0.0);

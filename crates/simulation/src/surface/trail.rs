@@ -62,8 +62,8 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// An empty trail with room for a number of steps. What is long past is bounded apart from the last one to two stretches
-    /// of at least one step: a tool that vibrates should come farther in a stretch than it vibrates.
+    /// An empty trail with room for a number of steps. What is long past is bounded apart from the last one to two
+    /// stretches of at least one step: a tool that vibrates should come farther in a stretch than it vibrates.
     pub fn with_room(steps: usize, stretch: usize) -> Self {
         let stretch = stretch.max(1);
         Self {
@@ -127,7 +127,8 @@ impl Trail {
         Some(Extents { recent, before })
     }
 
-    /// Place and motion at a time, in steps; `None` before the first node. After the last the cubic of the last step goes on.
+    /// Place and motion at a time, in steps; `None` before the first node. After the last the cubic of the last step
+    /// goes on.
     #[inline]
     pub fn at(&self, time: f64) -> Option<Node> {
         let (leg, s) = self.leg(time)?;

@@ -1,14 +1,14 @@
 //! The main effect of each axis on a column, and how much of its variance that explains.
 //!
-//! Where every pair of values comes equally often (a grid of which nothing failed), an effect is what means over the other axes say. Where
-//! cases are missing, or the study is a Latin hypercube, such means would mix the axes; then all effects are fitted together by least
-//! squares, and the share of an axis is what the model loses without it.
+//! Where every pair of values comes equally often (a grid of which nothing failed), an effect is what means over the
+//! other axes say. Where cases are missing, or the study is a Latin hypercube, such means would mix the axes; then all
+//! effects are fitted together by least squares, and the share of an axis is what the model loses without it.
 
 use super::layouts::{Layouts, text};
 use super::least_squares::LinearModel;
 use super::measure::Measure;
 use crate::cases::Cell;
-use stead_placement::sense::Sense;
+use stead_planning::sense::Sense;
 
 /// How an effect was computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Method {
     AdjustedMeans,
     /// A straight line over the numbers of the axis, fitted together with all others by least squares.
     Line,
-    /// Means that have the effects of other axes in them, which cannot be told apart.
+    /// Means that have the effects of other axes in them, which cannot be distinguished.
     MixedMeans,
 }
 
@@ -65,8 +65,8 @@ pub struct AxisEffect {
     pub share: Option<f64>,
     /// Spearman's rank correlation of an axis of numbers with the column.
     pub rank_correlation: Option<f64>,
-    /// Of an axis of numbers, by how much the column changes for each unit of it: the straight line through the values of the levels, each
-    /// with the weight of its layouts. None where the effects of other axes are in them.
+    /// Of an axis of numbers, by how much the column changes for each unit of it: the straight line through the values
+    /// of the levels, each with the weight of its layouts. None where the effects of other axes are in them.
     pub slope: Option<f64>,
 }
 
@@ -94,7 +94,8 @@ pub struct Effects {
 
 /// More columns than this are not fitted together.
 const MAX_COLUMNS: usize = 200;
-/// Beside other axes one of numbers is a line where it has more values than this, or fewer than three layouts to two values.
+/// Beside other axes one of numbers is a line where it has more values than this, or fewer than three layouts to two
+/// values.
 const MAX_NUMBERS: usize = 12;
 
 /// An axis in the layouts with a value.
@@ -246,7 +247,8 @@ struct Fit<'f> {
 }
 
 impl Fit<'_> {
-    /// Whether values of any two axes come together as often as they would by themselves, so that means do not mix the axes.
+    /// Whether values of any two axes come together as often as they would by themselves, so that means do not mix the
+    /// axes.
     fn is_balanced(&self) -> bool {
         let rows = self.deviations.len();
         let of_two = |a: &Factor, b: &Factor| {

@@ -11,8 +11,8 @@ pub struct FrontMember {
     pub layout: usize,
     /// Its values, one for each column.
     pub values: Vec<f64>,
-    /// Whether another is at least as good in every column and better in one, though within the noise: it may be on the front, or
-    /// close behind it.
+    /// Whether another is at least as good in every column and better in one, though within the noise: it may be on the
+    /// front, or close behind it.
     pub is_tie: bool,
 }
 
@@ -27,8 +27,8 @@ pub struct Front {
     pub compared: Vec<(usize, Vec<f64>)>,
 }
 
-/// The Pareto front of several columns. A layout is off the front when another is at least as good in every column, and better by more
-/// than the noise in one.
+/// The Pareto front of several columns. A layout is off the front when another is at least as good in every column, and
+/// better by more than the noise in one.
 pub fn front(layouts: &Layouts, measures: Vec<Measure>) -> Front {
     let values = |layout: usize| -> Option<Vec<f64>> {
         measures.iter().map(|measure| measure.value(&layouts.all[layout].row)).collect()
@@ -37,8 +37,8 @@ pub fn front(layouts: &Layouts, measures: Vec<Measure>) -> Front {
     let mut compared: Vec<(usize, Vec<f64>)> =
         first.filter_map(|(layout, _)| Some((layout, values(layout)?))).collect();
     compared.sort_by(|a, b| in_order(&measures, &a.1, &b.1).then(a.0.cmp(&b.0)));
-    // Whatever is at least as good everywhere comes before in this order; and what keeps a layout off the front is on the front itself,
-    // or has something there that does the same.
+    // Whatever is at least as good everywhere comes before in this order; and what keeps a layout off the front is on
+    // the front itself, or has something there that does the same.
     let mut members: Vec<FrontMember> = Vec::new();
     for (layout, values) in &compared {
         let as_good = |member: &&FrontMember| all(&measures, &member.values, values, Measure::is_as_good);
@@ -73,7 +73,7 @@ mod tests {
     use super::super::testing::figures;
     use super::*;
     use proptest::prelude::*;
-    use stead_placement::sense::Sense;
+    use stead_planning::sense::Sense;
 
     /// The definition, word by word, over all pairs.
     fn by_definition(measures: &[Measure], rows: &[Vec<f64>]) -> Vec<(usize, bool)> {

@@ -1,7 +1,7 @@
 //! The rows of a study as layouts.
 //!
-//! Mostly a layout is a case. Where several tasks have each its own placement, a layout is all cases that differ in the task alone: its
-//! deflections and times are means over the tasks by their weights, its margins the smallest.
+//! Mostly a layout is a case. Where several tasks have each its own placement, a layout is all cases that differ in the
+//! task alone: its deflections and times are means over the tasks by their weights, its margins the smallest.
 
 use super::AnalysisError;
 use super::measure::{Measure, nearest};
@@ -108,11 +108,12 @@ impl Layouts {
         [fixed.status, fixed.reason].map(|column| layout.row.get(column).map_or_else(String::new, text))
     }
 
-    pub(super) fn measure(&self, asked: &str, noise: f64) -> Result<Measure, AnalysisError> {
-        Measure::of(&self.columns, &self.axes, asked, noise)
+    pub(super) fn measure(&self, requested: &str, noise: f64) -> Result<Measure, AnalysisError> {
+        Measure::of(&self.columns, &self.axes, requested, noise)
     }
 
-    /// The layouts with a value of a column, with their places. Those without a placement have none, not even on an axis.
+    /// The layouts with a value of a column, with their places. Those without a placement have none, not even on an
+    /// axis.
     pub fn valued(&self, measure: &Measure) -> impl Iterator<Item = (usize, f64)> {
         let fixed = Fixed::of(&self.columns);
         let is_placed =
@@ -138,7 +139,7 @@ impl Layouts {
         let find = |name: &String| {
             varied.iter().copied().find(|axis| self.columns[*axis].name == *name).ok_or_else(|| {
                 AnalysisError::Unknown {
-                    asked: name.clone(),
+                    requested: name.clone(),
                     kind: "axis of the study with several values",
                     nearest: nearest(name, known()),
                     allowed: known().collect::<Vec<_>>().join(", "),
@@ -147,8 +148,8 @@ impl Layouts {
         };
         let axes = [find(&names[0])?, find(&names[1])?];
         if axes[0] == axes[1] {
-            let (asked, problem) = (names.join(","), "names an axis twice");
-            return Err(AnalysisError::Names { asked, problem, allowed: "two different axes of the study" });
+            let (requested, problem) = (names.join(","), "names an axis twice");
+            return Err(AnalysisError::Names { requested, problem, allowed: "two different axes of the study" });
         }
         Ok(axes)
     }
@@ -215,8 +216,8 @@ fn joined(table: &Table, fixed: &Fixed, rows: &[&Vec<Cell>], tasks: usize) -> La
     Layout { cases, row }
 }
 
-/// The figure of a layout: the smallest of margins and feeds, means of the others by the weights of the tasks; none of texts and
-/// placements, which belong to one task.
+/// The figure of a layout: the smallest of margins and feeds, means of the others by the weights of the tasks; none of
+/// texts and placements, which belong to one task.
 fn joined_cell(table: &Table, fixed: &Fixed, rows: &[&Vec<Cell>], column: usize) -> Cell {
     const OF_ONE_TASK: [&str; 5] = ["x_mm", "y_mm", "z_mm", "q4", "yaw_deg"];
     let Column { name, kind } = &table.columns[column];

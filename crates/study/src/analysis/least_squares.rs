@@ -1,7 +1,7 @@
 //! Linear least squares with columns that may depend on each other.
 
-/// Columns of a linear model made orthonormal one by one (modified Gram-Schmidt, each column twice). A column that the ones before it
-/// add up to is left out: its coefficient is zero.
+/// Columns of a linear model made orthonormal one by one (modified Gram-Schmidt, each column twice). A column that the
+/// ones before it add up to is left out: its coefficient is zero.
 pub(super) struct LinearModel {
     /// Orthonormal directions, each with the number of its column.
     directions: Vec<(usize, Vec<f64>)>,

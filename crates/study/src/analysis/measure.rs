@@ -2,10 +2,10 @@
 
 use super::AnalysisError;
 use crate::cases::{Cell, Column, Kind};
-use stead_placement::sense::Sense;
+use stead_planning::sense::Sense;
 
-/// Figures of searches are not told apart below this, in the unit of their column: means of 1e-6 mm are the same (guide, page
-/// `objective`), and figures are written with few more digits.
+/// Figures of searches are not distinguished below this, in the unit of their column: means of 1e-6 mm are the same
+/// (guide, page `objective`), and figures are written with few more digits.
 const NOTHING: f64 = 1e-6;
 
 /// A column of numbers, which of them are better, and which are the same.
@@ -22,20 +22,20 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Axes and the data sheet of the
-    /// robot have no noise.
-    pub(super) fn of(columns: &[Column], axes: &[usize], asked: &str, noise: f64) -> Result<Self, AnalysisError> {
+    /// The column of a name, with `:min` or `:max` behind it or in the direction that is usual for it. Axes and the
+    /// data sheet of the robot have no noise.
+    pub(super) fn of(columns: &[Column], axes: &[usize], requested: &str, noise: f64) -> Result<Self, AnalysisError> {
         let find = |name: &str| columns.iter().position(|column| column.name == name);
-        let (column, sense) = match (find(asked), asked.rsplit_once(':')) {
+        let (column, sense) = match (find(requested), requested.rsplit_once(':')) {
             (Some(column), _) => (Some(column), None),
             (None, Some((name, "min"))) => (find(name), Some(Sense::Min)),
             (None, Some((name, "max"))) => (find(name), Some(Sense::Max)),
             _ => (None, None),
         };
         let column = column.ok_or_else(|| AnalysisError::Unknown {
-            asked: asked.to_owned(),
+            requested: requested.to_owned(),
             kind: "column of study.csv",
-            nearest: nearest(asked, columns.iter().map(|column| column.name.as_str())),
+            nearest: nearest(requested, columns.iter().map(|column| column.name.as_str())),
             allowed: "a column of study.csv with numbers, and :min or :max behind it".to_owned(),
         })?;
         let name = columns[column].name.clone();
@@ -89,6 +89,6 @@ fn usual_sense(name: &str) -> Sense {
 }
 
 /// The nearest of some names.
-pub(super) fn nearest<'n>(asked: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
-    names.max_by(|a, b| strsim::jaro(a, asked).total_cmp(&strsim::jaro(b, asked))).map(str::to_owned)
+pub(super) fn nearest<'n>(requested: &str, names: impl Iterator<Item = &'n str>) -> Option<String> {
+    names.max_by(|a, b| strsim::jaro(a, requested).total_cmp(&strsim::jaro(b, requested))).map(str::to_owned)
 }

@@ -1,7 +1,8 @@
-//! What a finished study says: which layout is best, which compromises there are, what each axis does, what failed and why.
+//! What a finished study says: which layout is best, which compromises there are, what each axis does, what failed and
+//! why.
 //!
-//! Everything here is computed from the table of results alone. A search ends near an optimum and not at it, so figures that differ by
-//! less than its noise ([`SEARCH_NOISE`]) are ties; axes are exact.
+//! Everything here is computed from the table of results alone. A search ends near an optimum and not at it, so figures
+//! that differ by less than its noise ([`SEARCH_NOISE`]) are ties; axes are exact.
 
 mod effects;
 mod front;
@@ -24,8 +25,8 @@ pub use without::{Failures, LostLevel, failures};
 
 use crate::cases::Table;
 
-/// The relative difference of two figures that a search may make by itself: it ends within 0.1 % of the optimum (guide, page
-/// `validation`), so two of them differ by up to twice that.
+/// The relative difference of two figures that a search may make by itself: it ends within 0.1 % of the optimum (guide,
+/// page `validation`), so two of them differ by up to twice that.
 pub const SEARCH_NOISE: f64 = 0.002;
 
 /// Why a table could not be analysed as asked.
@@ -33,10 +34,10 @@ pub const SEARCH_NOISE: f64 = 0.002;
 #[non_exhaustive]
 pub enum AnalysisError {
     /// There is no column, or no axis, of that name.
-    #[error("{asked:?} is no {kind}{}; allowed: {allowed}", nearest.as_ref().map_or_else(String::new, |name| format!(" (nearest one: {name})")))]
+    #[error("{requested:?} is no {kind}{}; allowed: {allowed}", nearest.as_ref().map_or_else(String::new, |name| format!(" (nearest one: {name})")))]
     Unknown {
-        /// What was asked for.
-        asked: String,
+        /// What was requested.
+        requested: String,
         /// What it should be the name of.
         kind: &'static str,
         /// The nearest name.
@@ -51,10 +52,10 @@ pub enum AnalysisError {
     #[error("{0:?} has no value in any case; allowed: a column of study.csv with values")]
     NoValues(String),
     /// A list of names is too short, too long, or names something twice.
-    #[error("{asked:?}: {problem}; allowed: {allowed}")]
+    #[error("{requested:?}: {problem}; allowed: {allowed}")]
     Names {
-        /// What was asked for.
-        asked: String,
+        /// What was requested.
+        requested: String,
         /// What is wrong with it.
         problem: &'static str,
         /// What would be accepted.
@@ -68,8 +69,8 @@ pub enum AnalysisError {
     Empty,
 }
 
-/// What is asked of a study. Columns go by their names in `study.csv`, with `:min` or `:max` behind them where the direction is not
-/// the usual one.
+/// What is asked of a study. Columns go by their names in `study.csv`, with `:min` or `:max` behind them where the
+/// direction is not the usual one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
     /// The column by which layouts are ranked and effects computed.
@@ -122,10 +123,10 @@ pub struct TaskRanking {
     pub ranking: Ranking,
 }
 
-/// What is ranked by, where nothing else is asked for.
+/// What is ranked by, where nothing else is requested.
 const BY: &str = "objective_mm";
 
-/// What the front is of, where nothing else is asked for: the first two that have values.
+/// What the front is of, where nothing else is requested: the first two that have values.
 const FRONT: [&str; 5] =
     ["best_mean_total_mm", "cycle_s", "price_eur", "min_joint_margin_deg", "min_inverse_condition"];
 
@@ -133,7 +134,8 @@ impl Analysis {
     /// Analyses a table of results.
     ///
     /// # Errors
-    /// [`AnalysisError`]: a column that is not there, or holds no numbers or no values; a name too many or too few; a table without rows.
+    /// [`AnalysisError`]: a column that is not there, or holds no numbers or no values; a name too many or too few; a
+    /// table without rows.
     pub fn of(table: &Table, question: &Question) -> Result<Self, AnalysisError> {
         if table.rows.is_empty() {
             return Err(AnalysisError::Empty);
@@ -148,8 +150,8 @@ impl Analysis {
         }
         let measures = front_measures(&layouts, question)?;
         let effects = effects(&layouts, &measure);
-        let asked = question.map.as_ref().map(|names| layouts.axes_named(names)).transpose()?;
-        let axes = asked.or_else(|| effects.largest_two());
+        let requested = question.map.as_ref().map(|names| layouts.axes_named(names)).transpose()?;
+        let axes = requested.or_else(|| effects.largest_two());
         let tasks = layouts.tasks().iter().map(|task| {
             let layouts = Layouts::of_task(table, task);
             TaskRanking { task: task.clone(), ranking: ranking(&layouts, &measure), layouts }
@@ -171,7 +173,8 @@ impl Analysis {
     }
 }
 
-/// The column over the one axis that is varied and the tasks, where each layout has a placement for every one of several tasks.
+/// The column over the one axis that is varied and the tasks, where each layout has a placement for every one of
+/// several tasks.
 fn map_over_tasks(table: &Table, layouts: &Layouts, measure: &Measure) -> Option<Map> {
     let [axis] = layouts.varied()[..] else { return None };
     let cases = Layouts::cases(table);
@@ -179,23 +182,23 @@ fn map_over_tasks(table: &Table, layouts: &Layouts, measure: &Measure) -> Option
     map(&cases, measure, [axis, task])
 }
 
-/// The columns of the front, as asked for or those of [`FRONT`] that have values.
+/// The columns of the front, as requested or those of [`FRONT`] that have values.
 fn front_measures(layouts: &Layouts, question: &Question) -> Result<Option<Vec<Measure>>, AnalysisError> {
-    let Some(asked) = &question.front else {
+    let Some(requested) = &question.front else {
         let measures = FRONT.iter().filter_map(|name| layouts.measure(name, question.noise).ok());
         let measures: Vec<Measure> = measures.filter(|measure| layouts.check_values(measure).is_ok()).take(2).collect();
         return Ok((measures.len() == 2).then_some(measures));
     };
     let names = |problem| AnalysisError::Names {
-        asked: asked.join(","),
+        requested: requested.join(","),
         problem,
         allowed: "two to six different columns of study.csv, as in best_mean_total_mm,cycle_s",
     };
-    if !(2..=6).contains(&asked.len()) {
+    if !(2..=6).contains(&requested.len()) {
         return Err(names("is no list of two to six columns"));
     }
     let measures: Vec<Measure> =
-        asked.iter().map(|name| layouts.measure(name, question.noise)).collect::<Result<_, _>>()?;
+        requested.iter().map(|name| layouts.measure(name, question.noise)).collect::<Result<_, _>>()?;
     for (number, measure) in measures.iter().enumerate() {
         layouts.check_values(measure)?;
         if measures[..number].iter().any(|other| other.column == measure.column) {

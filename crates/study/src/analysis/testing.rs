@@ -3,10 +3,10 @@
 use super::layouts::Layouts;
 use super::measure::Measure;
 use crate::cases::{Cell, Column, Kind, Table};
-use stead_placement::sense::Sense;
+use stead_planning::sense::Sense;
 
-/// A table with axes and columns of figures: for each case the texts of its axes (numbers where all are), and its figures. A case
-/// without figures is infeasible.
+/// A table with axes and columns of figures: for each case the texts of its axes (numbers where all are), and its
+/// figures. A case without figures is infeasible.
 pub(super) fn table(axes: &[&str], names: &[&str], cases: &[(Vec<&str>, Option<Vec<f64>>)]) -> Table {
     let mut columns = vec![
         Column::new("case", Kind::Count),
@@ -43,8 +43,8 @@ pub(super) fn layouts(axes: &[&str], cases: &[(Vec<&str>, Option<f64>)]) -> Layo
     Layouts::of(&table(axes, &["figure_mm"], &cases))
 }
 
-pub(super) fn measure(layouts: &Layouts, asked: &str, noise: f64) -> Measure {
-    layouts.measure(asked, noise).unwrap()
+pub(super) fn measure(layouts: &Layouts, requested: &str, noise: f64) -> Measure {
+    layouts.measure(requested, noise).unwrap()
 }
 
 /// Layouts with nothing but figures.

@@ -22,8 +22,8 @@ pub struct Failures {
     pub infeasible: usize,
     /// Those whose job failed.
     pub failed: usize,
-    /// Reasons with the number of their cases and the first of them, the most frequent first. Reasons that differ in numbers alone are
-    /// one, in the words of its first case.
+    /// Reasons with the number of their cases and the first of them, the most frequent first. Reasons that differ in
+    /// numbers alone are one, in the words of its first case.
     pub reasons: Vec<(String, usize, String)>,
     /// Values of axes with no placement at all, and pairs of values of which neither is alone to blame.
     pub lost: Vec<LostLevel>,
@@ -66,8 +66,8 @@ pub fn failures(table: &Table) -> Failures {
     found
 }
 
-/// Values without any placement, and then pairs that hold none of these. Of an axis of many numbers each value is nearly alone and says
-/// nothing: only what two cases or more share is named.
+/// Values without any placement, and then pairs that hold none of these. Of an axis of many numbers each value is
+/// nearly alone and says nothing: only what two cases or more share is named.
 fn lost(cases: &Layouts) -> Vec<LostLevel> {
     let varied = cases.varied();
     let is_placed: Vec<bool> =

@@ -1,4 +1,5 @@
-//! The journal of a shard: a line for each finished case, each with its own digest, so that a line that was torn is told.
+//! The journal of a shard: a line for each finished case, each with its own digest, so that a line that was torn is
+//! told.
 
 use super::StudyError;
 use super::table::{Cell, Column};

@@ -2,13 +2,14 @@
 
 use super::plan::PlannedCase;
 use crate::run::Placed;
-use stead_format::Run;
-use stead_placement::certify::Certificate;
+use stead_certify::Certificate;
+use stead_run_files::Run;
 
-/// Puts results where readers look for them: the files of a case into a folder of its own, the table into that of the study.
+/// Puts results where readers look for them: the files of a case into a folder of its own, the table into that of the
+/// study.
 pub trait Keeping: Sync {
-    /// Writes files of the study as one set that a manifest vouches for. They take the place of those of an earlier table, and what was
-    /// derived from another table goes.
+    /// Writes files of the study as one set that a manifest vouches for. They take the place of those of an earlier
+    /// table, and what was derived from another table goes.
     ///
     /// # Errors
     /// What is wrong, as one line.

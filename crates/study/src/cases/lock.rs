@@ -28,7 +28,8 @@ impl Lock {
         files::Lock::wait(path).map(Self).map_err(|cause| StudyError::write(path, cause))
     }
 
-    /// Removes the temporary files that a killed process has left, by how their names begin: whoever writes such files holds the lock.
+    /// Removes the temporary files that a killed process has left, by how their names begin: the process that writes
+    /// such files holds the lock.
     pub fn clean(&self, folder: &Path, prefix: &str) {
         if self.0.is_locked {
             files::remove_stale(folder, prefix);

@@ -1,4 +1,4 @@
-//! The rows of all shards as one table of results.
+//! The rows of all shards as one table of results, handed to the caller to be put in place with its manifest.
 
 use super::StudyError;
 use super::keeping::Keeping;
@@ -21,8 +21,8 @@ pub fn merged(plan: &Plan, folder: &Path) -> Result<Option<Table>, StudyError> {
 /// The files that hold the table of results.
 pub const TABLES: [&str; 2] = ["study.csv", "study.parquet"];
 
-/// Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done; says whether it is so. The first two are
-/// published as one set; the third differs from run to run.
+/// Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done; says whether it is so. The
+/// first two are published as one set; the third differs from run to run.
 ///
 /// # Errors
 /// [`StudyError`]: the folder of another study, or a file that cannot be read or written.

@@ -6,7 +6,7 @@ use super::table::{Cell, Column, Kind};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use stead_format::input::{InputError, sha256};
-use stead_format::study::{AxisValue, Study, StudyCase};
+use stead_run_files::study::{AxisValue, Study, StudyCase};
 
 /// A case with what its result is found by.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,8 +34,8 @@ impl Plan {
     /// Reads every case of a study, side by side, and computes its digest.
     ///
     /// # Errors
-    /// [`StudyError::Input`] at the first case that cannot be read, with its combination of values; and for an axis that has the name
-    /// of a column of the results.
+    /// [`StudyError::Input`] at the first case that cannot be read, with its combination of values; and for an axis
+    /// that has the name of a column of the results.
     pub fn of(study: Study) -> Result<Self, StudyError> {
         let taken =
             |name: &&String| fixed_columns().iter().chain(&result_columns()).any(|column| column.name == **name);

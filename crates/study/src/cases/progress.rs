@@ -38,7 +38,8 @@ pub struct StudyStatus {
     pub shards: Vec<ShardStatus>,
     /// What is wrong in the folder and will be done again, in sentences.
     pub problems: Vec<String>,
-    /// Kept cases that the study as it is now has not, by the names of their folders; whoever keeps cases knows them.
+    /// Kept cases that the study as it is now has not, by the names of their folders; filled in by the caller that
+    /// keeps cases.
     pub stale: Vec<String>,
 }
 

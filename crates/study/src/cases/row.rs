@@ -3,12 +3,12 @@
 use super::table::{Cell, Column, Kind};
 use crate::run::{Placed, RunError};
 use std::collections::BTreeSet;
+use stead_certify::{Certificate, Proof, Status};
 use stead_model::robot::Posture;
 use stead_numerics::unit::Unit;
-use stead_placement::certify::{Certificate, Proof, Status};
-use stead_placement::limit::{ActiveBound, Limit, Side};
 use stead_placement::outcome::{Case, DeflectionFigures, Plan};
-use stead_placement::problem::Problem;
+use stead_planning::limit::{ActiveBound, Limit, Side};
+use stead_planning::problem::Problem;
 
 /// Whether a case has a placement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

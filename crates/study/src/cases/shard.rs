@@ -14,9 +14,9 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
-use stead_format::study::Keep;
+use stead_certify::certify;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_placement::certify::certify;
+use stead_run_files::study::Keep;
 
 /// Where and how a shard is done.
 #[derive(Clone, Copy)]
@@ -48,11 +48,12 @@ pub struct Finished {
     pub problems: Vec<String>,
 }
 
-/// Does what is left to do of a shard, and writes the table of results once every case of the study is done. A stop that the monitor asks
-/// for leaves the finished cases in the journal.
+/// Does what is left to do of a shard, and writes the table of results once every case of the study is done. A stop
+/// that the monitor asks for leaves the finished cases in the journal.
 ///
 /// # Errors
-/// [`StudyError`]: the folder of another study, a shard that another process works on, a disk that is full; finished cases are kept.
+/// [`StudyError`]: the folder of another study, a shard that another process works on, a disk that is full; finished
+/// cases are kept.
 pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result<Finished, StudyError> {
     let store = Store::at(settings.folder);
     store.begin(plan)?;
@@ -113,8 +114,8 @@ fn is_placed(row: &[Cell]) -> bool {
 /// How long a shard waits before it looks again whether another one has done the best cases.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Places the cases with the smallest objective once more, where their files are to be kept and are not there. Of shards that end
-/// at the same time one does so, and the others wait for it: should it be killed, the next one goes on.
+/// Places the cases with the smallest objective once more, where their files are to be kept and are not there. Of
+/// shards that end at the same time one does so, and the others wait for it: should it be killed, the next one goes on.
 fn keep_best(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result<(), StudyError> {
     let Keep::Best(count) = plan.study.keep else { return Ok(()) };
     let store = Store::at(settings.folder);
@@ -210,8 +211,8 @@ fn do_case(
     };
     let certificate = read.certificate.map(|settings| {
         let cases = &placed.outcome.cases;
-        let found = (&cases.best.placement, cases.best.plan.mean);
-        certify(&read.problem, found, cases.worst.as_ref().map(|[case, _]| &case.placement), settings, monitor)
+        let worst = cases.worst.as_ref().map(|worst| &worst.best.placement);
+        certify(&read.problem, &cases.best.placement, cases.best.plan.mean, worst, settings, monitor)
     });
     if monitor.should_stop() {
         return Ok(None);

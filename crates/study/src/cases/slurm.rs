@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-/// The script of a Slurm array that does a study in so many shards, an element each, with the binary `stead`. An element that is
-/// requeued goes on where it was. Paths are taken as they are, so absolute ones let `sbatch` be called anywhere.
+/// The script of a Slurm array that does a study in so many shards, an element each, with the binary `stead`. An
+/// element that is requeued goes on where it was. Paths are taken as they are, so absolute ones let `sbatch` be called
+/// anywhere.
 pub fn slurm_script(stead: &Path, study: &Path, folder: &Path, shards: usize, threads: usize) -> String {
     let quoted = |path: &Path| format!("'{}'", path.display().to_string().replace('\'', r"'\''"));
     let name: String = study.file_stem().unwrap_or_default().to_string_lossy().chars().map(in_a_name).collect();

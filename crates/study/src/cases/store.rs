@@ -182,8 +182,8 @@ impl Store {
         shards
     }
 
-    /// What a shard has finished, by the digests of the cases: of its Parquet file and its journal. What is wrong with the Parquet
-    /// file is said.
+    /// What a shard has finished, by the digests of the cases: of its Parquet file and its journal. What is wrong with
+    /// the Parquet file is said.
     pub fn rows_of(&self, shard: Shard, problems: &mut Vec<String>) -> Result<Rows, StudyError> {
         let mut rows = Rows::default();
         let path = self.of_shard(shard, ".parquet");

@@ -70,7 +70,8 @@ impl Cell {
         value.filter(|value| value.is_finite()).map_or(Self::None, Self::Number)
     }
 
-    /// The value as a field of a CSV file: empty where there is none, numbers with as many digits as tell them from all others.
+    /// The value as a field of a CSV file: empty where there is none, numbers with as many digits as tell them from all
+    /// others.
     pub fn written(&self) -> String {
         match self {
             Self::None => String::new(),
@@ -115,8 +116,8 @@ impl Table {
         writer.into_inner().map_err(|cause| StudyError::format("the table", &cause))
     }
 
-    /// The table as Parquet, compressed by Snappy; every column is optional. Its metadata has the digest of the file, since Parquet itself
-    /// does not tell bytes that were changed on the disk.
+    /// The table as Parquet, compressed by Snappy; every column is optional. Its metadata has the digest of the file,
+    /// since Parquet itself does not tell bytes that were changed on the disk.
     ///
     /// # Errors
     /// [`StudyError::Format`] when the writer fails.

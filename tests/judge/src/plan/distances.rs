@@ -8,7 +8,8 @@ use nalgebra::Isometry3;
 /// Distances of round shapes by parry's plain method are within this. m
 pub(crate) const SHAPE_SLACK: f64 = 3e-5;
 
-/// By so much what a joint (rad) or an external axis (m or rad) moves in a step may be off, for the printed digits of both ends.
+/// By so much what a joint (rad) or an external axis (m or rad) moves in a step may be off, for the printed digits of
+/// both ends.
 const ROUNDED: f64 = 4e-6;
 
 /// So far a joint may be beyond its limit between two points without a word. rad
@@ -50,9 +51,9 @@ impl Plan<'_> {
         }
     }
 
-    /// From point to point the tool moves straight and turns evenly in the frame of the part. Where the results state that the arm cannot
-    /// follow the move, it is judged as far as the arm does. The feed that the speeds of the joints and external axes allow, by what they move in
-    /// each step at the least. m/s
+    /// From point to point the tool moves straight and turns evenly in the frame of the part. Where the results state
+    /// that the arm cannot follow the move, it is judged as far as the arm does. The feed that the speeds of the joints
+    /// and external axes allow, by what they move in each step at the least. m/s
     pub(super) fn between(&self, verdict: &mut Verdict, i: usize, is_told: bool) -> f64 {
         let cell = self.cell;
         let [from, to] = [&self.rows[i - 1], &self.rows[i]];

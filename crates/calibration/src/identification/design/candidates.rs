@@ -51,10 +51,10 @@ pub(super) fn stream(seed: u64, purpose: Purpose, index: usize) -> ChaCha8Rng {
 /// So many draws for each configuration that is wanted; what is not found by then is not there.
 const MAX_DRAWS_PER_CANDIDATE: usize = 200;
 
-/// Draws configurations until there are as many candidates as asked for, or nobody would wait for more.
+/// Draws configurations until there are as many candidates as requested, or nobody would wait for more.
 ///
-/// Joint angles are uniform within the limits and whole hundredths of a degree, components of the force whole tenths of a
-/// newton, so that what a sheet prints is what is planned.
+/// Joint angles are uniform within the limits and whole hundredths of a degree, components of the force whole tenths of
+/// a newton, so that what a sheet prints is what is planned.
 pub fn draw_candidates(request: &Request) -> Candidates {
     let mut drawn =
         Candidates { load_cases: Vec::with_capacity(request.candidates), draws: 0, rejected: Rejected::default() };

@@ -52,7 +52,7 @@ pub enum DesignError {
 }
 
 impl DesignError {
-    /// What is needed in place of the number of configurations asked for, where that is at fault.
+    /// What is needed in place of the number of configurations requested, where that is at fault.
     pub fn needed(&self) -> Option<&'static str> {
         match self {
             Self::TooFew { .. } => {

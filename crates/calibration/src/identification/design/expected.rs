@@ -72,8 +72,8 @@ pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations) 
     (layout, normal)
 }
 
-/// The compliances that an identification will report from a sheet, each by itself, with their standard deviations; and the
-/// unidentifiable combinations.
+/// The compliances that an identification will report from a sheet, each by itself, with their standard deviations; and
+/// the unidentifiable combinations.
 pub fn seen(
     layout: &Layout,
     normal: &NormalEquations,

@@ -1,8 +1,9 @@
-//! The set with the smallest `trace(Q M^-1)`: a greedy and several random starts, each improved by exchanging one configuration
-//! at a time for the best that is not in the set (Fedorov's exchange, in the order of Cook and Nachtsheim 1980), until no exchange
-//! improves it.
+//! The set with the smallest `trace(Q M^-1)`: a greedy and several random starts, each improved by exchanging one
+//! configuration at a time for the best that is not in the set (Fedorov's exchange, in the order of Cook and Nachtsheim
+//! 1980), until no exchange improves it.
 //!
-//! With at most eight parameters a new value of the criterion costs as much as an update of the last one: no updates are used.
+//! With at most eight parameters a new value of the criterion costs as much as an update of the last one: no updates
+//! are used.
 
 use super::candidates::{Purpose, stream};
 use super::parameters::{InformationMatrix, MAX_PARAMETERS};
@@ -12,7 +13,8 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
 
-/// A matrix over the free parameters only, each in a unit in which the sum over a set of mean configurations has a unit diagonal.
+/// A matrix over the free parameters only, each in a unit in which the sum over a set of mean configurations has a unit
+/// diagonal.
 type Packed = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
 
 /// The criterion `trace(Q M^-1)` of an I-optimal design, prepared for many M.

@@ -12,8 +12,8 @@ pub(super) fn travel(load_cases: &[LoadCase]) -> f64 {
     load_cases.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum()
 }
 
-/// Each configuration followed by the nearest that is left, from the start that makes the route shortest; then pieces of the route
-/// reversed as long as that makes it shorter.
+/// Each configuration followed by the nearest that is left, from the start that makes the route shortest; then pieces
+/// of the route reversed as long as that makes it shorter.
 pub(super) fn ordered(load_cases: &[LoadCase]) -> Vec<LoadCase> {
     let mut best: Vec<LoadCase> = load_cases.to_vec();
     for start in 0..load_cases.len() {

@@ -1,9 +1,9 @@
 //! The parameters of the arm in a design, and the information matrix of a configuration over them.
 //!
-//! There are at most eight: one compliance for each joint, or, for the joint beside a compensator, the stiffnesses K_theta,
-//! K_GC and s_0 K_GC, in which the joint's stiffness is linear (Klimchik et al. 2017, eq. 22). At an angle q with compliance c
-//! and row r(q) of that equation, `dc = -c^2 r(q) d(K_theta, K_GC, s_0 K_GC)`: so the compliance at any angle, a level of the
-//! plan or not, follows from the law that `fit` uses.
+//! There are at most eight: one compliance for each joint, or, for the joint beside a compensator, the stiffnesses
+//! K_theta, K_GC and s_0 K_GC, in which the joint's stiffness is linear (Klimchik et al. 2017, eq. 22). At an angle q
+//! with compliance c and row r(q) of that equation, `dc = -c^2 r(q) d(K_theta, K_GC, s_0 K_GC)`: so the compliance at
+//! any angle, a level of the plan or not, follows from the law that `fit` uses.
 
 use super::super::law::Law;
 use super::super::model::Noise;
@@ -14,8 +14,8 @@ use super::request::Request;
 use nalgebra::{SMatrix, SVector};
 use stead_model::robot::{Frames, Robot};
 
-/// Most parameters of an arm. The first six are those of the joints, K_theta in place of the compliance beside a compensator;
-/// then K_GC and s_0 K_GC.
+/// Most parameters of an arm. The first six are those of the joints, K_theta in place of the compliance beside a
+/// compensator; then K_GC and s_0 K_GC.
 pub const MAX_PARAMETERS: usize = 8;
 /// Information matrix: products of derivatives by the parameters of the arm.
 pub type InformationMatrix = SMatrix<f64, MAX_PARAMETERS, MAX_PARAMETERS>;
@@ -94,8 +94,8 @@ impl<'a> Parameters<'a> {
         response.linear * self.derivatives(&test.theta)
     }
 
-    /// Q: mean over the tests of the products of the derivatives of the deflection. `trace(Q C)` is the mean square error of the
-    /// deflection where C is the covariance of the parameters. m^2
+    /// Q: mean over the tests of the products of the derivatives of the deflection. `trace(Q C)` is the mean square
+    /// error of the deflection where C is the covariance of the parameters. m^2
     pub fn weighting(&self, request: &Request, tests: &[LoadCase]) -> InformationMatrix {
         let sum = tests.iter().fold(InformationMatrix::zeros(), |sum, test| {
             let by_numbers = self.deflection(request, test);

@@ -16,7 +16,8 @@ pub struct Design {
     pub sheet: Sheet,
     /// Every identifiable compliance with its expected standard deviation.
     pub compliances: Vec<ExpectedCompliance>,
-    /// The parameters of the compensator and of the joint beside it likewise, where the starting robot has a compensator.
+    /// The parameters of the compensator and of the joint beside it likewise, where the starting robot has a
+    /// compensator.
     pub compensator: Vec<ExpectedParameter>,
     /// Expected error of the deflection of the tip, from this set and from random sets.
     pub errors: ExpectedErrors,

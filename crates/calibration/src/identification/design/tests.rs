@@ -3,8 +3,9 @@
 use super::super::law::{ArmParameter, Law, Quantity};
 use super::super::sheet::LoadCase;
 use super::super::synthetic::sheet;
+use super::super::tests::identify;
 use super::super::tests::{GEOMETRY, NOISE, arm, cell, gauss, problem};
-use super::super::{Estimate, Problem, identify};
+use super::super::{Estimate, Problem};
 use super::candidates::draw_candidates;
 use super::expected::{normal_of, sheet_of};
 use super::fedorov::{IOptimality, exchange, random_set, values};
@@ -224,7 +225,8 @@ fn fit_reports_what_the_plan_expects_and_many_sheets_spread_as_much() {
     assert!((error / plan.errors.planned - 1.0).abs() < 0.1, "{error} {}", plan.errors.planned);
 }
 
-/// Those of small loads; the arm of the full load is deflected when `fit` looks at it, which changes them by less than a thousandth.
+/// Those of small loads; the arm of the full load is deflected when `fit` looks at it, which changes them by less than
+/// a thousandth.
 #[test]
 fn the_expected_errors_of_the_compensator_are_those_of_fit() {
     for (load, tolerance) in [(270.0, 1e-4), (2700.0, 1e-3)] {

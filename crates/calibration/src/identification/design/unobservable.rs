@@ -11,7 +11,8 @@ use stead_model::robot::Frames;
 /// A compliance, or a combination of several, on which no reading depends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unobservable {
-    /// The compliances in it by joint (from 0) and, where the joint has several, angle (rad); the one that is given up comes first.
+    /// The compliances in it by joint (from 0) and, where the joint has several, angle (rad); the one that is given up
+    /// comes first.
     pub compliances: Vec<(usize, Option<f64>)>,
     /// Why.
     pub reason: UnobservableReason,

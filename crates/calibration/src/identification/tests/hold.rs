@@ -16,8 +16,8 @@ fn held_joints_keep_their_compliance_and_the_others_are_found_beside_them() {
     for joints in [&[3, 5][..], &[0], &[1], &[1, 2, 4]] {
         let problem = held(joints);
         let found = identify(&problem).unwrap();
-        let asked = |joint: &usize| Held { parameter: Parameter::Joint(*joint), reason: HeldReason::Asked };
-        assert_eq!(found.held, joints.iter().map(asked).collect::<Vec<_>>());
+        let requested = |joint: &usize| Held { parameter: Parameter::Joint(*joint), reason: HeldReason::Asked };
+        assert_eq!(found.held, joints.iter().map(requested).collect::<Vec<_>>());
         assert_eq!(found.warnings.iter().filter(|warning| warning.kind == "held").count(), joints.len());
         for joint in joints {
             assert_eq!(found.robot.joints()[*joint].compliance, problem.robot.joints()[*joint].compliance);

@@ -20,7 +20,8 @@ fn largest_deflection(problem: &Problem) -> f64 {
     problem.sheet.readings.iter().map(|reading| (reading.loaded - reading.unloaded).norm()).fold(0.0, f64::max)
 }
 
-/// How far compliances are off at most, as shares of the true ones, where deflections are taken to be linear in the load.
+/// How far compliances are off at most, as shares of the true ones, where deflections are taken to be linear in the
+/// load.
 fn off_by_linear_equations(problem: &Problem) -> f64 {
     let (cell, noise) = (cell(3), Noise { position: 1.0, orientation: 1.0 });
     let setup = Setup { tracker_from_base: cell.tracker_from_base, points: cell.points, residual_rms: 0.0 };
@@ -82,7 +83,8 @@ fn many_sheets_of_large_deflections_have_no_bias() {
     }
 }
 
-/// Under a tenth of the load a quarter of the sheets do not tell the spring from nothing. Those give everything else, and say so.
+/// Under a tenth of the load a quarter of the sheets do not tell the spring from nothing. Those give everything else,
+/// and say so.
 #[test]
 fn a_spring_that_the_readings_do_not_tell_of_is_left_out_alone() {
     let found: Vec<Identified> =
@@ -116,7 +118,8 @@ fn a_spring_that_the_readings_do_not_tell_of_is_left_out_alone() {
     }
 }
 
-/// Under a moment of 1 MN m the arm would give way. The equations of that configuration are those of small deflections, and that is said.
+/// Under a moment of 1 MN m the arm would give way. The equations of that configuration are those of small deflections,
+/// and that is said.
 #[test]
 fn an_arm_that_would_give_way_is_warned_of() {
     let cell = cell(3);

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::testing::kr270;
 use stead_model::robot::{Compensator, Compliance, Pose, Robot};
+use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 
 mod hold;
 mod large_deflections;
@@ -19,6 +20,28 @@ mod refusals;
 mod setups;
 mod validation;
 mod warnings;
+
+/// The arm of a sheet, when nobody stops it.
+pub(super) fn identify(problem: &Problem) -> Result<Identified, IdentifyError> {
+    super::identify(problem, &Monitor::silent())
+}
+
+#[test]
+fn a_stop_before_or_during_a_fit_leaves_no_arm() {
+    let problem = standard(1, NOISE, 3);
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    assert_eq!(super::identify(&problem, &stopped), Err(IdentifyError::Stopped(Stop::Asked)));
+    // Stopped by its own first report, which says how far it is.
+    let handle = StopHandle::default();
+    let stop = handle.clone();
+    let watch = move |progress: &Progress| {
+        assert_eq!(*progress, Progress::Steps { stage: "fitting the arm", done: 1, total: 5 });
+        stop.stop();
+    };
+    let during = Monitor::new(watch).with_stop(handle);
+    assert_eq!(super::identify(&problem, &during), Err(IdentifyError::Stopped(Stop::Asked)));
+}
 
 const COMPENSATOR: Compensator =
     Compensator { spring_stiffness: 4e6, a: 0.75, l: 0.25, alpha: -0.35, free_length: 0.6 };
@@ -146,7 +169,8 @@ fn repeated(seed: usize, noise: f64) -> Problem {
     Problem { start: Some(cell(3).tracker_from_base.rotation), ..standard(1000 + seed as u64, noise, 3) }
 }
 
-/// Spread within 4 % of the reported deviations, and 94.1 to 95.9 % of the intervals over the truth, as the documents state.
+/// Spread within 4 % of the reported deviations, and 94.1 to 95.9 % of the intervals over the truth, as the documents
+/// state.
 fn assert_calibrated<P>(name: &str, estimates: impl Iterator<Item = Estimate<P>> + Clone, truth: f64) {
     let count = estimates.clone().count() as f64;
     let square = estimates.clone().map(|e| (e.value - truth) * (e.value - truth)).sum::<f64>() / count;

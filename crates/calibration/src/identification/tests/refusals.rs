@@ -50,8 +50,8 @@ fn what_cannot_be_seen_is_named_and_held_only_on_request() {
 
 #[test]
 fn a_varying_joint_that_is_seen_at_no_angle_keeps_its_law() {
-    // Along axes 2 and 3: nothing but rounding is left of their columns. Under the load other joints turn, so that these yield a little
-    // all the same; they are held at the truth.
+    // Along axes 2 and 3: nothing but rounding is left of their columns. Under the load other joints turn, so that
+    // these yield a little all the same; they are held at the truth.
     let along = |load_case: &mut LoadCase| {
         let axis = stead_model::robot::Frames::new(&arm(), &load_case.theta).twist(1, &Vector3::zeros()).1;
         load_case.force = axis * 2700.0;

@@ -17,7 +17,8 @@ pub(super) fn cutter(statement: &Statement<'_>, unit: f64) -> ProgramTool {
     ProgramTool {
         description: format!("{}/{}", statement.word, statement.text()),
         diameter: length(0).filter(|_| is_apt || ROUND.iter().any(|kind| statement.has(kind))),
-        // TLDATA/MILL, diameter, corner, length, ..; CUTTER/diameter, corner, four numbers of its place and flanks, height.
+        // TLDATA/MILL, diameter, corner, length, ..; CUTTER/diameter, corner, four numbers of its place and flanks,
+        // height.
         corner_radius: length(1).filter(|_| is_mill),
         length: length(if is_apt { 6 } else { 2 }).filter(|_| is_mill),
         ..ProgramTool::default()

@@ -1,8 +1,8 @@
 //! CLDATA: cutter locations in text, the words of APT (ISO 4343) as NX, SolidWorks CAM and others write them.
 //!
-//! Positions are in the frame of the last `MSYS` or `CSYS`, the tool axis is modal, `RAPID` is for the next `GOTO` alone, and `CIRCLE`
-//! makes it an arc. With 11 numbers, as NX writes them, it turns as a left-handed screw along its axis; with 6 (SolidWorks CAM) and 7
-//! (Creo), as a right-handed one.
+//! Positions are in the frame of the last `MSYS` or `CSYS`, the tool axis is modal, `RAPID` is for the next `GOTO`
+//! alone, and `CIRCLE` makes it an arc. With 11 numbers, as NX writes them, it turns as a left-handed screw along its
+//! axis; with 6 (SolidWorks CAM) and 7 (Creo), as a right-handed one.
 
 mod cutter;
 mod cycle;
@@ -21,8 +21,9 @@ use std::path::Path;
 /// Reads the moves of a CLDATA file.
 ///
 /// # Errors
-/// [`InputError`] with line and word: a unit that is not stated or stated twice, numbers that are not finite or not as many as the word
-/// has, a tool axis without length, an arc that misses its end, a word that moves the tool in a way that is not known.
+/// [`InputError`] with line and word: a unit that is not stated or stated twice, numbers that are not finite or not as
+/// many as the word has, a tool axis without length, an arc that misses its end, a word that moves the tool in a way
+/// that is not known.
 pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
     let unit = unit_of(file, text, settings.units)?;
     let mut reader = Reader::new(file, unit, settings);

@@ -6,7 +6,8 @@ const TELLING: [&str; 20] = [
     "MULTAX", "CUTCOM", "MSYS", "CSYS", "END", "PPRINT", "MACHIN", "COOLNT",
 ];
 
-/// Words that leave the path of the tool as it is: texts, pictures, auxiliary functions, tolerances of what is computed already.
+/// Words that leave the path of the tool as it is: texts, pictures, auxiliary functions, tolerances of what is computed
+/// already.
 const HARMLESS: [&str; 38] = [
     "AIR", "ARCSLP", "AUTOPS", "AUXFUN", "BREAK", "CLAMP", "CLEARP", "CLPRNT", "COOLNT", "DELAY", "DISPLY", "END",
     "HEADER", "INSERT", "INTOL", "ISN", "LEADER", "LETTER", "LINTOL", "MACHIN", "MCHTOL", "NOPOST", "OPSTOP", "OUTTOL",

@@ -10,7 +10,8 @@ use nalgebra::Vector3;
 /// A radius may be so much less than half the way to the end: digits as printed. m
 const ROUNDING: f64 = 5e-5;
 
-/// The states along an arc in the plane normal to an axis of the machine, about which it turns as a right-handed screw; the end last.
+/// The states along an arc in the plane normal to an axis of the machine, about which it turns as a right-handed screw;
+/// the end last.
 pub(super) fn arc_of(
     settings: &ReadSettings,
     block: &Block<'_>,

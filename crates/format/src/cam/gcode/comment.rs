@@ -1,5 +1,5 @@
-//! Tools that comments of G-code describe, as posts write them: `(T1 D=20. CR=3. - END MILL)`, `(TOOL - 1 | TOOL DIA. - 12.)`,
-//! `(MILL DIA 10.0 R0.)`.
+//! Tools that comments of G-code describe, as posts write them: `(T1 D=20. CR=3. - END MILL)`,
+//! `(TOOL - 1 | TOOL DIA. - 12.)`, `(MILL DIA 10.0 R0.)`.
 
 use super::super::tool::ProgramTool;
 use crate::quote::shorten;
@@ -20,7 +20,8 @@ pub(super) fn tool_in(line: &str) -> Option<ProgramTool> {
     })
 }
 
-/// The first number above 0 behind one of the words, which is no part of a longer one, with no more than signs between them.
+/// The first number above 0 behind one of the words, which is no part of a longer one, with no more than signs between
+/// them.
 fn number_after(text: &str, words: &[&str]) -> Option<f64> {
     words.iter().find_map(|word| {
         let places =

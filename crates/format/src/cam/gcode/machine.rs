@@ -1,7 +1,7 @@
 //! Machines with two rotary axes: the tool axis and the tool centre point from the angles that G-code programs.
 //!
-//! Angles count as those of the tool against the workpiece, right-handed about the axes x (A), y (B) and z (C), as ISO 841 has it for
-//! tables too. C turns the other one: the tool axis is Rz(C) Rx(A) z, or Rz(C) Ry(B) z.
+//! Angles count as those of the tool against the workpiece, right-handed about the axes x (A), y (B) and z (C), as ISO
+//! 841 has it for tables too. C turns the other one: the tool axis is Rz(C) Rx(A) z, or Rz(C) Ry(B) z.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

@@ -1,7 +1,7 @@
 //! G-code of ISO 6983: straight moves and arcs with up to five axes.
 //!
-//! Positions are those of the work offset (G54 to G59) as the workpiece frame. Angles of rotary axes are those of a named [`Machine`],
-//! along a move in proportion to the way, so moves that turn the tool are taken in small parts.
+//! Positions are those of the work offset (G54 to G59) as the workpiece frame. Angles of rotary axes are those of a
+//! named [`Machine`], along a move in proportion to the way, so moves that turn the tool are taken in small parts.
 
 mod arc;
 mod block;
@@ -21,8 +21,9 @@ use std::path::Path;
 /// Reads the moves of a G-code program.
 ///
 /// # Errors
-/// [`InputError`] with line and word: another language by its name, a code that is not known or that another in the same block or mode
-/// contradicts, an arc that misses its end, a unit that is not stated, rotary axes without their machine.
+/// [`InputError`] with line and word: another language by its name, a code that is not known or that another in the
+/// same block or mode contradicts, an arc that misses its end, a unit that is not stated, rotary axes without their
+/// machine.
 pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
     let mut reader = Reader::new(file, settings);
     let mut words = Vec::new();

@@ -1,5 +1,5 @@
-//! Arms given by rows, written as URDFs: with joint frames anywhere on the axes and in any orientation, with signs, offsets and
-//! base as asked.
+//! Arms given by rows, written as URDFs: with joint frames anywhere on the axes and in any orientation, with signs,
+//! offsets and base as asked.
 
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;

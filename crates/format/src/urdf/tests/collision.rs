@@ -2,10 +2,13 @@
 
 use super::super::forward::link_at;
 use super::*;
+use crate::read_robot;
+use crate::surroundings::{SurroundingsFile, read_scene};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_cell::{Attachment, Solid};
+use stead_model::robot::testing::spindle;
 use stead_numerics::rotation::rotation_from_zyx;
 
 /// A wedge of 100 x 60 x 40 mm, as a file in mm and as one in m.
@@ -148,7 +151,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
     let imported = import_in(folder.path(), &text).unwrap();
     let shapes = imported.link_shapes.clone().unwrap();
     assert!(!shapes.ignored.is_empty());
-    let run = crate::testing::folder();
+    let run = tempfile::tempdir().unwrap();
     let out = run.path().join("arms/imported.toml");
     imported.write(&out, Existing::Kept).unwrap();
     let cell = run.path().join("arms/imported-cell.toml");
@@ -156,10 +159,12 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
     let robot =
         std::fs::read_to_string(&out).unwrap().replace("# stiffness_mnm_per_rad = ?", "stiffness_mnm_per_rad = 1.0");
     std::fs::write(&out, robot).unwrap();
-    let text = crate::testing::RUN.replacen("arm.toml", "arms/imported.toml", 1);
-    std::fs::write(run.path().join("run.toml"), format!("surroundings = 'arms/imported-cell.toml'\n{text}")).unwrap();
-    let read = crate::read_run(&run.path().join("run.toml")).unwrap_or_else(|error| panic!("{error}"));
-    let scene = read.problem.scene.unwrap();
+    let file = run.path().join("run.toml");
+    std::fs::write(&file, "surroundings = 'arms/imported-cell.toml'\n").unwrap();
+    let (source, robot) = (TomlFile::read(&file).unwrap(), read_robot(&out).unwrap());
+    let own = SurroundingsFile { shape: None, keep_out: None, collision: None };
+    let read = read_scene(own, &source.parse().unwrap().root(), &robot, &spindle(), &[]);
+    let scene = read.unwrap_or_else(|error| panic!("{error}")).scene.unwrap();
     assert_eq!(scene.surroundings().shapes().len(), shapes.shapes.len());
     for (read, written) in scene.surroundings().shapes().iter().zip(&shapes.shapes) {
         let written = &written.shape;

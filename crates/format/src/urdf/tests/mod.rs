@@ -1,9 +1,9 @@
-//! Imported rows against the URDF and against the arms that fixtures are made of; what is refused; fixtures with mutations.
+//! Imported rows against the URDF and against the arms that fixtures are made of; what is refused; fixtures with
+//! mutations.
 
 mod arms;
 mod collision;
 mod mutations;
-mod program;
 mod refusals;
 mod rows;
 

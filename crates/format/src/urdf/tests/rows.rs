@@ -40,7 +40,8 @@ fn the_rows_of_every_convention_are_the_urdf() {
     assert_eq!((staubli.rows[3].a_mm, staubli.rows[3].d_mm, staubli.rows[5].d_mm), (0.0, 800.0, 194.0));
 }
 
-/// Arms with every combination of signs and twists, any offsets, base shifted, turned and mounted anyhow, joint frames anywhere.
+/// Arms with every combination of signs and twists, any offsets, base shifted, turned and mounted anyhow, joint frames
+/// anywhere.
 #[test]
 fn rows_are_found_again_behind_any_signs_offsets_and_frames() {
     let mut random = ChaCha8Rng::seed_from_u64(16);

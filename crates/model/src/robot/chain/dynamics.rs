@@ -74,8 +74,8 @@ impl<const N: usize> Posed<N> {
         matrix
     }
 
-    /// Joint torques (N m) that joint speeds (rad/s) and accelerations (rad/s^2) need in a field of gravity (acceleration of
-    /// free fall, m/s^2): `M qdd + C(q, qd) qd + g(q)`, by recursive Newton-Euler.
+    /// Joint torques (N m) that joint speeds (rad/s) and accelerations (rad/s^2) need in a field of gravity
+    /// (acceleration of free fall, m/s^2): `M qdd + C(q, qd) qd + g(q)`, by recursive Newton-Euler.
     pub fn inverse_dynamics(
         &self,
         chain: &Chain<N>,

@@ -1,9 +1,9 @@
 //! A serial chain of revolute joints that carry rigid bodies: kinematics, mass matrix, inverse dynamics, Jacobian.
 //!
 //! Everything is computed in base coordinates, with spatial vectors about one point, the origin of the last joint
-//! (Featherstone 2008; Siciliano and Khatib 2016, ch. 3): there composite inertias are plain sums ([`Posed::mass_matrix`])
-//! and forces are passed on unchanged ([`Posed::inverse_dynamics`]). A link with springs normal to its joint is a body
-//! behind three joints in one place, the first two of which carry nothing.
+//! (Featherstone 2008; Siciliano and Khatib 2016, ch. 3): there composite inertias are plain sums
+//! ([`Posed::mass_matrix`]) and forces are passed on unchanged ([`Posed::inverse_dynamics`]). A link with springs
+//! normal to its joint is a body behind three joints in one place, the first two of which carry nothing.
 //!
 //! ```
 //! use nalgebra::{Matrix3, SVector, vector};
@@ -47,8 +47,8 @@ pub struct Link {
 }
 
 impl Link {
-    /// A joint whose frame at angle zero is `previous_from_joint` (the base frame for the first), turning about an axis of
-    /// its own frame; `body` is given in the joint's frame, which turns with it.
+    /// A joint whose frame at angle zero is `previous_from_joint` (the base frame for the first), turning about an axis
+    /// of its own frame; `body` is given in the joint's frame, which turns with it.
     pub fn new(previous_from_joint: Pose<f64>, axis: Axis, body: Option<Inertial>) -> Self {
         let turned = previous_from_joint.rotation != Matrix3::identity();
         let turn = turned.then_some(previous_from_joint.rotation);
@@ -83,7 +83,8 @@ pub struct Chain<const N: usize> {
 pub const GRAVITY: f64 = 9.81;
 
 impl<const N: usize> Chain<N> {
-    /// Joins links, base first; `last_from_tip` is the tip in the frame of the last joint. Gravity is 9.81 m/s^2 along -z.
+    /// Joins links, base first; `last_from_tip` is the tip in the frame of the last joint. Gravity is 9.81 m/s^2 along
+    /// -z.
     pub fn new(links: [Link; N], last_from_tip: Pose<f64>) -> Self {
         Self { links, last_from_tip, gravity: Vector3::new(0.0, 0.0, -GRAVITY) }
     }

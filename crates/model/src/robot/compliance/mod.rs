@@ -1,9 +1,10 @@
 //! Joint compliance, which may change with the joint angle.
 //!
-//! Most joints have one compliance. A gravity compensator adds stiffness that changes with the angle of its joint (Klimchik
-//! et al. 2017, eq. 12 to 14): known by its [`Compensator`], or, where only the smallest and the largest compliance of the
-//! joint are published (Table 4 there: 0.28 to 0.55 urad/(N m) for joint 2 of a KR 100 HA), by a [`Compliance::Range`].
-//! Whatever needs compliances takes them from [`Robot::compliances_at`], so that all jobs see the same arm.
+//! Most joints have one compliance. A gravity compensator adds stiffness that changes with the angle of its joint
+//! (Klimchik et al. 2017, eq. 12 to 14): known by its [`Compensator`], or, where only the smallest and the largest
+//! compliance of the joint are published (Table 4 there: 0.28 to 0.55 urad/(N m) for joint 2 of a KR 100 HA), by a
+//! [`Compliance::Range`]. Whatever needs compliances takes them from [`Robot::compliances_at`], so that all jobs see
+//! the same arm.
 
 mod slope;
 
@@ -18,8 +19,8 @@ pub enum Compliance {
     Constant(f64),
     /// Linear in the joint angle between the values at the two limits; for joints of less than a full turn.
     ///
-    /// That it is linear, and which value belongs to which limit, is an assumption: published ranges give two numbers and no
-    /// law between them.
+    /// That it is linear, and which value belongs to which limit, is an assumption: published ranges give two numbers
+    /// and no law between them.
     Range {
         /// At the lower limit. rad/(N m)
         at_min: f64,
@@ -73,8 +74,8 @@ impl Compensator {
     /// The stiffness K_eq that the spring adds to the joint at an angle in rad: the second derivative of its energy
     /// `K_GC (s - s_0)^2 / 2`. It can be below zero. N m/rad
     ///
-    /// `K_eq = K_GC a l [(s_0/s) (cos psi + (a l / s^2) sin^2 psi) - cos psi]`: Klimchik et al. 2017, eq. 13 and 14, where
-    /// the printed eq. 14 has the opposite sign.
+    /// `K_eq = K_GC a l [(s_0/s) (cos psi + (a l / s^2) sin^2 psi) - cos psi]`: Klimchik et al. 2017, eq. 13 and 14,
+    /// where the printed eq. 14 has the opposite sign.
     pub fn stiffness<T: Scalar>(&self, angle: T) -> T {
         self.stiffness_at(self.cosine(angle))
     }
@@ -102,8 +103,8 @@ impl Compensator {
     /// Refuses a spring whose two ends meet, or that makes the joint give way, somewhere between the limits.
     ///
     /// K_eq is concave in the cosine of psi: the derivative of `(a + l c) (l + a c) / s^3` by c is
-    /// `1 / (4 s) + 3 (a^2 - l^2)^2 / (4 s^5)`, and s grows with c. So its least value between two limits, like the least
-    /// length, is at one of them or where the cosine is 1 or -1: this check leaves no angle out.
+    /// `1 / (4 s) + 3 (a^2 - l^2)^2 / (4 s^5)`, and s grows with c. So its least value between two limits, like the
+    /// least length, is at one of them or where the cosine is 1 or -1: this check leaves no angle out.
     fn check(&self, number: usize, joint: &Joint, alone: f64) -> Result<(), RobotError> {
         let first = ((self.alpha + joint.min) / PI).ceil();
         let straight = [first, first + 1.0].map(|k| (k * PI - self.alpha, if k % 2.0 == 0.0 { 1.0 } else { -1.0 }));
@@ -203,14 +204,14 @@ impl Robot {
         Some(constants)
     }
 
-    /// Whether the two wrist flips of a posture class yield alike under every load: no compliance of joints 4 to 6 changes
-    /// with the joint angle.
+    /// Whether the two wrist flips of a posture class yield alike under every load: no compliance of joints 4 to 6
+    /// changes with the joint angle.
     pub fn flips_yield_alike(&self) -> bool {
         self.joints()[3..].iter().all(|joint| matches!(joint.compliance, Compliance::Constant(_)))
     }
 
-    /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification. How well the
-    /// old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out.
+    /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification. How well
+    /// the old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out.
     ///
     /// # Errors
     /// [`RobotError`] for a compliance that [`Robot::new`] refuses.

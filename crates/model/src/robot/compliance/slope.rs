@@ -36,8 +36,8 @@ impl Compliance {
 }
 
 impl Joint {
-    /// Derivative of [`Joint::compliance_at`] by a parameter of its law, in rad/(N m) per SI unit of the parameter; zero for
-    /// a parameter that the law does not have.
+    /// Derivative of [`Joint::compliance_at`] by a parameter of its law, in rad/(N m) per SI unit of the parameter;
+    /// zero for a parameter that the law does not have.
     ///
     /// Beside a compensator, `c = 1 / (K_theta + K_eq)`: `dc = (c / c_alone)^2 d c_alone - c^2 d K_eq`.
     pub fn compliance_slope_at<T: Scalar>(&self, parameter: Parameter, angle: T) -> T {

@@ -1,10 +1,10 @@
 //! How well the compliances of an arm are known: the covariance of the parameters behind them.
 //!
-//! An identification gives compliances with errors that hang together (Klimchik et al. 2017, eq. 19). [`Uncertainty`] holds
-//! their covariance Sigma over the parameters of the joints' laws ([`Parameter`]), so that the standard deviation of anything
-//! that is linear in them, `sqrt(g^T Sigma g)` with g its gradient, comes out with all correlations. A deflection is linear
-//! in the six compliances, so that nothing is lost; the compliance of a joint beside a compensator is linear in its
-//! parameters to first order only.
+//! An identification gives compliances with errors that hang together (Klimchik et al. 2017, eq. 19). [`Uncertainty`]
+//! holds their covariance Sigma over the parameters of the joints' laws ([`Parameter`]), so that the standard deviation
+//! of anything that is linear in them, `sqrt(g^T Sigma g)` with g its gradient, comes out with all correlations. A
+//! deflection is linear in the six compliances, so that nothing is lost; the compliance of a joint beside a compensator
+//! is linear in its parameters to first order only.
 
 use super::Robot;
 use nalgebra::{DMatrix, Matrix6, SymmetricEigen};
@@ -145,8 +145,8 @@ impl Uncertainty {
     /// Takes parameters and their covariance, in SI units, row and column k for parameter k.
     ///
     /// # Errors
-    /// [`UncertaintyError`] unless each parameter is named once and the matrix is square, finite, symmetric and positive
-    /// semidefinite, the last two up to 1e-9 of the variances.
+    /// [`UncertaintyError`] unless each parameter is named once and the matrix is square, finite, symmetric and
+    /// positive semidefinite, the last two up to 1e-9 of the variances.
     pub fn new(parameters: Vec<Parameter>, covariance: DMatrix<f64>) -> Result<Self, UncertaintyError> {
         let (count, (rows, columns)) = (parameters.len(), covariance.shape());
         if count == 0 || rows != count || columns != count {
@@ -188,8 +188,8 @@ impl Uncertainty {
         &self.directions
     }
 
-    /// Standard deviation `sqrt(g^T Sigma g)` of a quantity whose derivatives by the parameters are `gradient`, in their
-    /// order and in SI units. Exactly zero, with derivatives of zero, where no error is seen.
+    /// Standard deviation `sqrt(g^T Sigma g)` of a quantity whose derivatives by the parameters are `gradient`, in
+    /// their order and in SI units. Exactly zero, with derivatives of zero, where no error is seen.
     pub fn standard_deviation<T: Scalar>(&self, gradient: &[T]) -> T {
         self.changes(gradient).fold(T::zero(), |variance, change| variance + change * change).sqrt()
     }
@@ -274,9 +274,9 @@ impl Robot {
         self.joints().get(parameter.joint()).is_some_and(|joint| joint.compliance.has(parameter))
     }
 
-    /// Derivatives of the compliances by the uncertain parameters at joint angles `theta` (rad), wrapped or not: one entry
-    /// for each parameter, by which it moves the compliance of its own joint, in rad/(N m) per SI unit (it moves no other:
-    /// the entries are the nonzero ones of the 6 x m matrix G). Empty for an arm without uncertainty.
+    /// Derivatives of the compliances by the uncertain parameters at joint angles `theta` (rad), wrapped or not: one
+    /// entry for each parameter, by which it moves the compliance of its own joint, in rad/(N m) per SI unit (it moves
+    /// no other: the entries are the nonzero ones of the 6 x m matrix G). Empty for an arm without uncertainty.
     pub fn compliance_gradient_at<T: Scalar>(&self, theta: &[T; 6]) -> Vec<T> {
         let parameters = self.uncertainty.as_ref().map(Uncertainty::parameters).unwrap_or_default();
         let slope = |parameter: &Parameter| {

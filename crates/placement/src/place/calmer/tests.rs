@@ -1,7 +1,7 @@
 use super::*;
 use crate::place::score;
-use crate::settings::TransferSettings;
-use crate::testing::five_segments;
+use stead_planning::testing::five_segments;
+use stead_planning::transfer::TransferSettings;
 
 #[test]
 fn numbers_are_rounded_down_to_two_digits() {
@@ -21,7 +21,7 @@ fn a_calmer_plan_that_costs_little_is_named_with_what_it_comes_to() {
     for k in 0..6 {
         let f = f64::from(k);
         let placement = Placement::from([0.02 * f, -1.66 - 0.02 * f, -0.5 + 0.03 * f, 0.4 + 0.3 * f]);
-        let best = scored(&problem, &placement).best;
+        let best = scored(&problem, &placement).plans.best;
         let Some(note) = calmer(&problem, &placement, &best, &silent) else { continue };
         named += 1;
         // As the note says it, the run is calmer and costs less than 2 %.
@@ -36,7 +36,7 @@ fn a_calmer_plan_that_costs_little_is_named_with_what_it_comes_to() {
                 calm.redundancy.beta = BetaPlan::ConstantPerSegment;
             }
         }
-        let found = scored(&calm, &placement).best;
+        let found = scored(&calm, &placement).plans.best;
         assert!(found.mean < best.mean * (1.0 + COST), "{} {} {note}", found.mean, best.mean);
         assert!(found.travel.total < 0.85 * best.travel.total, "{note}");
         assert_eq!(calmer(&calm, &placement, &found, &silent), None);

@@ -3,14 +3,15 @@
 use super::{Over, small, with_first_springs};
 use crate::outcome::Case;
 use crate::place::{place, score};
-use crate::postures::PostureRules;
-use crate::problem::{Interval, Placement, Problem};
-use crate::settings::{LookupUse, SearchSettings, TransferSettings};
-use crate::testing::five_segments;
+use crate::settings::{LookupUse, SearchSettings};
 use nalgebra::Vector3;
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::Monitor;
+use stead_planning::postures::PostureRules;
+use stead_planning::problem::{Interval, Placement, Problem};
+use stead_planning::testing::five_segments;
+use stead_planning::transfer::TransferSettings;
 
 #[test]
 fn of_the_refined_basins_the_one_of_least_regret_is_taken() {
@@ -65,11 +66,11 @@ fn a_tie_changes_the_plans_that_are_stated_and_nothing_else() {
     for k in 0..6 {
         let placement = Placement::from([-0.1, -1.9 + 0.05 * f64::from(k), -0.4, 0.9 * f64::from(k)]);
         let run = |tie: f64| {
-            let problem = Problem { postures: PostureRules { tie, ..PostureRules::NONE }, ..zigzag(&placement) };
+            let problem = zigzag(&placement).with(|parts| parts.postures = PostureRules { tie, ..PostureRules::NONE });
             let outcome = place(&problem, &small(), &transfer, &silent).ok()?;
             let score = score(&problem, &outcome.cases.best.placement, &transfer, &silent).unwrap();
             let cases = &outcome.cases;
-            assert_eq!([&cases.best.plan, &cases.best_worst_plan.plan], [&score.best, &score.worst]);
+            assert_eq!([&cases.best.plan, &cases.best_worst_plan.plan], [&score.plans.best, &score.plans.worst]);
             Some(outcome)
         };
         let Some(free) = run(0.0) else { continue };

@@ -1,18 +1,17 @@
 //! Points that are followed but not scored, turns of the tool in place, and feeds of the task.
 
 use super::{Placement, Problem, Score, published_optimum};
-use crate::criterion::Aggregate;
-use crate::evaluate::reference::state;
 use crate::outcome::DeflectionFigures;
 use crate::place::score;
-use crate::problem::MAX_JOINT_STEP;
-use crate::settings::TransferSettings;
-use crate::testing::five_segments;
 use nalgebra::Rotation3;
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::monitor::Monitor;
+use stead_planning::criterion::Aggregate;
+use stead_planning::problem::MAX_JOINT_STEP;
+use stead_planning::testing::five_segments;
+use stead_planning::transfer::TransferSettings;
 
 fn scored(problem: &Problem) -> Result<Score, String> {
     let placement: Placement = published_optimum();
@@ -42,10 +41,10 @@ fn points_that_are_not_scored_are_followed_and_have_no_part_in_any_figure() {
     for aggregate in [Aggregate::Mean, Aggregate::Max] {
         problem.criterion.aggregate = aggregate;
         let found = scored(&problem).unwrap();
-        for plan in [&found.best, &found.worst] {
+        for plan in [&found.plans.best, &found.plans.worst] {
             assert_eq!(plan.points.len(), 105, "all points are followed");
             for point in &plan.points {
-                let arm = state(&problem, point.point, &found.placement, point.beta, point.posture).unwrap();
+                let arm = problem.at(&found.placement).state(point.point, point.beta, point.posture).unwrap();
                 assert!(arm.inverse_condition >= problem.constraints.min_inverse_condition);
                 let limits = problem.robot.joints().iter().zip(point.joints);
                 assert!(limits.into_iter().all(|(joint, angle)| angle >= joint.min && angle <= joint.max));
@@ -109,7 +108,7 @@ fn turning() -> Problem {
 fn a_turn_in_place_keeps_beta_within_the_rate_and_takes_its_own_time() {
     let problem = turning();
     let found = scored(&problem).unwrap();
-    let points = &found.best.points;
+    let points = &found.plans.best.points;
     assert_eq!(points.len(), 27);
     for place in 11..17 {
         assert!(problem.task.path().turns_in_place(place));
@@ -121,10 +120,10 @@ fn a_turn_in_place_keeps_beta_within_the_rate_and_takes_its_own_time() {
     }
     let without = five_segments();
     let lengths: f64 = without.task.path().segment_length(0);
-    let cutting = found.cycles[0].cutting;
-    let at_feed = lengths / found.cycles[0].feed.held(0);
+    let cutting = found.cycles.best.cutting;
+    let at_feed = lengths / found.cycles.best.feed.held(0);
     assert!(cutting > at_feed + 0.5 && cutting.is_finite(), "{cutting} {at_feed}");
-    assert!(found.cycles[0].feed.highest().unwrap().feed > 1e-3, "turns in place do not hold the feed");
+    assert!(found.cycles.best.feed.highest().unwrap().feed > 1e-3, "turns in place do not hold the feed");
 }
 
 #[test]
@@ -139,9 +138,9 @@ fn feeds_of_the_task_bound_the_joint_steps_and_give_the_time() {
     let path = problem.task.path();
     let inner = path.segments().iter().flat_map(|span| span.clone().skip(1));
     let time: f64 = inner.clone().map(|k| path.step_length(k) / (0.01 + 1e-4 * k as f64)).sum();
-    assert_eq!(found.cycles[0].feed.slowed(), 0);
-    assert!((found.cycles[0].cutting / time - 1.0).abs() < 1e-12);
-    assert_eq!(found.cycles[0].feed.programmed, 0.01 + 1e-4 * 104.0);
+    assert_eq!(found.cycles.best.feed.slowed(), 0);
+    assert!((found.cycles.best.cutting / time - 1.0).abs() < 1e-12);
+    assert_eq!(found.cycles.best.feed.programmed, 0.01 + 1e-4 * 104.0);
     for k in inner {
         let step = 1.5 * path.step_length(k) / (0.01 + 1e-4 * k as f64);
         assert!(problem.joint_steps(k).iter().all(|allowed| (allowed / step.min(MAX_JOINT_STEP) - 1.0).abs() < 1e-12));

@@ -1,16 +1,17 @@
 //! Paths that are searched on subsets of their points.
 
-use crate::criterion::{Aggregate, Weights};
 use crate::outcome::{Case, Outcome};
 use crate::path_subset::PathSubset;
 use crate::place::{place, score};
-use crate::problem::{Cell, Interval, Placement, Problem};
-use crate::settings::{LookupUse, SearchSettings, TransferSettings};
-use crate::testing::five_segments;
+use crate::settings::{LookupUse, SearchSettings};
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::criterion::{Aggregate, Weights};
+use stead_planning::problem::{Cell, Interval, Placement, Problem};
+use stead_planning::testing::five_segments;
+use stead_planning::transfer::TransferSettings;
 
 /// Points between neighbours of the five segments, and their number then.
 const PARTS: usize = 7;
@@ -24,7 +25,7 @@ fn dense() -> Problem {
     problem.cell.position[0] = Interval { min: 0.0, max: 0.1 };
     problem.cell.position[1] = Interval { min: -1.9, max: -1.64 };
     problem.cell.yaw = Interval { min: 2.0, max: 2.6 };
-    let task = problem.task;
+    let task = problem.task.clone();
     let (mut points, mut wrenches) = (Vec::new(), Vec::new());
     for (segment, span) in task.segments().iter().enumerate() {
         for step in 0..=(span.len() - 1) * PARTS {
@@ -70,7 +71,7 @@ fn assert_whole(problem: &Problem, outcome: &Outcome) {
     }
     let best = &outcome.cases.best;
     let scored = score(problem, &best.placement, &TransferSettings::default(), &Monitor::silent()).unwrap();
-    let (stated, scored) = (best.plan.objective, scored.best.objective);
+    let (stated, scored) = (best.plan.objective, scored.plans.best.objective);
     assert!((stated / scored - 1.0).abs() < 1e-9, "{stated} {scored}");
 }
 
@@ -99,7 +100,7 @@ fn subsets_cost_less_than_half_a_per_cent_and_what_is_stated_covers_the_whole_pa
     let problem = dense();
     let outcome = placed(&problem, &settings());
     let levels = outcome.path_levels.unwrap();
-    let [search, refinement] = levels.subsets;
+    let (search, refinement) = (levels.search, levels.refinement);
     assert!(levels.points == POINTS && (60..=65).contains(&search.points), "{levels:?}");
     assert!(search.points < refinement.points && refinement.points < POINTS && levels.whole >= 39, "{levels:?}");
     assert!(search.error.unwrap() < 0.05 && refinement.error.unwrap() < 0.015, "{levels:?}");
@@ -138,14 +139,14 @@ fn unseen(problem: &Problem, count: usize) -> usize {
 fn ten_points_that_no_subset_has_forbid_placements() {
     let mut problem = dense();
     problem.criterion.weights = Weights::TOTAL;
-    let asked = SearchSettings { path_points: Some(15), ..settings() };
+    let requested = SearchSettings { path_points: Some(15), ..settings() };
     let first = unseen(&problem, 15);
-    let free = placed(&problem, &asked);
+    let free = placed(&problem, &requested);
     // What the ten points allow is not where the others would have the workpiece.
     let mut problem = with_moment(problem, first, 20_000.0);
     let at = |placement: &Placement| {
         let scored = score(&problem, placement, &TransferSettings::default(), &Monitor::silent()).ok()?;
-        Some(scored.best.points[first..first + 10].iter().map(|point| point.score).fold(0.0, f64::max))
+        Some(scored.plans.best.points[first..first + 10].iter().map(|point| point.score).fold(0.0, f64::max))
     };
     let corner = |k: usize| {
         let end = |axis: usize, bounds: &Interval| if k >> axis & 1 == 0 { bounds.min } else { bounds.max };
@@ -155,7 +156,7 @@ fn ten_points_that_no_subset_has_forbid_placements() {
     let least = (0..16).filter_map(|k| at(&corner(k))).fold(f64::INFINITY, f64::min);
     let limit = 0.3 * least + 0.7 * at(&free.cases.best.placement).unwrap();
     problem.constraints.max_deflection = Some(limit);
-    let outcome = placed(&problem, &asked);
+    let outcome = placed(&problem, &requested);
     assert!(outcome.path_levels.unwrap().deciding > 0, "{:?}", outcome.path_levels);
     let largest = |case: &Case| case.plan.points.iter().map(|point| point.score).fold(0.0, f64::max);
     assert!(largest(&outcome.cases.best) <= limit * (1.0 + 1e-9));

@@ -2,17 +2,17 @@
 
 use super::*;
 use crate::evaluator::Evaluator;
-use crate::problem::Placement;
-use crate::redundancy::Planner;
 use crate::refine::{planned, refine};
-use crate::sense::Sense;
-use crate::testing::five_segments;
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
+use stead_planning::testing::five_segments;
 
 #[test]
 fn gains_are_what_a_moved_wall_brings() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 60;
-    problem.criterion.weights = crate::criterion::Weights::TOTAL;
+    problem.criterion.weights = stead_planning::criterion::Weights::TOTAL;
     let start = Placement::from([0.0, -1.65, -0.3, 0.7]);
     let best = |problem: &Problem, start: &Placement| {
         let planner = Planner::finer(problem);

@@ -1,96 +1,166 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
 use super::super::{URAD, key, rounded};
-use crate::document::{Document, joined};
-use crate::units::Unit;
-use serde_json::{Value, json};
+use crate::document::Document;
+use crate::figure::{AngleDeg, ForceN, PlaceMm, each};
+use serde_json::Value;
 use stead_calibration::identification::design::Design;
-use stead_calibration::identification::design::expected::ExpectedCompliance;
-use stead_calibration::identification::design::unobservable::Unobservable;
-use stead_format::PlanRun;
+use stead_calibration::identification::design::expected::{ExpectedCompliance, ExpectedParameter};
+use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason, WeaklyObserved};
+use stead_calibration::identification::sheet::Configuration;
+use stead_run_files::PlanRun;
 
 /// Significant digits of expected errors.
 const DIGITS: usize = 9;
 
+records! {
+    /// A plan of measurements. Expected errors have nine significant digits; they are null where they are not finite.
+    pub struct PlanFigures of (run: &PlanRun, plan: &Design) {
+        let request = &run.request;
+    } with {
+        /// Name of the robot.
+        robot: String = request.robot.name().to_owned(),
+        /// Seed of all random numbers.
+        seed: u64 = request.seed,
+        /// The load.
+        load_n: ForceN = request.load.into(),
+        /// Standard deviation of a reading. mm
+        noise_mm: f64 = request.noise * 1e3,
+        /// Reference points.
+        points: usize = request.points.len(),
+        /// Configurations in the order of measuring.
+        configurations: Vec<ConfigurationFigures> = plan.sheet.configurations.iter().map(Into::into).collect(),
+        /// Expected errors of the compliances.
+        compliances: Vec<ExpectedFigures> = plan.compliances.iter().map(Into::into).collect(),
+        /// Expected errors of the compensator.
+        compensator: Vec<ParameterFigures> = plan.compensator.iter().map(Into::into).collect(),
+        /// Expected error of the deflection.
+        deflection: DeflectionFigures = DeflectionFigures::of(plan),
+        /// Where the candidates come from.
+        candidates: CandidateFigures = CandidateFigures::of(plan),
+        /// Motion through the configurations, by the joint that moves furthest in each move.
+        travel_deg: AngleDeg = plan.travel.into(),
+        /// Compliances that the plan does not show.
+        unseen: Vec<UnseenFigures> = plan.unobservable.iter().map(Into::into).collect(),
+        /// Compliances that it hardly shows.
+        hardly_seen: Vec<HardlySeenFigures> = plan.weakly_observed.iter().map(Into::into).collect(),
+    }
+
+    /// A configuration to be measured.
+    pub struct ConfigurationFigures from configuration: &Configuration {
+        /// Name of the configuration.
+        configuration: String = configuration.name.clone(),
+        /// Joint angles.
+        joints_deg: [AngleDeg; 6] = each(configuration.theta),
+        /// The load, in the base frame.
+        force_n: [ForceN; 3] = each(configuration.force.into()),
+    }
+
+    /// A compliance: that of a joint, or of one angle of the joint beside a compensator.
+    pub struct ComplianceName of (joint: usize, angle: Option<f64>) {
+        /// The joint, from 1.
+        joint: usize = joint + 1,
+        /// Joint angle at which the compliance holds; only for the joint beside a compensator.
+        #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = angle.map(Into::into),
+    }
+
+    /// The expected error of a compliance, beside those of random sets of configurations.
+    pub struct ExpectedFigures from bar: &ExpectedCompliance {
+        let urad = |value: Option<f64>| value.and_then(|value| digits(value * URAD));
+    } with {
+        #[serde(flatten)] compliance: ComplianceName = ComplianceName::of(bar.joint, bar.angle),
+        /// Compliance assumed for the plan. urad/(N m)
+        urad_per_nm: Option<f64> = urad(Some(bar.value)),
+        /// Standard deviation that `fit` is expected to report for this compliance alone. urad/(N m)
+        std_urad_per_nm: Option<f64> = urad(bar.deviation),
+        /// The same in per cent of the compliance. %
+        std_percent: Option<f64> = bar.deviation.and_then(|deviation| digits(100.0 * deviation / bar.value)),
+        /// Standard deviation by the law of the joint over all its angles. urad/(N m)
+        by_law_std_urad_per_nm: Option<f64> = urad(Some(bar.by_law)),
+        /// Least standard deviation by the law among the random sets of configurations. urad/(N m)
+        best_random_std_urad_per_nm: Option<f64> = urad(bar.best_random),
+        /// Median of that over the random sets. urad/(N m)
+        median_random_std_urad_per_nm: Option<f64> = urad(bar.median_random),
+    }
+
+    /// The expected error of a parameter of the robot file, in the unit of its key.
+    pub struct ParameterFigures from bar: &ExpectedParameter {
+        let (parameter, factor) = key(&bar.parameter);
+    } with {
+        /// Key of the parameter in the robot file.
+        parameter: String = parameter,
+        /// Value assumed for the plan.
+        value: Option<f64> = digits(bar.value * factor),
+        /// Expected standard deviation.
+        std: Option<f64> = digits(bar.deviation * factor),
+    }
+
+    /// The expected error of the deflection, beside those of random sets of configurations.
+    pub struct DeflectionFigures of (plan: &Design) {
+        let errors = &plan.errors;
+        let length = |value: f64| digits(value * 1e3);
+    } with {
+        /// Test poses over which the deflection is predicted.
+        tests: usize = plan.tests.len(),
+        /// Root mean square of the deflection at the test poses. mm
+        rms_mm: Option<f64> = length(plan.deflection),
+        /// Expected error of the predicted deflection after the planned measurements. mm
+        error_mm: Option<f64> = length(errors.planned),
+        /// The least expected error among the random sets of configurations. mm
+        best_random_error_mm: Option<f64> = length(errors.best_random),
+        /// Median of the expected errors of the random sets. mm
+        median_random_error_mm: Option<f64> = length(errors.median_random),
+        /// Number of random sets compared.
+        random_sets: usize = errors.random_sets,
+        /// Random sets from which not every compliance is identifiable.
+        random_sets_that_do_not_tell_all: usize = errors.unidentifiable_sets,
+    }
+
+    /// Where the candidates come from.
+    pub struct CandidateFigures of (plan: &Design) {
+        let rejected = &plan.rejected;
+    } with {
+        /// Candidate configurations that the limits allow.
+        allowed: usize = plan.candidates,
+        /// Random configurations drawn.
+        drawn: usize = plan.draws,
+        /// Rejected: a part would be outside the volume.
+        outside_volume: usize = rejected.volume,
+        /// Rejected: a part would be too near to the z axis of the base.
+        too_near_base: usize = rejected.radius,
+        /// Rejected: a reference point would deflect too far.
+        deflected_too_far: usize = rejected.deflection,
+    }
+
+    /// Compliances that a plan does not show.
+    pub struct UnseenFigures from unobservable: &Unobservable {
+        let names = unobservable.compliances.iter().map(|(joint, angle)| ComplianceName::of(*joint, *angle));
+    } with {
+        /// The compliances that are not identifiable.
+        compliances: Vec<ComplianceName> = names.collect(),
+        /// Why they are not.
+        #[schemars(with = "String")] reason: UnobservableReason = unobservable.reason,
+    }
+
+    /// A compliance that a plan hardly shows.
+    pub struct HardlySeenFigures from hardly: &WeaklyObserved {
+        #[serde(flatten)] compliance: ComplianceName = ComplianceName::of(hardly.joint, hardly.angle),
+        /// Expected standard deviation in per cent of the compliance. %
+        std_percent: Option<f64> = digits(hardly.share * 100.0),
+        /// Largest lever arm of the load about the axis of the joint.
+        lever_mm: PlaceMm = hardly.lever.into(),
+    }
+}
+
 /// The document: configurations in the order of measuring, expected errors beside those of random sets, warnings.
 pub fn plan_json(run: &PlanRun, plan: &Design) -> Value {
-    let (request, errors, rejected) = (&run.request, &plan.errors, &plan.rejected);
-    let configurations = plan.sheet.configurations.iter().map(|configuration| {
-        let force: Vec<f64> = configuration.force.iter().map(|part| Unit::FORCE_N.number(*part)).collect();
-        json!({
-            "configuration": configuration.name,
-            "joints_deg": configuration.theta.map(|angle| Unit::ANGLE_DEG.number(angle)),
-            "force_n": force,
-        })
-    });
-    let spring = plan.compensator.iter().map(|bar| {
-        let (name, factor) = key(&bar.parameter);
-        json!({ "parameter": name, "value": digits(bar.value * factor), "std": digits(bar.deviation * factor) })
-    });
-    let hardly = plan.weakly_observed.iter().map(|hardly| {
-        let lever = Unit::PLACE_MM.number(hardly.lever);
-        let share = digits(hardly.share * 100.0);
-        joined(compliance(hardly.joint, hardly.angle), json!({ "std_percent": share, "lever_mm": lever }))
-    });
-    Document::new(&run.inputs).notes(run.notes.iter().chain(&plan.notes)).warnings(&plan.warnings).with(json!({
-        "robot": request.robot.name(),
-        "seed": request.seed,
-        "load_n": Unit::FORCE_N.number(request.load),
-        "noise_mm": request.noise * 1e3,
-        "points": request.points.len(),
-        "configurations": configurations.collect::<Vec<_>>(),
-        "compliances": plan.compliances.iter().map(bar).collect::<Vec<_>>(),
-        "compensator": spring.collect::<Vec<_>>(),
-        "deflection": {
-            "tests": plan.tests.len(),
-            "rms_mm": length(plan.deflection),
-            "error_mm": length(errors.planned),
-            "best_random_error_mm": length(errors.best_random),
-            "median_random_error_mm": length(errors.median_random),
-            "random_sets": errors.random_sets,
-            "random_sets_that_do_not_tell_all": errors.unidentifiable_sets,
-        },
-        "candidates": {
-            "allowed": plan.candidates,
-            "drawn": plan.draws,
-            "outside_volume": rejected.volume,
-            "too_near_base": rejected.radius,
-            "deflected_too_far": rejected.deflection,
-        },
-        "travel_deg": Unit::ANGLE_DEG.number(plan.travel),
-        "unseen": plan.unobservable.iter().map(unobservable).collect::<Vec<_>>(),
-        "hardly_seen": hardly.collect::<Vec<_>>(),
-    }))
+    Document::new(&run.inputs)
+        .notes(run.notes.iter().chain(&plan.notes))
+        .warnings(&plan.warnings)
+        .with(PlanFigures::of(run, plan))
 }
 
-/// Null where there is no finite number.
-fn digits(value: f64) -> Value {
-    value.is_finite().then(|| rounded(value, DIGITS)).into()
-}
-
-fn length(value: f64) -> Value {
-    digits(value * 1e3)
-}
-
-fn compliance(joint: usize, angle: Option<f64>) -> Value {
-    let angle = angle.map(|angle| json!({ "angle_deg": Unit::ANGLE_DEG.number(angle) }));
-    joined(json!({ "joint": joint + 1 }), angle.unwrap_or_default())
-}
-
-fn bar(bar: &ExpectedCompliance) -> Value {
-    let urad = |value: Option<f64>| value.map(|value| digits(value * URAD));
-    let errors = json!({
-        "urad_per_nm": urad(Some(bar.value)),
-        "std_urad_per_nm": urad(bar.deviation),
-        "std_percent": bar.deviation.map(|deviation| digits(100.0 * deviation / bar.value)),
-        "by_law_std_urad_per_nm": urad(Some(bar.by_law)),
-        "best_random_std_urad_per_nm": urad(bar.best_random),
-        "median_random_std_urad_per_nm": urad(bar.median_random),
-    });
-    joined(compliance(bar.joint, bar.angle), errors)
-}
-
-fn unobservable(unobservable: &Unobservable) -> Value {
-    let compliances = unobservable.compliances.iter().map(|(joint, angle)| compliance(*joint, *angle));
-    json!({ "compliances": compliances.collect::<Value>(), "reason": unobservable.reason })
+/// Nothing where there is no finite number.
+fn digits(value: f64) -> Option<f64> {
+    value.is_finite().then(|| rounded(value, DIGITS))
 }

@@ -1,10 +1,10 @@
 //! Reports of `stead identify plan`: the sheet to be filled in, what it will tell, the picture, the table for people.
 
 mod json;
-mod tables;
+pub(crate) mod tables;
 mod text;
 
-pub use json::plan_json;
+pub use json::{PlanFigures, plan_json};
 pub use text::plan_text;
 
 use super::super::document as documents;
@@ -13,9 +13,9 @@ use super::super::{Files, named, picture};
 use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::sheet::COLUMNS;
-use stead_format::PlanRun;
 use stead_format::files;
 use stead_format::input::InputError;
+use stead_run_files::PlanRun;
 
 /// The name of the sheet among the files of a plan.
 pub const SHEET: &str = "sheet.csv";

@@ -2,39 +2,64 @@
 
 use super::super::super::output::ReportError;
 use super::super::{URAD, key, rounded, unit};
-use crate::csv_file::table;
-use crate::units::Unit;
+use crate::csv_file::rows_or;
+use crate::figure::AngleDeg;
+use schemars::JsonSchema;
+use serde::Serialize;
 use stead_calibration::identification::design::Design;
 
 /// Significant digits of expected errors.
 const DIGITS: usize = 6;
 
-fn number(value: f64) -> String {
-    rounded(value, DIGITS).to_string()
+fn number(value: f64) -> f64 {
+    rounded(value, DIGITS)
 }
 
-/// `expected.csv`: every compliance with the standard deviation that `fit` will report for it alone (`std`), that by the law of
-/// its joint over all angles (`std_by_law`), and the same from random sets; then the numbers of the compensator.
+/// The expected error of a compliance or of a number of the compensator, with six significant digits.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
+pub struct ExpectedRow {
+    /// The compliance, or a key of the robot file.
+    parameter: String,
+    /// Its unit.
+    unit: &'static str,
+    /// The angle that it is at, of a joint beside a compensator.
+    angle_deg: Option<AngleDeg>,
+    /// Its value.
+    value: f64,
+    /// Standard deviation that `fit` will report for it alone.
+    std: Option<f64>,
+    /// Standard deviation by the law of its joint over all angles.
+    std_by_law: Option<f64>,
+    /// The least of random sets of configurations.
+    std_by_law_best_random: Option<f64>,
+    /// Their median.
+    std_by_law_median_random: Option<f64>,
+}
+
+/// `expected.csv`: an [`ExpectedRow`] for every compliance, then for the numbers of the compensator.
 pub(super) fn expected(plan: &Design) -> Result<Vec<u8>, ReportError> {
-    let header = "parameter,unit,angle_deg,value,std,std_by_law,std_by_law_best_random,std_by_law_median_random";
-    let text = |value: Option<f64>| value.map_or_else(String::new, |value| number(value * URAD));
-    let bars = plan.compliances.iter().map(|bar| {
-        vec![
-            format!("joints[{}].compliance", bar.joint + 1),
-            "urad/(N m)".to_owned(),
-            bar.angle.map_or_else(String::new, |angle| Unit::ANGLE_DEG.text(angle)),
-            number(bar.value * URAD),
-            text(bar.deviation),
-            text(Some(bar.by_law)),
-            text(bar.best_random),
-            text(bar.median_random),
-        ]
+    let urad = |value: f64| number(value * URAD);
+    let bars = plan.compliances.iter().map(|bar| ExpectedRow {
+        parameter: format!("joints[{}].compliance", bar.joint + 1),
+        unit: "urad/(N m)",
+        angle_deg: bar.angle.map(Into::into),
+        value: urad(bar.value),
+        std: bar.deviation.map(urad),
+        std_by_law: Some(urad(bar.by_law)),
+        std_by_law_best_random: bar.best_random.map(urad),
+        std_by_law_median_random: bar.median_random.map(urad),
     });
     let spring = plan.compensator.iter().map(|bar| {
-        let (name, factor) = key(&bar.parameter);
-        let unit = unit(bar.parameter.quantity).to_owned();
-        let (value, deviation) = (number(bar.value * factor), number(bar.deviation * factor));
-        vec![name, unit, String::new(), value, deviation.clone(), deviation, String::new(), String::new()]
+        let (parameter, factor) = key(&bar.parameter);
+        let deviation = Some(number(bar.deviation * factor));
+        ExpectedRow {
+            parameter,
+            unit: unit(bar.parameter.quantity),
+            value: number(bar.value * factor),
+            std: deviation,
+            std_by_law: deviation,
+            ..ExpectedRow::default()
+        }
     });
-    table("the table of expected errors", header.split(','), bars.chain(spring))
+    rows_or("the table of expected errors", &ExpectedRow::default(), bars.chain(spring))
 }

@@ -4,10 +4,10 @@ use super::super::{URAD, key};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_calibration::identification::design::{Design, TestCases};
-use stead_format::PlanRun;
+use stead_run_files::PlanRun;
 
-/// Expected errors of the compliances beside those of random sets, the expected error of the deflection, where the candidates
-/// come from, and what the plan does not show.
+/// Expected errors of the compliances beside those of random sets, the expected error of the deflection, where the
+/// candidates come from, and what the plan does not show.
 pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
     let request = &run.request;
     let mut text = format!(

@@ -29,7 +29,8 @@ fn manifest(folder: &Path) -> Manifest {
     manifest_in(folder).unwrap()
 }
 
-/// Does the first steps of a run and then what a kill does: leaves the rest under temporary names. Returns whether steps were left.
+/// Does the first steps of a run and then what a kill does: leaves the rest under temporary names. Returns whether
+/// steps were left.
 fn killed_after(count: usize, folder: &Folder, run: &Files<'_>) -> bool {
     let transaction = folder.results("place", &[]);
     let mut steps = transaction.steps(run).unwrap();

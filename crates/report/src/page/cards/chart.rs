@@ -19,6 +19,9 @@ pub struct Axis {
     /// Names in the place of numbers, for the values 0, 1, 2 and so on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub names: Vec<String>,
+    /// Its ends, where they are not those of the values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range: Option<[f64; 2]>,
 }
 
 impl Axis {
@@ -221,7 +224,8 @@ pub struct PolarChoice {
     pub band: [f64; 2],
 }
 
-/// A curve that looks the same at any width of a screen: its points, or of many the smallest and the largest of each stretch.
+/// A curve that looks the same at any width of a screen: its points, or of many the smallest and the largest of each
+/// stretch.
 fn thinned(points: Vec<[f64; 2]>) -> [Vec<f64>; 2] {
     let width = points.len().div_ceil(MAX_POINTS / 2);
     if points.len() <= MAX_POINTS {

@@ -1,15 +1,16 @@
-//! Pages of cards: what a command has found, as text, figures, tables and charts that answer to pointer and keys, in one file.
+//! Pages of cards: what a command has found, as text, figures, tables and charts that answer to pointer and keys, in
+//! one file.
 //!
-//! A command says what it has found as a [`Page`]; one set of scripts draws whatever cards there are. Everything from an input file
-//! is text in the data of the page and is put into it as text alone.
+//! A command says what it has found as a [`Page`]; one set of scripts draws whatever cards there are. Everything from
+//! an input file is text in the data of the page and is put into it as text alone.
 
 mod chart;
-mod html;
 mod table;
 
 pub use chart::{Axis, Chart, HeatMap, Mark, Outline, Polar, PolarChoice, Series, Style};
 pub use table::{Cell, Column, Table};
 
+use super::html::{CARDS, html};
 use serde::Serialize;
 use stead_format::input::InputFile;
 
@@ -115,7 +116,8 @@ impl Page {
 
     /// The page as the bytes of an HTML file that needs no other file and no network.
     pub fn html(&self) -> Vec<u8> {
-        html::page(&self.title, self)
+        let data = String::from_utf8_lossy(&crate::document::compact(self)).into_owned();
+        html(&self.title, CARDS, &data).into_bytes()
     }
 }
 

@@ -1,8 +1,8 @@
 //! The scene of a results folder, from the files of its run alone: so `stead page` makes the same bytes as the run.
 
 use super::super::PageError;
-use super::super::base64::bytes_of;
 use super::super::content::{DATA, json_file, scene_files};
+use super::super::packed::bytes_of;
 use super::super::shapes::{BodyFrame, BodyMesh, block_of};
 use super::super::table::Table;
 use super::motion::{Motion, SHORTEST_MOVE, Stop, UNKNOWN_MOVE};
@@ -13,8 +13,8 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Pose;
-use stead_placement::course::{MovePart, PlaceOnMove};
-use stead_placement::problem::Placement;
+use stead_planning::course::{MovePart, PlaceOnMove};
+use stead_planning::problem::Placement;
 
 /// `cell.glb` of the files of a run, `page-data.json` among them: its first plan.
 pub(crate) fn scene(files: &Files) -> Result<Vec<u8>, PageError> {
@@ -129,7 +129,7 @@ fn external_axis(value: &Value) -> Option<ExternalAxis> {
         carries: if value["carries"] == "robot" { Carried::Robot } else { Carried::Workpiece },
         direction: triple(&value["direction"])?,
         point: triple(&value["point_mm"])? / 1e3,
-        // What it may do is not asked for: the plan has what it does.
+        // What it may do is not requested: the plan has what it does.
         min: 0.0,
         max: 0.0,
         max_speed: None,

@@ -1,8 +1,9 @@
-//! `cell.glb`: the cell as an animated scene for any viewer of glTF 2.0 (Khronos 2021), the robot moving along its best plan.
+//! `cell.glb`: the cell as an animated scene for any viewer of glTF 2.0 (Khronos 2021), the robot moving along its best
+//! plan.
 //!
-//! glTF has y upwards: the node of the base is turned by -90 deg about x, and everything below it is in the robot's own frames, in m.
-//! Row i of the arm is a node that stands still and in it the node `joint i`, whose rotation is animated; an external axis is a node
-//! whose place or rotation is animated, with all that it carries.
+//! glTF has y upwards: the node of the base is turned by -90 deg about x, and everything below it is in the robot's own
+//! frames, in m. Row i of the arm is a node that stands still and in it the node `joint i`, whose rotation is animated;
+//! an external axis is a node whose place or rotation is animated, with all that it carries.
 
 mod axes;
 mod buffer;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
-use stead_placement::course::{MovePart, PlaceOnMove};
+use stead_planning::course::{MovePart, PlaceOnMove};
 
 /// Time of a move, or of a turn in place, whose time is not known. s
 pub(super) const UNKNOWN_MOVE: f64 = 1.0;
@@ -28,7 +28,8 @@ pub struct Stop {
     pub score: f64,
     /// Time since the first point. s
     pub time: f64,
-    /// The parts of the move from the segment before; none where it is straight in joint space, or where there is no such move.
+    /// The parts of the move from the segment before; none where it is straight in joint space, or where there is no
+    /// such move.
     pub way: Vec<MovePart>,
 }
 
@@ -62,8 +63,9 @@ impl Motion {
         shown.map(|(_, stop)| stop.clone()).collect()
     }
 
-    /// The keys of the animation, at strictly rising times. Viewers turn a joint the short way round from key to key, so no joint and no
-    /// turntable turns by more than 90 deg between two of them; each part of a move between segments starts and ends at rest.
+    /// The keys of the animation, at strictly rising times. Viewers turn a joint the short way round from key to key,
+    /// so no joint and no turntable turns by more than 90 deg between two of them; each part of a move between segments
+    /// starts and ends at rest.
     pub(super) fn keys(&self) -> Vec<Key> {
         let stops = self.shown();
         let mut keys: Vec<Key> = Vec::new();
@@ -122,7 +124,8 @@ fn part_keys(places: &[PlaceOnMove], is_from_rest: bool) -> Vec<(f64, PlaceOnMov
     (1..=count).map(key).collect()
 }
 
-/// The share of the time at which a smooth move from rest to rest has done a share of its way: the other way round of `t t (3 - 2 t)`.
+/// The share of the time at which a smooth move from rest to rest has done a share of its way: the other way round of
+/// `t t (3 - 2 t)`.
 fn when(done: f64) -> f64 {
     0.5 - libm::sin(libm::asin(1.0 - 2.0 * done) / 3.0)
 }

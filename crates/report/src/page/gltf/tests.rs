@@ -8,7 +8,7 @@ use crate::testing::{context, outcome, problem};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde_json::Value;
 use stead_model::external_axis::{AxisKind, AxisUse, carried};
-use stead_placement::course::{MovePart, PlaceOnMove};
+use stead_planning::course::{MovePart, PlaceOnMove};
 
 /// A file taken apart.
 struct Read {
@@ -171,7 +171,8 @@ fn long_turns_go_the_long_way_round() {
     assert_eq!(keys.last().unwrap().joints[3], -6.1);
 }
 
-/// A move that goes a way goes through all of its places, each part in its share of the time, and stands still where parts meet.
+/// A move that goes a way goes through all of its places, each part in its share of the time, and stands still where
+/// parts meet.
 #[test]
 fn moves_go_their_way() {
     let place = |turn: f64, at: f64| PlaceOnMove { joints: [turn, 0.0, 0.0, 0.0, 0.0, 0.0], axes: vec![at] };
@@ -243,7 +244,8 @@ fn scenes_are_consistent() {
     assert_eq!(illustrations.count(), crate::page::bodies(problem()).len() + 1);
 }
 
-/// A rail with the robot and a tilting table with the part: what they carry is where the model has it, all along the animation.
+/// A rail with the robot and a tilting table with the part: what they carry is where the model has it, all along the
+/// animation.
 #[test]
 fn external_axes_move_what_they_carry() {
     let axis =

@@ -5,14 +5,15 @@ use super::{BodyFrame, BodyMesh, Paint, illustration};
 use nalgebra::Vector3;
 use stead_model::robot::{Robot, Spindle};
 
-/// The length that the widths of an arm are in proportion to: the mean of upper arm and forearm, nearly the longest row. m
+/// The length that the widths of an arm are in proportion to: the mean of upper arm and forearm, nearly the longest
+/// row. m
 pub fn scale(robot: &Robot) -> f64 {
     let geometry = robot.geometry();
     (geometry.upper_arm + geometry.forearm) / 2.0 * 1.06
 }
 
-/// Distance of the flange's face from the origin of frame 6, along its z axis: where the rows put the frame on the face nothing,
-/// and a hand's length where they put it in the wrist centre. m
+/// Distance of the flange's face from the origin of frame 6, along its z axis: where the rows put the frame on the face
+/// nothing, and a hand's length where they put it in the wrist centre. m
 pub(super) fn flange_face(robot: &Robot, spindle: &Spindle) -> f64 {
     let (size, flange) = (scale(robot), robot.geometry().flange);
     if flange.abs() > 0.05 * size {
@@ -61,8 +62,8 @@ impl Arm<'_> {
         illustration(name, frame, paint, solid)
     }
 
-    /// Height of the axis of joint 2 above the foot of the robot, with its sign along axis 1: the first row, or where the rows
-    /// begin at axis 2 what such arms have. m
+    /// Height of the axis of joint 2 above the foot of the robot, with its sign along axis 1: the first row, or where
+    /// the rows begin at axis 2 what such arms have. m
     fn height(&self) -> f64 {
         let height = self.robot.geometry().shoulder_height;
         if height.abs() > 0.2 * self.size { height } else { 0.6 * self.size }

@@ -6,7 +6,8 @@ use super::{BodyFrame, BodyMesh, Paint, illustration};
 use nalgebra::Vector3;
 use stead_model::robot::{Robot, Spindle};
 
-/// Distance of the tool centre point from the flange that the sizes of the spindle belong to: that of Caro 2013, eq. 9. mm
+/// Distance of the tool centre point from the flange that the sizes of the spindle belong to: that of Caro 2013, eq. 9.
+/// mm
 const NOMINAL_MM: f64 = 684.0;
 
 /// How far the block goes beyond the path on every side. m
@@ -52,8 +53,8 @@ pub fn spindle_bodies(robot: &Robot, spindle: &Spindle) -> Vec<BodyMesh> {
     ]
 }
 
-/// A block that a path may lie on, in the workpiece frame: its extent with a margin, on the side of it away from the tool; from
-/// the path points (m) and the tool axes there.
+/// A block that a path may lie on, in the workpiece frame: its extent with a margin, on the side of it away from the
+/// tool; from the path points (m) and the tool axes there.
 pub fn block_of(points: &[Vector3<f64>], axes: &[Vector3<f64>]) -> BodyMesh {
     let extreme = |start: f64, choose: fn(f64, f64) -> f64| {
         points.iter().fold(Vector3::repeat(start), |bound, point| bound.zip_map(point, choose))

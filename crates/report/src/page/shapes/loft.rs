@@ -44,7 +44,8 @@ impl Section {
 }
 
 impl Solid {
-    /// Adds a bar from one point to another: radii at its ends, how far it goes beyond them, and the width of the bevel.
+    /// Adds a bar from one point to another: radii at its ends, how far it goes beyond them, and the width of the
+    /// bevel.
     pub fn bar(
         &mut self,
         [from, to]: [Vector3<f64>; 2],
@@ -61,8 +62,8 @@ impl Solid {
         self.loft([from, to], &profile, section);
     }
 
-    /// Adds the body whose cross section at each distance from `from` has the radius beside it, closed by flat ends; nothing
-    /// where the two points are one.
+    /// Adds the body whose cross section at each distance from `from` has the radius beside it, closed by flat ends;
+    /// nothing where the two points are one.
     pub fn loft(&mut self, [from, to]: [Vector3<f64>; 2], profile: &[(f64, f64)], section: Section) {
         let Some(along) = (to - from).try_normalize(1e-9) else { return };
         let first = across(&along, &section.up);

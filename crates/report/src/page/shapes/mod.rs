@@ -1,7 +1,8 @@
 //! The shapes that stand for a robot, its spindle and the work: bodies made from the rows of the robot alone.
 //!
-//! A robot file states axes and lengths, not what the links look like. These bodies show where the rows have them, with widths in
-//! proportion to the arm; they are illustrations ([`BodyMesh::is_illustration`]), and nothing is checked against them.
+//! A robot file states axes and lengths, not what the links look like. These bodies show where the rows have them, with
+//! widths in proportion to the arm; they are illustrations ([`BodyMesh::is_illustration`]), and nothing is checked
+//! against them.
 
 mod arm;
 mod attached;
@@ -13,7 +14,7 @@ pub use attached::{block_of, spindle_bodies};
 pub use shading::{Shaded, shaded};
 
 use loft::Solid;
-use stead_placement::problem::Problem;
+use stead_planning::problem::Problem;
 
 /// The frame that a body is fixed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -14,7 +14,7 @@ fn arms() -> Vec<Robot> {
 }
 
 fn with(robot: Robot) -> Problem {
-    Problem { robot, ..problem().clone() }
+    problem().clone().with(|parts| parts.robot = robot)
 }
 
 fn point(position: [f32; 3]) -> Vector3<f64> {
@@ -84,8 +84,8 @@ fn distance(point: &Vector3<f64>, chain: &[Vector3<f64>]) -> f64 {
     chain.windows(2).map(piece).fold(f64::INFINITY, f64::min)
 }
 
-/// A row i + 1 goes from the origin of frame i along x, then along its joint axis; the body of frame i lies about that line,
-/// reaches both ends, and is as wide as an arm.
+/// A row i + 1 goes from the origin of frame i along x, then along its joint axis; the body of frame i lies about that
+/// line, reaches both ends, and is as wide as an arm.
 #[test]
 fn bodies_follow_their_rows() {
     for robot in arms() {

@@ -17,8 +17,8 @@ const TOP: i32 = 116;
 const HEIGHT: i32 = 240;
 const ROW: i32 = 340;
 
-/// What each axis does to a column, the largest share of the variance first: every layout as a pale dot, the mean of each value of the
-/// axis blue, the best of them green; lines join numbers.
+/// What each axis does to a column, the largest share of the variance first: every layout as a pale dot, the mean of
+/// each value of the axis blue, the best of them green; lines join numbers.
 pub fn effects(effects: &Effects, layouts: &Layouts) -> String {
     let rows = effects.axes.len().div_ceil(COLUMNS).max(1) as i32;
     picture((1100, TOP + ROW * rows), |canvas| {

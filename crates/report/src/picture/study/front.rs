@@ -6,7 +6,7 @@ use super::super::colour::{BLACK, BLUE, Colour, GREEN, INK, PALE, WHITE};
 use super::super::labels::{Label, Labeller};
 use super::super::line_chart::{LineChart, Mark};
 use super::roomy;
-use stead_placement::sense::Sense;
+use stead_planning::sense::Sense;
 use stead_study::analysis::{Front, FrontMember, Layouts, Measure};
 
 /// Left edges, width, first upper edge, height, and distance of rows. Pixels
@@ -17,8 +17,8 @@ const TOP: i32 = 92;
 const HEIGHT: i32 = 380;
 const ROW: i32 = 470;
 
-/// The layouts over the first column and each of the others: those on the front green with the numbers of their cases, those that are
-/// behind it by less than the noise blue. Two columns are joined by the line beyond which nothing is.
+/// The layouts over the first column and each of the others: those on the front green with the numbers of their cases,
+/// those that are behind it by less than the noise blue. Two columns are joined by the line beyond which nothing is.
 pub fn front(front: &Front, layouts: &Layouts) -> String {
     let others = front.measures.len() - 1;
     let rows = others.div_ceil(2) as i32;

@@ -17,8 +17,8 @@ const ROOM: [i32; 2] = [820, 620];
 /// Letters of a label of a row.
 const LETTERS: i32 = 26;
 
-/// Means of a column over two axes, dark where they are small, with the figure in each cell that has room for it; a dash where no layout
-/// has a value.
+/// Means of a column over two axes, dark where they are small, with the figure in each cell that has room for it; a
+/// dash where no layout has a value.
 pub fn map(map: &Map) -> String {
     let [columns, rows] = [0, 1].map(|side| map.labels[side].len() as i32);
     let cell = |side: usize, count: i32, [min, max]: [i32; 2]| (ROOM[side] / count).clamp(min, max);

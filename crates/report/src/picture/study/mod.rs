@@ -27,8 +27,8 @@ fn roomy(values: impl Iterator<Item = f64> + Clone, start: i32, end: i32) -> Sca
     Scale::new(low - margin, high + margin, start, end)
 }
 
-/// Values of an axis as labels, without what they need not say, each cut to fit into so many pixels. Where there are too many for that,
-/// some are left out.
+/// Values of an axis as labels, without what they need not say, each cut to fit into so many pixels. Where there are
+/// too many for that, some are left out.
 fn fitting(labels: &[String], pixels: i32) -> Vec<String> {
     let letters = |pixels: i32| (f64::from(pixels) / (TICKS * 0.6)).floor() as usize;
     let short: Vec<String> = labels.iter().map(|label| short(label)).collect();

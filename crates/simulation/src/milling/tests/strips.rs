@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// A tool that comes from outside and swings across the feed: a shoulder, a cut nearly as wide as the tool, above which it leaves a
-/// strip of work when it swings down, and a slot.
+/// A tool that comes from outside and swings across the feed: a shoulder, a cut nearly as wide as the tool, above which
+/// it leaves a strip of work when it swings down, and a slot.
 #[test]
 fn what_a_tool_leaves_behind_it_and_above_it_is_cut_when_it_comes_back() {
     let (turn, length) = (120, 4.9e-3);

@@ -2,8 +2,9 @@
 
 use super::*;
 
-/// Whether motion dies out over time when the tool really mills: in the end the tip comes by the same way from period to period,
-/// to a tenth of the feed of a tooth. The tool leans so that this part of the force along its axis acts along the feed.
+/// Whether motion dies out over time when the tool really mills: in the end the tip comes by the same way from period
+/// to period, to a tenth of the feed of a tooth. The tool leans so that this part of the force along its axis acts
+/// along the feed.
 fn calm(cutter: &Cutter, cut: &PassCut, depth: f64, period: usize, lean: f64) -> bool {
     let mut cut = *cut;
     cut.section.axial_depth = depth;
@@ -43,8 +44,8 @@ fn calm(cutter: &Cutter, cut: &PassCut, depth: f64, period: usize, lean: f64) ->
     last.map(|step| (course[step] - course[step - period]).abs()).fold(0.0, f64::max) < 0.01e-3
 }
 
-/// Within 5 % of the depth at which vibration in the time domain no longer dies out: equal and unequal pitch, with and without
-/// helix, where the tool stays in the cut (linear theory knows no other).
+/// Within 5 % of the depth at which vibration in the time domain no longer dies out: equal and unequal pitch, with and
+/// without helix, where the tool stays in the cut (linear theory knows no other).
 #[test]
 fn the_time_domain_has_the_same_critical_depths() {
     let plant = benchmark_plant();
@@ -65,7 +66,8 @@ fn the_time_domain_has_the_same_critical_depths() {
     }
 }
 
-/// The force along the tool axis counts where it moves the tip in the plane of the cut: this depth becomes a third less, or nearly twice.
+/// The force along the tool axis counts where it moves the tip in the plane of the cut: this depth becomes a third
+/// less, or nearly twice.
 #[test]
 fn a_force_along_the_tool_axis_is_felt() {
     let (flat, cutter) = (benchmark_plant(), benchmark_cutter(&[180.0; 2], 0.0));
@@ -79,8 +81,8 @@ fn a_force_along_the_tool_axis_is_felt() {
         assert!(calm(0.95 * ours) && !calm(1.05 * ours), "{ours} {lean}");
         assert!((ours / without - 1.0).abs() > 0.3, "{ours} {without}");
         let zero_order = ZeroOrder::new(&plant).critical_depth(&cutter, &cut, 0.1).unwrap().unwrap();
-        let method = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap().with_mean_coefficients();
-        let depth = method.critical_depth(0.1).unwrap();
+        let method = SemiDiscretisation::with_intervals(&plant, &cutter, &cut, 800).unwrap();
+        let depth = method.critical_depth_by_the_mean(0.1).unwrap();
         assert!((zero_order / depth - 1.0).abs() < 5e-3, "{zero_order} {depth}");
     }
 }

@@ -14,7 +14,8 @@ fn close(found: &[(&str, f64)], expected: &[(&str, f64)]) -> bool {
     found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-12)
 }
 
-/// Two arms by three heights: 10 or 20 for the arm, 0, 1 or 5 for the height, and 3 more for the second arm at the third height.
+/// Two arms by three heights: 10 or 20 for the arm, 0, 1 or 5 for the height, and 3 more for the second arm at the
+/// third height.
 fn grid() -> Vec<(Vec<&'static str>, Option<f64>)> {
     let mut cases = Vec::new();
     for (arm, base) in [("a.toml", 10.0), ("b.toml", 20.0)] {

@@ -68,8 +68,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Refuses an arc that sets out against the move before it and arrives against the one behind it, which sets out along a direction:
-    /// it would be turned the other way.
+    /// Refuses an arc that sets out against the move before it and arrives against the one behind it, which sets out
+    /// along a direction: it would be turned the other way.
     pub(super) fn goes_on(&mut self, way: Option<Vector3<f64>>) -> Result<(), InputError> {
         let turns_back = |before: Vector3<f64>| way.is_some_and(|way| before.dot(&way) < TURNED_BACK);
         match self.against.take() {

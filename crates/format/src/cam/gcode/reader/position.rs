@@ -22,7 +22,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Takes a move with the tool turned whose tip cannot be told: a rapid one leaves the tool at a place that is not known.
+    /// Takes a move with the tool turned whose tip is not known: a rapid one leaves the tool at a place that is not
+    /// known.
     pub(super) fn turn_without_control(
         &mut self,
         block: &Block<'_>,

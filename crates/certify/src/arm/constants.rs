@@ -1,0 +1,98 @@
+//! What the closed form of an arm takes from the problem.
+
+use super::super::continuation::{Bend, Links};
+use super::singularity::{Limits, Needs, tool_lever};
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::PI;
+use stead_model::robot::{Geometry, angles::ANGLE_ROUNDING};
+use stead_planning::problem::Problem;
+
+/// What does not change from state to state.
+#[derive(Debug, Clone)]
+pub(in super::super) struct Arm {
+    pub(super) geometry: Geometry,
+    /// Tool centre point from the wrist centre, with heading zero. m
+    pub(super) lever: Vector3<f64>,
+    /// Axis 6 with heading zero.
+    pub(super) axis6: Vector3<f64>,
+    /// Compliances k_2 to k_6. rad/(N m)
+    pub(super) compliances: [f64; 5],
+    /// Limits of joints 2 and 3, rounding included. rad
+    limits: [(f64, f64); 2],
+    /// Smallest cosine of theta_5.
+    pub(super) min_cosine5: f64,
+    pub(super) min_inverse_condition: f64,
+    pub(super) characteristic_length: f64,
+    pub(super) needs: Needs,
+    pub(super) links: Links,
+    pub(super) bend: Bend,
+    /// Whether any force is along axis 1.
+    pub(super) is_vertical: bool,
+}
+
+/// How the limits of a joint cut its turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in super::super) enum LimitSpan {
+    /// Narrower than half a turn: both limits must hold.
+    Narrow,
+    /// Wider than half a turn: one of the two limits must hold.
+    Wide,
+    /// A turn or more: nothing is cut off.
+    Full,
+}
+
+impl Arm {
+    /// For radii of the tool centre point from `nearest` (m) on.
+    pub fn new(problem: &Problem, compliances: &[f64; 6], nearest: f64) -> Self {
+        let robot = &problem.robot;
+        let geometry = robot.geometry().clone();
+        let side = geometry.base_from_root[(2, 2)];
+        let axis = problem.task.points().first().map_or(1.0, |p| p.axis.z) * side;
+        // With heading zero: feed along x, axis up or down, then eq. 10 with beta zero.
+        let root_from_flange = Matrix3::from_diagonal(&Vector3::new(1.0, axis, axis))
+            * Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
+            * problem.spindle.flange_from_tool.inverse().rotation;
+        let joint = |j: usize| &robot.joints()[j];
+        let widest5 = joint(4).min.abs().max(joint(4).max.abs()) + ANGLE_ROUNDING;
+        let limits = Limits::new(problem, problem.constraints.min_inverse_condition, nearest);
+        let (upper_arm, forearm) = (geometry.upper_arm, geometry.forearm);
+        let (square, twice) = (upper_arm * upper_arm + forearm * forearm, 2.0 * upper_arm * forearm);
+        let distances2 = [square - twice * limits.folded, square + twice * limits.stretched];
+        Self {
+            geometry,
+            needs: limits.needs,
+            links: Links { upper_arm, forearm, limits: distances2 },
+            bend: Bend { limit: limits.in_line },
+            is_vertical: problem.task.wrenches().iter().any(|w| w.force.z != 0.0),
+            lever: root_from_flange * tool_lever(problem),
+            axis6: root_from_flange.column(2).into_owned(),
+            compliances: std::array::from_fn(|k| compliances[k + 1]),
+            limits: [1, 2].map(|j| (joint(j).min - ANGLE_ROUNDING, joint(j).max + ANGLE_ROUNDING)),
+            min_cosine5: if widest5 >= PI { -1.0 } else { libm::cos(widest5) },
+            min_inverse_condition: problem.constraints.min_inverse_condition,
+            characteristic_length: problem.constraints.characteristic_length,
+        }
+    }
+
+    /// How large a compliance of the arm is: that of its upper joints at a lever of a metre. m/N
+    pub fn typical_compliance(&self) -> f64 {
+        self.compliances[0].max(self.compliances[1]) / 3.0
+    }
+
+    /// Limits of joint 2 (0) or 3 (1), rounding included. rad
+    pub(super) fn limits(&self, joint: usize) -> (f64, f64) {
+        self.limits[joint]
+    }
+
+    /// How the limits of joint 2 (0) or 3 (1) cut its turn.
+    pub fn limit_span(&self, joint: usize) -> LimitSpan {
+        let (min, max) = self.limits[joint];
+        if max - min >= 2.0 * PI {
+            LimitSpan::Full
+        } else if max - min > PI {
+            LimitSpan::Wide
+        } else {
+            LimitSpan::Narrow
+        }
+    }
+}

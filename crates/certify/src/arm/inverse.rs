@@ -1,0 +1,238 @@
+//! From the tool centre point back along the arm: joint 1, the elbow, the wrist.
+//!
+//! In the radial frame the tool centre point is at (r, 0, z) and the tool is turned by the heading eta about axis 1,
+//! with t_0 the tool lever and a_0 axis 6 at heading zero, and s, l, f_a the shoulder radius, the lateral offset and
+//! the forearm angle:
+//!
+//! ```text
+//! t = R(eta) t_0,  a6 = R(eta) a_0,  w = (r - t_x, -t_y)                    lever, axis 6, wrist centre in plan
+//! rho = +-sqrt(|w|^2 - l^2)                                                 its distance along the arm
+//! cos theta_1 = (w_x rho + w_y l) / |w|^2,  sin theta_1 = (w_y rho - w_x l) / |w|^2
+//! S = (rho - s, lift (z - t_z - shoulder height)),  q = |S|^2               wrist centre from the shoulder
+//! cos delta = (q - L_2^2 - L_3^2) / (2 L_2 L_3),  sin^2 delta = 1 - cos^2 delta        elbow, zero when stretched
+//! e = alpha(q) S + beta(q) S',  S' normal to S                                         elbow from the shoulder
+//! theta_2: e / L_2,   theta_3 = +-delta - f_a
+//! z_4 in the plane of the arm, normal to the forearm's x axis,  cos theta_5 ~ z_4 . a_6
+//! ```
+//!
+//! See [`stead_model::robot::Robot::inverse`] for the same with angles.
+
+use super::super::interval_simd::Mask;
+use super::super::number::Number;
+use super::constants::{Arm, LimitSpan};
+use super::vector::{InPlane, Vector};
+use nalgebra::Vector3;
+use stead_model::robot::PostureClass;
+
+/// Squared lengths must be above this to be divided by. m^2
+const MIN_LENGTH2: f64 = 1e-6;
+
+/// The signs that a posture class stands for.
+#[derive(Clone, Copy)]
+pub(super) struct Signs {
+    /// +1 with the wrist centre in front of axis 1, -1 behind it.
+    pub side: f64,
+    /// Sign of delta.
+    pub elbow: f64,
+}
+
+impl Signs {
+    pub fn of(class: PostureClass) -> Self {
+        let posture = class.postures()[0];
+        Self {
+            side: if posture.is_back() { -1.0 } else { 1.0 },
+            elbow: if posture.is_delta_negative() { -1.0 } else { 1.0 },
+        }
+    }
+}
+
+/// What turns with the spindle, in the radial frame.
+pub(super) struct Tool<T> {
+    sine: T,
+    cosine: T,
+    /// Tool centre point from the wrist centre, t. m
+    pub lever: Vector<T>,
+    /// a_6.
+    pub axis6: Vector<T>,
+}
+
+impl<T: Number> Tool<T> {
+    /// At a heading, given by its sine and cosine.
+    #[inline(always)]
+    pub fn new(arm: &Arm, sine: T, cosine: T) -> Self {
+        let (lever, axis6) = (turned(sine, cosine, &arm.lever), turned(sine, cosine, &arm.axis6));
+        Self { sine, cosine, lever, axis6 }
+    }
+
+    /// R(eta) v.
+    #[inline(always)]
+    pub fn turned(&self, v: &Vector3<f64>) -> Vector<T> {
+        turned(self.sine, self.cosine, v)
+    }
+}
+
+#[inline(always)]
+fn turned<T: Number>(sine: T, cosine: T, v: &Vector3<f64>) -> Vector<T> {
+    Vector { x: cosine.scale(v.x) - sine.scale(v.y), y: sine.scale(v.x) + cosine.scale(v.y), z: T::constant(v.z) }
+}
+
+/// Joint 1 against the azimuth of the tool centre point.
+pub(super) struct FirstJoint<T> {
+    /// Distance of the wrist centre from axis 1 along the arm, rho. m
+    pub forward: T,
+    pub cosine: T,
+    pub sine: T,
+}
+
+/// The plane arm: shoulder, elbow and wrist centre.
+pub(super) struct Elbow<T> {
+    /// Wrist centre from the shoulder.
+    pub from_shoulder: InPlane<T>,
+    /// Elbow from the shoulder: along the arm, and up times `lift`. m
+    elbow: [T; 2],
+    pub sin_delta: T,
+    /// Not negative where the bound on conditioning allows the elbow.
+    pub margin: T,
+    /// sin(theta - min), sin(max - theta) of joints 2 and 3.
+    pub joint_margins: [[T; 2]; 2],
+    /// Where one of these is sure to be violated.
+    pub violated: Mask,
+}
+
+/// Axes 4 to 6, in the radial frame.
+pub(super) struct Wrist<T> {
+    /// Wrist centre from the elbow.
+    pub from_elbow: InPlane<T>,
+    pub axis4: Vector<T>,
+    /// Component of axis 4 along the arm.
+    pub axis4_along: T,
+    /// z_4 . a_6.
+    pub dot46: T,
+    pub sine5_squared: T,
+    /// 1 / sin^2 theta_5, continued: see [`super::super::continuation`].
+    pub inverse5: T,
+    /// Not negative where the bound on conditioning allows the wrist.
+    pub margin: T,
+    /// cos theta_5 above that of its limits.
+    pub joint5_margin: T,
+}
+
+/// One state, joint by joint.
+///
+/// By reference: an enclosure is large to copy.
+pub(super) struct Posed<'a, T> {
+    pub signs: Signs,
+    pub tool: &'a Tool<T>,
+    pub first: &'a FirstJoint<T>,
+    pub elbow: &'a Elbow<T>,
+    pub wrist: &'a Wrist<T>,
+    /// Tool centre point from axes 2 and 3.
+    pub tips: &'a [InPlane<T>; 2],
+}
+
+impl Arm {
+    /// Joint 1; `regular` loses the lanes in which the wrist centre may be too near to axis 1.
+    #[inline(always)]
+    pub(super) fn first_joint<T: Number>(
+        &self,
+        radius: T,
+        tool: &Tool<T>,
+        signs: Signs,
+        regular: &mut Mask,
+    ) -> FirstJoint<T> {
+        let lateral = self.geometry.lateral;
+        let (wx, wy) = (radius - tool.lever.x, -tool.lever.y);
+        let radius2 = wx.square() + wy.square();
+        let forward = radius2.plus(-lateral * lateral).assume_above(MIN_LENGTH2, regular).sqrt().scale(signs.side);
+        let (cosine, sine) = if lateral == 0.0 {
+            let inverse = radius2.assume_above(MIN_LENGTH2, regular).inverse_sqrt().scale(signs.side);
+            (wx * inverse, wy * inverse)
+        } else {
+            let inverse = radius2.assume_above(MIN_LENGTH2, regular).reciprocal();
+            ((wx * forward + wy.scale(lateral)) * inverse, (wy * forward - wx.scale(lateral)) * inverse)
+        };
+        FirstJoint { forward, cosine, sine }
+    }
+
+    /// Joints 2 and 3, for the tool centre point at `height` (m) and what [`super::singularity::Needs`] says there.
+    #[inline(always)]
+    pub(super) fn elbow<T: Number>(
+        &self,
+        forward: T,
+        height: T,
+        needed: T,
+        signs: Signs,
+        regular: &mut Mask,
+    ) -> Elbow<T> {
+        let g = &self.geometry;
+        let up = height.plus(-self.lever.z - g.shoulder_height);
+        let u = forward.plus(-g.shoulder_radius);
+        let v = up.scale(g.lift);
+        let distance2 = u.square() + v.square();
+        let per_product = 0.5 / (g.upper_arm * g.forearm);
+        let cos_delta = distance2.plus(-g.upper_arm * g.upper_arm - g.forearm * g.forearm).scale(per_product);
+        let sin_delta_squared = -cos_delta.square().plus(-1.0);
+        let defined = *regular;
+        let margin = sin_delta_squared - needed * distance2.scale(self.needs.elbow);
+        let [sin_delta, along, across] = distance2.assume_above(MIN_LENGTH2, regular).elbow(&self.links);
+        let across = across.scale(g.fold * signs.elbow);
+        let elbow = [u * along + v * across, v * along - u * across];
+        let (cos2, sin2) = (elbow[0].scale(1.0 / g.upper_arm), elbow[1].scale(1.0 / g.upper_arm));
+        let (sin_bar, cos_bar) = libm::sincos(g.forearm_angle);
+        let sin3 = sin_delta.scale(signs.elbow * cos_bar) - cos_delta.scale(sin_bar);
+        let cos3 = cos_delta.scale(cos_bar) + sin_delta.scale(signs.elbow * sin_bar);
+        let joint_margins = [self.limit_margins(0, sin2, cos2), self.limit_margins(1, sin3, cos3)];
+        let outside = self.is_outside(0, joint_margins[0]) | self.is_outside(1, joint_margins[1]);
+        let violated = margin.is_negative() & defined | outside & *regular;
+        Elbow { from_shoulder: InPlane { along: u, up }, elbow, sin_delta, margin, joint_margins, violated }
+    }
+
+    /// sin(theta - min) and sin(max - theta) of joint 2 (0) or 3 (1).
+    #[inline(always)]
+    fn limit_margins<T: Number>(&self, joint: usize, sine: T, cosine: T) -> [T; 2] {
+        let (min, max) = self.limits(joint);
+        let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
+        [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
+    }
+
+    /// Where joint 2 (0) or 3 (1) is sure to be outside its limits.
+    #[inline(always)]
+    fn is_outside<T: Number>(&self, joint: usize, [min, max]: [T; 2]) -> Mask {
+        match self.limit_span(joint) {
+            LimitSpan::Full => Mask::splat(false),
+            LimitSpan::Wide => min.is_negative() & max.is_negative(),
+            LimitSpan::Narrow => min.is_negative() | max.is_negative(),
+        }
+    }
+
+    /// Joints 4 to 6: axis 4 follows from the forearm, axis 6 from the spindle.
+    #[inline(always)]
+    pub(super) fn wrist<T: Number>(
+        &self,
+        axis6: Vector<T>,
+        first: &FirstJoint<T>,
+        elbow: &Elbow<T>,
+        needed: T,
+    ) -> Wrist<T> {
+        let g = &self.geometry;
+        let along = elbow.from_shoulder.along - elbow.elbow[0];
+        let up = elbow.from_shoulder.up - elbow.elbow[1].scale(g.lift);
+        // psi: elevation of the forearm's x axis.
+        let (sin_bar, cos_bar) = libm::sincos(g.forearm_angle);
+        let folded = sin_bar * g.fold;
+        let (bar, lift) = (1.0 / g.forearm, g.lift / g.forearm);
+        let cos_psi = along.scale(bar * cos_bar) + up.scale(lift * folded);
+        let sin_psi = up.scale(lift * cos_bar) - along.scale(bar * folded);
+        let twist4 = g.fold * g.twist[0];
+        let axis4_along = sin_psi.scale(twist4);
+        let axis4 =
+            Vector { x: axis4_along * first.cosine, y: axis4_along * first.sine, z: cos_psi.scale(-twist4 * g.lift) };
+        let dot46 = axis4.dot(axis6);
+        let sine5_squared = -dot46.square().plus(-1.0);
+        let inverse5 = dot46.wrist(&self.bend);
+        let margin = sine5_squared.scale(self.needs.wrist) - needed * dot46.square().plus(1.0);
+        let joint5_margin = dot46.scale(-g.twist[1] * g.twist[2]).plus(-self.min_cosine5);
+        let from_elbow = InPlane { along, up };
+        Wrist { from_elbow, axis4, axis4_along, dot46, sine5_squared, inverse5, margin, joint5_margin }
+    }
+}

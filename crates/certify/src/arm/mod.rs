@@ -1,0 +1,145 @@
+//! The closed form of an upright tool: how the arm yields, and what its joints allow, as functions of the radius and
+//! height of the tool centre point and of the spindle's heading against its azimuth.
+//!
+//! Everything is in the radial frame of the tool centre point: x away from axis 1, z along it. Joint 1 is left to
+//! [`super::cost`], and so are joints 4 and 6, whose limits are relaxed.
+//!
+//! A joint j moves the tool centre point at v_j per joint velocity, so joints 2 to 6 yield by `C = sum k_j v_j v_j^T`.
+//! With phi the angle theta_1 of the arm's plane, h_2 and h_3 the heights of the tool centre point above axes 2 and 3,
+//! and t the lever:
+//!
+//! ```text
+//! v_2, v_3: h_j (cos phi, sin phi) in plan        v_4 = z_4 x t,  v_5 = (z_4 x z_6) x t / s,  v_6 = z_6 x t
+//! [[m + d1, d2], [d2, m - d1]] = C in plan        c_rz, c_tz = C between the vertical and the plan
+//! ```
+
+mod conditioning;
+mod constants;
+mod inverse;
+mod singularity;
+mod vector;
+
+use super::interval_simd::Mask;
+use super::number::Number;
+pub(super) use constants::{Arm, LimitSpan};
+use inverse::{Posed, Signs, Tool};
+pub(super) use singularity::needed_condition;
+use stead_model::robot::PostureClass;
+use vector::{InPlane, Vector};
+
+/// How the arm yields and what it allows, in one posture class.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ArmCompliance<T> {
+    /// In-plane compliance without joint 1: [[m + d1, d2], [d2, m - d1]]. m/N
+    pub m: T,
+    /// See `m`.
+    pub d1: T,
+    /// See `m`.
+    pub d2: T,
+    /// Compliance between the vertical and the radial, and the vertical and the tangential direction. m/N
+    pub vertical: [T; 2],
+    /// What is left to each constraint.
+    pub margins: Margins<T>,
+    /// Where all but the conditioning was sure to be regular.
+    pub regular: Mask,
+    /// Where the conditioning was.
+    pub conditioned: Mask,
+    /// Where some constraint is sure to be violated.
+    pub violated: Mask,
+}
+
+/// Signed margins, each not negative where its constraint holds; without unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Margins<T> {
+    /// What the bound on conditioning asks of the elbow.
+    pub elbow: T,
+    /// Of joints 2 and 3, above the lower and below the upper limit: see [`Arm::limit_span`].
+    pub joints: [[T; 2]; 2],
+    /// Joint 5, in the better of the two flips.
+    pub joint5: T,
+    /// What the bound on conditioning asks of the wrist.
+    pub wrist: T,
+    /// Conditioning.
+    pub conditioning: T,
+}
+
+impl Arm {
+    /// Evaluates one posture class for a tool centre point at a radius and height (m) and a heading; `None` where none
+    /// of the lanes is allowed.
+    pub fn evaluate<T: Number>(
+        &self,
+        radius: T,
+        height: T,
+        sine: T,
+        cosine: T,
+        class: PostureClass,
+    ) -> Option<ArmCompliance<T>> {
+        let signs = Signs::of(class);
+        let mut regular = Mask::splat(true);
+        let tool = Tool::new(self, sine, cosine);
+        let first = self.first_joint(radius, &tool, signs, &mut regular);
+        let needed = self.needs.at(radius);
+        let elbow = self.elbow(first.forward, height, needed, signs, &mut regular);
+        let mut violated = elbow.violated;
+        if violated.all() {
+            return None;
+        }
+        let wrist = self.wrist(tool.axis6, &first, &elbow, needed);
+        violated = violated | (wrist.margin.is_negative() | wrist.joint5_margin.is_negative()) & regular;
+        if violated.all() {
+            return None;
+        }
+        let lever_along = tool.lever.x * first.cosine + tool.lever.y * first.sine;
+        let tips = [elbow.from_shoulder, wrist.from_elbow]
+            .map(|p| InPlane { along: p.along + lever_along, up: p.up.plus(self.lever.z) });
+        let posed = Posed { signs, tool: &tool, first: &first, elbow: &elbow, wrist: &wrist, tips: &tips };
+        let mut conditioned = regular;
+        let conditioning = if self.min_inverse_condition > 0.0 {
+            self.conditioning(&posed, &mut conditioned)
+        } else {
+            T::constant(1.0)
+        };
+        violated = violated | conditioning.is_negative() & conditioned;
+        if violated.all() {
+            return None;
+        }
+        let (m, d1, d2, vertical) = self.compliance(&posed);
+        let margins = Margins {
+            elbow: elbow.margin,
+            joints: elbow.joint_margins,
+            joint5: wrist.joint5_margin,
+            wrist: wrist.margin,
+            conditioning,
+        };
+        Some(ArmCompliance { m, d1, d2, vertical, margins, regular, conditioned, violated })
+    }
+
+    /// m, d1, d2, and c_rz with c_tz where some force is along axis 1.
+    #[inline(always)]
+    fn compliance<T: Number>(&self, posed: &Posed<'_, T>) -> (T, T, T, [T; 2]) {
+        let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
+        let v4 = axis4.cross(lever);
+        // s v_5 = (z_4 x z_6) x t = z_6 (z_4 . t) - z_4 (z_6 . t).
+        let (along4, along6) = (axis4.dot(lever), self.lever.dot(&self.axis6));
+        let five = |z6: T, z4: T| z6 * along4 - z4.scale(along6);
+        let v5 = Vector { x: five(axis6.x, axis4.x), y: five(axis6.y, axis4.y), z: five(axis6.z, axis4.z) };
+        let v6 = posed.tool.turned(&self.axis6.cross(&self.lever));
+        let [k2, k3, k4, k5, k6] = self.compliances;
+        let k5 = posed.wrist.inverse5.scale(k5);
+        // The sum over joints 4 to 6 of k_j f(v_j).
+        let wrist = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * k5 + f(&v6).scale(k6);
+        let [p2, p3] = posed.tips;
+        let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
+        let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
+        let bending = (p2.up.square().scale(k2) + p3.up.square().scale(k3)).scale(0.5);
+        let m = bending + wrist(&|v| v.x.square() + v.y.square()).scale(0.5);
+        let d1 = bending * cos_twice + wrist(&|v| v.x.square() - v.y.square()).scale(0.5);
+        let d2 = bending * sin_twice + wrist(&|v| v.x * v.y);
+        if !self.is_vertical {
+            return (m, d1, d2, [T::constant(0.0); 2]);
+        }
+        let tilting = -((p2.along * p2.up).scale(k2) + (p3.along * p3.up).scale(k3));
+        let vertical = [tilting * cos1 + wrist(&|v| v.x * v.z), tilting * sin1 + wrist(&|v| v.y * v.z)];
+        (m, d1, d2, vertical)
+    }
+}

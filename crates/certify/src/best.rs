@@ -1,0 +1,117 @@
+//! The best placement: a lower bound of the objective.
+
+use super::active_cells::ActiveCells;
+use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
+use super::cell::whole;
+use super::coarse_bounds::CoarseBounds;
+use super::model::Model;
+use super::region::Region;
+use super::requirements::certifiable;
+use crate::settings::CertificateSettings;
+use rayon::prelude::*;
+use std::sync::Arc;
+use stead_numerics::monitor::{Monitor, Stop};
+use stead_planning::problem::Problem;
+use stead_planning::sense::Sense;
+use stead_planning::symmetry::Unsupported;
+
+/// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean
+/// score, m) by more than the gap of the settings.
+///
+/// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without
+/// `with_rate`, or where none is set, that of beta as well. The result does not depend on the number of threads.
+///
+/// # Errors
+/// Why the problem cannot be certified this way.
+pub fn best(
+    problem: &Problem,
+    value: f64,
+    settings: &CertificateSettings,
+    with_rate: bool,
+    monitor: &Monitor,
+) -> Result<Bound, Unsupported> {
+    let CertificateSettings { gap, memory, .. } = *settings;
+    certifiable(problem, memory)?;
+    let with_rate = with_rate && problem.redundancy.max_beta_rate.is_some();
+    let (model, whole) = (Model::new(problem, with_rate), whole(problem));
+    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len(), memory };
+    // Of no placement anything is known until the tables are made.
+    let ceiling = search.ceiling();
+    let mut nodes = 0;
+    let coarse = CoarseBounds::new(&model, monitor, || search.report(monitor, 0.0, 1, 0));
+    let left = coarse.and_then(|coarse| survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor));
+    let left = match left {
+        Ok(left) => left,
+        Err(stop) => {
+            let open = vec![(whole, 0.0)];
+            return Ok(Bound { value, met: None, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
+        }
+    };
+    let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
+    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) }).collect();
+    let all = Parts {
+        start,
+        nodes,
+        of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling, monitor),
+        used: || model.table.used(),
+        bytes: |active: &Arc<ActiveCells>| active.bytes(),
+    };
+    Ok(search.explore(all, monitor, |_| None))
+}
+
+/// The boxes that the coarse tables leave open.
+///
+/// # Errors
+/// Why the caller ended it.
+fn survivors(
+    model: &Model,
+    coarse: &CoarseBounds,
+    whole: Region,
+    ceiling: f64,
+    nodes: &mut usize,
+    monitor: &Monitor,
+) -> Result<Vec<(f64, Region)>, Stop> {
+    let mut open = vec![whole];
+    let mut left = Vec::new();
+    while !open.is_empty() {
+        if let Some(stop) = monitor.stop() {
+            return Err(stop);
+        }
+        *nodes += open.len();
+        // Where the caller asks to stop nothing is known, which is a bound too.
+        let bound = |region| if monitor.should_stop() { None } else { coarse.lower_bound(model, region) };
+        let bounds: Vec<Option<f64>> = open.par_iter().map(bound).collect();
+        let mut next = Vec::new();
+        for (region, bound) in open.iter().zip(bounds) {
+            if bound.is_some_and(|bound| bound >= ceiling) || !model.yaws.allow(region) {
+                continue;
+            }
+            match widest(region) {
+                (_, size) if size <= 1.0 => left.push((bound.unwrap_or(0.0).max(0.0), *region)),
+                (side, _) => next.extend(region.split(side)),
+            }
+        }
+        open = next;
+    }
+    Ok(left)
+}
+
+/// The halves of a box with their bounds; `None` where it is not to be cut further.
+fn parts(
+    model: &Model,
+    open: &Open<Arc<ActiveCells>>,
+    ceiling: f64,
+    monitor: &Monitor,
+) -> Option<Vec<Open<Arc<ActiveCells>>>> {
+    let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
+    let bounds = halves.map(|region| {
+        let level = model.level(&region).unwrap_or(0);
+        let mut active = (*open.known).clone();
+        while active.level < level {
+            active = active.halved();
+        }
+        let found = model.lower_bound(&region, &active, ceiling, monitor);
+        Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.active) }
+    });
+    Some(bounds.collect())
+}

@@ -1,0 +1,349 @@
+//! Boxes of placements, most promising first: the search that bounds from below and from above share.
+
+use super::region::Region;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use stead_numerics::monitor::{Monitor, Progress, Stop};
+use stead_planning::problem::Placement;
+use stead_planning::sense::Sense;
+
+/// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one
+/// ([`super::worst()`]).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Bound {
+    /// The mean score that is compared with. m
+    pub value: f64,
+    /// The placement of that score, where the search from above met a worse one than it was given.
+    pub met: Option<Placement>,
+    /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding;
+    /// or, of the worst, none with its best plan has a mean score above. m
+    pub bound: f64,
+    /// Whether the rate of beta was kept.
+    pub with_rate: bool,
+    /// Boxes bounded.
+    pub nodes: usize,
+    /// How the search ended.
+    pub status: Status,
+    /// Boxes that may hold placements better (of the worst: worse) than `value` by more than the gap requested, each
+    /// with its own bound. m
+    pub open: Vec<(Region, f64)>,
+}
+
+/// How a search ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// The gap requested is reached.
+    Reached,
+    /// What is left open is smaller than the tables can distinguish.
+    Exhausted,
+    /// The time was over.
+    TimeLimit,
+    /// The memory was used up.
+    Memory,
+    /// The caller ended it.
+    Interrupted,
+}
+
+impl From<Stop> for Status {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Asked => Self::Interrupted,
+            Stop::Deadline => Self::TimeLimit,
+        }
+    }
+}
+
+impl Bound {
+    /// How much better (of the worst: worse) than the value a placement may be, relative to the value.
+    pub fn gap(&self) -> f64 {
+        (1.0 - self.bound / self.value).abs()
+    }
+}
+
+/// Boxes taken at once; the result depends on it, so it is fixed.
+const BATCH: usize = 64;
+/// Half widths of the boxes that tables are first requested in detail: radius and height (m), yaw (rad).
+const START: [f64; 3] = [0.009, 0.0125, 0.0157];
+/// Boxes whose half widths are this much smaller are not cut further.
+const SMALLEST: f64 = 1.0 / 256.0;
+/// What rounding may have taken from a bound, relative to it.
+const ROUNDING: f64 = 1e-9;
+
+/// The side to cut a box at, and its half width in terms of the start.
+pub(super) fn widest(region: &Region) -> (usize, f64) {
+    let size = |k: usize| region.half[k] / START[k];
+    (1..3).fold((0, size(0)), |(side, max), k| if size(k) > max { (k, size(k)) } else { (side, max) })
+}
+
+/// The halves of a box; `None` where it is not to be cut further.
+pub(super) fn halves(region: &Region) -> Option<[Region; 2]> {
+    let (side, size) = widest(region);
+    (size > SMALLEST).then(|| region.split(side))
+}
+
+/// A box whose bound is known.
+pub(super) struct Open<T> {
+    /// What the sum over the points does not get past in it. m
+    pub bound: f64,
+    pub region: Region,
+    /// What else is known of it.
+    pub known: T,
+}
+
+/// What a search is for.
+pub(super) struct BranchAndBound {
+    /// From below, or from above.
+    pub sense: Sense,
+    /// The mean score that is compared with. m
+    pub value: f64,
+    /// What is requested, relative to the value.
+    pub gap: f64,
+    /// Whether the rate of beta is kept.
+    pub with_rate: bool,
+    /// Number of path points.
+    pub points: usize,
+    /// Memory for tables and boxes. Bytes
+    pub memory: u64,
+}
+
+/// What a search is made of.
+pub(super) struct Parts<T, P, U, B> {
+    /// The boxes to begin with.
+    pub start: Vec<Open<T>>,
+    /// The number of boxes bounded before.
+    pub nodes: usize,
+    /// Those of a box, `None` where it is not to be cut further.
+    pub of: P,
+    /// What the tables take. Bytes
+    pub used: U,
+    /// What is known of a box takes. Bytes
+    pub bytes: B,
+}
+
+/// A box in the queue.
+struct Queued<T> {
+    /// The bound, its sign changed where small bounds come first.
+    rank: f64,
+    /// Of equal ranks the greater one comes first.
+    priority: u64,
+    /// What is known of it takes.
+    bytes: u64,
+    open: Open<T>,
+}
+
+impl<T> PartialEq for Queued<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<T> Eq for Queued<T> {}
+
+impl<T> PartialOrd for Queued<T> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<T> Ord for Queued<T> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.rank.total_cmp(&other.rank).then(self.priority.cmp(&other.priority))
+    }
+}
+
+impl BranchAndBound {
+    /// Reports the state of the search: the bound (m), the boxes still open and those bounded so far. Returns why the
+    /// search should end with what it has, if it should.
+    pub fn report(&self, monitor: &Monitor, bound: f64, open: usize, nodes: usize) -> Option<Stop> {
+        let stage = match self.sense {
+            Sense::Min => "certifying best",
+            Sense::Max => "certifying worst",
+        };
+        monitor.report(Progress::Bound { stage, value: self.value, bound, gap: self.gap, open, nodes });
+        monitor.stop()
+    }
+
+    /// 1 where great bounds come first, -1 where small ones do.
+    fn sign(&self) -> f64 {
+        match self.sense {
+            Sense::Min => -1.0,
+            Sense::Max => 1.0,
+        }
+    }
+
+    /// What the sum over the points has to get past for a box to be of interest. m
+    pub fn ceiling(&self) -> f64 {
+        let sign = self.sign();
+        self.value * self.points as f64 * (1.0 + sign * self.gap) * (1.0 - sign * ROUNDING)
+    }
+
+    /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, the memory is used up, or
+    /// the bound can no longer change.
+    ///
+    /// Where bounds are the same, the younger box comes first: boxes that tables cannot distinguish are found by going
+    /// down, not by cutting all of it. Only from above, where nothing is known of them yet, the boxes to begin with
+    /// come before, in the order given. Where boxes are left that tables cannot distinguish, `improve` is asked for a
+    /// value further out than the one compared with, from among them; with one the search goes on. The result does not
+    /// depend on the number of threads.
+    pub fn explore<T: Send + Sync>(
+        mut self,
+        mut parts: Parts<
+            T,
+            impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
+            impl Fn() -> u64 + Sync,
+            impl Fn(&T) -> u64 + Sync,
+        >,
+        monitor: &Monitor,
+        mut improve: impl FnMut(&[Region]) -> Option<(f64, Placement)>,
+    ) -> Bound {
+        let mut queue = Queue::new(self.sign(), self.sense, std::mem::take(&mut parts.start));
+        let (mut nodes, mut met) = (parts.nodes, None);
+        let status = loop {
+            if let Err(status) = self.refine(&mut queue, &mut nodes, monitor, &parts) {
+                break status;
+            }
+            if queue.stuck.is_empty() {
+                break Status::Reached;
+            }
+            match improve(&queue.most_stuck()) {
+                Some((value, placement)) => {
+                    (self.value, met) = (value, Some(placement));
+                    queue.keep_past(self.sign() * self.ceiling());
+                }
+                None => break monitor.stop().map_or(Status::Exhausted, Status::from),
+            }
+        };
+        let (sign, count) = (self.sign(), self.points as f64);
+        let left = queue.left();
+        let farthest = left.iter().map(|queued| queued.rank).fold(sign * self.ceiling(), f64::max);
+        let bound = sign * farthest / count * (1.0 + sign * ROUNDING);
+        let open = left.iter().map(|queued| (queued.open.region, queued.open.bound / count)).collect();
+        Bound { value: self.value, met, bound, with_rate: self.with_rate, nodes, status, open }
+    }
+
+    /// Cuts boxes until none is left, or the bound stays where boxes are that are not to be cut further.
+    ///
+    /// # Errors
+    /// Why it ended before that.
+    fn refine<T: Send + Sync>(
+        &self,
+        queue: &mut Queue<T>,
+        nodes: &mut usize,
+        monitor: &Monitor,
+        parts: &Parts<
+            T,
+            impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
+            impl Fn() -> u64 + Sync,
+            impl Fn(&T) -> u64 + Sync,
+        >,
+    ) -> Result<(), Status> {
+        let ceiling = self.sign() * self.ceiling();
+        while let Some(first) = queue.heap.peek() {
+            // Whatever becomes of the others, the bound stays there.
+            if queue.stuck.iter().any(|stuck| stuck.rank >= first.rank) {
+                break;
+            }
+            let bound = first.open.bound / self.points as f64;
+            if let Some(stop) = self.report(monitor, bound, queue.heap.len() + queue.stuck.len(), *nodes) {
+                return Err(stop.into());
+            }
+            if (parts.used)().saturating_add(queue.bytes) > self.memory {
+                return Err(Status::Memory);
+            }
+            let batch: Vec<_> = std::iter::from_fn(|| queue.heap.pop()).take(BATCH).collect();
+            // What a box comes to after the caller has asked to stop says nothing: it stays as it was.
+            let of = |queued: &Queued<T>| match monitor.stop() {
+                Some(stop) => Err(stop),
+                None => Ok((parts.of)(&queued.open)).and_then(|cut| monitor.stop().map_or(Ok(cut), Err)),
+            };
+            let results: Vec<_> = batch.par_iter().map(of).collect();
+            let mut stopped = None;
+            for (whole, cut) in batch.into_iter().zip(results) {
+                let cut = match cut {
+                    Ok(cut) => cut,
+                    Err(stop) => {
+                        stopped = Some(stop);
+                        queue.heap.push(whole);
+                        continue;
+                    }
+                };
+                let Some(cut) = cut else {
+                    queue.stuck.push(whole);
+                    continue;
+                };
+                queue.bytes -= whole.bytes;
+                *nodes += cut.len();
+                for part in cut {
+                    let bytes = (parts.bytes)(&part.known);
+                    queue.push(part, bytes, ceiling);
+                }
+            }
+            if let Some(stop) = stopped {
+                return Err(stop.into());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The boxes of a search.
+struct Queue<T> {
+    sign: f64,
+    /// Boxes met so far.
+    number: u64,
+    heap: BinaryHeap<Queued<T>>,
+    /// Boxes that are not to be cut further.
+    stuck: Vec<Queued<T>>,
+    /// What is known of all of them takes; the boxes to begin with share it.
+    bytes: u64,
+}
+
+/// Boxes among which a value further out is sought at a time.
+const SOUGHT: usize = 4;
+
+impl<T> Queue<T> {
+    fn new(sign: f64, sense: Sense, start: Vec<Open<T>>) -> Self {
+        let mut queue = Self { sign, number: 0, heap: BinaryHeap::new(), stuck: Vec::new(), bytes: 0 };
+        for open in start {
+            queue.number += 1;
+            let priority = if sense == Sense::Min { queue.number } else { u64::MAX - queue.number };
+            queue.heap.push(Queued { rank: sign * open.bound, priority, bytes: 0, open });
+        }
+        queue
+    }
+
+    /// Adds a box, if it is past the ceiling.
+    fn push(&mut self, open: Open<T>, bytes: u64, ceiling: f64) {
+        self.number += 1;
+        let queued = Queued { rank: self.sign * open.bound, priority: self.number, bytes, open };
+        if queued.rank > ceiling {
+            self.bytes += bytes;
+            self.heap.push(queued);
+        }
+    }
+
+    /// The boxes not to be cut further that are farthest out.
+    fn most_stuck(&self) -> Vec<Region> {
+        let mut stuck: Vec<&Queued<T>> = self.stuck.iter().collect();
+        stuck.sort_by(|a, b| b.cmp(a));
+        stuck.into_iter().take(SOUGHT).map(|queued| queued.open.region).collect()
+    }
+
+    /// Leaves out boxes that are not past a ceiling.
+    fn keep_past(&mut self, ceiling: f64) {
+        self.stuck.retain(|queued| queued.rank > ceiling);
+        self.heap.retain(|queued| queued.rank > ceiling);
+        self.bytes = self.stuck.iter().chain(&self.heap).map(|queued| queued.bytes).sum();
+    }
+
+    /// All of them, the farthest out first, then those that are not to be cut further.
+    fn left(self) -> Vec<Queued<T>> {
+        let mut left = self.heap.into_sorted_vec();
+        left.reverse();
+        left.extend(self.stuck);
+        left
+    }
+}

@@ -1,0 +1,123 @@
+//! The cell and the task as seen along axis 1: radius, height, yaw less azimuth. For a hanging arm y and z change sign.
+
+use super::compliance_table::Extent;
+use super::region::{Point, Region};
+use std::f64::consts::{PI, TAU};
+use stead_model::robot::angles::wrap;
+use stead_model::task::{PathPoint, Wrench};
+use stead_planning::problem::{Cell, Placement, Problem};
+
+/// Which way up the arm stands: +1, or -1 upside down.
+fn side(problem: &Problem) -> f64 {
+    problem.robot.geometry().base_from_root[(2, 2)].signum()
+}
+
+/// Path points and their forces.
+pub(super) fn points_of(problem: &Problem) -> Vec<Point> {
+    let side = side(problem);
+    let task = &problem.task;
+    let one = |(p, w): (&PathPoint, &Wrench)| {
+        let (x, y) = (p.position.x, p.position.y * side);
+        let feed = libm::atan2(p.feed.y * side, p.feed.x);
+        let (sine, cosine) = libm::sincos(feed);
+        let (fx, fy) = (w.force.x, w.force.y * side);
+        Point {
+            distance: libm::hypot(x, y),
+            direction: libm::atan2(y, x),
+            height: p.position.z * side,
+            feed,
+            force: [fx * cosine + fy * sine, fy * cosine - fx * sine, w.force.z * side],
+        }
+    };
+    task.points().iter().zip(task.wrenches()).map(one).collect()
+}
+
+/// The corners of the cell about axis 1, x and y. m
+fn corners(cell: &Cell, problem: &Problem) -> [[f64; 2]; 2] {
+    let root = problem.robot.geometry().root_in_base;
+    let [x, y, _] = cell.position;
+    [[x.min - root.x, x.max - root.x], [y.min - root.y, y.max - root.y]]
+}
+
+/// All placements of the cell as radius, height and yaw less azimuth.
+pub(super) fn whole(problem: &Problem) -> Region {
+    let side = side(problem);
+    let [[x0, x1], [y0, y1]] = corners(&problem.cell, problem);
+    let gap = |a: f64, b: f64| if a > 0.0 { a } else { (-b).max(0.0) };
+    let near = libm::hypot(gap(x0, x1), gap(y0, y1));
+    let far = libm::hypot(x0.abs().max(x1.abs()), y0.abs().max(y1.abs()));
+    let z = problem.cell.position[2];
+    let root = problem.robot.geometry().root_in_base.z;
+    let (a, b) = ((z.min - root) * side, (z.max - root) * side);
+    Region { middle: [(near + far) / 2.0, (a + b) / 2.0, 0.0], half: [(far - near) / 2.0, (a - b).abs() / 2.0, PI] }
+}
+
+/// Where path points of placements of the cell can be.
+pub(super) fn extent(problem: &Problem) -> Extent {
+    let region = whole(problem);
+    let points = points_of(problem);
+    let max_distance = points.iter().map(|p| p.distance).fold(0.0, f64::max);
+    let low = points.iter().map(|p| p.height).fold(f64::INFINITY, f64::min);
+    let high = points.iter().map(|p| p.height).fold(f64::NEG_INFINITY, f64::max);
+    let [(near, far), (bottom, top)] =
+        [0, 1].map(|k| (region.middle[k] - region.half[k], region.middle[k] + region.half[k]));
+    Extent { radius: ((near - max_distance).max(NEAREST), far + max_distance), height: (bottom + low, top + high) }
+}
+
+/// Azimuths tried about axis 1.
+const AZIMUTHS: usize = 1440;
+
+/// The placement of the cell that is nearest to the middle of a box, whatever its azimuth.
+pub(super) fn placement_in(problem: &Problem, region: &Region) -> Placement {
+    let (side, root, cell) = (side(problem), problem.robot.geometry().root_in_base, &problem.cell);
+    let [radius, height, turn] = region.middle;
+    let z = root.z + side * height;
+    let at = |azimuth: f64| {
+        let (sine, cosine) = libm::sincos(azimuth);
+        let wanted =
+            Placement { x: root.x + radius * cosine, y: root.y + radius * sine, z, yaw: azimuth + side * turn };
+        let inside = cell.clamp(&wanted);
+        let off = libm::hypot(inside.x - wanted.x, inside.y - wanted.y) + radius * wrap(inside.yaw - wanted.yaw).abs();
+        (off, inside)
+    };
+    let [x, y] = corners(cell, problem);
+    let corners = [(x[0], y[0]), (x[0], y[1]), (x[1], y[0]), (x[1], y[1])].map(|(x, y)| libm::atan2(y, x));
+    let even = (1..AZIMUTHS).map(|k| TAU * k as f64 / AZIMUTHS as f64);
+    let all = even.chain(corners).map(at);
+    all.fold(at(0.0), |best, other| if other.0 < best.0 { other } else { best }).1
+}
+
+/// Nearer to axis 1 nothing is known of a path point. m
+const NEAREST: f64 = 0.05;
+
+/// Which yaws less azimuth the cell allows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Yaws {
+    /// Middle and half width of the range, where it is not the whole turn. rad
+    pub(super) range: Option<(f64, f64)>,
+}
+
+impl Yaws {
+    pub fn new(problem: &Problem) -> Self {
+        let cell = &problem.cell;
+        let [[x0, x1], [y0, y1]] = corners(cell, problem);
+        let around = x0 <= 0.0 && x1 >= 0.0 && y0 <= 0.0 && y1 >= 0.0;
+        if cell.is_yaw_free() || around {
+            return Self { range: None };
+        }
+        // Azimuths of the four corners about that of the middle: less than half a turn apart in all.
+        let middle = libm::atan2(y0 + y1, x0 + x1);
+        let off = |x: f64, y: f64| wrap(libm::atan2(y, x) - middle);
+        let all = [off(x0, y0), off(x0, y1), off(x1, y0), off(x1, y1)];
+        let (low, high) =
+            (all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+        let (from, to) = (cell.yaw.min - middle - high, cell.yaw.max - middle - low);
+        let range = (to - from < TAU).then_some((side(problem) * (from + to) / 2.0, (to - from) / 2.0 + 1e-9));
+        Self { range }
+    }
+
+    /// Whether some placement of a box is in the cell, as far as its yaw tells.
+    pub fn allow(&self, region: &Region) -> bool {
+        self.range.is_none_or(|(middle, half)| wrap(region.middle[2] - middle).abs() <= half + region.half[2])
+    }
+}

@@ -1,0 +1,295 @@
+//! Intervals that are sure to hold the value, the gradient and the second derivatives of a function over a region.
+
+use super::continuation::{Bend, Links};
+use super::interval::Interval;
+use super::interval_simd::{Lanes, Mask};
+use super::number::{Number, PAIR, PAIRS, Slope, VARIABLES, ZERO};
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// Intervals for the value, the gradient and the second derivatives over a region; and the value and the gradient in
+/// its middle, which with the next derivatives give a second, often closer, interval for each.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Enclosure {
+    pub value: Interval,
+    pub gradient: [Interval; VARIABLES],
+    pub second: [Interval; PAIRS],
+    middle: Slope,
+    /// Half the widths of the region.
+    half: [f64; VARIABLES],
+}
+
+impl Enclosure {
+    /// The independent variable number `index`, over an interval of the region.
+    #[inline(always)]
+    pub fn variable(middle: Lanes, index: usize, half: [f64; VARIABLES]) -> Self {
+        let mut out = Self::fixed(0.0, half);
+        out.value = Interval { middle, radius: Lanes::splat(half[index]) };
+        out.gradient[index] = Interval::point(Lanes::splat(1.0));
+        out.middle = Slope::variable(middle, index);
+        out
+    }
+
+    /// Sine and cosine of the heading: in the middle, and intervals that hold them.
+    #[inline(always)]
+    pub fn heading(middle: [Lanes; 2], [sine, cosine]: [Interval; 2], half: [f64; VARIABLES]) -> (Self, Self) {
+        let negative = |i: Interval| Interval { middle: -i.middle, radius: i.radius };
+        let (mut s, mut c) = (Self::fixed(0.0, half), Self::fixed(0.0, half));
+        (s.value, s.gradient[2], s.second[2]) = (sine, cosine, negative(sine));
+        (c.value, c.gradient[2], c.second[2]) = (cosine, negative(sine), negative(cosine));
+        (s.middle, c.middle) = Slope::heading(middle[0], middle[1]);
+        (s, c)
+    }
+
+    /// Value and gradient in the middle.
+    pub fn middle(&self) -> &Slope {
+        &self.middle
+    }
+
+    #[inline(always)]
+    fn fixed(value: f64, half: [f64; VARIABLES]) -> Self {
+        let zero = Interval::point(ZERO);
+        let middle = Slope::constant(value);
+        Self { value: Interval::point(middle.value), gradient: [zero; VARIABLES], second: [zero; PAIRS], middle, half }
+    }
+
+    /// With each interval cut down to what the middle and the next derivatives leave of it.
+    #[inline]
+    fn tightened(mut self) -> Self {
+        let h = self.half;
+        let max_second = self.second.map(Interval::magnitude);
+        for k in 0..VARIABLES {
+            let radius = (0..PAIRS).fold(ZERO, |sum, p| match PAIR[p] {
+                (i, j) if i == k => sum + max_second[p] * h[j],
+                (i, j) if j == k => sum + max_second[p] * h[i],
+                _ => sum,
+            });
+            self.gradient[k] = self.gradient[k].cut(Interval { middle: self.middle.gradient[k], radius });
+        }
+        let mut radius = ZERO;
+        for k in 0..VARIABLES {
+            radius = radius + self.middle.gradient[k].abs() * h[k];
+        }
+        for (p, (i, j)) in PAIR.iter().enumerate() {
+            radius = radius + max_second[p] * (if i == j { 0.5 } else { 1.0 } * h[*i] * h[*j]);
+        }
+        self.value = self.value.cut(Interval { middle: self.middle.value, radius });
+        self
+    }
+
+    /// A function of it, from intervals that hold its value and first two derivatives, and these in the middle.
+    #[inline(never)]
+    fn through(self, middle: Slope, value: Interval, first: Interval, second: Interval) -> Self {
+        Self {
+            value,
+            gradient: self.gradient.map(|g| g.mul(first)),
+            second: std::array::from_fn(|p| {
+                let (k, l) = PAIR[p];
+                let product = if k == l { self.gradient[k].square() } else { self.gradient[k].mul(self.gradient[l]) };
+                self.second[p].mul(first).add(product.mul(second))
+            }),
+            middle,
+            half: self.half,
+        }
+        .tightened()
+    }
+}
+
+/// The half widths of whichever is not a constant.
+#[inline(always)]
+fn widths(a: &Enclosure, b: &Enclosure) -> [f64; VARIABLES] {
+    std::array::from_fn(|k| a.half[k].max(b.half[k]))
+}
+
+impl Add for Enclosure {
+    type Output = Self;
+    #[inline(never)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value.add(other.value),
+            gradient: std::array::from_fn(|k| self.gradient[k].add(other.gradient[k])),
+            second: std::array::from_fn(|p| self.second[p].add(other.second[p])),
+            middle: self.middle + other.middle,
+            half: widths(&self, &other),
+        }
+        .tightened()
+    }
+}
+
+impl Sub for Enclosure {
+    type Output = Self;
+    #[inline(never)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value.sub(other.value),
+            gradient: std::array::from_fn(|k| self.gradient[k].sub(other.gradient[k])),
+            second: std::array::from_fn(|p| self.second[p].sub(other.second[p])),
+            middle: self.middle - other.middle,
+            half: widths(&self, &other),
+        }
+        .tightened()
+    }
+}
+
+impl Mul for Enclosure {
+    type Output = Self;
+    #[inline(never)]
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (&self, &other);
+        Self {
+            value: a.value.mul(b.value),
+            gradient: std::array::from_fn(|k| a.gradient[k].mul(b.value).add(b.gradient[k].mul(a.value))),
+            second: std::array::from_fn(|p| {
+                let (k, l) = PAIR[p];
+                let outer = a.second[p].mul(b.value).add(b.second[p].mul(a.value));
+                let cross = a.gradient[k].mul(b.gradient[l]);
+                let cross = if k == l { cross.scale(2.0) } else { cross.add(a.gradient[l].mul(b.gradient[k])) };
+                outer.add(cross)
+            }),
+            middle: self.middle * other.middle,
+            half: widths(a, b),
+        }
+        .tightened()
+    }
+}
+
+impl Neg for Enclosure {
+    type Output = Self;
+    #[inline(never)]
+    fn neg(self) -> Self {
+        self.scale(-1.0)
+    }
+}
+
+impl Number for Enclosure {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self::fixed(value, [0.0; VARIABLES])
+    }
+    #[inline(never)]
+    fn scale(self, factor: f64) -> Self {
+        Self {
+            value: self.value.scale(factor),
+            gradient: self.gradient.map(|g| g.scale(factor)),
+            second: self.second.map(|s| s.scale(factor)),
+            middle: self.middle.scale(factor),
+            half: self.half,
+        }
+    }
+    #[inline(always)]
+    fn plus(self, term: f64) -> Self {
+        let value = Interval { middle: self.value.middle + term, radius: self.value.radius };
+        Self { value, middle: self.middle.plus(term), ..self }
+    }
+    #[inline(never)]
+    fn square(self) -> Self {
+        Self {
+            value: self.value.square(),
+            gradient: self.gradient.map(|g| g.mul(self.value).scale(2.0)),
+            second: std::array::from_fn(|p| {
+                let (k, l) = PAIR[p];
+                let product = if k == l { self.gradient[k].square() } else { self.gradient[k].mul(self.gradient[l]) };
+                self.second[p].mul(self.value).add(product).scale(2.0)
+            }),
+            middle: self.middle.square(),
+            half: self.half,
+        }
+        .tightened()
+    }
+    #[inline(never)]
+    fn sqrt(self) -> Self {
+        let (low, high) = (self.value.low().sqrt(), self.value.high().sqrt());
+        let (a, b) = (Lanes::splat(1.0) / high, Lanes::splat(1.0) / low);
+        let first = Interval::between(a * 0.5, b * 0.5);
+        let second = Interval::between(b * b * b * -0.25, a * a * a * -0.25);
+        self.through(self.middle.sqrt(), Interval::between(low, high), first, second)
+    }
+    #[inline(never)]
+    fn inverse_sqrt(self) -> Self {
+        let one = Lanes::splat(1.0);
+        let (a, b) = (one / self.value.high(), one / self.value.low());
+        let (p, q) = (a.sqrt(), b.sqrt());
+        let first = Interval::between(q * b * -0.5, p * a * -0.5);
+        let second = Interval::between(p * a * a * 0.75, q * b * b * 0.75);
+        self.through(self.middle.inverse_sqrt(), Interval::between(p, q), first, second)
+    }
+    #[inline(never)]
+    fn reciprocal(self) -> Self {
+        let (a, b) = (Lanes::splat(1.0) / self.value.high(), Lanes::splat(1.0) / self.value.low());
+        let (a2, b2) = (a * a, b * b);
+        let (a3, b3) = (a2 * a, b2 * b);
+        let first = Interval::between(-(a2.max(b2)), -(a2.min(b2)));
+        let second = Interval::between(a3.min(b3) * 2.0, a3.max(b3) * 2.0);
+        self.through(self.middle.reciprocal(), Interval::between(a.min(b), a.max(b)), first, second)
+    }
+    #[inline(never)]
+    fn elbow(self, links: &Links) -> [Self; 3] {
+        let [s, alpha, beta] = self.middle.elbow(links);
+        let (low, high) = (self.value.low(), self.value.high());
+        let ([s0, d0, c0], [s1, d1, c1]) = (links.sine(low), links.sine(high));
+        // The sine is concave in q, and largest at the right angle.
+        let one = Lanes::splat(1.0);
+        let holds_top = low.at_most(Lanes::splat(links.square())) & Lanes::splat(links.square()).at_most(high);
+        let top = holds_top.select(one, s0.max(s1));
+        let sine = Interval::between(s0.min(s1), top);
+        let first = Interval::between(d1, d0);
+        // The second derivative is largest in magnitude at the ends, least at the right angle, and zero where
+        // continued.
+        let bend = 1.0 / (2.0 * links.upper_arm * links.forearm);
+        let beyond = low.less(Lanes::splat(links.limits[0])) | Lanes::splat(links.limits[1]).less(high);
+        let flattest = beyond.select(Lanes::splat(0.0), holds_top.select(Lanes::splat(-bend * bend), c0.max(c1)));
+        let second = Interval::between(c0.min(c1), flattest);
+        let inverse = Interval::between(one / high, one / low);
+        let inverse2 = Interval::between(one / (high * high), one / (low * low));
+        let inverse3 = Interval::between(one / (high * high * high), one / (low * low * low));
+        let half = 0.5 * (links.upper_arm * links.upper_arm - links.forearm * links.forearm);
+        let area = links.upper_arm * links.forearm;
+        let along = inverse.scale(half);
+        let along = Interval { middle: along.middle + 0.5, radius: along.radius };
+        let across = [
+            sine.mul(inverse),
+            first.mul(inverse).sub(sine.mul(inverse2)),
+            second.mul(inverse).sub(first.mul(inverse2).scale(2.0)).add(sine.mul(inverse3).scale(2.0)),
+        ]
+        .map(|i| i.scale(area));
+        [
+            self.through(s, sine, first, second),
+            self.through(alpha, along, inverse2.scale(-half), inverse3.scale(2.0 * half)),
+            self.through(beta, across[0], across[1], across[2]),
+        ]
+    }
+    #[inline(never)]
+    fn wrist(self, bend: &Bend) -> Self {
+        let (low, high) = (self.value.low(), self.value.high());
+        let ([v0, d0, c0], [v1, d1, c1]) = (bend.inverse(low), bend.inverse(high));
+        // Convex, least at zero, and so is the second derivative where it is not continued; there it is zero.
+        let zero = Lanes::splat(0.0);
+        let holds_zero = low.at_most(zero) & zero.at_most(high);
+        let min_value = holds_zero.select(Lanes::splat(1.0), v0.min(v1));
+        let limit = Lanes::splat(bend.limit);
+        let beyond = limit.less(high) | low.less(-limit);
+        let min_second = beyond.select(zero, holds_zero.select(Lanes::splat(2.0), c0.min(c1)));
+        let second = Interval::between(min_second, c0.max(c1));
+        self.through(
+            self.middle.wrist(bend),
+            Interval::between(min_value, v0.max(v1)),
+            Interval::between(d0, d1),
+            second,
+        )
+    }
+    #[inline(always)]
+    fn is_negative(self) -> Mask {
+        self.value.high().less(ZERO)
+    }
+    #[inline(always)]
+    fn assume_above(self, floor: f64, sure: &mut Mask) -> Self {
+        let floor = Lanes::splat(floor);
+        let fine = floor.less(self.value.low());
+        *sure = *sure & fine;
+        // Elsewhere some number that does no harm.
+        let one = Lanes::splat(1.0);
+        let value =
+            Interval { middle: fine.select(self.value.middle, one), radius: fine.select(self.value.radius, ZERO) };
+        let middle = Slope { value: fine.select(self.middle.value, one), ..self.middle };
+        Self { value, middle, ..self }
+    }
+}

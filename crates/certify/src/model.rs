@@ -1,0 +1,78 @@
+//! What bounds are made of: the arm, how it yields all over the cell, and the path points.
+
+use super::arm::Arm;
+use super::cell::{Yaws, extent, points_of};
+use super::compliance_table::{ComplianceTable, Steps};
+use super::cost::PointCost;
+use super::region::{Point, PolarModel, Region};
+use std::ops::Range;
+use stead_planning::problem::Problem;
+
+/// Steps of the coarsest tables, and their number.
+pub(super) const STEPS: Steps = Steps { length: 0.025, headings: 128 };
+pub(super) const LEVELS: usize = 4;
+
+/// What is to be bounded, prepared.
+#[derive(Debug)]
+pub(super) struct Model {
+    pub arm: Arm,
+    pub table: ComplianceTable,
+    pub points: Vec<Point>,
+    pub segments: Vec<Range<usize>>,
+    /// Largest change of beta from the point before, by its rate alone. rad; infinite without
+    pub rates: Vec<f64>,
+    /// Compliance of joint 1. rad/(N m)
+    pub first: f64,
+    pub yaws: Yaws,
+}
+
+impl Model {
+    /// Of a problem with constant compliances, with the rate of beta, where there is one, or without.
+    pub fn new(problem: &Problem, with_rate: bool) -> Self {
+        let compliances = problem.robot.compliances_at(&[0.0; 6]);
+        let extent = extent(problem);
+        let max_rate = problem.redundancy.max_beta_rate.filter(|_| with_rate);
+        let rate = |point: usize| match max_rate {
+            Some(rate) if point > 0 => rate * problem.step_length(point),
+            _ => f64::INFINITY,
+        };
+        let points = points_of(problem);
+        Self {
+            arm: Arm::new(problem, &compliances, extent.radius.0),
+            table: ComplianceTable::new(extent, STEPS, LEVELS),
+            rates: (0..points.len()).map(rate).collect(),
+            points,
+            segments: problem.task.segments().to_vec(),
+            first: compliances[0],
+            yaws: Yaws::new(problem),
+        }
+    }
+
+    /// The finest level whose nodes answer for every point of a box that is surely off axis 1; `None` for a box that is
+    /// too large, or where there is no such point.
+    pub fn level(&self, region: &Region) -> Option<usize> {
+        let mut placed = self.points.iter().filter_map(|p| p.over(region)).peekable();
+        placed.peek()?;
+        placed.try_fold(usize::MAX, |level, placed| {
+            Some(level.min(self.table.level(placed.reach[0].max(placed.reach[1]))?))
+        })
+    }
+
+    /// Where a point is over a box; `None` where some of it may be nearer to axis 1 than tables reach, so that nothing
+    /// is known.
+    ///
+    /// Tables hold every radius of the cell beyond that, and every height ([`super::cell::extent`]).
+    pub fn placed(&self, point: usize, region: &Region) -> Option<PolarModel> {
+        let placed = self.points[point].over(region)?;
+        // A point is never nearer to axis 1 than the workpiece origin less its distance from there.
+        let nearest = region.middle[0] - region.half[0] - self.points[point].distance;
+        let min_r = nearest.max(placed.r - placed.reach[0]);
+        if min_r < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
+    }
+
+    /// Every point over a box, where something is known of it.
+    pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost>> {
+        let placed = (0..self.points.len()).map(|point| self.placed(point, region));
+        placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.first))).collect()
+    }
+}

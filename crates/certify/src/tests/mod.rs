@@ -1,0 +1,215 @@
+//! Every layer of the certificate against the reference evaluator, and with parts of it broken on purpose.
+//!
+//! Random placements against the bounds of boxes around them see nothing: slack hides what is missing. So each layer is
+//! held against the truth by itself, over regions as small as that layer's slack asks for, at their corners and ends,
+//! and each must see the mutations named in its test.
+
+mod arms;
+mod boxes;
+mod cell;
+mod cells;
+mod certificate;
+mod minorants;
+mod planner;
+
+use super::cell::whole;
+use super::model::Model;
+use super::region::{Point, Region};
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::{PI, TAU};
+use stead_model::robot::testing::robot_from;
+use stead_model::robot::{Frames, PostureClass, Robot};
+use stead_model::stiffness::displacement;
+use stead_planning::feasibility::explain;
+use stead_planning::problem::{Interval, Placement, Problem};
+use stead_planning::testing::{five_segments, hanging, slanted};
+
+/// What is broken on purpose, and how.
+type Breaking<T> = (&'static str, fn(&mut T));
+
+/// A problem, what its bounds are made of, and the reference evaluator in the terms of the certificate.
+pub struct Setting {
+    pub problem: Problem,
+    pub model: Model,
+    pub whole: Region,
+    /// Whether the heading turns with beta or against it.
+    rotation_sign: f64,
+}
+
+/// How the arm yields at an allowed state: by the ordinary inverse kinematics, limits, conditioning and displacement.
+pub struct Truth {
+    /// m, d1, d2, vertical to radial and to tangential, without joint 1. m/N
+    pub values: [f64; 5],
+    /// Normal part under the force of the point. m
+    pub normal: f64,
+}
+
+impl Setting {
+    pub fn new(problem: Problem) -> Self {
+        let (model, whole) = (Model::new(&problem, true), whole(&problem));
+        let turned = |beta: f64| problem.at(&Placement::from([0.0; 4])).base_from_flange(0, beta).rotation;
+        let turn = turned(0.1) * turned(0.0).transpose();
+        let side = problem.robot.geometry().base_from_root[(2, 2)].signum();
+        let rotation_sign = (libm::atan2(turn[(1, 0)], turn[(0, 0)]) * side).signum();
+        Self { problem, model, whole, rotation_sign }
+    }
+
+    /// An upright tool, one from below, forces with a vertical part, an arm upside down, and one with every offset.
+    pub fn all() -> Vec<(&'static str, Self)> {
+        [
+            ("five segments", five_segments()),
+            ("slanted forces", slanted()),
+            ("hanging workpiece", hanging()),
+            ("hanging arm", hanging_arm()),
+            ("odd arm", odd_arm()),
+        ]
+        .map(|(name, problem)| (name, Self::new(problem)))
+        .into()
+    }
+
+    fn side(&self) -> f64 {
+        self.problem.robot.geometry().base_from_root[(2, 2)].signum()
+    }
+
+    /// Pose (x, y, z, yaw) that has the workpiece origin at an azimuth, and its radius, height and turn from the
+    /// certificate.
+    pub fn pose(&self, placement: [f64; 3], azimuth: f64) -> Placement {
+        let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
+        let (sine, cosine) = libm::sincos(azimuth);
+        let [radius, height, turn] = placement;
+        let position = [radius * cosine + root.x, side * radius * sine + root.y, side * height + root.z];
+        Placement { x: position[0], y: position[1], z: position[2], yaw: side * (turn + azimuth) }
+    }
+
+    /// Radius, height and direction of the feed of a point at a placement, by the task's own transforms.
+    pub fn place(&self, placement: [f64; 3], point: usize) -> [f64; 3] {
+        let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
+        let workpiece = self.pose(placement, 0.0).base_from_workpiece();
+        let p = &self.problem.task.points()[point];
+        let (at, feed) = (workpiece.point(&p.position) - root, workpiece.rotation * p.feed);
+        let direction = libm::atan2(side * feed.y, feed.x);
+        [libm::hypot(at.x, at.y), side * at.z, direction - libm::atan2(side * at.y, at.x)]
+    }
+
+    /// A pose that has a point at a radius and height, with its feed in a direction against its azimuth.
+    fn pose_at(&self, point: usize, [r, z, chi]: [f64; 3], azimuth: f64) -> Placement {
+        let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
+        let p = &self.problem.task.points()[point];
+        let yaw = side * (chi + azimuth) - libm::atan2(p.feed.y, p.feed.x);
+        let turned = Placement { x: 0.0, y: 0.0, z: 0.0, yaw }.base_from_workpiece().point(&p.position);
+        let (sine, cosine) = libm::sincos(azimuth);
+        let tip = Vector3::new(r * cosine, side * r * sine, side * z) + root;
+        let origin = tip - turned;
+        Placement { x: origin.x, y: origin.y, z: origin.z, yaw }
+    }
+
+    /// Beta at a heading. rad
+    pub fn beta(&self, heading: f64, chi: f64) -> f64 {
+        self.rotation_sign * (heading - chi)
+    }
+
+    /// The state of a point, where some posture of the class is allowed there.
+    pub fn truth(&self, point: usize, at: [f64; 3], heading: f64, class: PostureClass) -> Option<Truth> {
+        let azimuth = -PI / 2.0;
+        let pose = self.pose_at(point, at, azimuth);
+        let all = explain(&self.problem, &pose, point, self.beta(heading, at[2]));
+        let found = class.postures().into_iter().map(|p| &all[usize::from(p.number()) - 1]).find(|e| e.is_allowed())?;
+        let state = found.state.as_ref()?;
+        let frames = Frames::new(&self.problem.robot, &state.joints);
+        let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
+        let (sine, cosine) = libm::sincos(azimuth);
+        let tip = Vector3::new(at[0] * cosine, side * at[0] * sine, side * at[1]) + root;
+        let mut compliances = self.problem.robot.constant_compliances().unwrap();
+        compliances[0] = 0.0;
+        let radial = Vector3::new(cosine, side * sine, 0.0);
+        let tangential = Vector3::new(-sine, side * cosine, 0.0);
+        let moved = |force: &Vector3<f64>| displacement(&frames, &tip, &compliances, force, &Vector3::zeros()).linear;
+        let (by_radial, by_tangential) = (moved(&radial), moved(&tangential));
+        let (rr, tt) = (by_radial.dot(&radial), by_tangential.dot(&tangential));
+        let up = Vector3::new(0.0, 0.0, side);
+        let values =
+            [(rr + tt) / 2.0, (rr - tt) / 2.0, by_radial.dot(&tangential), by_radial.dot(&up), by_tangential.dot(&up)];
+        // The left of the feed is seen along axis 1, where the evaluator sees it along the tool.
+        let axis = self.problem.task.points()[point].axis.z * side;
+        Some(Truth { values, normal: state.normal_part * axis })
+    }
+
+    /// The class, and a heading of a random allowed state at a placement.
+    pub fn random_state(&self, random: &mut ChaCha8Rng, point: usize, at: [f64; 3]) -> Option<(PostureClass, f64)> {
+        (0..30).find_map(|_| {
+            let class = PostureClass::ALL[random.random_range(0..4)];
+            let heading = TAU * random.random::<f64>();
+            self.truth(point, at, heading, class).map(|_| (class, heading))
+        })
+    }
+}
+
+pub fn seeded(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
+/// One of the ends of [-1, 1], its middle, or anything between.
+pub fn share(random: &mut ChaCha8Rng) -> f64 {
+    match random.random_range(0..8) {
+        0..3 => 1.0,
+        3..6 => -1.0,
+        6 => 0.0,
+        _ => random.random_range(-1.0..1.0),
+    }
+}
+
+pub fn shares(random: &mut ChaCha8Rng) -> [f64; 3] {
+    [share(random), share(random), share(random)]
+}
+
+/// A random path point somewhere in the cell: radius, height, direction of its feed.
+pub fn anywhere(setting: &Setting, random: &mut ChaCha8Rng) -> (usize, [f64; 3]) {
+    let point = random.random_range(0..setting.model.points.len());
+    let middle = setting.whole.middle;
+    let placement = std::array::from_fn(|k| middle[k] + setting.whole.half[k] * random.random_range(-0.95..0.95));
+    (point, setting.place(placement, point))
+}
+
+/// The arm hangs, the tool is upright.
+fn hanging_arm() -> Problem {
+    let mut problem = slanted();
+    let mut joints = problem.robot.joints().clone();
+    joints[0].alpha = PI;
+    problem.robot = Robot::new("hanging", joints).unwrap();
+    problem.cell.position[2] = Interval { min: -1.4, max: -1.0 };
+    problem
+}
+
+/// An arm with offsets at shoulder, elbow and side, and joints 2 and 3 that turn by more than half a turn.
+fn odd_arm() -> Problem {
+    let mut problem = slanted();
+    problem.robot = robot_from([
+        (0.0, 0.1, 0.4, -350.0, 350.0, 1.0),
+        (-90.0, 0.3, 0.07, -150.0, 100.0, 2.0),
+        (0.0, 0.9, -0.02, -170.0, 160.0, 3.0),
+        (90.0, -0.05, 0.8, -350.0, 350.0, 4.0),
+        (-90.0, 0.0, 0.0, -350.0, 350.0, 5.0),
+        (90.0, 0.0, 0.15, -350.0, 350.0, 6.0),
+    ]);
+    problem.cell.position = [(-0.3, 0.3), (-1.5, -1.0), (-0.5, 0.0)].map(|(min, max)| Interval { min, max });
+    problem
+}
+
+#[test]
+fn placements_are_seen_along_axis_1() {
+    for (name, setting) in Setting::all() {
+        let mut random = seeded(1);
+        for _ in 0..200 {
+            let (point, at) = anywhere(&setting, &mut random);
+            let pose = setting.pose_at(point, at, 0.7);
+            let workpiece = pose.base_from_workpiece();
+            let root = setting.problem.robot.geometry().root_in_base;
+            let tip = workpiece.point(&setting.problem.task.points()[point].position) - root;
+            assert!((libm::hypot(tip.x, tip.y) - at[0]).abs() < 1e-12, "{name}");
+            let one: &Point = &setting.model.points[point];
+            assert!(one.distance >= 0.0);
+        }
+    }
+}

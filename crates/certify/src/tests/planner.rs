@@ -1,0 +1,195 @@
+//! Steps of beta, least values of neighbours, and the sum along the path.
+
+use super::super::active_cells::ActiveCells;
+use super::super::cost::{CORNERS, PointCost};
+use super::super::sliding_min::{INFINITE, SlidingMin};
+use super::minorants::local;
+use super::*;
+use crate::compliance_table::Steps;
+use stead_numerics::monitor::Monitor;
+use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
+
+#[test]
+fn windows_hold_the_least_of_their_neighbours() {
+    let mut random = seeded(41);
+    for _ in 0..300 {
+        let count = 64;
+        let values: Vec<[f64; CORNERS]> = (0..count)
+            .map(|_| if random.random_range(0..3) == 0 { INFINITE } else { std::array::from_fn(|_| random.random()) })
+            .collect();
+        let low = random.random_range(-90..90_i32) as isize;
+        let high = low + random.random_range(-1..70_i32) as isize;
+        let mut sliding = SlidingMin::new(count);
+        sliding.compute(&values, low, high);
+        for k in 0..count as isize {
+            for corner in 0..CORNERS {
+                let all = (low..=high).map(|d| values[(k + d).rem_euclid(count as isize) as usize][corner]);
+                assert_eq!(sliding.out[k as usize][corner], all.fold(f64::INFINITY, f64::min));
+            }
+        }
+    }
+}
+
+type Change = fn(isize, isize) -> (isize, isize);
+
+/// Steps within the rate of beta that are forbidden, between random placements' headings, at the ends of cells and of
+/// the rate.
+fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
+    let mut random = seeded(42);
+    let mut wrong = 0;
+    for k in 0..4000 {
+        let count = [128, 256, 1024][k % 3];
+        let width = TAU / count as f64;
+        let middle =
+            std::array::from_fn(|k| setting.whole.middle[k] + setting.whole.half[k] * random.random_range(-0.9..0.9));
+        let size = [1e-6, 0.003, 0.015][random.random_range(0..3)];
+        let region = Region { middle, half: [size; 3] };
+        let span = &setting.model.segments[random.random_range(0..setting.model.segments.len())];
+        let point = random.random_range(span.start + 1..span.end);
+        let pair: Option<Vec<Option<PointCost>>> = [point - 1, point]
+            .iter()
+            .map(|p| {
+                let mut placed = setting.model.points[*p].over(&region)?;
+                if !is_unsure {
+                    (placed.slope_chi, placed.remainder_chi) = ([0.0; 2], 0.0);
+                }
+                Some(Some(PointCost::new(&setting.model.points[*p], placed, 1e-6)))
+            })
+            .collect();
+        let Some(pair) = pair else { continue };
+        // `steps` looks at two neighbours by their numbers.
+        let mut all = vec![pair[0]; point];
+        all.push(pair[1]);
+        let (low, high) = setting.model.steps(&region, &all, point, width);
+        let (low, high) = change(low, high);
+        for _ in 0..8 {
+            let s = shares(&mut random);
+            let placement = std::array::from_fn(|k| region.middle[k] + s[k] * region.half[k]);
+            let (before, here) = (setting.place(placement, point - 1)[2], setting.place(placement, point)[2]);
+            let from = random.random_range(0..count);
+            let heading = width * (from as f64 + 0.5 + share(&mut random) * 0.499_999);
+            let step = share(&mut random) * setting.problem.beta_step(point).half;
+            let heading = heading - before + here + step;
+            let to = (heading / width).floor() as isize;
+            let steps = to - from as isize;
+            wrong += usize::from(!(low..=high).any(|step| (step - steps).rem_euclid(count as isize) == 0));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn no_step_within_the_rate_is_forbidden_and_broken_steps_are_seen() {
+    for (name, setting) in Setting::all() {
+        assert_eq!(forbidden(&setting, |low, high| (low, high), true), 0, "{name}");
+    }
+    let setting = Setting::new(five_segments());
+    let mutations: [(&str, Change, bool); 4] = [
+        ("one step up too short", |low, high| (low, high - 1), true),
+        ("one step down too short", |low, high| (low + 1, high), true),
+        ("heading turned the other way", |low, high| (-high, -low), true),
+        ("spread of the direction over the box left out", |low, high| (low, high), false),
+    ];
+    for (name, change, is_unsure) in mutations {
+        assert!(forbidden(&setting, change, is_unsure) > 0, "{name} is not seen");
+    }
+}
+
+/// A placement near the best, whose plan is known to exist.
+const GOOD: [f64; 3] = [1.6435, -0.5564, 2.24];
+
+/// The bound of a box about it, going down the levels as the search does; and the least that the planner finds inside.
+fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, ActiveCells) {
+    let region = Region { middle: good(setting), half };
+    let model = &setting.model;
+    let planner = Planner::finer(&setting.problem);
+    let mut space = planner.workspace();
+    let mut random = seeded(43);
+    let mut value = f64::INFINITY;
+    for _ in 0..8 {
+        let s = shares(&mut random);
+        let inside = std::array::from_fn(|k| region.middle[k] + s[k] * half[k]);
+        if let Some(mean) = planner.objective(&setting.pose(inside, -PI / 2.0), Sense::Min, None, &mut space).mean() {
+            value = value.min(105.0 * mean);
+        }
+    }
+    let level = model.level(&region).unwrap();
+    let mut active = ActiveCells::full(model.points.len(), model.table.headings(0));
+    let mut found = model.lower_bound(&region, &active, 1.1 * value, &Monitor::silent());
+    while active.level < level {
+        active = found.active.halved();
+        found = model.lower_bound(&region, &active, 1.1 * value, &Monitor::silent());
+    }
+    (found.sum, value, found.active)
+}
+
+/// The best yaw there, by the planner.
+fn good(setting: &Setting) -> [f64; 3] {
+    let planner = Planner::new(&setting.problem);
+    let mut space = planner.workspace();
+    let at = |k: usize| [GOOD[0], GOOD[1], TAU / 60.0 * k as f64];
+    let mut worth = |k: usize| {
+        let pose = setting.pose(at(k), -PI / 2.0);
+        planner.objective(&pose, Sense::Min, None, &mut space).mean().unwrap_or(f64::INFINITY)
+    };
+    let all: Vec<f64> = (0..60).map(&mut worth).collect();
+    at((0..60).min_by(|a, b| all[*a].total_cmp(&all[*b])).unwrap())
+}
+
+#[test]
+fn sums_along_the_path_are_below_plans_and_close() {
+    let setting = Setting::new(five_segments());
+    for (half, close) in [([1e-4; 3], 0.97), ([0.002; 3], 0.8), ([0.006; 3], 0.0)] {
+        let (bound, value, _) = bound_and_value(&setting, half);
+        assert!(value.is_finite() && bound <= value, "{bound} {value}");
+        assert!(bound >= close * value, "no power: {bound} of {value}");
+    }
+}
+
+#[test]
+fn a_broken_sum_is_seen() {
+    let half = [1e-4; 3];
+    let mutations: [Breaking<Setting>; 3] = [
+        ("joint 1 twice", |setting| setting.model.first *= 2.0),
+        ("a segment counted twice", |setting| {
+            let again = setting.model.segments[2].clone();
+            setting.model.segments.push(again);
+        }),
+        ("forces a tenth larger", |setting| {
+            setting.model.points.iter_mut().for_each(|p| p.force = p.force.map(|f| 1.1 * f));
+        }),
+    ];
+    for (name, change) in mutations {
+        let mut setting = Setting::new(five_segments());
+        change(&mut setting);
+        let (bound, value, _) = bound_and_value(&setting, half);
+        assert!(bound > value, "{name} is not seen: {bound} {value}");
+    }
+}
+
+#[test]
+fn boxes_that_tables_do_not_answer_for_are_never_infeasible() {
+    let setting = Setting::new(five_segments());
+    let at = good(&setting);
+    let full = |model: &Model| ActiveCells::full(105, model.table.headings(0));
+    // Too large for the coarsest level.
+    let wide = Region { middle: at, half: [0.3, 0.0, 0.0] };
+    let found = setting.model.lower_bound(&wide, &full(&setting.model), f64::INFINITY, &Monitor::silent());
+    assert_eq!(found.sum, 0.0);
+    assert_eq!(found.active, full(&setting.model));
+    // Outside a table, on every side.
+    let steps = Steps { length: 0.025, headings: 128 };
+    for (radius, height) in
+        [((0.5, 0.9), (-0.7, 0.0)), ((3.0, 3.4), (-0.7, 0.0)), ((1.2, 2.4), (1.0, 2.0)), ((1.2, 2.4), (-4.0, -3.0))]
+    {
+        let model = local(&setting, radius, height, steps, 1);
+        let region = Region { middle: at, half: [1e-3; 3] };
+        let found = model.lower_bound(&region, &full(&model), f64::INFINITY, &Monitor::silent());
+        assert_eq!(found.sum, 0.0);
+        assert_eq!(found.active, full(&model));
+    }
+    // About axis 1.
+    let region = Region { middle: [0.1, -0.5, 0.0], half: [0.1, 0.01, 3.0] };
+    assert_eq!(setting.model.lower_bound(&region, &full(&setting.model), f64::INFINITY, &Monitor::silent()).sum, 0.0);
+}

@@ -1,0 +1,286 @@
+//! The batch evaluator: one path point, all grid values of beta, all posture classes.
+//!
+//! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
+//! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
+//! quantities, one state at a time and by way of the Jacobian, come from
+//! [`PlacedTask::state`](crate::problem::PlacedTask::state); the tests hold the two against each other.
+//!
+//! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the
+//! frame turned with joint 1, where the arm is a plane mechanism; joint angles are never computed, only their sines and
+//! cosines (but where a compliance is given over the angle itself); what the first three joints rule out never reaches
+//! the wrist; and all is done in the widest vectors that the processor has ([`stead_numerics::simd`]), to the same bits
+//! with each.
+
+mod arm;
+mod deviation;
+mod laws;
+mod limit;
+mod pose;
+mod states;
+mod wrist;
+
+pub use states::StateGrid;
+
+use crate::constraints::{ConstraintKind, relaxed};
+use crate::criterion::Aggregate;
+use crate::problem::{Placement, Problem, Redundancy};
+use deviation::Deviation;
+use laws::Laws;
+use limit::Limit;
+use nalgebra::{Matrix3, Vector3};
+use pulp::{Simd, WithSimd};
+use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
+use stead_model::task::PathPoint;
+use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
+use wrist::Demand;
+
+/// What does not change from one placement to the next.
+#[derive(Debug, Clone)]
+pub struct BatchEvaluator<'a> {
+    problem: &'a Problem,
+    count: usize,
+    cosine: Vec<f64>,
+    sine: Vec<f64>,
+    limits: [Limit; 6],
+    /// For each set of compliances its laws, and what is known of them.
+    sets: Vec<(Laws, Option<Deviation>)>,
+    /// Whether the largest score over the sets counts, and not their mean.
+    is_over_worst: bool,
+    flips: Flips,
+    forearm_sin_cos: (f64, f64),
+    /// The axes of the flange in the tool frame.
+    tool_from_flange: [Vector3<f64>; 3],
+    /// Tool centre point from the wrist centre, in the tool frame. m
+    lever: Vector3<f64>,
+    /// The axes of every path point in the workpiece frame.
+    workpiece_from_point: Vec<Matrix3<f64>>,
+    instructions: Instructions,
+}
+
+/// Which of the two postures of a class are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flips {
+    /// Both as one, for arms that yield alike in both ([`Robot::flips_yield_alike`]): the score is that of either.
+    Both,
+    /// The one with theta_5 not negative.
+    Plain,
+    /// The one with theta_5 negative.
+    Flipped,
+}
+
+impl Flips {
+    /// What evaluators a problem needs: one for both postures of a class, or one for each.
+    pub fn of(problem: &Problem) -> &'static [Self] {
+        if problem.scored_robots().iter().all(Robot::flips_yield_alike) {
+            &[Self::Both]
+        } else {
+            &[Self::Plain, Self::Flipped]
+        }
+    }
+
+    /// Whether a posture is among them.
+    pub fn contains(self, posture: Posture) -> bool {
+        match self {
+            Self::Both => true,
+            Self::Plain => !posture.is_flipped(),
+            Self::Flipped => posture.is_flipped(),
+        }
+    }
+}
+
+/// A direction or vector of the flange as it turns with beta, in the root frame: `a + b cos(beta) + c sin(beta)`.
+#[derive(Debug, Clone, Copy)]
+struct Turning {
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    c: Vector3<f64>,
+}
+
+impl Turning {
+    /// A vector given in the tool frame, on point axes given as columns in the root frame (Caro 2013, eq. 7 and 10).
+    fn new(axes: &Matrix3<f64>, v: &Vector3<f64>) -> Self {
+        let (x, y, z) = (axes.column(0), axes.column(1), axes.column(2));
+        Self { a: -z * v.z, b: x * v.x - y * v.y, c: x * v.y + y * v.x }
+    }
+
+    #[inline(always)]
+    fn at<S: Simd>(&self, k: usize, cosine: Lanes<S>, sine: Lanes<S>) -> Lanes<S> {
+        cosine * self.b[k] + sine * self.c[k] + self.a[k]
+    }
+}
+
+/// One path point at one placement, in the root frame of the arm.
+#[derive(Debug, Clone, Copy)]
+struct PointGeometry {
+    tip: Vector3<f64>,
+    x6: Turning,
+    y6: Turning,
+    z6: Turning,
+    lever: Turning,
+    /// See [`ScoredDirections`](crate::criterion::ScoredDirections); zero beyond their number.
+    directions: [Vector3<f64>; 3],
+    force: Vector3<f64>,
+    moment: Vector3<f64>,
+    /// Size of the force error that scores cover. N
+    uncertainty: f64,
+    weight: f64,
+}
+
+impl<'a> BatchEvaluator<'a> {
+    /// Prepares the evaluation of a problem on a grid of beta, in one or both postures of each class.
+    pub fn new(problem: &'a Problem, grid: &Redundancy, flips: Flips) -> Self {
+        let count = grid.beta_count;
+        let padded = count.next_multiple_of(MAX_LANES);
+        let angle = |k: usize| libm::sincos(grid.beta(k % count));
+        let tool_from_flange = problem.spindle.flange_from_tool.inverse().rotation;
+        let mut lever = problem.spindle.flange_from_tool.translation;
+        lever.z += problem.robot.geometry().flange;
+        let limits = std::array::from_fn(|j| Limit::new(Range::of(&problem.robot.joints()[j])));
+        Self {
+            problem,
+            count,
+            cosine: (0..padded).map(|k| angle(k).1).collect(),
+            sine: (0..padded).map(|k| angle(k).0).collect(),
+            limits,
+            sets: problem
+                .scored_robots()
+                .iter()
+                .map(|robot| (Laws::new(robot), Deviation::new(robot, problem.criterion.confidence)))
+                .collect(),
+            is_over_worst: problem.is_over_worst(),
+            flips,
+            forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
+            tool_from_flange: std::array::from_fn(|k| tool_from_flange.column(k).into_owned()),
+            lever: tool_from_flange * lever,
+            workpiece_from_point: problem.task.points().iter().map(PathPoint::workpiece_from_point).collect(),
+            instructions: Instructions::best(),
+        }
+    }
+
+    /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint
+    /// limits are seen joint by joint, in either flip of the wrist.
+    pub fn relaxed(&self) -> Vec<ConstraintKind> {
+        use ConstraintKind::{BaseDistance, Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, BaseDistance, Conditioning, MaxDeflection];
+        evaluated.extend((1..=6).map(JointLimit));
+        relaxed(self.problem, &evaluated)
+    }
+
+    /// Which of the two postures of a class are evaluated.
+    pub fn flips(&self) -> Flips {
+        self.flips
+    }
+
+    /// The same with other instructions of the processor; the results are the same too.
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
+    }
+
+    /// Evaluates path point `point` with the workpiece at a placement into `states`.
+    ///
+    /// Allowed states get what they add to the cost of a plan ([`Problem::point_cost`]; by default their score, m) and
+    /// the sines and cosines of their joint angles (theta_5 not negative), all others an infinite score. A state is
+    /// allowed when one of the postures requested is inside the limits of every joint by itself; turns, and limits that
+    /// tell two postures apart, are checked by the planner.
+    pub fn evaluate(&self, point: usize, placement: &Placement, states: &mut StateGrid) {
+        self.evaluate_classes(point, placement, [true; 4], states);
+    }
+
+    /// The same with states of some posture classes only, by their [`PostureClass::index`].
+    pub fn evaluate_classes(&self, point: usize, placement: &Placement, classes: [bool; 4], states: &mut StateGrid) {
+        let geometry = self.point_geometry(point, placement);
+        for class in PostureClass::ALL {
+            states.clear(class);
+        }
+        let min_distance = self.problem.constraints.min_base_distance;
+        if min_distance > 0.0 && libm::hypot(geometry.tip.x, geometry.tip.y) < min_distance {
+            return;
+        }
+        self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
+    }
+
+    fn point_geometry(&self, point: usize, placement: &Placement) -> PointGeometry {
+        let g = self.problem.robot.geometry();
+        let root_from_base = g.base_from_root.transpose();
+        let workpiece = self.problem.base_from_workpiece(point, placement);
+        let path_point = &self.problem.task.points()[point];
+        let wrench = &self.problem.task.wrenches()[point];
+        let rotation = root_from_base * workpiece.rotation;
+        let axes = rotation * self.workpiece_from_point[point];
+        let flange_axis = |k: usize| Turning::new(&axes, &self.tool_from_flange[k]);
+        PointGeometry {
+            tip: root_from_base * (workpiece.point(&path_point.position) - g.root_in_base),
+            x6: flange_axis(0),
+            y6: flange_axis(1),
+            z6: flange_axis(2),
+            lever: Turning::new(&axes, &self.lever),
+            directions: *self.problem.scored_directions(point, &axes).padded(),
+            force: rotation * wrench.force,
+            moment: rotation * wrench.moment,
+            uncertainty: self.problem.criterion.force_uncertainty * wrench.force.norm(),
+            weight: self.problem.point_weight(point),
+        }
+    }
+}
+
+/// The evaluation of one point, for any instructions of the processor.
+struct Evaluation<'k> {
+    evaluator: &'k BatchEvaluator<'k>,
+    geometry: &'k PointGeometry,
+    classes: [bool; 4],
+    states: &'k mut StateGrid,
+}
+
+impl WithSimd for Evaluation<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let is_plain = self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [(_, None)]);
+        match (self.evaluator.problem.criterion.weights.is_single(), is_plain) {
+            (true, true) => self.batches::<S, true, 1>(simd),
+            (true, false) => self.batches::<S, false, 1>(simd),
+            (false, true) => self.batches::<S, true, 3>(simd),
+            (false, false) => self.batches::<S, false, 3>(simd),
+        }
+    }
+}
+
+impl Evaluation<'_> {
+    /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of compliances,
+    /// and scores cover no errors.
+    #[inline(always)]
+    fn batches<S: Simd, const PLAIN: bool, const N: usize>(self, simd: S) {
+        let Self { evaluator, geometry, classes, states } = self;
+        let infinity = Lanes::splat(simd, f64::INFINITY);
+        let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
+        for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
+            let cosine = Lanes::load(simd, &evaluator.cosine, start);
+            let sine = Lanes::load(simd, &evaluator.sine, start);
+            let centre = evaluator.centre(simd, geometry, cosine, sine);
+            for back in [false, true] {
+                let arm = evaluator.arm(simd, &centre, back);
+                if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
+                    continue;
+                }
+                let demand = Demand::<S, N>::new(simd, geometry, &arm, cosine, sine);
+                for (negative, elbow) in arm.elbows.iter().enumerate() {
+                    let class = PostureClass::ALL[2 * usize::from(back) + negative];
+                    if !classes[class.index()] || !elbow.allowed.any() {
+                        continue;
+                    }
+                    let found = evaluator.wrist::<S, PLAIN, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    if let Some((score, directions)) = found {
+                        let cost = if is_squared { score * score } else { score };
+                        // A point of no weight has forbidden states too.
+                        let cost = score.less(infinity).select(cost * geometry.weight, infinity);
+                        states.set_lanes(class, start, cost, &directions);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

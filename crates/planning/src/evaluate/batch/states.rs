@@ -1,0 +1,156 @@
+//! Where the evaluator writes and the planner reads.
+
+use pulp::Simd;
+use stead_model::robot::PostureClass;
+use stead_numerics::simd::{Lanes, MAX_LANES};
+
+/// Score and joint angles of all states of one path point: for each posture class thirteen rows over beta. The score is
+/// what the state adds to the cost of a plan.
+///
+/// Joint angles are kept as sines and cosines. Each row is continued cyclically by `pad` values at both ends, so that a
+/// planner can look to either side of beta without taking remainders: entry `pad + k` belongs to beta number k.
+#[derive(Debug, Clone)]
+pub struct StateGrid {
+    count: usize,
+    pad: usize,
+    stride: usize,
+    data: Vec<f64>,
+    alive: [bool; 4],
+}
+
+/// Score, and sine and cosine of six joints.
+const ROWS: usize = 13;
+
+impl StateGrid {
+    /// Room for `count` grid values of beta, continued by `pad` at both ends.
+    pub fn new(count: usize, pad: usize) -> Self {
+        // A few more, so that the last batch of lanes may run over.
+        let stride = (count + 2 * pad).next_multiple_of(MAX_LANES) + MAX_LANES;
+        Self { count, pad, stride, data: vec![f64::INFINITY; 4 * ROWS * stride], alive: [false; 4] }
+    }
+
+    /// Number of grid values.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// How far rows are continued at both ends.
+    pub fn pad(&self) -> usize {
+        self.pad
+    }
+
+    /// Whether any state of the class is allowed.
+    pub fn is_alive(&self, class: PostureClass) -> bool {
+        self.alive[class.index()]
+    }
+
+    /// Marks every state of a class as not allowed.
+    pub fn clear(&mut self, class: PostureClass) {
+        if self.alive[class.index()] {
+            self.scores_mut(class).fill(f64::INFINITY);
+        }
+        self.alive[class.index()] = false;
+    }
+
+    /// Marks states of a class, by their numbers of beta, as not allowed.
+    pub fn forbid(&mut self, class: PostureClass, betas: impl Iterator<Item = usize>) {
+        let (pad, count) = (self.pad, self.count);
+        let scores = &mut self.scores_mut(class)[pad..pad + count];
+        for beta in betas.filter(|beta| *beta < count) {
+            scores[beta] = f64::INFINITY;
+        }
+        if !scores.iter().any(|score| score.is_finite()) {
+            self.clear(class);
+        }
+    }
+
+    /// Marks all states but those of one number of beta as not allowed.
+    pub fn keep_beta(&mut self, only: usize) {
+        for class in PostureClass::ALL.into_iter().filter(|class| self.alive[class.index()]).collect::<Vec<_>>() {
+            self.forbid(class, (0..self.count).filter(|beta| *beta != only));
+        }
+    }
+
+    /// Scores with their cyclic continuation. m, infinite where not allowed
+    pub fn scores(&self, class: PostureClass) -> &[f64] {
+        self.row(class, 0)
+    }
+
+    /// Scores without continuation. m, infinite where not allowed
+    pub fn inner_scores(&self, class: PostureClass) -> &[f64] {
+        &self.scores(class)[self.pad..self.pad + self.count]
+    }
+
+    /// Sines and cosines of a joint's angles (joint from 0) with their cyclic continuation, meaningful where the score
+    /// is finite.
+    pub fn directions(&self, class: PostureClass, joint: usize) -> [&[f64]; 2] {
+        [self.row(class, 1 + 2 * joint), self.row(class, 2 + 2 * joint)]
+    }
+
+    /// The score row, to be overwritten by the planner with accumulated costs.
+    pub fn scores_mut(&mut self, class: PostureClass) -> &mut [f64] {
+        let start = class.index() * ROWS * self.stride;
+        &mut self.data[start..start + self.stride]
+    }
+
+    /// The score row, to be overwritten, beside [`StateGrid::all_directions`].
+    #[inline(always)]
+    pub fn scores_and_directions(&mut self, class: PostureClass) -> (&mut [f64], &[f64]) {
+        let stride = self.stride;
+        let (scores, directions) = self.data[class.index() * ROWS * stride..][..ROWS * stride].split_at_mut(stride);
+        (scores, directions)
+    }
+
+    /// The rows of [`StateGrid::directions`] of all joints, one behind the other, each as long as
+    /// [`StateGrid::scores`].
+    #[inline(always)]
+    pub fn all_directions(&self, class: PostureClass) -> &[f64] {
+        &self.data[(class.index() * ROWS + 1) * self.stride..][..(ROWS - 1) * self.stride]
+    }
+
+    /// Writes one state: beta number `beta`, its score (m) and joint angles (rad).
+    pub fn set(&mut self, class: PostureClass, beta: usize, score: f64, joints: [f64; 6]) {
+        let place = class.index() * ROWS * self.stride + self.pad + beta;
+        self.alive[class.index()] = true;
+        self.data[place] = score;
+        for (j, angle) in joints.into_iter().enumerate() {
+            let (sine, cosine) = libm::sincos(angle);
+            self.data[place + (1 + 2 * j) * self.stride] = sine;
+            self.data[place + (2 + 2 * j) * self.stride] = cosine;
+        }
+    }
+
+    /// Writes states side by side, the first one of beta number `beta`; scores are infinite where not allowed, and some
+    /// are not.
+    #[inline(always)]
+    pub(super) fn set_lanes<S: Simd>(
+        &mut self,
+        class: PostureClass,
+        beta: usize,
+        score: Lanes<S>,
+        directions: &[[Lanes<S>; 2]; 6],
+    ) {
+        let stride = self.stride;
+        self.alive[class.index()] = true;
+        let rows = &mut self.data[class.index() * ROWS * stride..][..ROWS * stride];
+        let place = self.pad + beta;
+        score.store(rows, place);
+        for j in 0..6 {
+            directions[j][0].store(rows, (1 + 2 * j) * stride + place);
+            directions[j][1].store(rows, (2 + 2 * j) * stride + place);
+        }
+    }
+
+    /// Continues the rows of a class cyclically after they were written.
+    pub fn wrap_around(&mut self, class: PostureClass) {
+        let (count, pad) = (self.count, self.pad);
+        for row in self.data[class.index() * ROWS * self.stride..][..ROWS * self.stride].chunks_exact_mut(self.stride) {
+            row.copy_within(count..count + pad, 0);
+            row.copy_within(pad..2 * pad, count + pad);
+        }
+    }
+
+    fn row(&self, class: PostureClass, row: usize) -> &[f64] {
+        &self.data[(class.index() * ROWS + row) * self.stride..][..self.stride]
+    }
+}

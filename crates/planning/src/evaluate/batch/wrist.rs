@@ -1,0 +1,160 @@
+//! The second half of the batch evaluator: wrist, conditioning and score of the states that the first three joints
+//! allow.
+
+use super::arm::{Arm, Elbow};
+use super::pose::{Directions, Load, Pose, Vector, turned};
+use super::{BatchEvaluator, Deviation, Flips, Laws, PointGeometry, Turning};
+use nalgebra::Vector3;
+use pulp::Simd;
+use stead_numerics::simd::Lanes;
+
+/// What the tool is to do, in the frame of joint 1: the same for both elbows.
+pub(super) struct Demand<S: Simd, const N: usize> {
+    x6: Vector<S>,
+    y6: Vector<S>,
+    z6: Vector<S>,
+    lever: Vector<S>,
+    load: Load<S, N>,
+}
+
+impl<S: Simd, const N: usize> Demand<S, N> {
+    #[inline(always)]
+    pub fn new(simd: S, geometry: &PointGeometry, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Self {
+        let force = Self::constant(simd, &geometry.force, arm);
+        // A loop and not a closure, which would be compiled without the processor's wide instructions.
+        let mut directions = [force; N];
+        for (turned, direction) in directions.iter_mut().zip(&geometry.directions) {
+            *turned = Self::constant(simd, direction, arm);
+        }
+        Self {
+            x6: Self::turning(&geometry.x6, arm, cosine, sine),
+            y6: Self::turning(&geometry.y6, arm, cosine, sine),
+            z6: Self::turning(&geometry.z6, arm, cosine, sine),
+            lever: Self::turning(&geometry.lever, arm, cosine, sine),
+            load: Load { directions, force, moment: Self::constant(simd, &geometry.moment, arm) },
+        }
+    }
+
+    #[inline(always)]
+    fn turning(v: &Turning, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Vector<S> {
+        turned([v.at(0, cosine, sine), v.at(1, cosine, sine), v.at(2, cosine, sine)], arm.sin1, arm.cos1)
+    }
+
+    #[inline(always)]
+    fn constant(simd: S, v: &Vector3<f64>, arm: &Arm<S>) -> Vector<S> {
+        turned([Lanes::splat(simd, v.x), Lanes::splat(simd, v.y), Lanes::splat(simd, v.z)], arm.sin1, arm.cos1)
+    }
+}
+
+impl BatchEvaluator<'_> {
+    /// Scores of the states with one elbow, infinite where not allowed, and the sines and cosines of their joint angles
+    /// (theta_5 not negative); nothing where none is allowed. `PLAIN` where there is one set of compliances, and scores
+    /// cover no errors.
+    #[inline(always)]
+    pub(super) fn wrist<S: Simd, const PLAIN: bool, const N: usize>(
+        &self,
+        simd: S,
+        uncertainty: f64,
+        demand: &Demand<S, N>,
+        arm: &Arm<S>,
+        elbow: &Elbow<S>,
+    ) -> Option<(Lanes<S>, Directions<S>)> {
+        let g = self.problem.robot.geometry();
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+        let Demand { x6, y6, z6, lever, .. } = *demand;
+        let (s2, c2) = (elbow.sin2, elbow.cos2);
+
+        // Elbow and forearm: the bar from elbow to wrist centre, turned back by its constant angle, is x3.
+        let (forward, height) = (arm.forward, arm.height);
+        let u = forward - g.shoulder_radius;
+        let u3 = u - c2 * g.upper_arm;
+        let height3 = height - s2 * (g.lift * g.upper_arm);
+        let (bar_cos, bar_sin) = (u3 * (1.0 / g.forearm), height3 * (g.lift / g.forearm));
+        let (sin_bar_angle, cos_bar_angle) = (self.forearm_sin_cos.0 * g.fold, self.forearm_sin_cos.1);
+        let cos_psi = bar_cos * cos_bar_angle + bar_sin * sin_bar_angle;
+        let sin_psi = bar_sin * cos_bar_angle - bar_cos * sin_bar_angle;
+        let twist4 = g.fold * g.twist[0];
+        let z4 = Vector { x: sin_psi * twist4, y: zero, z: cos_psi * (-twist4 * g.lift) };
+
+        // Wrist, with theta_5 not negative.
+        let [_, s5, s6] = g.twist;
+        let m1 = z6.x * cos_psi + z6.z * sin_psi * g.lift;
+        let m2 = z6.y * (-twist4 * g.lift);
+        let dot46 = z6.x * z4.x + z6.z * z4.z;
+        let sine5_squared = m1 * m1 + m2 * m2;
+        let sine5 = sine5_squared.sqrt();
+        let per_sine = one / sine5;
+        let z5 = z4.cross(z6).scale(per_sine);
+        let pose = Pose { u, height, u3, height3, forward, lever, z4, z5, z6, dot46, sine5_squared };
+
+        let inverse_condition = pose.inverse_condition(simd, g.lateral, self.problem.constraints.characteristic_length);
+        let conditioned = Lanes::splat(simd, self.problem.constraints.min_inverse_condition).at_most(inverse_condition);
+        // Joints 4, 5 and 6; flipped, joint 5 is bent to the other side, and joints 4 and 6 point the other way.
+        let fifth = [sine5, dot46 * (-s5 * s6)];
+        let fourth = [m2 * s6, m1 * s6];
+        let sixth = [z4.dot(y6) * -s5, z4.dot(x6) * s5];
+        let [l4, l5, l6] = [self.limits[3], self.limits[4], self.limits[5]];
+        let plain = l4.allows(simd, fourth) & l5.allows(simd, fifth) & l6.allows(simd, sixth);
+        let flipped = l4.allows(simd, [-fourth[0], -fourth[1]])
+            & l5.allows(simd, [-fifth[0], fifth[1]])
+            & l6.allows(simd, [-sixth[0], -sixth[1]]);
+        let mut allowed = elbow.allowed
+            & conditioned
+            & match self.flips {
+                Flips::Both => plain | flipped,
+                Flips::Plain => plain,
+                Flips::Flipped => flipped,
+            };
+        if !allowed.any() {
+            return None;
+        }
+
+        let fourth = [fourth[0] * per_sine, fourth[1] * per_sine];
+        let sixth = [sixth[0] * per_sine, sixth[1] * per_sine];
+        let directions = [[arm.sin1, arm.cos1], [s2, c2], elbow.third, fourth, fifth, sixth];
+        let mut turned = directions;
+        if self.flips == Flips::Flipped {
+            turned[3] = [-fourth[0], -fourth[1]];
+            turned[4] = [-fifth[0], fifth[1]];
+            turned[5] = [-sixth[0], -sixth[1]];
+        }
+        let mut score =
+            self.score_of_set::<S, PLAIN, N>(simd, &self.sets[0], &pose, &demand.load, &turned, uncertainty);
+        if !PLAIN {
+            for set in &self.sets[1..] {
+                let other = self.score_of_set::<S, PLAIN, N>(simd, set, &pose, &demand.load, &turned, uncertainty);
+                score = if self.is_over_worst { score.max(other) } else { score + other };
+            }
+            if !self.is_over_worst {
+                score = score * (1.0 / self.sets.len() as f64);
+            }
+        }
+        if let Some(limit) = self.problem.constraints.max_deflection {
+            allowed = allowed & score.at_most(Lanes::splat(simd, limit));
+            if !allowed.any() {
+                return None;
+            }
+        }
+        Some((allowed.select(score, Lanes::splat(simd, f64::INFINITY)), directions))
+    }
+
+    /// Scores with one set of compliances.
+    #[inline(always)]
+    fn score_of_set<S: Simd, const PLAIN: bool, const N: usize>(
+        &self,
+        simd: S,
+        (laws, deviation): &(Laws, Option<Deviation>),
+        pose: &Pose<S>,
+        load: &Load<S, N>,
+        directions: &Directions<S>,
+        uncertainty: f64,
+    ) -> Lanes<S> {
+        let compliances = laws.at(simd, &self.limits, directions);
+        let lateral = self.problem.robot.geometry().lateral;
+        let (score, parts) = pose.score::<PLAIN, N>(simd, lateral, &compliances, load, uncertainty);
+        match deviation {
+            Some(deviation) if !PLAIN => score + deviation.margin(simd, &self.limits, &parts, directions, &compliances),
+            _ => score,
+        }
+    }
+}

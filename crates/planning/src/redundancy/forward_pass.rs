@@ -1,0 +1,371 @@
+//! The dynamic programming of [`super::transition`] along a segment.
+//!
+//! Point by point: the batch evaluator fills a fresh set of states, and each state takes its cheapest predecessor. Only
+//! the last two points are kept, and for each state the way it came: of a long segment only for a block of points,
+//! since the joint_paths of the others can be found again from the costs at the start of their block. So memory grows
+//! with the square root of the number of points, and time with their number.
+//!
+//! Where points are dense the pass goes from knot to knot ([`super::knots`]), and the points between add to what a step
+//! costs.
+
+use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
+use super::between::{CyclicRow, Joining};
+use super::knots::{Knot, Place};
+use super::rate_limit::BetaChange;
+use super::transition::{JointStep, Step, advance, advance_over, begin};
+use super::{SegmentPlanner, Sense, Workspace};
+use crate::problem::{MAX_JOINT_STEP, Placement};
+use std::ops::Range as Span;
+use stead_model::robot::{Posture, PostureClass};
+
+/// What one pass over a segment found.
+#[derive(Debug, Clone)]
+pub(super) struct ForwardPass {
+    /// For each class the smallest sum of signed scores and the beta number at the end.
+    pub ends: [Option<(f64, usize)>; 4],
+    /// For each class the first point that it cannot get to.
+    pub stuck: [Option<usize>; 4],
+    /// Points without an allowed state in any class requested, ascending.
+    pub blocked: Vec<usize>,
+}
+
+impl ForwardPass {
+    /// The first point that the class that gets farthest cannot get to: the last one, where a class gets through but
+    /// for the turns of its joints.
+    pub fn farthest(&self, span: &Span<usize>) -> usize {
+        let last = span.end - 1;
+        if self.ends.iter().any(Option::is_some) {
+            last
+        } else {
+            self.stuck.iter().flatten().copied().max().unwrap_or(last)
+        }
+    }
+}
+
+/// The joint_paths by which states were reached, and the costs from which they can be found again.
+#[derive(Debug, Clone)]
+pub(super) struct Record {
+    count: usize,
+    /// Number of steps whose joint_paths are kept.
+    block: usize,
+    /// For each step of a block and each class the shifts to the predecessors, over beta.
+    joint_paths: Vec<i16>,
+    /// For the first point of each block and each class the costs over beta; nothing of segments of one block.
+    costs: Vec<f64>,
+    /// For each knot of the segment last gone through and each class the costs over beta up to there; nothing of long
+    /// segments.
+    reached: Vec<f64>,
+}
+
+/// Costs of all knots are kept of segments with no more numbers than this.
+const MAX_REACHED: usize = 1 << 21;
+
+/// Segments whose joint_paths take no more numbers than this are kept whole.
+const MAX_WAYS: usize = 1 << 25;
+
+impl Record {
+    /// Room for segments of up to `longest` points with `count` values of beta.
+    pub fn new(longest: usize, count: usize) -> Self {
+        Self::with_capacity_of(longest, count, MAX_WAYS)
+    }
+
+    /// The same with at most so many numbers kept, if a block may be that short.
+    pub fn with_capacity_of(longest: usize, count: usize, max_numbers: usize) -> Self {
+        let block = (max_numbers / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
+        Self { count, block, joint_paths: vec![0; block * 4 * count], costs: Vec::new(), reached: Vec::new() }
+    }
+
+    /// The row for the way to the point at `place` of its segment.
+    fn way(&mut self, place: usize, class: PostureClass) -> &mut [i16] {
+        let row = place.wrapping_sub(1) % self.block;
+        &mut self.joint_paths[(row * 4 + class.index()) * self.count..][..self.count]
+    }
+
+    /// Whether a block begins at this place of a segment of `length` points.
+    fn begins(&self, place: usize, length: usize) -> bool {
+        length > self.block + 1 && place.is_multiple_of(self.block)
+    }
+
+    /// Adds the costs of all classes at a knot.
+    fn keep(costs: &mut Vec<f64>, states: &StateGrid) {
+        for class in PostureClass::ALL {
+            if states.is_alive(class) {
+                costs.extend_from_slice(states.inner_scores(class));
+            } else {
+                costs.resize(costs.len() + states.count(), f64::INFINITY);
+            }
+        }
+    }
+
+    /// The costs over beta of a class up to a knot, without regard to flips and turns, where they are kept: signed,
+    /// infinite where a state is not reached.
+    pub fn reached(&self, knot: usize, class: PostureClass) -> Option<&[f64]> {
+        self.reached.get((knot * 4 + class.index()) * self.count..)?.get(..self.count)
+    }
+
+    /// The costs at the beginning of a block.
+    fn kept(&self, block: usize, class: PostureClass) -> &[f64] {
+        &self.costs[(block * 4 + class.index()) * self.count..][..self.count]
+    }
+}
+
+/// What is planned in a pass: for the workpiece at `placement`, one segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pass<'p> {
+    pub evaluator: &'p BatchEvaluator<'p>,
+    pub span: &'p Span<usize>,
+    pub placement: &'p Placement,
+    pub sense: Sense,
+    /// Whether it goes from knot to knot, or else from point to point.
+    pub is_by_knots: bool,
+}
+
+impl SegmentPlanner<'_> {
+    /// What bounds the step to path point `point` from the one before.
+    pub fn step(&self, point: usize, sense: Sense) -> Step {
+        self.step_over(point, self.changes[point], 1, sense)
+    }
+
+    /// By how much each joint may step to a path point from the one so many points before. rad
+    pub(super) fn joint_limits(&self, point: usize, points: usize) -> [f64; 6] {
+        let mut limits = self.steps[point];
+        for other in point + 1 - points..point {
+            limits.iter_mut().zip(self.steps[other]).for_each(|(sum, limit)| *sum = MAX_JOINT_STEP.min(*sum + limit));
+        }
+        limits
+    }
+
+    /// What bounds the step to a path point from the one so many points before.
+    fn step_over(&self, point: usize, change: BetaChange, points: usize, sense: Sense) -> Step {
+        let limits = self.joint_limits(point, points);
+        Step {
+            change,
+            joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
+            sense,
+            aggregate: self.problem.criterion.aggregate,
+            travel: self.travel_cost(sense),
+            instructions: self.instructions,
+        }
+    }
+
+    /// What a point is to a pass.
+    pub(super) fn place(&self, pass: Pass<'_>, point: usize) -> Place {
+        match pass.is_by_knots {
+            true => self.knots.at(point),
+            false => Place::Knot(Knot {
+                number: point - pass.span.start,
+                change: self.changes[point],
+                points: 1,
+                middle: 0.0,
+            }),
+        }
+    }
+
+    /// The path point of a knot of a pass.
+    pub(super) fn knot(&self, pass: Pass<'_>, number: usize) -> usize {
+        if pass.is_by_knots { self.knots.of(pass.span)[number] } else { pass.span.start + number }
+    }
+
+    /// Number of knots of a pass.
+    pub(super) fn knot_count(&self, pass: Pass<'_>) -> usize {
+        if pass.is_by_knots { self.knots.of(pass.span).len() } else { pass.span.len() }
+    }
+
+    /// Adds the scores of a point between knots to the costs of the run; false when no state is left.
+    pub(super) fn add_between(
+        &self,
+        pass: Pass<'_>,
+        point: usize,
+        class: PostureClass,
+        workspace: &mut Workspace,
+    ) -> bool {
+        let Place::Between { knot, middle, share, is_first } = self.knots.at(point) else { return true };
+        let Place::Knot(end) = self.knots.at(knot) else { return true };
+        let Workspace { now, run_costs, .. } = workspace;
+        if !now.is_alive(class) {
+            return false;
+        }
+        now.wrap_around(class);
+        let offsets = self.knots.offsets(end, middle, share);
+        let joining = self.joining(pass);
+        run_costs.add(
+            class,
+            CyclicRow { scores: now.scores(class), pad: now.pad() },
+            offsets,
+            is_first,
+            joining,
+            self.instructions,
+        );
+        true
+    }
+
+    pub(super) fn joining(&self, pass: Pass<'_>) -> Joining {
+        Joining { sense: pass.sense, aggregate: self.problem.criterion.aggregate }
+    }
+
+    /// Takes the cheapest predecessors of a knot's states; false when no state is reached.
+    fn reach(&self, pass: Pass<'_>, point: usize, knot: Knot, class: PostureClass, workspace: &mut Workspace) -> bool {
+        let Workspace { before, now, record, run_costs, .. } = workspace;
+        let step = self.step_over(point, knot.change, knot.points, pass.sense);
+        let way = record.way(knot.number, class);
+        if knot.points == 1 {
+            return advance(before, now, class, &step, way);
+        }
+        let between = run_costs.of(class, knot.change.min, self.joining(pass));
+        advance_over(before, now, class, &step, between, way)
+    }
+
+    /// Evaluates a path point in some posture classes, without the states in which something hits.
+    pub(super) fn evaluate(&self, pass: Pass<'_>, point: usize, classes: [bool; 4], workspace: &mut Workspace) {
+        let Workspace { now, forbidden, only_beta, .. } = workspace;
+        pass.evaluator.evaluate_classes(point, pass.placement, classes, now);
+        if let Some(hits) = &self.tool_hits {
+            hits.apply(point, now);
+        }
+        forbidden.apply(point, now);
+        if let Some(only) = *only_beta {
+            now.keep_beta(only);
+        }
+    }
+
+    /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one
+    /// posture. With `count_only`, only the blocked points are found.
+    pub(super) fn forward_pass(
+        &self,
+        pass: Pass<'_>,
+        only: Option<Posture>,
+        workspace: &mut Workspace,
+        count_only: bool,
+    ) -> ForwardPass {
+        let mut forward_pass = ForwardPass { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
+        let rules = &self.problem.postures;
+        let requested = PostureClass::ALL
+            .map(|class| only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
+        workspace.record.costs.clear();
+        workspace.record.reached.clear();
+        let keeps_all = !count_only && self.knot_count(pass) * 4 * self.grid.beta_count <= MAX_REACHED;
+        for point in pass.span.clone() {
+            self.evaluate(pass, point, requested, workspace);
+            if PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class)) {
+                forward_pass.blocked.push(point);
+            }
+            if count_only {
+                continue;
+            }
+            let place = self.place(pass, point);
+            for class in PostureClass::ALL {
+                let (is_reached, stuck) = self.continue_to(pass, point, place, class, workspace);
+                if !is_reached && forward_pass.stuck[class.index()].is_none() {
+                    forward_pass.stuck[class.index()] = Some(stuck);
+                }
+            }
+            if let Place::Knot(knot) = place {
+                let Workspace { record, now, .. } = &mut *workspace;
+                if record.begins(knot.number, self.knot_count(pass)) {
+                    Record::keep(&mut record.costs, now);
+                }
+                if keeps_all {
+                    Record::keep(&mut record.reached, now);
+                }
+                std::mem::swap(&mut workspace.before, &mut workspace.now);
+            }
+        }
+        let before = &workspace.before;
+        if !count_only {
+            for class in PostureClass::ALL.into_iter().filter(|class| before.is_alive(*class)) {
+                let costs = before.inner_scores(class);
+                let end = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
+                forward_pass.ends[class.index()] = Some((costs[end], end));
+            }
+        }
+        forward_pass
+    }
+
+    /// Continues a class to a point. Returns whether a state is reached, and the point that is not where none is.
+    fn continue_to(
+        &self,
+        pass: Pass<'_>,
+        point: usize,
+        place: Place,
+        class: PostureClass,
+        workspace: &mut Workspace,
+    ) -> (bool, usize) {
+        match place {
+            Place::Between { .. } => {
+                let is_reached = workspace.before.is_alive(class) && self.add_between(pass, point, class, workspace);
+                if !is_reached {
+                    workspace.before.clear(class);
+                }
+                (is_reached, point)
+            }
+            Place::Knot(knot) => {
+                let (is_start, is_alive) = (point == pass.span.start, workspace.now.is_alive(class));
+                if is_alive && is_start {
+                    begin(&mut workspace.now, class, pass.sense.sign());
+                } else if is_alive
+                    && (!workspace.before.is_alive(class) || !self.reach(pass, point, knot, class, workspace))
+                {
+                    workspace.now.clear(class);
+                }
+                let is_reached = workspace.now.is_alive(class);
+                if is_reached {
+                    workspace.now.wrap_around(class);
+                }
+                // Of a run that is not gone through, no more is known than that its first point may be out of reach.
+                (is_reached, if is_alive { point + 1 - knot.points } else { point })
+            }
+        }
+    }
+
+    /// The beta numbers of the plan that a class ended with, along the segment last swept, in a pass like that.
+    pub(super) fn trace(
+        &self,
+        pass: Pass<'_>,
+        class: PostureClass,
+        forward_pass: &ForwardPass,
+        workspace: &mut Workspace,
+    ) -> Vec<usize> {
+        let count = self.grid.beta_count as isize;
+        let mut beta = forward_pass.ends[class.index()].map_or(0, |(_, end)| end);
+        let mut betas = vec![beta; pass.span.len()];
+        let is_whole = workspace.record.costs.is_empty();
+        let last = self.knot_count(pass) - 1;
+        for number in (1..=last).rev() {
+            let block = workspace.record.block;
+            if !is_whole && (number == last || number.is_multiple_of(block)) {
+                self.repeat_block(pass, class, (number - 1) / block, workspace);
+            }
+            let shift = workspace.record.way(number, class)[beta];
+            beta = (beta as isize + isize::from(shift)).rem_euclid(count) as usize;
+            betas[self.knot(pass, number - 1) - pass.span.start] = beta;
+        }
+        betas
+    }
+
+    /// Finds the joint_paths of one class in one block again.
+    fn repeat_block(&self, pass: Pass<'_>, class: PostureClass, block: usize, workspace: &mut Workspace) {
+        let mut requested = [false; 4];
+        requested[class.index()] = true;
+        let first = block * workspace.record.block;
+        let last = (first + workspace.record.block).min(self.knot_count(pass) - 1);
+        for point in self.knot(pass, first)..=self.knot(pass, last) {
+            self.evaluate(pass, point, requested, workspace);
+            match self.place(pass, point) {
+                Place::Between { .. } => {
+                    self.add_between(pass, point, class, workspace);
+                    continue;
+                }
+                Place::Knot(knot) if knot.number == first => {
+                    let Workspace { now, record, .. } = workspace;
+                    let (pad, count) = (now.pad(), now.count());
+                    now.scores_mut(class)[pad..pad + count].copy_from_slice(record.kept(block, class));
+                }
+                Place::Knot(knot) => {
+                    self.reach(pass, point, knot, class, workspace);
+                }
+            }
+            workspace.now.wrap_around(class);
+            std::mem::swap(&mut workspace.before, &mut workspace.now);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The planning of segments: what does not change from one placement, segment and posture to the next.
+
+use super::knots::{Knots, StepBudget};
+use super::rate_limit::{BetaChange, direct_changes};
+use super::{StateSet, between, forward_pass};
+use crate::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use crate::problem::{Problem, Redundancy};
+use crate::sense::Sense;
+use std::sync::Arc;
+use stead_model::robot::{PostureClass, turns::Range};
+use stead_numerics::simd::Instructions;
+
+/// What plans are made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Resolution {
+    /// To compare placements.
+    Search,
+    /// The same on subsets of a path, whose rate of beta must not depend on how far their points happen to be apart.
+    Subset,
+    /// To be printed: the moves between points are checked too.
+    Final,
+}
+
+impl Resolution {
+    /// How many steps of the grid are wanted from point to point and from knot to knot.
+    fn budget(self) -> StepBudget {
+        match self {
+            Self::Search => StepBudget { neighbours: 1.0, knots: 2.0 },
+            Self::Subset => StepBudget { neighbours: 2.0, knots: 3.0 },
+            Self::Final => StepBudget { neighbours: 6.0, knots: 6.0 },
+        }
+    }
+}
+
+/// The planner of the segments of a problem on a grid of beta.
+#[derive(Debug, Clone)]
+pub(super) struct SegmentPlanner<'a> {
+    pub problem: &'a Problem,
+    pub grid: Redundancy,
+    pub evaluators: Vec<BatchEvaluator<'a>>,
+    /// Allowed changes of the beta number from the point before.
+    pub changes: Vec<BetaChange>,
+    pub knots: Knots,
+    pub resolution: Resolution,
+    /// By how much each joint may step from the point before. rad
+    pub steps: Vec<[f64; 6]>,
+    /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
+    pub ranges: [Option<Range>; 6],
+    pub instructions: Instructions,
+    /// States in which spindle or holder hit part or fixture, where they were looked at ahead of all plans.
+    pub tool_hits: Option<Arc<StateSet>>,
+    /// What a radian of joint travel costs.
+    travel: f64,
+}
+
+/// Space of one thread to plan in.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    pub(super) before: StateGrid,
+    pub(super) now: StateGrid,
+    pub(super) record: forward_pass::Record,
+    pub(super) run_costs: between::RunCosts,
+    /// States that hit, of the placement that is planned.
+    pub(super) forbidden: StateSet,
+    /// The number of beta that is planned with, where one for the whole path has been chosen.
+    pub(super) only_beta: Option<usize>,
+}
+
+impl<'a> SegmentPlanner<'a> {
+    /// Prepares the planning of a problem on a grid of beta.
+    pub fn new(problem: &'a Problem, grid: Redundancy, resolution: Resolution) -> Self {
+        Self::with_budget(problem, grid, resolution, resolution.budget())
+    }
+
+    /// The same with other numbers of steps.
+    pub fn with_budget(problem: &'a Problem, grid: Redundancy, resolution: Resolution, budget: StepBudget) -> Self {
+        let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
+        let is_start = |point: &usize| starts.binary_search(point).is_ok();
+        let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
+        let changes = direct_changes(problem, &grid);
+        let step = |p: usize| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) };
+        let steps: Vec<_> = (0..problem.task.points().len()).map(step).collect();
+        Self {
+            problem,
+            grid,
+            evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
+            knots: Knots::new(problem, &grid, &steps, &changes, budget),
+            resolution,
+            changes,
+            steps,
+            // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
+            // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
+            ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
+            instructions: Instructions::best(),
+            tool_hits: StateSet::of_tool(problem, &grid).map(Arc::new),
+            travel: problem.travel_cost(Sense::Min),
+        }
+    }
+
+    /// The same with steps of the joints that may be at least so large. rad
+    pub fn with_joint_steps(mut self, least: f64) -> Self {
+        self.steps.iter_mut().flatten().for_each(|limit| *limit = limit.max(least));
+        self.knots = Knots::new(self.problem, &self.grid, &self.steps, &self.changes, self.resolution.budget());
+        self
+    }
+
+    /// What a radian of joint travel costs in the plans of a sense.
+    pub fn travel_cost(&self, sense: Sense) -> f64 {
+        if sense == Sense::Min { self.travel } else { 0.0 }
+    }
+
+    /// Whether the moves between the points of plans are checked too.
+    pub fn checks_moves(&self) -> bool {
+        self.resolution == Resolution::Final
+    }
+
+    /// How far states must be continued cyclically for the widest step.
+    pub fn pad(&self) -> usize {
+        self.changes.iter().copied().map(BetaChange::widest).max().unwrap_or(0).max(self.knots.widest())
+    }
+
+    /// Space for one thread.
+    pub fn workspace(&self) -> Workspace {
+        let count = self.grid.beta_count;
+        let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
+        let before = StateGrid::new(count, self.pad());
+        let stride = before.scores(PostureClass::ALL[0]).len();
+        Workspace {
+            now: before.clone(),
+            before,
+            record: forward_pass::Record::new(longest, count),
+            run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
+            forbidden: StateSet::default(),
+            only_beta: None,
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! The symmetry of upright tools: with axis 1 vertical and the tool along it, turning workpiece and joint 1 together
+//! about axis 1 changes nothing but theta_1.
+//!
+//! So a placement is three numbers (radius and height of the workpiece origin, yaw less its azimuth), and a state four:
+//! radius and height of the tool centre point, heading of the spindle against its azimuth, and posture class. The
+//! lookup table (`stead_placement::lookup`) and the certificate (`stead_certify`) rest on this.
+
+use super::criterion::{Aggregate, Criterion, Weights};
+use super::problem::{BetaPlan, Placement, Problem};
+use nalgebra::Vector3;
+use stead_model::robot::{Compliance, angles::wrap};
+
+/// Why a problem cannot be treated by means of the symmetry.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Unsupported {
+    /// Axis 1 is not vertical, so that states depend on the azimuth.
+    #[error("axis 1 of the robot leans {:.3} deg from the vertical", angle.to_degrees())]
+    BaseNotVertical {
+        /// Angle between axis 1 and the vertical of the base frame. rad
+        angle: f64,
+    },
+    /// External axes stand elsewhere than at a place that only shifts the cell.
+    #[error("external axes move the workpiece or the robot")]
+    ExternalAxes,
+    /// There are several orientations of the part to choose from.
+    #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
+    Orientations,
+    /// A tool axis that is not vertical.
+    #[error("the tool is not upright: its axis is {:.3} deg from the vertical at point {point}", angle.to_degrees())]
+    TiltedTool {
+        /// The first such path point, from 0.
+        point: usize,
+        /// Angle between the tool axis and the vertical there. rad
+        angle: f64,
+    },
+    /// A vertical tool axis that is upside down against the first one.
+    #[error("the tool is not the same way up at every point: at point {point} it is upside down against point 0")]
+    UpsideDown {
+        /// The first such path point, from 0.
+        point: usize,
+    },
+    /// A moment acts on the tool.
+    #[error("a moment acts on the tool at point {point}")]
+    Moment {
+        /// The first such path point, from 0.
+        point: usize,
+    },
+    /// A point is not scored.
+    #[error("point {point} of the task is not scored")]
+    Unscored {
+        /// The first such path point, from 0.
+        point: usize,
+    },
+    /// A compliance that must be constant changes with its joint angle.
+    #[error("the compliance of joint {joint} changes with its angle")]
+    VaryingCompliance {
+        /// The joint, from 1.
+        joint: usize,
+    },
+    /// Scores cover errors of the force.
+    #[error("scores cover errors of the force (criterion.force_uncertainty)")]
+    UncertainForce,
+    /// Scores cover errors of the compliances.
+    #[error("scores cover errors of the compliances (criterion.confidence)")]
+    UncertainCompliances,
+    /// The objective has the travel of the joints in it.
+    #[error("the objective has the travel of the joints in it (criterion.joint_travel_weight_mm_per_rad)")]
+    JointTravel,
+    /// Beta stays along the path.
+    #[error("beta stays (redundancy.beta = \"{}\")", beta.name())]
+    ConstantBeta {
+        /// Where it may change.
+        beta: BetaPlan,
+    },
+    /// Something else than the mean deflection normal to the wall is minimised.
+    #[error("it covers the mean of the deflection normal to the wall alone, and not another {key}")]
+    OtherCriterion {
+        /// What is different: a key of the table `[criterion]`, or the weights of segments.
+        key: &'static str,
+    },
+    /// The bound on conditioning lets the arm come so near to its singularities that nothing can be bounded.
+    #[error(
+        "constraints.min_inverse_condition must be at least {needed:.3}: nearer to a singularity nothing can be bounded"
+    )]
+    Conditioning {
+        /// The smallest bound on 1/kappa_F that will do.
+        needed: f64,
+    },
+    /// The cell is so large that tables do not fit in memory.
+    #[error(
+        "the cell is so large that tables would take {:.3} GB, and at most {:.3} GB are allowed",
+        *bytes as f64 / 1e9, *max as f64 / 1e9
+    )]
+    TooLarge {
+        /// What they would take.
+        bytes: u64,
+        /// What they may take.
+        max: u64,
+    },
+    /// The exact planner does not find what the lookup table promises: found out only after a search through it.
+    #[error("what it promised was not to be had within the steps and turns of the joints")]
+    Rejected,
+    /// The caller stopped the work before it was done.
+    #[error("it was interrupted before it was sampled")]
+    Interrupted,
+}
+
+/// A direction may be this far from vertical (its sine) to be taken as vertical: printed digits.
+const VERTICAL: f64 = 1e-9;
+
+/// Which way up arm and tool are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Upright {
+    /// +1 where axis 1 points up in the base frame, -1 where the arm hangs.
+    pub side: f64,
+    /// +1 where the tool axis (from the workpiece to the robot) is along axis 1, so that a growing beta turns the
+    /// spindle counter-clockwise about it; -1 where it is against it.
+    pub rotation_sign: f64,
+}
+
+impl Upright {
+    /// That of a problem with an upright tool.
+    ///
+    /// # Errors
+    /// [`Unsupported`], with the reason, for any other problem.
+    pub fn of(problem: &Problem) -> Result<Self, Unsupported> {
+        let up = axis_1(problem);
+        if !is_vertical(&up) {
+            return Err(Unsupported::BaseNotVertical { angle: libm::acos(up.z.abs().min(1.0)) });
+        }
+        if !problem.external_axes.is_empty() {
+            return Err(Unsupported::ExternalAxes);
+        }
+        let points = problem.task.points();
+        let first = points.first().map_or(1.0, |point| point.axis.z.signum());
+        if let Some(point) = points.iter().position(|p| !is_vertical(&p.axis)) {
+            let axis = &points[point].axis;
+            return Err(Unsupported::TiltedTool {
+                point,
+                angle: libm::atan2(libm::hypot(axis.x, axis.y), axis.z.abs()),
+            });
+        }
+        if let Some(point) = points.iter().position(|p| p.axis.z.signum() != first) {
+            return Err(Unsupported::UpsideDown { point });
+        }
+        Ok(Self { side: up.z.signum(), rotation_sign: first * up.z.signum() })
+    }
+}
+
+/// Requires that only forces act on the tool.
+///
+/// # Errors
+/// [`Unsupported::Moment`] at the first point where a moment does.
+pub fn require_no_moment(problem: &Problem) -> Result<(), Unsupported> {
+    let first = problem.task.wrenches().iter().position(|wrench| wrench.moment.norm() > 0.0);
+    first.map_or(Ok(()), |point| Err(Unsupported::Moment { point }))
+}
+
+/// Requires the compliances of some joints (from 0) to be constant.
+///
+/// # Errors
+/// [`Unsupported::VaryingCompliance`] for the first that is not.
+pub fn require_constant(problem: &Problem, joints: &[usize]) -> Result<(), Unsupported> {
+    let is_law = |j: &&usize| !matches!(problem.robot.joints()[**j].compliance, Compliance::Constant(_));
+    joints.iter().find(is_law).map_or(Ok(()), |joint| Err(Unsupported::VaryingCompliance { joint: joint + 1 }))
+}
+
+/// Requires that the mean of the deflection normal to the wall is minimised, whatever the weights of the segments.
+///
+/// # Errors
+/// [`Unsupported::OtherCriterion`] where it is not, and [`Unsupported::JointTravel`] where joint travel counts too.
+pub fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
+    let Criterion { weights, aggregate, .. } = &problem.criterion;
+    if *weights != Weights::WALL {
+        Err(Unsupported::OtherCriterion { key: "criterion.direction" })
+    } else if problem.criterion.stiffness.is_some() {
+        Err(Unsupported::OtherCriterion { key: "criterion.robots" })
+    } else if *aggregate != Aggregate::Mean {
+        Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
+    } else if problem.criterion.joint_travel_weight != 0.0 {
+        Err(Unsupported::JointTravel)
+    } else {
+        Ok(())
+    }
+}
+
+/// Requires that beta may change along the path.
+///
+/// # Errors
+/// [`Unsupported::ConstantBeta`] where it may not.
+pub fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
+    match problem.redundancy.beta {
+        BetaPlan::Free => Ok(()),
+        beta => Err(Unsupported::ConstantBeta { beta }),
+    }
+}
+
+/// Requires scores to leave out the uncertainty of the compliances.
+///
+/// # Errors
+/// [`Unsupported::UncertainCompliances`] where they cover it.
+pub fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
+    let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
+    if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
+}
+
+/// Whether turning workpiece and joint 1 together about axis 1 changes nothing but the angle of joint 1.
+pub fn is_axis_1_vertical(problem: &Problem) -> bool {
+    is_vertical(&axis_1(problem))
+}
+
+/// The direction of axis 1 in the base frame.
+fn axis_1(problem: &Problem) -> Vector3<f64> {
+    problem.robot.geometry().base_from_root * Vector3::z()
+}
+
+fn is_vertical(direction: &Vector3<f64>) -> bool {
+    libm::hypot(direction.x, direction.y) < VERTICAL
+}
+
+/// A placement about axis 1: distance of the workpiece origin (m), its z in the base frame (m), and the yaw less its
+/// azimuth (rad, not wrapped).
+pub fn about_axis_1(problem: &Problem, placement: &Placement) -> [f64; 3] {
+    let root = problem.robot.geometry().root_in_base;
+    let (x, y) = (placement.x - root.x, placement.y - root.y);
+    [libm::hypot(x, y), placement.z, placement.yaw - libm::atan2(y, x)]
+}
+
+/// How far apart two placements are about axis 1: in distance (m), in height (m) and in yaw less azimuth (rad); none is
+/// negative.
+pub fn apart_about_axis_1(problem: &Problem, a: &Placement, b: &Placement) -> [f64; 3] {
+    let [a, b] = [a, b].map(|placement| about_axis_1(problem, placement));
+    [(a[0] - b[0]).abs(), (a[1] - b[1]).abs(), wrap(a[2] - b[2]).abs()]
+}

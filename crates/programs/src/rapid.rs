@@ -1,0 +1,163 @@
+//! Programs for ABB's controllers, in RAPID.
+
+use super::carrier::Carrier;
+use super::layout::{Layout, Lines, ProgramFile};
+use super::motion::{Move, MoveKind};
+use super::names::{MODULE, number};
+use nalgebra::{Matrix3, Vector3};
+use stead_model::robot::Pose;
+use stead_numerics::rotation::quaternion_from_rotation;
+
+/// Decimals of positions in mm: a tenth of a micrometre.
+const MM_DECIMALS: usize = 4;
+/// Decimals of quaternions: normalised far better than the controller asks.
+const QUATERNION_DECIMALS: usize = 9;
+/// Decimals of joint angles in deg: all six off by half a unit move nothing 4 m away by 3e-3 mm.
+const AXIS_DECIMALS: usize = 5;
+/// An external axis that is not there.
+const NO_AXIS: &str = "9E9";
+/// A frame that is where the one it is given in is.
+const STILL: &str = "[[0,0,0],[1,0,0,0]]";
+/// Speeds of reorientation, of linear and of rotating external axes, as in the predefined speed data.
+const OTHER_SPEEDS: &str = "500,5000,1000";
+
+fn list(values: impl IntoIterator<Item = f64>, decimals: usize) -> String {
+    let texts: Vec<String> = values.into_iter().map(|value| number(value, decimals)).collect();
+    format!("[{}]", texts.join(","))
+}
+
+fn position(translation: &Vector3<f64>) -> String {
+    list(translation.iter().map(|m| m * 1e3), MM_DECIMALS)
+}
+
+fn orientation(rotation: &Matrix3<f64>) -> String {
+    list(quaternion_from_rotation(rotation), QUATERNION_DECIMALS)
+}
+
+/// The orientation after another: of the two quaternions of a rotation, the one nearer to the last.
+fn orientation_after(last: &mut [f64; 4], rotation: &Matrix3<f64>) -> String {
+    let quaternion = quaternion_from_rotation(rotation);
+    let is_far = quaternion.iter().zip(&*last).map(|(a, b)| a * b).sum::<f64>() < 0.0;
+    *last = if is_far { quaternion.map(|part| -part) } else { quaternion };
+    list(*last, QUATERNION_DECIMALS)
+}
+
+/// eax_a to eax_f, in mm or deg.
+fn external(step: &Move) -> String {
+    let axes = step.external.map(|axis| axis.map_or_else(|| NO_AXIS.to_owned(), |at| number(at, AXIS_DECIMALS)));
+    format!("[{}]", axes.join(","))
+}
+
+/// The main module, with the data and a procedure that calls the parts, and the modules of the parts.
+pub(super) fn files(layout: &Layout<'_>) -> Vec<ProgramFile> {
+    let mut files = vec![main(layout)];
+    files.extend((0..layout.parts.len()).map(|index| part(layout, index)));
+    files
+}
+
+/// The names of the data, which all parts share: none of another program's.
+fn data(layout: &Layout<'_>) -> [String; 4] {
+    ["t", "w", "z", "v"].map(|kind| format!("{kind}_{}", layout.name))
+}
+
+fn statement(text: &str) -> String {
+    format!("    {};", text.trim_end_matches(';'))
+}
+
+fn main(layout: &Layout<'_>) -> ProgramFile {
+    let mut lines = Lines::default();
+    let [tool, workpiece, zone, speed] = data(layout);
+    lines.line(format_args!("MODULE {MODULE}{}", layout.name));
+    layout.origin.iter().for_each(|text| lines.line(format_args!("  ! {text}")));
+    let pose = &layout.frames.flange_from_tool;
+    let (mass, centre) = layout.load.unwrap_or((1.0, [0.0, 0.0, 0.001]));
+    if layout.load.is_none() {
+        lines.line("  ! mass and centre of the spindle are not known: put them in before this runs");
+    }
+    lines.line(format_args!(
+        "  PERS tooldata {tool}:=[TRUE,[{},{}],[{},{},[1,0,0,0],0,0,0]];",
+        position(&pose.translation),
+        orientation(&pose.rotation),
+        number(mass, 3),
+        list(centre.map(|m| m * 1e3), 1)
+    ));
+    let framed = |pose: &Pose<f64>| format!("[{},{}]", position(&pose.translation), orientation(&pose.rotation));
+    let coupled = match (layout.carrier, layout.frames.table_from_workpiece(), layout.frames.root_from_table) {
+        (Some(Carrier::Unit(unit)), Some(on_table), Some(table)) => Some((unit, on_table, table)),
+        _ => None,
+    };
+    match &coupled {
+        // The controller takes the user frame from the unit, whatever stands here.
+        Some((unit, on_table, table)) => {
+            lines
+                .line(format_args!("  ! the user frame of {unit} with its axes at 0, as it is taken here: compare it"));
+            lines.line(format_args!("  ! {}", framed(table)));
+            lines.line(format_args!(
+                "  PERS wobjdata {workpiece}:=[FALSE,FALSE,\"{unit}\",{STILL},{}];",
+                framed(on_table)
+            ));
+        }
+        None => lines.line(format_args!(
+            "  PERS wobjdata {workpiece}:=[FALSE,TRUE,\"\",{},{STILL}];",
+            framed(&layout.frames.root_from_workpiece)
+        )),
+    }
+    let blend = number(layout.blend * 1e3, 3);
+    let wide = number(layout.blend * 1.5e3, 3);
+    let turn = number(layout.blend * 0.15e3, 3);
+    lines.line(format_args!("  CONST zonedata {zone}:=[FALSE,{blend},{wide},{wide},{turn},{wide},{turn}];"));
+    lines.line(format_args!("  CONST speeddata {speed}:=[200,30,200,30];"));
+    lines.line(format_args!("  PROC {}()", layout.name));
+    lines.line("    ConfL\\Off;");
+    if let Some((unit, ..)) = coupled {
+        lines.line(format_args!("    ActUnit {unit};"));
+    }
+    lines.line(layout.spindle_on.map_or("    ! spindle on: stead export --spindle-on".to_owned(), statement));
+    for index in 0..layout.parts.len() {
+        lines.line(format_args!("    {};", layout.part_name(index)));
+    }
+    lines.line(layout.spindle_off.map_or("    ! spindle off: stead export --spindle-off".to_owned(), statement));
+    lines.line("  ENDPROC");
+    lines.line("ENDMODULE");
+    ProgramFile { name: format!("{}.mod", layout.name), text: lines.0 }
+}
+
+fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
+    let name = layout.part_name(index);
+    let [tool, workpiece, zone, speed] = data(layout);
+    let mut lines = Lines::default();
+    lines.line(format_args!("MODULE {MODULE}{name}"));
+    layout.origin.iter().for_each(|text| lines.line(format_args!("  ! {text}")));
+    lines.line(format_args!("  PROC {name}()"));
+    lines.line("    ConfL\\Off;");
+    let moves = layout.moves_of(index);
+    let mut last = [0.0; 4];
+    for (number_in_part, step) in moves.iter().enumerate() {
+        layout.heading(index, number_in_part).iter().for_each(|text| lines.line(format_args!("    ! {text}")));
+        let pose = &step.workpiece_from_tool;
+        let target = format!("{},{}", position(&pose.translation), orientation_after(&mut last, &pose.rotation));
+        match step.kind {
+            MoveKind::Joint => {
+                let angles = step.angles.unwrap_or(step.joints).map(f64::to_degrees);
+                lines.line(format_args!("    ! start: {target}"));
+                lines.line(format_args!(
+                    "    MoveAbsJ [{},{}],{speed},fine,{tool}\\WObj:={workpiece};",
+                    list(angles, AXIS_DECIMALS),
+                    external(step)
+                ));
+            }
+            MoveKind::Linear => {
+                let is_blended = step.is_blended && number_in_part + 1 < moves.len();
+                let stop = if is_blended { zone.as_str() } else { "fine" };
+                lines.line(format_args!(
+                    "    MoveL [{target},[0,0,0,0],{}],[{},{OTHER_SPEEDS}],{stop},{tool}\\WObj:={workpiece};",
+                    external(step),
+                    number(step.feed * 1e3, 3)
+                ));
+            }
+        }
+    }
+    lines.line("  ENDPROC");
+    lines.line("ENDMODULE");
+    ProgramFile { name: format!("{name}.mod"), text: lines.0 }
+}

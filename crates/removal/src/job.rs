@@ -1,0 +1,304 @@
+//! Moves through the lines of a tile: what each sweeps, and what that adds to the sums.
+
+use crate::cutting::{Moving, Tool};
+use crate::lattice::{TILE, TileKey, others, place};
+use crate::moves::{Kind, Move};
+use crate::piece::Piece;
+use crate::quadrature::Quadrature;
+use crate::removal::{Asked, Event, GOUGE, Sums, tile_of};
+use crate::solid_lines::Body;
+use crate::tile::{NANO, Tile};
+use crate::turn::{Arcs, TurnGrid};
+use nalgebra::Vector3;
+use std::cell::OnceCell;
+use std::collections::BTreeMap;
+
+/// Points of a removed piece of a line, over its length in cells.
+const POINTS: f64 = 2.5;
+/// Points at which a removed piece of a line is looked at for a cut into the finished part.
+const GOUGE_POINTS: f64 = 4.0;
+
+/// A box about what is swept, inside the stock, by axis. m
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach(pub [[f64; 2]; 3]);
+
+impl Reach {
+    pub fn is_empty(&self) -> bool {
+        self.0.iter().any(|[low, high]| low >= high)
+    }
+
+    pub fn with(&self, other: &Self) -> Self {
+        if self.is_empty() {
+            return *other;
+        }
+        Self([0, 1, 2].map(|k| [self.0[k][0].min(other.0[k][0]), self.0[k][1].max(other.0[k][1])]))
+    }
+}
+
+/// How far a cutter reaches about its axis, and along it.
+pub struct Size {
+    radius: f64,
+    heights: [f64; 2],
+}
+
+impl Size {
+    pub fn of(pieces: &[Piece]) -> Self {
+        let radius = pieces.iter().map(|piece| piece.radius).fold(0.0, f64::max);
+        let low = pieces.iter().map(|piece| piece.heights[0]).fold(f64::INFINITY, f64::min);
+        let high = pieces.iter().map(|piece| piece.heights[1]).fold(0.0, f64::max);
+        Self { radius, heights: [low, high] }
+    }
+}
+
+/// What all tiles of a chunk have in common.
+pub struct Job<'j> {
+    pub tool: &'j Tool,
+    pub moves: &'j [Move],
+    pub reaches: &'j [Reach],
+    /// Of the holder, where there is one.
+    pub held: &'j [Reach],
+    pub extent: &'j [Vector3<f64>; 2],
+    pub part: Option<&'j Body>,
+    pub cell: f64,
+    pub quadrature: &'j Quadrature,
+    pub asked: Asked,
+    pub grid: &'j TurnGrid,
+}
+
+/// What comes of a tile.
+#[derive(Default)]
+pub struct OfTile {
+    /// By node, which may be there several times.
+    pub sums: Vec<(u32, Sums)>,
+    pub turns: Vec<(u32, Arcs)>,
+    pub events: BTreeMap<(Event, u32), f64>,
+}
+
+/// The entry of a node among the last ones of a list, or a new one: moves come back to a node after others, and then it
+/// is there twice.
+fn recent<T>(list: &mut Vec<(u32, T)>, node: u32, new: impl FnOnce() -> T) -> Option<&mut T> {
+    let from = list.len().saturating_sub(RECENT);
+    let place = match list[from..].iter().rposition(|(known, _)| *known == node) {
+        Some(place) => from + place,
+        None => {
+            list.push((node, new()));
+            list.len() - 1
+        }
+    };
+    list.get_mut(place).map(|(_, entry)| entry)
+}
+
+/// Entries that are looked at.
+const RECENT: usize = 6;
+
+impl Job<'_> {
+    /// Takes moves through a tile, in the order of the path.
+    pub fn cut(&self, key: TileKey, indices: &[u32], tile: &mut Tile) -> OfTile {
+        let mut of_tile = OfTile::default();
+        let (axis, i, j) = key;
+        let cell = self.cell;
+        let mut d = Vector3::zeros();
+        d[axis] = 1.0;
+        let columns: Vec<f64> = (0..TILE).map(|column| place(0, j * TILE + column)[0]).collect();
+        let rows: Vec<f64> = (0..TILE).map(|row| place(i * TILE + row, 0)[1]).collect();
+        // Made when something of the tile is cut for the first time.
+        let of_part: OnceCell<Tile> = OnceCell::new();
+        let mut removed = Vec::new();
+        let [a, b] = others(axis);
+        let lines = |reach: &Reach, each: &mut dyn FnMut(usize, &Vector3<f64>)| {
+            let within = |first: i64, [low, high]: [f64; 2]| {
+                let first_line = (low / cell).floor() as i64 - 1 - first * TILE;
+                let last_line = (high / cell).ceil() as i64 - first * TILE;
+                first_line.max(0)..last_line.min(TILE - 1) + 1
+            };
+            for row in within(i, reach.0[a]) {
+                for column in within(j, reach.0[b]) {
+                    let x = ((i * TILE + row) as f64 + columns[column as usize]) * cell;
+                    let y = ((j * TILE + column) as f64 + rows[row as usize]) * cell;
+                    if x < reach.0[a][0] || x > reach.0[a][1] || y < reach.0[b][0] || y > reach.0[b][1] {
+                        continue;
+                    }
+                    let mut o = Vector3::zeros();
+                    (o[a], o[b], o[axis]) = (x, y, self.extent[0][axis]);
+                    each((row * TILE + column) as usize, &o);
+                }
+            }
+        };
+        let nano = |end: f64| ((end - self.extent[0][axis]) * NANO).round().clamp(0.0, f64::from(u32::MAX)) as u32;
+        for index in indices {
+            let (one, reach) = (&self.moves[*index as usize], &self.reaches[*index as usize]);
+            let moving = Moving::new(self.tool, one, cell);
+            let is_counted = self.asked != Asked::Removal && !self.tool.cuts_along(one, axis);
+            if !reach.is_empty() {
+                let along = reach.0[axis].map(nano);
+                lines(reach, &mut |number, o| {
+                    if !tile.meets(number, along) {
+                        return;
+                    }
+                    let Some(swept) = one.extent(&self.tool.pieces, o, &d) else { return };
+                    let swept = swept.map(|end| (end * NANO).round().clamp(0.0, f64::from(u32::MAX)) as u32);
+                    removed.clear();
+                    tile.remove(number, swept, &mut removed);
+                    if !is_counted {
+                        return;
+                    }
+                    for ends in &removed {
+                        self.count(&moving, axis, o, ends.map(|end| f64::from(end) / NANO), &mut of_tile);
+                        let Some(part) = self.part else { continue };
+                        let lines = of_part.get_or_init(|| tile_of(part, self.extent, cell, key));
+                        for [from, to] in lines.intervals(number) {
+                            let (from, to) = (from.max(ends[0]), to.min(ends[1]));
+                            if to > from {
+                                self.gouge(
+                                    part,
+                                    &moving,
+                                    axis,
+                                    o,
+                                    [from, to].map(|end| f64::from(end) / NANO),
+                                    &mut of_tile,
+                                );
+                            }
+                        }
+                    }
+                });
+            }
+            // Shank and holder cut nothing: one grid of lines tells whether they are in the stock.
+            let Some(held) = self.held.get(*index as usize).filter(|held| !held.is_empty()) else { continue };
+            if self.asked == Asked::Removal || axis != one.axis.iamax() {
+                continue;
+            }
+            let along = held.0[axis].map(nano);
+            lines(held, &mut |number, o| {
+                if !tile.meets(number, along) {
+                    return;
+                }
+                for piece in &self.tool.holder {
+                    let Some(swept) = one.extent(std::slice::from_ref(piece), o, &d) else { continue };
+                    let [low, high] = swept.map(|end| (end * NANO).round().clamp(0.0, f64::from(u32::MAX)) as u32);
+                    let met: f64 = tile
+                        .intervals(number)
+                        .map(|[from, to]| f64::from(to.min(high).saturating_sub(from.max(low))))
+                        .sum();
+                    if met > 0.0 {
+                        *of_tile.events.entry((Event::Holder, one.point)).or_default() += met / NANO * cell * cell;
+                    }
+                }
+            });
+        }
+        of_tile
+    }
+
+    /// Counts a removed piece of a line.
+    fn count(&self, moving: &Moving<'_>, axis: usize, o: &Vector3<f64>, [low, high]: [f64; 2], of_tile: &mut OfTile) {
+        let (cell, one) = (self.cell, moving.one);
+        // A piece may be thin and yet be cut all along the move.
+        for (share, weight) in self.quadrature.of(POINTS * (high - low).max(one.by.norm()) / cell) {
+            let mut point = *o;
+            point[axis] += low + (high - low) * share;
+            let Some(bit) = moving.bit(&point, axis, cell * cell * (high - low) * weight) else { continue };
+            let mut event = |event: Event| *of_tile.events.entry((event, one.point)).or_default() += bit.volume;
+            match one.kind {
+                Kind::Rapid => event(Event::Rapid),
+                Kind::InPlace => event(Event::InPlace),
+                Kind::Start => event(Event::Before),
+                Kind::Feed if bit.when < 0.0 => event(Event::Before),
+                Kind::Feed => {
+                    if bit.height > self.tool.flute_length {
+                        event(Event::AboveFlutes);
+                    }
+                    if bit.is_below && bit.radius < self.tool.dead_centre {
+                        event(Event::DeadCentre);
+                    }
+                    let when = bit.when.min(1.0);
+                    let teeth = self.tool.cutter.teeth().len() as f64;
+                    let of_bit = Sums::of(&bit, one.feed_per_turn / teeth * bit.speed);
+                    let at = |[from, to]: [f64; 2]| {
+                        let at = from + (to - from) * when;
+                        let node = at as u32;
+                        (node, at - f64::from(node))
+                    };
+                    let (node, part) = at(one.nodes);
+                    for (node, part) in [(node, 1.0 - part), (node + 1, part)] {
+                        if part > 0.0
+                            && let Some(sums) = recent(&mut of_tile.sums, node, Sums::default)
+                        {
+                            sums.add(&of_bit, part);
+                        }
+                    }
+                    if self.asked == Asked::Turns {
+                        let field = self.grid.field(moving, &bit);
+                        let (node, part) = at(one.turns);
+                        for (node, part) in [(node, 1.0 - part), (node + 1, part)] {
+                            if part > 0.0 {
+                                let arcs = recent(&mut of_tile.turns, node, || self.grid.arcs());
+                                arcs.into_iter().for_each(|arcs| arcs.put(&field, part));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Counts what is cut off the finished part, where it is deep: farther than the tolerance from its surface along
+    /// every axis.
+    fn gouge(
+        &self,
+        part: &Body,
+        moving: &Moving<'_>,
+        axis: usize,
+        o: &Vector3<f64>,
+        [low, high]: [f64; 2],
+        of_tile: &mut OfTile,
+    ) {
+        let piece = (high - low) / GOUGE_POINTS;
+        for number in 0..GOUGE_POINTS as usize {
+            let mut point = *o;
+            point[axis] += low + piece * (number as f64 + 0.5);
+            if part.depth(&point, self.cell) <= GOUGE {
+                continue;
+            }
+            if let Some(bit) = moving.bit(&point, axis, piece * self.cell * self.cell) {
+                *of_tile.events.entry((Event::Gouge, moving.one.point)).or_default() += bit.volume;
+            }
+        }
+    }
+}
+
+impl Move {
+    /// By how much a point of the cutter moves. m
+    pub fn displacement(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.by + self.turn.cross(&(point - self.middle))
+    }
+
+    /// A box about what it sweeps of a cutter of this size, inside the stock.
+    pub(crate) fn reach(&self, size: &Size, [min, max]: &[Vector3<f64>; 2]) -> Reach {
+        let turned = self.turn.norm() * libm::hypot(size.heights[1], size.radius);
+        Reach([0, 1, 2].map(|k| {
+            let half = self.by[k].abs() / 2.0;
+            let ends = size.heights.map(|height| height * self.axis[k]);
+            let wide = size.radius * ((1.0 - self.axis[k] * self.axis[k]).max(0.0).sqrt() + 1e-9) + turned;
+            let low = self.middle[k] - half + ends[0].min(ends[1]) - wide;
+            let high = self.middle[k] + half + ends[0].max(ends[1]) + wide;
+            [low.max(min[k]), high.min(max[k])]
+        }))
+    }
+
+    /// The interval of a line `o + l d` that the pieces sweep, where there is one.
+    fn extent(&self, pieces: &[Piece], o: &Vector3<f64>, d: &Vector3<f64>) -> Option<[f64; 2]> {
+        let by = |u: &Vector3<f64>| {
+            let w = o - self.middle + u / 2.0;
+            let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+            pieces.iter().for_each(|piece| piece.sweep(&self.axis, &w, d, u, &mut ends));
+            (ends[0] < ends[1]).then_some(ends)
+        };
+        let ends = by(&self.by)?;
+        if self.turn == Vector3::zeros() {
+            return Some(ends);
+        }
+        // Each end with the displacement of its own.
+        let [low, high] = ends.map(|end| by(&self.displacement(&(o + d * end))));
+        let ends = [low?[0], high?[1]];
+        (ends[0] < ends[1]).then_some(ends)
+    }
+}

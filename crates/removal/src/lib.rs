@@ -1,0 +1,23 @@
+//! What each move of a cutter removes of the stock, and the mean force that this takes.
+//!
+//! The stock is three grids of lines (dexels), one along each axis of the workpiece. A move removes the cutter swept
+//! along it, exactly; what it removes of each line says where on the path, where on the cutter and at which angle the
+//! material is cut, and the mean force over a turn is a sum over that.
+
+pub mod cutting;
+pub mod forces;
+mod job;
+pub mod lattice;
+pub mod moves;
+pub mod operation;
+pub mod outcome;
+pub mod piece;
+mod points;
+pub mod profile;
+pub mod quadrature;
+pub mod removal;
+pub mod solid_lines;
+pub mod surface;
+pub mod tile;
+pub mod turn;
+mod warnings;

@@ -1,0 +1,93 @@
+//! What comes out: force, moment and engagement at every point of the path.
+
+use crate::surface::Surface;
+use nalgebra::Vector3;
+use stead_model::task::{ToolPath, Wrench};
+use stead_numerics::message::Warning;
+
+/// Mean load over a turn at a point of the path, at the programmed feed, and what is cut there. In the workpiece frame,
+/// moments about the tool centre point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointForces {
+    /// Whether the point was added between two of the path.
+    pub is_added: bool,
+    /// The part that grows with the feed. N, N m
+    pub chip: Wrench,
+    /// The part that does not: of the edges. N, N m
+    pub edge: Wrench,
+    /// Largest norm of the force over a turn; nothing where nothing is cut. N
+    pub largest: f64,
+    /// Removed volume over length of path. m2
+    pub removed: f64,
+    /// Lowest and highest height above the tool centre point that cuts, where something does. m
+    pub heights: Option<[f64; 2]>,
+    /// The angles of a turn between which a tooth cuts (0 where it moves along the feed, as in
+    /// [`Engagement`](stead_model::cutting::Engagement)), where something is cut. rad
+    pub angles: Option<[f64; 2]>,
+    /// Thickest chip. m
+    pub chip_thickness: f64,
+}
+
+impl PointForces {
+    /// Force and moment at a feed over the programmed one.
+    pub fn at_feed(&self, share: f64) -> Wrench {
+        Wrench { force: self.chip.force * share + self.edge.force, moment: self.chip.moment * share + self.edge.moment }
+    }
+}
+
+/// How far forces and moments with cells twice as large are from those stated, over the largest of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ForcesDifference {
+    /// Root mean square over the points of the path, force and moment. Relative
+    pub rms: [f64; 2],
+    /// Largest at a point, force and moment. Relative
+    pub largest: [f64; 2],
+}
+
+impl ForcesDifference {
+    /// Of the same points.
+    pub(crate) fn between(fine: &[PointForces], coarse: &[PointForces]) -> Self {
+        let parts: [fn(&Wrench) -> Vector3<f64>; 2] = [|wrench| wrench.force, |wrench| wrench.moment];
+        let of_part = parts.map(|part| {
+            let at = |point: &PointForces| part(&point.at_feed(1.0));
+            let scale = fine.iter().map(|point| at(point).norm()).fold(0.0, f64::max);
+            if scale == 0.0 {
+                return [0.0, 0.0];
+            }
+            let off = fine.iter().zip(coarse).map(|(fine, coarse)| (at(fine) - at(coarse)).norm() / scale);
+            let squares: f64 = off.clone().map(|off| off * off).sum();
+            [(squares / fine.len() as f64).sqrt(), off.fold(0.0, f64::max)]
+        });
+        Self { rms: of_part.map(|[rms, _]| rms), largest: of_part.map(|[_, largest]| largest) }
+    }
+}
+
+/// Forces along a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RemovalForces {
+    /// The path, with the points that were added.
+    pub path: ToolPath,
+    /// The load at each of its points.
+    pub points: Vec<PointForces>,
+    /// Distance of neighbouring lines of the stock. m
+    pub cell: f64,
+    /// How far cells twice as large are off.
+    pub difference: ForcesDifference,
+    /// Volume that the operation removes. m3
+    pub removed: f64,
+    /// Length of scored path on which nothing is cut, over all of it.
+    pub air: f64,
+    /// The stock before the operation and after it, thinned.
+    pub stock: [Surface; 2],
+    /// What the user should see to.
+    pub warnings: Vec<Warning>,
+    /// What was assumed and done, in sentences.
+    pub notes: Vec<String>,
+}
+
+impl RemovalForces {
+    /// The wrench at every point at the programmed feed.
+    pub fn wrenches(&self) -> Vec<Wrench> {
+        self.points.iter().map(|point| point.at_feed(1.0)).collect()
+    }
+}

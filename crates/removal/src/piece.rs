@@ -1,0 +1,239 @@
+//! Convex pieces of a cutter: where lines meet them, and where lines meet them swept along a move.
+//!
+//! A point y from the tool centre point, at the height `h = y . a` along the tool axis a, is inside a piece where
+//!
+//! `Q(y) = y . y - alpha h^2 - 2 beta h - gamma <= 0` and `h0 <= h <= h1`:
+//!
+//! a ball of radius R about the height c has alpha 0, beta c, gamma `R^2 - c^2`; a cone of radius `s + k h` has alpha
+//! `1 + k^2`, beta `k s`, gamma `s^2`, and a cylinder is one with k = 0. Along a line, `y = w + l d`, Q is a quadratic
+//! in l; swept, `y = w + l d - m u`, one in l and m. A piece and what it sweeps are convex, so that each has one
+//! interval on a line.
+
+use crate::cutting::EdgePoint;
+use nalgebra::Vector3;
+
+/// A convex piece about the tool axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    alpha: f64,
+    beta: f64,
+    gamma: f64,
+    /// Heights between which it reaches. m
+    pub heights: [f64; 2],
+    /// Its largest radius. m
+    pub radius: f64,
+}
+
+/// Which surface of a piece a line meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Surface {
+    /// The side: ball, cone or cylinder.
+    Side,
+    /// The plane at its lower end.
+    Bottom,
+    /// The plane at its upper end.
+    Top,
+}
+
+/// A part of a line inside a piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chord {
+    /// Where it begins and ends on the line.
+    pub ends: [f64; 2],
+    /// The surface where it begins.
+    pub first: Surface,
+}
+
+/// Lengths that are less are none. m
+const TINY: f64 = 1e-12;
+
+impl Piece {
+    /// A ball about a point of the axis at a height, of a radius (m).
+    pub fn ball(height: f64, radius: f64) -> Self {
+        let gamma = radius * radius - height * height;
+        Self { alpha: 0.0, beta: height, gamma, heights: [height - radius, height + radius], radius }
+    }
+
+    /// A cone (or cylinder) between two heights, with the radii there (m).
+    pub fn cone(heights: [f64; 2], radii: [f64; 2]) -> Self {
+        let k = (radii[1] - radii[0]) / (heights[1] - heights[0]);
+        let s = radii[0] - k * heights[0];
+        Self { alpha: 1.0 + k * k, beta: k * s, gamma: s * s, heights, radius: radii[0].max(radii[1]) }
+    }
+
+    /// Length of its edge from end to end of its heights; of a ball from its tip to its equator. m
+    pub fn edge(&self) -> f64 {
+        let [from, to] = self.heights;
+        if self.has_planes() { (to - from) * self.alpha.sqrt() } else { self.radius * std::f64::consts::FRAC_PI_2 }
+    }
+
+    /// Place along its edge of a point of its side at a height and a distance from the axis (m), from its lower end. m
+    pub fn along(&self, height: f64, radius: f64) -> f64 {
+        if self.has_planes() {
+            (height - self.heights[0]) * self.alpha.sqrt()
+        } else {
+            self.radius * libm::atan2(radius, self.beta - height)
+        }
+    }
+
+    /// The point of its edge at a length from its lower end. m
+    pub fn edge_at(&self, along: f64) -> EdgePoint {
+        if self.has_planes() {
+            let slant = self.alpha.sqrt();
+            let [grows, rises] = [(self.alpha - 1.0).max(0.0).sqrt() / slant, 1.0 / slant];
+            EdgePoint { height: self.heights[0] + along * rises, normal: [rises, -grows] }
+        } else {
+            let (sine, cosine) = libm::sincos(along / self.radius);
+            EdgePoint { height: self.beta - self.radius * cosine, normal: [sine, -cosine] }
+        }
+    }
+
+    /// Whether it has planes at its ends.
+    fn has_planes(&self) -> bool {
+        self.alpha > 0.0
+    }
+
+    /// The normal out of its side at a point y, not of unit length.
+    pub fn normal(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+        y - axis * (self.alpha * y.dot(axis) + self.beta)
+    }
+
+    /// The part of a line `y + l d` inside, where there is one.
+    pub fn chord(&self, axis: &Vector3<f64>, y: &Vector3<f64>, d: &Vector3<f64>) -> Option<Chord> {
+        let (h, hd) = (y.dot(axis), d.dot(axis));
+        let a = d.dot(d) - self.alpha * hd * hd;
+        let b = y.dot(d) - self.alpha * h * hd - self.beta * hd;
+        let c = y.dot(y) - self.alpha * h * h - 2.0 * self.beta * h - self.gamma;
+        let (mut low, mut high, mut first) = (f64::NEG_INFINITY, f64::INFINITY, Surface::Side);
+        if self.has_planes() {
+            if hd.abs() < 1e-14 * d.norm() {
+                if h < self.heights[0] - TINY || h > self.heights[1] + TINY {
+                    return None;
+                }
+            } else {
+                let at = self.heights.map(|end| (end - h) / hd);
+                (low, high) = (at[0].min(at[1]), at[0].max(at[1]));
+                first = if hd > 0.0 { Surface::Bottom } else { Surface::Top };
+            }
+        }
+        let scale = d.dot(d);
+        if a.abs() <= 1e-13 * scale {
+            // Along the side of a cone, or up a cylinder.
+            if b.abs() <= 1e-13 * scale {
+                if c > 0.0 {
+                    return None;
+                }
+            } else if b > 0.0 {
+                high = high.min(-c / (2.0 * b));
+            } else {
+                let side = -c / (2.0 * b);
+                if side > low {
+                    (low, first) = (side, Surface::Side);
+                }
+            }
+        } else {
+            let roots = roots(a, b, c);
+            match (a > 0.0, roots) {
+                (true, None) => return None,
+                (true, Some([from, to])) => {
+                    if from > low {
+                        (low, first) = (from, Surface::Side);
+                    }
+                    high = high.min(to);
+                }
+                (false, None) => {}
+                // Both nappes of a cone: the heights say which.
+                (false, Some([to, from])) => {
+                    if from < high && (from > low || to < low) {
+                        if from > low {
+                            (low, first) = (from, Surface::Side);
+                        }
+                    } else if to > low {
+                        high = high.min(to);
+                    } else {
+                        return None;
+                    }
+                }
+            }
+        }
+        (high > low).then_some(Chord { ends: [low, high], first })
+    }
+
+    /// Widens an interval on a line `w + l d` to what the piece sweeps of it where it moves by u: `y = w + l d - m u`
+    /// for m from 0 to 1.
+    pub fn sweep(
+        &self,
+        axis: &Vector3<f64>,
+        w: &Vector3<f64>,
+        d: &Vector3<f64>,
+        u: &Vector3<f64>,
+        ends: &mut [f64; 2],
+    ) {
+        let mut take = |l: f64| *ends = [ends[0].min(l), ends[1].max(l)];
+        for start in [*w, w - u] {
+            if let Some(chord) = self.chord(axis, &start, d) {
+                chord.ends.into_iter().for_each(&mut take);
+            }
+        }
+        let (h, hd, hu) = (w.dot(axis), d.dot(axis), u.dot(axis));
+        let alpha = self.alpha;
+        let a = d.dot(d) - alpha * hd * hd;
+        let b = alpha * hd * hu - d.dot(u);
+        let c = u.dot(u) - alpha * hu * hu;
+        let dd = w.dot(d) - alpha * h * hd - self.beta * hd;
+        let e = alpha * h * hu - w.dot(u) + self.beta * hu;
+        let f = w.dot(w) - alpha * h * h - 2.0 * self.beta * h - self.gamma;
+        let is_high = |l: f64, m: f64| {
+            let height = h + l * hd - m * hu;
+            !self.has_planes() || (height >= self.heights[0] - TINY && height <= self.heights[1] + TINY)
+        };
+        let is_during = |m: f64| (-1e-12..=1.0 + 1e-12).contains(&m);
+        // The silhouette, where Q does not change with m.
+        if c.abs() > 1e-14 * u.dot(u) {
+            let found = roots(a - b * b / c, dd - b * e / c, f - e * e / c);
+            for l in found.into_iter().flatten() {
+                let m = -(b * l + e) / c;
+                if is_during(m) && is_high(l, m) {
+                    take(l);
+                }
+            }
+        }
+        // The edges of the end planes.
+        if !self.has_planes() {
+            return;
+        }
+        for end in self.heights {
+            if hd.abs() > 1e-9 {
+                let (p, q) = ((end - h) / hd, hu / hd);
+                let (qa, qb) = (a * q * q + 2.0 * b * q + c, a * p * q + b * p + dd * q + e);
+                let qc = a * p * p + 2.0 * dd * p + f;
+                for m in roots(qa, qb, qc).into_iter().flatten().filter(|m| is_during(*m)) {
+                    take(p + q * m);
+                }
+            } else if hu.abs() > TINY {
+                let m = (h - end) / hu;
+                if is_during(m)
+                    && let Some([from, to]) = roots(a, b * m + dd, c * m * m + 2.0 * e * m + f)
+                {
+                    take(from);
+                    take(to);
+                }
+            }
+        }
+    }
+}
+
+/// The roots of `a x^2 + 2 b x + c`, ascending, where there are two.
+fn roots(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
+    let square = b * b - a * c;
+    let is_real = square > 0.0 && a != 0.0;
+    if !is_real {
+        return None;
+    }
+    let q = -(b + square.sqrt().copysign(b));
+    let (x, y) = (q / a, if q == 0.0 { -q / a } else { c / q });
+    Some([x.min(y), x.max(y)])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,210 @@
+//! The load at the points of a path, and the points that are added where a straight line between two misses it.
+
+use crate::moves::{LegPlace, PathMoves};
+use crate::outcome::PointForces;
+use crate::removal::{Found, Sums};
+use crate::turn::Turn;
+use nalgebra::Vector3;
+use stead_model::task::{PathPoint, TaskError, ToolPath, Wrench};
+
+/// A point is added where the force is off a straight line by more than this share of the largest there.
+const STRAIGHT: f64 = 0.1;
+/// Windows over which the force is the mean where points are looked for.
+const SMOOTH: f64 = 2.5;
+/// Forces below this share of the largest of the path need no point.
+const SMALL: f64 = 0.05;
+/// Sine of the smallest angle between feed and tool axis of a point that is added: what a task accepts, and room for
+/// rounding.
+const NO_WALL: f64 = 0.089;
+/// Less is nothing. m2
+const NOTHING: f64 = 1e-11;
+
+/// Sums along a path.
+pub struct Loads<'l> {
+    /// Where they are.
+    pub path: &'l PathMoves,
+    /// What they are.
+    pub found: &'l Found,
+}
+
+impl Loads<'_> {
+    /// The load at a point of the path: of the leg that ends there or that begins there, whichever is larger.
+    pub fn at_point(&self, point: usize) -> PointForces {
+        let places = self.path.places[point].iter().flatten().map(|place| self.at(place));
+        let larger = |a: PointForces, b: PointForces| {
+            if b.at_feed(1.0).force.norm() > a.at_feed(1.0).force.norm() { b } else { a }
+        };
+        places.reduce(larger).unwrap_or_else(PointForces::nothing)
+    }
+
+    /// The load at a place of a leg.
+    pub fn at(&self, place: &LegPlace) -> PointForces {
+        self.over(place, self.path.window)
+    }
+
+    /// The same as the mean over a window on either side (m).
+    fn over(&self, place: &LegPlace, window: f64) -> PointForces {
+        let leg = &self.path.legs[place.leg];
+        let mut sums = Sums::default();
+        for (node, weight) in leg.weights(place.along, window) {
+            let of_node = &self.found.sums[node];
+            if of_node.volume > 0.0 {
+                sums.add(of_node, weight);
+            }
+        }
+        if sums.volume < NOTHING {
+            return PointForces::nothing();
+        }
+        let chip = Wrench { force: sums.chip_force, moment: sums.chip_moment };
+        let edge = Wrench { force: sums.edge_force, moment: sums.edge_moment };
+        let turn = self.turn(place);
+        let mean = (chip.force + edge.force).norm();
+        PointForces {
+            is_added: false,
+            chip,
+            edge,
+            largest: turn.largest.max(mean),
+            removed: sums.volume,
+            heights: Some(sums.heights),
+            angles: turn.angles,
+            chip_thickness: sums.chip,
+        }
+    }
+
+    /// What goes on in a turn at a place: between the nodes about it.
+    fn turn(&self, place: &LegPlace) -> Turn {
+        let leg = &self.path.legs[place.leg];
+        let along = (place.along / leg.length * leg.turns.intervals as f64).clamp(0.0, leg.turns.intervals as f64);
+        let (low, part) = (along.floor() as usize, along - along.floor());
+        let at = |number: usize| self.found.turns.get(leg.turns.first + number.min(leg.turns.intervals)).copied();
+        let (Some(a), Some(b)) = (at(low), at(low + 1)) else { return Turn::default() };
+        let [near, far] = if part < 0.5 { [a, b] } else { [b, a] };
+        Turn { largest: a.largest * (1.0 - part) + b.largest * part, angles: near.angles.or(far.angles) }
+    }
+}
+
+impl PointForces {
+    /// In air.
+    pub(crate) fn nothing() -> Self {
+        Self {
+            is_added: false,
+            chip: Wrench::zero(),
+            edge: Wrench::zero(),
+            largest: 0.0,
+            removed: 0.0,
+            heights: None,
+            angles: None,
+            chip_thickness: 0.0,
+        }
+    }
+}
+
+/// A point between two of the path.
+struct Added {
+    /// Number of the point after it.
+    before: usize,
+    /// Share of the way there from the point before.
+    share: f64,
+    load: PointForces,
+}
+
+/// The path and its loads with points where the force is not straight between two.
+///
+/// # Errors
+/// [`TaskError`] where they make no path.
+pub fn added_points(
+    path: &ToolPath,
+    loads: Vec<PointForces>,
+    along: &Loads<'_>,
+) -> Result<(ToolPath, Vec<PointForces>), TaskError> {
+    let largest = loads.iter().map(|load| load.at_feed(1.0).force.norm()).fold(0.0, f64::max);
+    let mut added = Vec::new();
+    for point in 1..loads.len() {
+        let Some([start, end]) = along.path.leg_between(point - 1) else { continue };
+        // Along the tool axis there is no wall, and no point that could be scored.
+        let points = path.points();
+        let way = (points[point].position - points[point - 1].position).normalize();
+        let has_wall = [point - 1, point].iter().all(|end| way.cross(&points[*end].axis).norm() > NO_WALL);
+        if !path.is_scored(point) || !has_wall {
+            continue;
+        }
+        let way = end.along - start.along;
+        let steps = (way / along.path.window).floor() as usize;
+        if steps < 2 {
+            continue;
+        }
+        let place = |share: f64| LegPlace { along: start.along + way * share, ..start };
+        // What is not straight is looked for in a smoother force, so that noise adds no points.
+        let smooth = |step: usize| {
+            let share = step as f64 / steps as f64;
+            (share, along.over(&place(share), SMOOTH * along.path.window))
+        };
+        let between: Vec<(f64, PointForces)> = (1..steps).map(smooth).collect();
+        let mut kept = Vec::new();
+        refine(&between, [smooth(0), smooth(steps)], STRAIGHT, largest * SMALL, &mut kept);
+        added.extend(kept.into_iter().map(|(share, _)| Added { before: point, share, load: along.at(&place(share)) }));
+    }
+    if added.is_empty() {
+        return Ok((path.clone(), loads));
+    }
+    with_points(path, loads, &added)
+}
+
+/// Keeps the loads that a straight line between the ends misses most, until it misses none.
+fn refine(
+    between: &[(f64, PointForces)],
+    [a, b]: [(f64, PointForces); 2],
+    straight: f64,
+    small: f64,
+    kept: &mut Vec<(f64, PointForces)>,
+) {
+    let force = |load: &PointForces| load.at_feed(1.0).force;
+    let (from, to) = (force(&a.1), force(&b.1));
+    let off = |(share, load): &(f64, PointForces)| {
+        let line = from + (to - from) * ((share - a.0) / (b.0 - a.0));
+        let scale = from.norm().max(to.norm()).max(force(load).norm()).max(small);
+        (force(load) - line).norm() / scale
+    };
+    let worst = between.iter().enumerate().map(|(number, one)| (off(one), number)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((_, number)) = worst.filter(|(off, _)| *off > straight) else { return };
+    let middle = between[number];
+    refine(&between[..number], [a, middle], straight, small, kept);
+    kept.push(middle);
+    refine(&between[number + 1..], [middle, b], straight, small, kept);
+}
+
+fn with_points(
+    path: &ToolPath,
+    loads: Vec<PointForces>,
+    added: &[Added],
+) -> Result<(ToolPath, Vec<PointForces>), TaskError> {
+    let mut points: Vec<(u32, PathPoint, bool)> = Vec::new();
+    let (mut feeds, mut normals, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    let mut added = added.iter().peekable();
+    let mut put = |segment: u32, point: PathPoint, is_scored: bool, feed: f64, normal: Option<Vector3<f64>>, load| {
+        points.push((segment, point, is_scored));
+        feeds.push(feed);
+        normals.extend(normal);
+        all.push(load);
+    };
+    for (number, load) in loads.into_iter().enumerate() {
+        let segment = path.segment_of(number) as u32 + 1;
+        let here = path.points()[number];
+        let feed = path.feed(number).unwrap_or_default();
+        let is_scored = path.is_scored(number);
+        while let Some(one) = added.next_if(|one| one.before == number) {
+            let last = path.points()[number - 1];
+            let mix = |a: Vector3<f64>, b: Vector3<f64>| (a * (1.0 - one.share) + b * one.share).normalize();
+            let position = last.position + (here.position - last.position) * one.share;
+            let axis = mix(last.axis, here.axis);
+            let point = PathPoint { position, feed: (here.position - last.position).normalize(), axis };
+            let normal = path.surface_normals().map(|normals| mix(normals[number - 1], normals[number]));
+            put(segment, point, is_scored, feed, normal, PointForces { is_added: true, ..one.load });
+        }
+        put(segment, here, is_scored, feed, path.surface_normals().map(|normals| normals[number]), load);
+    }
+    let has_normals = path.surface_normals().is_some();
+    let path = ToolPath::partly_scored(points)?.with_feeds(feeds)?;
+    let path = if has_normals { path.with_surface_normals(normals)? } else { path };
+    Ok((path, all))
+}

@@ -1,0 +1,343 @@
+//! Moves through the stock, line by line: what each removes, and the mean force that this takes.
+//!
+//! A surface element dA of the cutter at the radius r is passed by a tooth once in `2 pi / N`, and what flows through
+//! it in a turn is the volume that it removes. So the mean force over a turn is a sum over the removed volume dV, and
+//! nothing has to be decided about engagement (tooth law as in [`Coefficients`](stead_model::cutting::Coefficients); n
+//! out of the cutter, t along the motion of the tooth, s = t x n up its edge):
+//!
+//! ```text
+//! F_chip = f_rev / ds  sum dV (-K_r n - K_t t + K_a s) / (2 pi r)
+//! F_edge = N / ds      sum dV / (n . u) (-K_re n - K_te t) / (2 pi r)
+//! ```
+//!
+//! with f_rev the feed per turn, ds the length of path and u the displacement of the surface point per length of path.
+//! A bit of line along an axis counts with the square of the normal's part along it: the weights of the three grids add
+//! up to one.
+
+use crate::cutting::{Bit, Tool};
+use crate::job::{Job, OfTile, Reach, Size};
+use crate::lattice::{self, TILE, TileKey, others, place};
+use crate::moves::PathMoves;
+use crate::quadrature::Quadrature;
+use crate::solid_lines::Body;
+use crate::tile::{NANO, Tile};
+use crate::turn::{Arcs, Turn, TurnGrid};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use stead_numerics::monitor::{Monitor, Progress, Stop};
+
+/// Sums of what is removed about a node of the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sums {
+    /// Removed volume. m3
+    pub volume: f64,
+    /// Integral of the chip part of the mean force over the path. N m
+    pub chip_force: Vector3<f64>,
+    /// Of its moment about the tool centre point. N m2
+    pub chip_moment: Vector3<f64>,
+    /// Integral of the edge part of the mean force over the path. N m
+    pub edge_force: Vector3<f64>,
+    /// Of its moment about the tool centre point. N m2
+    pub edge_moment: Vector3<f64>,
+    /// Lowest and highest height that cuts. m
+    pub heights: [f64; 2],
+    /// Thickest chip. m
+    pub chip: f64,
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        let zero = Vector3::zeros();
+        Self {
+            volume: 0.0,
+            chip_force: zero,
+            chip_moment: zero,
+            edge_force: zero,
+            edge_moment: zero,
+            heights: [f64::INFINITY, f64::NEG_INFINITY],
+            chip: 0.0,
+        }
+    }
+}
+
+impl Sums {
+    /// Adds a share of other sums.
+    pub fn add(&mut self, other: &Self, share: f64) {
+        self.volume += other.volume * share;
+        self.chip_force += other.chip_force * share;
+        self.chip_moment += other.chip_moment * share;
+        self.edge_force += other.edge_force * share;
+        self.edge_moment += other.edge_moment * share;
+        self.heights = [self.heights[0].min(other.heights[0]), self.heights[1].max(other.heights[1])];
+        self.chip = self.chip.max(other.chip);
+    }
+
+    /// Those of one bit, with the thickness of its chip (m).
+    pub fn of(bit: &Bit, chip: f64) -> Self {
+        Self {
+            volume: bit.volume,
+            chip_force: bit.chip_force,
+            chip_moment: bit.chip_moment,
+            edge_force: bit.edge_force,
+            edge_moment: bit.edge_moment,
+            heights: [bit.height; 2],
+            chip,
+        }
+    }
+}
+
+/// What happens that should not, or that gives no force.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Event {
+    /// A rapid move through the stock.
+    Rapid,
+    /// The tool turns in place in the stock.
+    InPlace,
+    /// A segment begins with the cutter in the stock.
+    Before,
+    /// Something is cut above the flutes.
+    AboveFlutes,
+    /// The middle of a cutter that is not centre-cutting is in the stock.
+    DeadCentre,
+    /// Shank or holder is in the stock.
+    Holder,
+    /// The finished part is cut into.
+    Gouge,
+}
+
+/// What is asked of a run through the moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asked {
+    /// Only that the stock is cut.
+    Removal,
+    /// Forces.
+    Forces,
+    /// Forces, and what goes on in a turn of the spindle.
+    Turns,
+}
+
+/// What a run through the moves finds.
+#[derive(Debug, Clone, Default)]
+pub struct Found {
+    /// By node of the sums.
+    pub sums: Vec<Sums>,
+    /// By node of the turns.
+    pub turns: Vec<Turn>,
+    /// Volume (m3) by event and point of the path.
+    pub events: BTreeMap<(Event, u32), f64>,
+}
+
+/// Moves that all tiles go through before the next ones.
+const CHUNK: usize = 4096;
+/// Nodes of turns that they reach over, at most.
+const CHUNK_TURNS: f64 = 128.0;
+/// A cut into the finished part is one from this depth on. m
+pub const GOUGE: f64 = 50e-6;
+
+/// The stock while it is cut.
+#[derive(Debug, Clone)]
+pub struct Workpiece {
+    body: Body,
+    part: Option<Body>,
+    cell: f64,
+    tiles: BTreeMap<TileKey, Tile>,
+}
+
+impl Workpiece {
+    /// Stock that is not cut yet, by lines at a distance (m), with the finished part that may be in it.
+    pub fn new(body: Body, part: Option<Body>, cell: f64) -> Self {
+        Self { body, part, cell, tiles: BTreeMap::new() }
+    }
+
+    /// Distance of neighbouring lines. m
+    pub fn cell(&self) -> f64 {
+        self.cell
+    }
+
+    /// Lower and upper corner of the stock. m
+    pub fn extent(&self) -> &[Vector3<f64>; 2] {
+        &self.body.extent
+    }
+
+    /// Goes through moves one after the other. The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// A stop that the monitor asks for.
+    pub fn cut(
+        &mut self,
+        tool: &Tool,
+        path: &PathMoves,
+        asked: Asked,
+        stage: &'static str,
+        monitor: &Monitor,
+    ) -> Result<Found, Stop> {
+        let wanted = asked != Asked::Removal;
+        let [nodes, turns] = path.counts;
+        let mut found = Found {
+            sums: if wanted { vec![Sums::default(); nodes + 1] } else { Vec::new() },
+            turns: if asked == Asked::Turns { vec![Turn::default(); turns + 1] } else { Vec::new() },
+            events: BTreeMap::new(),
+        };
+        let quadrature = Quadrature::default();
+        let size = Size::of(&tool.pieces);
+        let holder = Size::of(&tool.holder);
+        let grid = TurnGrid::new(tool, self.cell);
+        let mut open: BTreeMap<u32, Arcs> = BTreeMap::new();
+        let moves = &path.moves;
+        let mut start = 0;
+        while start < moves.len() {
+            monitor.go_on()?;
+            monitor.report(Progress::Steps { stage, done: start, total: moves.len() });
+            let most = (start + CHUNK).min(moves.len());
+            let far = moves[start].turns[0] + CHUNK_TURNS;
+            let end = (start + 1..most).find(|next| moves[*next].turns[1] > far).unwrap_or(most);
+            let chunk = &moves[start..end];
+            let reaches: Vec<Reach> = chunk.iter().map(|one| one.reach(&size, &self.body.extent)).collect();
+            let held: Vec<Reach> = if tool.holder.is_empty() {
+                Vec::new()
+            } else {
+                chunk.iter().map(|one| one.reach(&holder, &self.body.extent)).collect()
+            };
+            let mut jobs: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
+            for (index, reach) in reaches.iter().enumerate() {
+                let held = held.get(index).filter(|held| !held.is_empty());
+                let whole = held.map_or(*reach, |held| reach.with(held));
+                if whole.is_empty() {
+                    continue;
+                }
+                for axis in 0..3 {
+                    let [a, b] = others(axis).map(|k| lattice::tiles(whole.0[k], self.cell));
+                    for i in a.clone() {
+                        for j in b.clone() {
+                            jobs.entry((axis, i, j)).or_default().push(index as u32);
+                        }
+                    }
+                }
+            }
+            let jobs: Vec<(TileKey, Vec<u32>, Option<Tile>)> =
+                jobs.into_iter().map(|(key, indices)| (key, indices, self.tiles.remove(&key))).collect();
+            let job = Job {
+                tool,
+                moves: chunk,
+                reaches: &reaches,
+                held: &held,
+                extent: &self.body.extent,
+                part: self.part.as_ref(),
+                cell: self.cell,
+                quadrature: &quadrature,
+                asked,
+                grid: &grid,
+            };
+            let done: Vec<(TileKey, Tile, OfTile)> = jobs
+                .into_par_iter()
+                .map(|(key, indices, tile)| {
+                    let mut tile = tile.unwrap_or_else(|| tile_of(&self.body, &self.body.extent, self.cell, key));
+                    let of_tile = job.cut(key, &indices, &mut tile);
+                    (key, tile, of_tile)
+                })
+                .collect();
+            for (key, tile, of_tile) in done {
+                self.tiles.insert(key, tile);
+                for (node, sums) in &of_tile.sums {
+                    found.sums[*node as usize].add(sums, 1.0);
+                }
+                for (node, arcs) in of_tile.turns {
+                    match open.entry(node) {
+                        std::collections::btree_map::Entry::Vacant(place) => _ = place.insert(arcs),
+                        std::collections::btree_map::Entry::Occupied(mut place) => place.get_mut().add(&arcs),
+                    }
+                }
+                for (event, volume) in of_tile.events {
+                    *found.events.entry(event).or_default() += volume;
+                }
+            }
+            let still = moves.get(end).map_or(u32::MAX, |next| next.turns[0].floor() as u32);
+            let later = open.split_off(&still);
+            let ended: Vec<(u32, Turn)> = std::mem::replace(&mut open, later)
+                .into_par_iter()
+                .map(|(node, arcs)| (node, grid.turn(tool, &arcs, path, node as usize)))
+                .collect();
+            for (node, turn) in ended {
+                found.turns[node as usize] = turn;
+            }
+            start = end;
+        }
+        Ok(found)
+    }
+
+    /// What the lines along an axis have lost. m3
+    pub fn removed(&self, axis: usize) -> f64 {
+        let lost = |(key, tile): (&TileKey, &Tile)| {
+            tile_of(&self.body, &self.body.extent, self.cell, *key).length() - tile.length()
+        };
+        let tiles = self.tiles.iter().filter(|((of, ..), _)| *of == axis);
+        tiles.map(lost).sum::<f64>() / NANO * self.cell * self.cell
+    }
+
+    /// The share of lines whose surface is no body's, and where one of them runs.
+    pub fn unsound(&self) -> Option<(f64, Vector3<f64>)> {
+        let of_tile = |(key, tile): (&TileKey, &Tile)| tile.unsound.first().map(|line| (*key, *line));
+        let (key, line) = self.tiles.iter().find_map(of_tile)?;
+        let count: usize = self.tiles.values().map(|tile| tile.unsound.len()).sum();
+        let all = self.tiles.len() as f64 * (TILE * TILE) as f64;
+        Some((count as f64 / all, origin(&self.body.extent, self.cell, key, line)))
+    }
+
+    /// Tiles that were met.
+    pub fn tile_count(&self) -> usize {
+        self.tiles.len()
+    }
+
+    /// What is left of the line of the lattice nearest to a place, along an axis: intervals. m
+    pub fn left_of(&self, axis: usize, at: &Vector3<f64>) -> Vec<[f64; 2]> {
+        let [a, b] = others(axis);
+        let (x, y) = (at[a] / self.cell, at[b] / self.cell);
+        let (i, j) = lattice::nearest(x, y);
+        let key = (axis, i.div_euclid(TILE), j.div_euclid(TILE));
+        let line = (i.rem_euclid(TILE) * TILE + j.rem_euclid(TILE)) as usize;
+        let low = self.body.extent[0][axis];
+        let metres = |[from, to]: [u32; 2]| [low + f64::from(from) / NANO, low + f64::from(to) / NANO];
+        match self.tiles.get(&key) {
+            Some(tile) => tile.intervals(line).map(metres).collect(),
+            None => {
+                let o = origin(&self.body.extent, self.cell, key, line);
+                self.body.line(key, &o).intervals.into_iter().map(|ends| ends.map(|end| low + end)).collect()
+            }
+        }
+    }
+}
+
+/// Where a line of a tile begins, at the lower end of the extent.
+fn origin(extent: &[Vector3<f64>; 2], cell: f64, (axis, i, j): TileKey, line: usize) -> Vector3<f64> {
+    let [a, b] = others(axis);
+    let line = line as i64;
+    let at = place(i * TILE + line / TILE, j * TILE + line % TILE);
+    let mut o = Vector3::zeros();
+    (o[a], o[b], o[axis]) = (at[0] * cell, at[1] * cell, extent[0][axis]);
+    o
+}
+
+/// The lines of a tile inside a body, from the lower end of an extent.
+pub(crate) fn tile_of(body: &Body, extent: &[Vector3<f64>; 2], cell: f64, key: TileKey) -> Tile {
+    let axis = key.0;
+    let length = (extent[1][axis] - extent[0][axis]) * NANO;
+    let nano = |end: f64| (end * NANO).round().clamp(0.0, length.round()) as u32;
+    let [a, b] = others(axis);
+    let mut tile = Tile::empty();
+    for line in 0..(TILE * TILE) as usize {
+        let o = origin(extent, cell, key, line);
+        if o[a] < body.extent[0][a] || o[a] > body.extent[1][a] || o[b] < body.extent[0][b] || o[b] > body.extent[1][b]
+        {
+            continue;
+        }
+        let inside = body.line(key, &o);
+        let intervals: Vec<[u32; 2]> =
+            inside.intervals.iter().map(|ends| ends.map(nano)).filter(|[from, to]| to > from).collect();
+        tile.set(line, &intervals);
+        if !inside.is_sound {
+            tile.unsound.push(line);
+        }
+    }
+    tile
+}

@@ -1,0 +1,197 @@
+//! Where lines along the axes run inside a body: the stock before it is cut, and the finished part.
+
+use crate::lattice::{TILE, TileKey, others};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use stead_cell::{Solid, TriangleMesh};
+use stead_model::robot::Pose;
+
+/// A body in the workpiece frame, ready to be asked for lines.
+#[derive(Debug, Clone)]
+pub struct Body {
+    form: Form,
+    /// Lower and upper corner of its extent. m
+    pub extent: [Vector3<f64>; 2],
+}
+
+#[derive(Debug, Clone)]
+enum Form {
+    /// A box by its half edges, or a cylinder, in a frame of its own.
+    Box(Vector3<f64>, Pose<f64>),
+    Cylinder(f64, f64, Pose<f64>),
+    Mesh(Arc<Facets>),
+}
+
+/// Triangles in the workpiece frame, and which of them the lines of a tile can meet.
+#[derive(Debug)]
+struct Facets {
+    corners: Vec<[Vector3<f64>; 3]>,
+    by_tile: BTreeMap<TileKey, Vec<u32>>,
+}
+
+/// The intervals of a line inside a body, and whether its surface was crossed as that of a body is: in, out, in, out.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Inside {
+    /// Ascending, from the origin of the line. m
+    pub intervals: Vec<[f64; 2]>,
+    /// Whether every way in is followed by one out.
+    pub is_sound: bool,
+}
+
+impl Body {
+    /// A box, cylinder or closed mesh with its pose; nothing for another form.
+    pub fn new(solid: &Solid, pose: &Pose<f64>, cell: f64) -> Option<Self> {
+        let form = match solid {
+            Solid::Box(edges) => Form::Box(edges / 2.0, *pose),
+            Solid::Cylinder { radius, length } => Form::Cylinder(*radius, *length, *pose),
+            Solid::Mesh(mesh) => Form::Mesh(Arc::new(Facets::new(mesh, pose, cell))),
+            Solid::Capsule { .. } | Solid::Hull(_) => return None,
+        };
+        Some(Self { form, extent: solid.extent_at(pose) })
+    }
+
+    /// How far a point inside is from the surface along the axis in which that is least; 0 outside. m
+    pub fn depth(&self, point: &Vector3<f64>, cell: f64) -> f64 {
+        let along = |axis: usize| {
+            let tile = others(axis).map(|k| ((point[k] / cell).floor() as i64).div_euclid(TILE));
+            let mut o = *point;
+            o[axis] = self.extent[0][axis];
+            let at = point[axis] - o[axis];
+            let inside = self.line((axis, tile[0], tile[1]), &o);
+            inside.intervals.iter().map(|[from, to]| (at - from).min(to - at)).fold(0.0, f64::max)
+        };
+        (0..3).map(along).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The part of a line from `o` along an axis that is inside.
+    pub fn line(&self, key: TileKey, o: &Vector3<f64>) -> Inside {
+        let axis = key.0;
+        match &self.form {
+            Form::Box(half, pose) => {
+                let (w, d) = in_frame(pose, o, axis);
+                let mut ends = [f64::NEG_INFINITY, f64::INFINITY];
+                for k in 0..3 {
+                    slab(&mut ends, w[k], d[k], [-half[k], half[k]]);
+                }
+                Inside::convex(ends)
+            }
+            Form::Cylinder(radius, length, pose) => {
+                let (w, d) = in_frame(pose, o, axis);
+                let mut ends = [f64::NEG_INFINITY, f64::INFINITY];
+                slab(&mut ends, w.z, d.z, [-length / 2.0, length / 2.0]);
+                let (a, b) = (d.x * d.x + d.y * d.y, w.x * d.x + w.y * d.y);
+                let c = w.x * w.x + w.y * w.y - radius * radius;
+                let square = b * b - a * c;
+                if a < 1e-20 {
+                    if c > 0.0 {
+                        ends = [0.0, 0.0];
+                    }
+                } else if square <= 0.0 {
+                    ends = [0.0, 0.0];
+                } else {
+                    let root = square.sqrt();
+                    ends = [ends[0].max((-b - root) / a), ends[1].min((-b + root) / a)];
+                }
+                Inside::convex(ends)
+            }
+            Form::Mesh(facets) => facets.line(key, o),
+        }
+    }
+}
+
+/// A line from `o` along an axis of the workpiece, in another frame.
+fn in_frame(pose: &Pose<f64>, o: &Vector3<f64>, axis: usize) -> (Vector3<f64>, Vector3<f64>) {
+    let turned = pose.rotation.transpose();
+    (turned * (o - pose.translation), turned.column(axis).into_owned())
+}
+
+/// Cuts an interval of a line to where a coordinate is between two values.
+fn slab(ends: &mut [f64; 2], at: f64, rate: f64, [low, high]: [f64; 2]) {
+    if rate.abs() < 1e-14 {
+        if at < low || at > high {
+            *ends = [0.0, 0.0];
+        }
+        return;
+    }
+    let (a, b) = ((low - at) / rate, (high - at) / rate);
+    *ends = [ends[0].max(a.min(b)), ends[1].min(a.max(b))];
+}
+
+impl Inside {
+    fn convex([low, high]: [f64; 2]) -> Self {
+        let intervals = if low < high { vec![[low, high]] } else { Vec::new() };
+        Self { intervals, is_sound: true }
+    }
+}
+
+impl Facets {
+    fn new(mesh: &TriangleMesh, pose: &Pose<f64>, cell: f64) -> Self {
+        let vertices: Vec<Vector3<f64>> = mesh.vertices().iter().map(|vertex| pose.point(vertex)).collect();
+        let corners: Vec<[Vector3<f64>; 3]> =
+            mesh.triangles().iter().map(|triangle| triangle.map(|vertex| vertices[vertex as usize])).collect();
+        let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
+        for (number, corners) in corners.iter().enumerate() {
+            for axis in 0..3 {
+                let tiles = others(axis).map(|k| {
+                    let [low, high] = ends(corners.map(|corner| corner[k]));
+                    crate::lattice::tiles([low, high], cell)
+                });
+                for i in tiles[0].clone() {
+                    for j in tiles[1].clone() {
+                        by_tile.entry((axis, i, j)).or_default().push(number as u32);
+                    }
+                }
+            }
+        }
+        Self { corners, by_tile }
+    }
+
+    fn line(&self, key: TileKey, o: &Vector3<f64>) -> Inside {
+        let axis = key.0;
+        let [a, b] = others(axis);
+        let mut crossings: Vec<(f64, f64)> = Vec::new();
+        for number in self.by_tile.get(&key).into_iter().flatten() {
+            let corners = &self.corners[*number as usize];
+            let flat = corners.map(|corner| [corner[a] - o[a], corner[b] - o[b]]);
+            let area = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+            // An edge that two triangles share is reckoned the same way for both, so that a line meets one of them.
+            let side = |p: usize, q: usize| {
+                let is_turned = flat[p] > flat[q];
+                let area = if is_turned { -area(flat[q], flat[p]) } else { area(flat[p], flat[q]) };
+                (area, if area == 0.0 { is_turned } else { area > 0.0 })
+            };
+            let [(u, is_u), (v, is_v), (w, is_w)] = [side(1, 2), side(2, 0), side(0, 1)];
+            if is_u != is_v || is_v != is_w {
+                continue;
+            }
+            let sum = u + v + w;
+            if sum == 0.0 {
+                continue;
+            }
+            let along = (corners[0][axis] * u + corners[1][axis] * v + corners[2][axis] * w) / sum;
+            crossings.push((along - o[axis], sum.signum()));
+        }
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        // Triangles face outwards: on the way in they face against the line.
+        let mut inside = Inside { intervals: Vec::new(), is_sound: true };
+        let (mut depth, mut from) = (0_i32, 0.0);
+        for (along, facing) in crossings {
+            let before = depth;
+            depth += if facing < 0.0 { 1 } else { -1 };
+            match (before, depth) {
+                (0, 1) => from = along,
+                (1, 0) if along > from => inside.intervals.push([from, along]),
+                (1, 0) => {}
+                _ => inside.is_sound = false,
+            }
+        }
+        inside.is_sound &= depth == 0;
+        inside
+    }
+}
+
+/// The least and the most of three numbers.
+fn ends(values: [f64; 3]) -> [f64; 2] {
+    values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}

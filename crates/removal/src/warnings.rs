@@ -1,0 +1,118 @@
+//! What the user should see to in forces from a path.
+
+use crate::cutting::Tool;
+use crate::forces::place;
+use crate::operation::ForcesProblem;
+use crate::outcome::RemovalForces;
+use crate::removal::{Event, Found, GOUGE};
+use stead_numerics::message::Warning;
+
+/// Chips below this are rubbed rather than cut. m
+const THIN: f64 = 2e-6;
+/// Volumes below so many cells are none.
+const CELLS: f64 = 8.0;
+
+/// Adds warnings, notes and the share of the path in air.
+pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found, tool: &Tool) {
+    let original = &problem.operation.path;
+    let least = CELLS * all.cell.powi(3);
+    let mut warn = |event: Event, kind: &'static str, text: &dyn Fn() -> String| {
+        let met: Vec<(u32, f64)> = found
+            .events
+            .iter()
+            .filter(|((known, _), volume)| *known == event && **volume > least)
+            .map(|((_, point), volume)| (*point, *volume))
+            .collect();
+        let Some((first, _)) = met.first() else { return };
+        let volume: f64 = met.iter().map(|(_, volume)| volume).sum();
+        let number = *first as usize + 1;
+        let at = place(&original.points()[*first as usize].position);
+        let count = met.len();
+        let points = if count == 1 {
+            format!("at point {number}")
+        } else {
+            format!("at {count} points, first at point {number}")
+        };
+        let message = format!("{} {points}, {at}: {:.1} mm3", text(), volume * 1e9);
+        all.warnings.push(Warning::new(kind, message));
+    };
+    warn(Event::Rapid, "rapid-in-stock", &|| "rapid moves go through the stock".to_owned());
+    warn(Event::Before, "starts-in-stock", &|| {
+        "the cutter stands in the stock where a segment begins, which gives no force:".to_owned()
+    });
+    warn(Event::InPlace, "turns-in-stock", &|| {
+        "the tool turns in place in the stock, without a feed and so without a force".to_owned()
+    });
+    warn(Event::AboveFlutes, "above-flutes", &|| {
+        let flutes = tool.flute_length * 1e3;
+        format!("material is cut above the flutes ({flutes} mm), reckoned as if they went on,")
+    });
+    warn(Event::DeadCentre, "dead-centre", &|| {
+        let radius = (tool.dead_centre * 1e6).round() / 1e3;
+        format!("the cutter is not centre-cutting, and its bottom cuts within {radius} mm of its axis")
+    });
+    warn(Event::Holder, "holder-in-stock", &|| "shank or holder are in the stock".to_owned());
+    warn(Event::Gouge, "gouge", &|| format!("the finished part is cut into by more than about {} mm", GOUGE * 1e3));
+
+    let path = &all.path;
+    let starts: Vec<usize> = path.segments().iter().map(|range| range.start).collect();
+    let step = |point: usize| if starts.binary_search(&point).is_ok() { 0.0 } else { path.step_length(point) };
+    let is_air = |point: usize| all.points[point].heights.is_none();
+    let scored: Vec<usize> = (0..all.points.len()).filter(|point| path.is_scored(*point)).collect();
+    let weight: f64 = scored.iter().map(|point| step(*point)).sum();
+    let in_air: Vec<usize> = scored.iter().copied().filter(|point| is_air(*point)).collect();
+    if weight > 0.0 {
+        all.air = in_air.iter().map(|point| step(*point)).sum::<f64>() / weight;
+    }
+    if let Some(first) = in_air.first() {
+        let at = place(&path.points()[*first].position);
+        let text = format!(
+            "{} of {} scored points cut nothing, {:.1} % of the scored length: their deflection is zero; first at point {}, {at}",
+            in_air.len(),
+            scored.len(),
+            all.air * 100.0,
+            first + 1
+        );
+        all.warnings.push(Warning::new("in-air", text));
+    }
+    let thin = |point: &usize| !is_air(*point) && all.points[*point].chip_thickness < THIN;
+    let thin: Vec<usize> = scored.iter().copied().filter(thin).collect();
+    if let Some(first) = thin.first() {
+        let at = place(&path.points()[*first].position);
+        let text = format!(
+            "chips are thinner than {} um at {} scored points, first at point {}, {at}: the teeth may rub",
+            THIN * 1e6,
+            thin.len(),
+            first + 1
+        );
+        all.warnings.push(Warning::new("thin-chip", text));
+    }
+    notes(all, problem);
+}
+
+/// What was assumed and done.
+fn notes(all: &mut RemovalForces, problem: &ForcesProblem) {
+    let [force, moment] = [0, 1].map(|k| (all.difference.rms[k] * 100.0, all.difference.largest[k] * 100.0));
+    let cell = all.cell * 1e3;
+    all.notes.push(format!(
+        "forces are those of the programmed feed, from what the path removes of the stock by lines {cell:.3} mm apart; with lines \
+         {:.3} mm apart the force differs by {:.2} % rms and {:.1} % at most, the moment by {:.2} % and {:.1} %, of the largest",
+        2.0 * cell,
+        force.0,
+        force.1,
+        moment.0,
+        moment.1
+    ));
+    let added = all.points.iter().filter(|point| point.is_added).count();
+    if added > 0 {
+        all.notes.push(format!(
+            "{added} points added, where a straight line between two misses the force by more than 10 %"
+        ));
+    }
+    if problem.operation.rapids.iter().all(Vec::is_empty) {
+        all.notes.push("the path has no rapid moves: that they keep out of the stock is not checked".to_owned());
+    }
+    if problem.operation.mill.holder.is_empty() {
+        all.notes.push("no holder is stated: that it keeps out of the stock is not checked".to_owned());
+    }
+}

@@ -1,0 +1,358 @@
+//! Reports of forces from a path: the task with forces, `engagement.csv`, a picture, the stock that is left, a JSON
+//! document, and a table for people.
+
+use super::output::ReportError;
+use super::picture;
+use super::{Files, named};
+use crate::columns::aligned;
+use crate::csv_file::rows;
+use crate::document::{Document, bytes};
+use crate::figure::{
+    AngleDeg, Direction, ForceN, HeightUm, MomentNm, Percent, PlaceMm, RemovalMm2, SpeedMmPerS, TaskMm, VolumeMm3,
+    each, some,
+};
+use crate::page::cards::{Axis, Chart, Series, Style};
+use crate::units::fixed;
+use nalgebra::Vector3;
+use serde_json::Value;
+use std::fmt::Write;
+use stead_model::task::{PathPoint, Wrench};
+use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
+use stead_removal::surface::Surface;
+use stead_run_files::ForcesRun;
+
+/// The files of forces from a path, by the endings of their names; the task first, which has none.
+///
+/// # Errors
+/// [`ReportError::Format`]: a file cannot be made.
+pub fn forces_files(run: &ForcesRun, forces: &RemovalForces) -> Result<Files, ReportError> {
+    Ok(named([
+        ("", task(forces)?),
+        ("-engagement.csv", engagement(forces)?),
+        ("-forces.svg", picture::charts(&charts(forces)).into_bytes()),
+        ("-stock-before.stl", stl(&forces.stock[0])),
+        ("-stock-after.stl", stl(&forces.stock[1])),
+        ("-forces.json", bytes(&forces_json(run, forces))),
+    ]))
+}
+
+records! {
+    /// A point of a task with forces, in the workpiece frame; a file that `stead place` and the others read.
+    pub struct ForceTaskRow of (segment: usize, point: &PathPoint, normal: Option<&Vector3<f64>>, wrench: &Wrench, feed: f64, is_scored: bool) {
+        let [x_mm, y_mm, z_mm] = each(point.position.into());
+        let [feed_x, feed_y, feed_z] = each(point.feed.into());
+        let [axis_x, axis_y, axis_z] = each(point.axis.into());
+        let [normal_x, normal_y, normal_z] = [0, 1, 2].map(|k| normal.map(|normal| Direction(normal[k])));
+        let [force_x_n, force_y_n, force_z_n] = each(wrench.force.into());
+        let [moment_x_nm, moment_y_nm, moment_z_nm] = each(wrench.moment.into());
+    } with {
+        /// Segment, from 1.
+        segment: usize = segment,
+        /// x of the tool centre point.
+        x_mm: TaskMm = x_mm,
+        /// y of it.
+        y_mm: TaskMm = y_mm,
+        /// z of it.
+        z_mm: TaskMm = z_mm,
+        /// x of the feed direction.
+        feed_x: Direction = feed_x,
+        /// y of it.
+        feed_y: Direction = feed_y,
+        /// z of it.
+        feed_z: Direction = feed_z,
+        /// x of the tool axis, from the workpiece to the spindle.
+        axis_x: Direction = axis_x,
+        /// y of it.
+        axis_y: Direction = axis_y,
+        /// z of it.
+        axis_z: Direction = axis_z,
+        /// x of the normal of the surface, where the path states it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        normal_x: Option<Direction> = normal_x,
+        /// y of it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        normal_y: Option<Direction> = normal_y,
+        /// z of it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        normal_z: Option<Direction> = normal_z,
+        /// x of what the workpiece does to the tool: the mean force over a turn.
+        force_x_n: ForceN = force_x_n,
+        /// y of it.
+        force_y_n: ForceN = force_y_n,
+        /// z of it.
+        force_z_n: ForceN = force_z_n,
+        /// x of the mean moment about the tool centre point.
+        moment_x_nm: MomentNm = moment_x_nm,
+        /// y of it.
+        moment_y_nm: MomentNm = moment_y_nm,
+        /// z of it.
+        moment_z_nm: MomentNm = moment_z_nm,
+        /// Feed of the move to the point.
+        feed_mm_per_s: SpeedMmPerS = feed.into(),
+        /// 0 for a point that is followed but not scored.
+        scored: u8 = is_scored.into(),
+    }
+
+    /// What is cut at a point of the path. Forces and moments are means over a turn of what the workpiece does to the
+    /// tool, in the workpiece frame, moments about the tool centre point.
+    pub struct EngagementRow of (index: usize, segment: usize, along: f64, is_scored: bool, load: &PointForces) {
+        let [lowest_mm, highest_mm] = [0, 1].map(|k| load.heights.map(|heights| PlaceMm(heights[k])));
+        let [entry_deg, exit_deg] = [0, 1].map(|k| load.angles.map(|angles| AngleDeg(angles[k])));
+    } with {
+        /// Path point, from 0.
+        point: usize = index,
+        /// Segment, from 1.
+        segment: usize = segment,
+        /// Length of path to it.
+        along_mm: PlaceMm = along.into(),
+        /// 0 for a point that is followed but not scored: its forces are stated, and have no part in a score.
+        scored: u8 = is_scored.into(),
+        /// 1 for a point that was added, where a straight line between two misses the force by more than 10 %.
+        added: u8 = load.is_added.into(),
+        /// The part of the force that grows with the feed.
+        chip_force: ForceColumns = load.chip.force.into(),
+        /// The part of the edges, which does not.
+        edge_force: ForceColumns = load.edge.force.into(),
+        /// The part of the moment that grows with the feed.
+        chip_moment: MomentColumns = load.chip.moment.into(),
+        /// The part of the edges.
+        edge_moment: MomentColumns = load.edge.moment.into(),
+        /// Norm of the mean force.
+        force_n: ForceN = load.at_feed(1.0).force.norm().into(),
+        /// Largest norm of the force over a turn, within 15 %.
+        largest_n: ForceN = load.largest.into(),
+        /// Removed volume over length of path.
+        removed_mm3_per_mm: RemovalMm2 = load.removed.into(),
+        /// Lowest height above the tool centre point that cuts; empty where nothing does, as what follows.
+        lowest_mm: Option<PlaceMm> = lowest_mm,
+        /// Highest one.
+        highest_mm: Option<PlaceMm> = highest_mm,
+        /// Angle at which a tooth enters, 0 where it moves along the feed, in the sense of rotation.
+        entry_deg: Option<AngleDeg> = entry_deg,
+        /// Angle at which it leaves.
+        exit_deg: Option<AngleDeg> = exit_deg,
+        /// Thickest chip.
+        chip_um: HeightUm = load.chip_thickness.into(),
+    }
+
+    /// A force in a row.
+    pub struct ForceColumns from force: Vector3<f64> {
+        let [x_n, y_n, z_n] = each(force.into());
+    } with {
+        /// x.
+        x_n: ForceN = x_n,
+        /// y.
+        y_n: ForceN = y_n,
+        /// z.
+        z_n: ForceN = z_n,
+    }
+
+    /// A moment in a row.
+    pub struct MomentColumns from moment: Vector3<f64> {
+        let [x_nm, y_nm, z_nm] = each(moment.into());
+    } with {
+        /// x.
+        x_nm: MomentNm = x_nm,
+        /// y.
+        y_nm: MomentNm = y_nm,
+        /// z.
+        z_nm: MomentNm = z_nm,
+    }
+
+    /// Forces along a path, in figures.
+    pub struct ForcesFigures from forces: &RemovalForces {
+        let all = || forces.points.iter().map(|point| point.at_feed(1.0));
+        let largest = |of: fn(&Wrench) -> f64| all().map(|wrench| of(&wrench)).fold(0.0, f64::max);
+        let scored = || (0..forces.points.len()).filter(|point| forces.path.is_scored(*point));
+        let cutting = || scored().filter(|point| forces.points[*point].heights.is_some());
+        let sum: f64 = cutting().map(|point| forces.points[point].at_feed(1.0).force.norm()).sum();
+        let count = cutting().count();
+    } with {
+        /// Points of the task.
+        points: usize = forces.points.len(),
+        /// Those that were added.
+        added: usize = forces.points.iter().filter(|point| point.is_added).count(),
+        /// Those that are scored.
+        scored: usize = scored().count(),
+        /// Share of the length of scored path on which nothing is cut.
+        air_percent: Percent = forces.air.into(),
+        /// Distance of the lines that the stock is held by.
+        cell_mm: PlaceMm = forces.cell.into(),
+        /// Volume that the path removes.
+        removed_mm3: VolumeMm3 = forces.removed.into(),
+        /// Mean norm of the force of the scored points that cut; null where none does.
+        mean_force_n: Option<ForceN> = some((count > 0).then(|| sum / count as f64)),
+        /// Largest norm of a mean force.
+        max_force_n: ForceN = largest(|wrench| wrench.force.norm()).into(),
+        /// Largest norm of a mean moment.
+        max_moment_nm: MomentNm = largest(|wrench| wrench.moment.norm()).into(),
+        /// Largest norm of the force within a turn.
+        max_in_turn_n: ForceN = forces.points.iter().map(|point| point.largest).fold(0.0, f64::max).into(),
+        /// How far lines twice as far apart are off, over the largest force and moment of the path.
+        doubled_cell: DifferenceFigures = (&forces.difference).into(),
+    }
+
+    /// A difference of forces and moments over the largest of the path.
+    pub struct DifferenceFigures from difference: &ForcesDifference {
+        let ForcesDifference { rms, largest } = difference;
+    } with {
+        /// Root mean square of the force.
+        force_rms_percent: Percent = rms[0].into(),
+        /// Largest of the force.
+        force_max_percent: Percent = largest[0].into(),
+        /// Root mean square of the moment.
+        moment_rms_percent: Percent = rms[1].into(),
+        /// Largest of the moment.
+        moment_max_percent: Percent = largest[1].into(),
+    }
+}
+
+/// The task: a [`ForceTaskRow`] for each point. Forces of points that are not scored are stated too.
+fn task(forces: &RemovalForces) -> Result<Vec<u8>, ReportError> {
+    let path = &forces.path;
+    let row = |index: usize| {
+        let normal = path.surface_normals().map(|normals| &normals[index]);
+        let wrench = forces.points[index].at_feed(1.0);
+        let (segment, feed) = (path.segment_of(index) + 1, path.feed(index).unwrap_or_default());
+        ForceTaskRow::of(segment, &path.points()[index], normal, &wrench, feed, path.is_scored(index))
+    };
+    rows("the task", (0..path.points().len()).map(row))
+}
+
+/// Length of path to each point. m
+fn along(forces: &RemovalForces) -> Vec<f64> {
+    let points = forces.path.points();
+    let mut along = vec![0.0];
+    for (index, pair) in points.windows(2).enumerate() {
+        let is_start = forces.path.segments().iter().any(|range| range.start == index + 1);
+        let step = if is_start { 0.0 } else { (pair[1].position - pair[0].position).norm() };
+        along.push(along[index] + step);
+    }
+    along
+}
+
+/// `engagement.csv`: an [`EngagementRow`] for each point.
+fn engagement(forces: &RemovalForces) -> Result<Vec<u8>, ReportError> {
+    let path = &forces.path;
+    let along = along(forces);
+    let row = |index: usize| {
+        let segment = path.segment_of(index) + 1;
+        EngagementRow::of(index, segment, along[index], path.is_scored(index), &forces.points[index])
+    };
+    rows("the table of the engagement", (0..forces.points.len()).map(row))
+}
+
+/// Force, moment, height, angles and chip along the path.
+fn charts(forces: &RemovalForces) -> Vec<Chart> {
+    let along = along(forces);
+    let curve = |name: &str, color: usize, of: &dyn Fn(&PointForces) -> f64| {
+        let points = along.iter().zip(&forces.points).map(|(at, load)| [at * 1e3, of(load)]);
+        Series::curve(name, color, points)
+    };
+    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
+        title: title.to_owned(),
+        x: Axis::new("length of path (mm)"),
+        y: Axis::new(y),
+        series,
+        is_wide: true,
+        ..Chart::default()
+    };
+    let height = |k: usize| move |load: &PointForces| load.heights.map_or(f64::NAN, |heights| heights[k] * 1e3);
+    let angle = |k: usize| move |load: &PointForces| load.angles.map_or(f64::NAN, |angles| angles[k].to_degrees());
+    vec![
+        chart(
+            "Force on the tool",
+            "force (N)",
+            vec![
+                curve("mean over a turn", 0, &|load| load.at_feed(1.0).force.norm()),
+                curve("of it, chips", 1, &|load| load.chip.force.norm()),
+                curve("of it, edges", 2, &|load| load.edge.force.norm()),
+                curve("largest in a turn", 3, &|load| load.largest).styled(Style::Dashed),
+            ],
+        ),
+        chart(
+            "Moment about the tool centre point",
+            "moment (N m)",
+            vec![curve("mean over a turn", 0, &|load| load.at_feed(1.0).moment.norm())],
+        ),
+        chart(
+            "Height of the cut above the tool centre point",
+            "height (mm)",
+            vec![curve("lowest", 0, &height(0)), curve("highest", 1, &height(1))],
+        ),
+        chart(
+            "Angles of the cut",
+            "angle from where a tooth moves along the feed (deg)",
+            vec![curve("entry", 0, &angle(0)), curve("exit", 1, &angle(1))],
+        ),
+        chart("Thickest chip", "chip (um)", vec![curve("", 0, &|load| load.chip_thickness * 1e6)]),
+    ]
+}
+
+/// A surface as STL in text, in mm.
+fn stl(surface: &Surface) -> Vec<u8> {
+    let mut text = String::from("solid stock\n");
+    for triangle in &surface.triangles {
+        let corners = triangle.map(|number| surface.vertices[number as usize] * 1e3);
+        let normal = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+        let Some(normal) = normal.try_normalize(1e-12) else { continue };
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "facet normal {:.4} {:.4} {:.4}\nouter loop", normal.x, normal.y, normal.z);
+        for corner in corners {
+            let _ = writeln!(text, "vertex {:.3} {:.3} {:.3}", corner.x, corner.y, corner.z);
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    text.push_str("endsolid stock\n");
+    text.into_bytes()
+}
+
+/// What `stead forces --json` prints, and the content of the JSON file.
+pub fn forces_json(run: &ForcesRun, forces: &RemovalForces) -> Value {
+    Document::new(&run.inputs)
+        .notes(&run.notes)
+        .notes(&forces.notes)
+        .warnings(&forces.warnings)
+        .with(ForcesFigures::from(forces))
+}
+
+/// A column of the table for people: its value, and decimals.
+type Column = (fn(&PointForces) -> f64, usize);
+
+/// The table for people.
+pub fn forces_text(run: &ForcesRun, forces: &RemovalForces) -> String {
+    let name = &run.problem.operation.name;
+    let figures = ForcesFigures::from(forces);
+    let mut text =
+        format!("{name}: {} points, {} of them added, {} scored\n\n", figures.points, figures.added, figures.scored);
+    let header = ["", "force N", "moment N m", "in a turn N", "removed mm3/mm", "height mm", "chip um"];
+    let mut table = vec![header.map(str::to_owned).to_vec()];
+    let scored: Vec<&PointForces> = (0..forces.points.len())
+        .filter(|point| forces.path.is_scored(*point) && forces.points[*point].heights.is_some())
+        .map(|point| &forces.points[point])
+        .collect();
+    let of: [Column; 6] = [
+        (|load| load.at_feed(1.0).force.norm(), 1),
+        (|load| load.at_feed(1.0).moment.norm(), 3),
+        (|load| load.largest, 1),
+        (|load| load.removed * 1e6, 3),
+        (|load| load.heights.map_or(0.0, |heights| heights[1] * 1e3), 3),
+        (|load| load.chip_thickness * 1e6, 2),
+    ];
+    let mean = |of: fn(&PointForces) -> f64| scored.iter().map(|load| of(load)).sum::<f64>() / scored.len() as f64;
+    let most = |of: fn(&PointForces) -> f64| scored.iter().map(|load| of(load)).fold(0.0, f64::max);
+    if !scored.is_empty() {
+        for (name, value) in [("mean", &mean as &dyn Fn(fn(&PointForces) -> f64) -> f64), ("largest", &most)] {
+            let cells = of.iter().map(|(of, decimals)| fixed(value(*of), *decimals));
+            table.push(std::iter::once(name.to_owned()).chain(cells).collect());
+        }
+    }
+    text.push_str(&aligned(&table, &[0]));
+    let _ = writeln!(
+        text,
+        "\nof scored points that cut; {} % of the scored length cuts nothing; {} mm3 removed",
+        fixed(forces.air * 100.0, 1),
+        fixed(forces.removed * 1e9, 0)
+    );
+    text
+}

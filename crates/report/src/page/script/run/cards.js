@@ -1,0 +1,217 @@
+// Cards for what the run has: notes and warnings first of all, then what the search and the proofs say.
+
+import { chartCard, legendOf } from '../draw/chart.js';
+import { card, el } from '../draw/dom.js';
+import { figures, fixed } from '../draw/scale.js';
+import { alongPath, limitAt } from './charts.js';
+import { CASES, IS_SCORE, RAW, SHORT_NAMES, singlesOf } from './data.js';
+/** @import { Series } from '../draw/chart-data.js' */
+
+/** @param {string[]} heads @param {(string | number | Node)[][]} rows */
+function smallTable(heads, rows) {
+  const isNumber = (/** @type {string | number | Node} */ value) => typeof value === 'number' || /^[-–]?\d|^–$/.test(String(value));
+  const isWords = heads.map((_, k) => k === 0 || !rows.every((row) => isNumber(row[k])));
+  const cell = (/** @type {string | number | Node} */ value, /** @type {number} */ k) =>
+    el(isWords[k] ? 'td.words' : 'td', {}, value);
+  const head = el(
+    'thead',
+    {},
+    el('tr', {}, ...heads.map((name, k) => el(isWords[k] ? 'th.words' : 'th', { scope: 'col' }, name))),
+  );
+  return el('table', {}, head, el('tbody', {}, ...rows.map((row) => el('tr', {}, ...row.map(cell)))));
+}
+
+/** Warnings stand in the open; notes can be folded. */
+export function messages() {
+  const list = (/** @type {string[]} */ said) => el('ul', {}, ...said.map((text) => el('li', {}, text)));
+  const { notes, warnings } = RAW.document;
+  const certificate = RAW.certificate?.warnings || [];
+  const all = [...warnings, ...certificate.filter((/** @type {string} */ text) => !warnings.includes(text))];
+  const parts = [];
+  if (all.length)
+    parts.push(
+      el(
+        'div.warnings',
+        { role: 'note' },
+        el('b', {}, all.length === 1 ? 'Warning' : `${all.length} warnings`),
+        list(all),
+      ),
+    );
+  if (notes.length) {
+    const summary = el(
+      'summary',
+      {},
+      notes.length === 1 ? '1 note' : `${notes.length} notes`,
+      ' on what the result rests on',
+    );
+    parts.push(el('details', { open: notes.length <= 3 }, summary, list(notes)));
+  }
+  return parts.length
+    ? el('section.card.messages', { 'aria-label': 'Notes and warnings', id: 'messages' }, ...parts)
+    : null;
+}
+
+/** What holds the best and the worst placement. */
+function boundsCard() {
+  const held = CASES.filter((of) => of.plan === 0 && of.entry.active_bounds?.length);
+  if (!held.length) return null;
+  const rows = held.flatMap((of) =>
+    of.entry.active_bounds.map((/** @type {any} */ bound) => [
+      of.place ? 'Worst' : 'Best',
+      bound.bound,
+      bound.side,
+      `${figures(bound.gain)} ${bound.unit}`,
+    ]),
+  );
+  return card(
+    'What holds the placements',
+    'what moving a bound would gain',
+    smallTable(['Placement', 'Bound', 'Side', 'Gain'], rows),
+  );
+}
+
+/** The genetic searches, generation by generation. */
+function convergenceCard() {
+  if (!RAW.convergence) return null;
+  const columns = RAW.convergence;
+  const [generation, best] = [singlesOf(columns.generation), singlesOf(columns.best_mm)];
+  const of = (/** @type {string} */ search) =>
+    columns.search
+      .map((/** @type {string} */ name, /** @type {number} */ k) => (name === search ? k : -1))
+      .filter((/** @type {number} */ k) => k >= 0);
+  /** @param {string} search @param {string} color @returns {Series} */
+  const line = (search, color) => ({
+    name: `${search} so far`,
+    style: 'line',
+    x: of(search).map((/** @type {number} */ k) => generation[k]),
+    y: of(search).map((/** @type {number} */ k) => best[k]),
+    color,
+    width: 2,
+  });
+  const series = [line('best', '--good'), line('worst', '--bad')].filter((one) => one.y.length);
+  const values = series.flatMap((one) => Array.from(one.y)).filter(Number.isFinite);
+  if (!values.length) return null;
+  return chartCard({
+    title: 'Search',
+    detail: series.length > 1 ? 'best and worst objective over generations' : 'best objective over generations',
+    x: { label: 'generation', is_log: false },
+    y: { label: 'objective (mm)', is_log: false, range: [0, Math.max(.../** @type {number[]} */ (values)) * 1.05] },
+    series,
+  });
+}
+
+/** How far the placements can be from the best and the worst possible. */
+function certificateCard() {
+  const found = RAW.certificate;
+  if (!found) return null;
+  const sides = /** @type {[string, any, string | null][]} */ ([
+    ['Best', found.best, found.best_reason],
+    ['Worst', found.worst, found.worst_reason],
+  ]);
+  const rows = [];
+  const words = [];
+  for (const [name, side, reason] of sides) {
+    if (side) {
+      const gap = `${fixed(side.gap_percent, 3)} %`;
+      rows.push([name, fixed(side.value_mm, 4), fixed(side.bound_mm, 4), gap, String(side.open_boxes)]);
+      words.push(`${name}: left out of the bound: ${side.limits_relaxed.join('; ') || 'nothing'}.`);
+      words.push(...openRegion(name));
+    }
+    if (reason) words.push(`${name}: ${reason}.`);
+  }
+  const heads = ['Placement', 'Found mm', 'Bound mm', 'Gap', 'Open boxes'];
+  const said = words.map((text) => el('p.sub', {}, text));
+  const table = rows.length ? [smallTable(heads, rows)] : [];
+  return card('Certificate', `a gap of ${found.gap_percent_asked} % was asked for`, ...table, ...said);
+}
+
+/** Where a better or a worse placement is not excluded. @param {string} name @returns {string[]} */
+function openRegion(name) {
+  const region = RAW.open_region?.[name.toLowerCase()];
+  if (!region) return [];
+  const span = (/** @type {string} */ key, /** @type {string} */ unitText) => `${fixed(region[key][0], 1)} to ${fixed(region[key][1], 1)}${unitText}`;
+  return [
+    `${name}: not excluded within ${span('radius_mm', ' mm')} from the axis of joint 1, z ${span('z_mm', ' mm')}, yaw less azimuth ${span('yaw_less_azimuth_deg', '°')}.`,
+  ];
+}
+
+/** How the objective answers to the stiffness of each joint, and what force errors would do. */
+function sensitivityCard() {
+  const rows = CASES.filter((of) => of.entry.objective_by_stiffness?.length).map((of) => [
+    SHORT_NAMES[of.number - 1],
+    ...of.entry.objective_by_stiffness.map((/** @type {any} */ joint) => fixed(joint.percent_per_percent, 3)),
+  ]);
+  const force = RAW.document.sensitivity;
+  if (!rows.length && !force) return null;
+  const parts = [];
+  if (rows.length) parts.push(smallTable(['% of the objective per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
+  if (force) {
+    const share_ = fixed(force.force_uncertainty * 100, 0);
+    parts.push(
+      el(
+        'p.sub',
+        {},
+        `With force errors of ${share_} % the best placement moves by ${fixed(force.distance_mm, 1)} mm and ${fixed(force.turn_deg, 1)}°.`,
+      ),
+    );
+  }
+  return card('Sensitivity', 'to the stiffness of the joints and to the force', ...parts);
+}
+
+/** What each stiffness set makes of the best placement. */
+function setsCard() {
+  const sets = RAW.document.stiffness_sets;
+  if (!sets) return null;
+  const rows = sets.sets.map((/** @type {any} */ one) => [
+    one.robot,
+    fixed(one.mean_mm, 4),
+    fixed(one.best_alone_mm, 4),
+    one.regret === null ? '–' : `${fixed(one.regret * 100, 2)} %`,
+  ]);
+  return card(
+    'Stiffness sets',
+    'the best placement under each',
+    smallTable(['Robot file', 'Mean mm', 'Best alone mm', 'Regret'], rows),
+  );
+}
+
+/** Critical depth of cut along the path. */
+function stabilityCard() {
+  const said = RAW.document.stability;
+  if (!said || !RAW.depths) return null;
+  const depths = RAW.depths.map((/** @type {any} */ columns) => singlesOf(columns.critical_depth_mm));
+  const most = Math.max(said.max_depth_mm || 0, said.axial_depth_mm) * 1.1;
+  const names = (IS_SCORE ? ['best plan', 'worst plan'] : ['best placement', 'worst placement']).slice(0, depths.length);
+  /** @type {Series[]} */
+  const series = depths.map((/** @type {Float32Array} */ y, /** @type {number} */ k) => ({
+    name: names[k],
+    style: 'line',
+    y,
+    color: k ? '--bad' : '--good',
+    width: 2,
+  }));
+  const y = { label: 'mm', is_log: false, range: /** @type {[number, number]} */ ([0, most]) };
+  const chart = alongPath('Critical depth', () => ({ y, series, marks: [limitAt(said.axial_depth_mm)] }));
+  const words = names.map((name, k) => {
+    const one = k ? said.worst : said.best;
+    return `${name}: ${one.stable ? 'stable at every point' : `chatters at ${one.points_that_chatter} points`}`;
+  });
+  return card(
+    'Critical depth of cut',
+    `mm; the cut is ${said.axial_depth_mm} mm deep, no line: stable beyond ${said.max_depth_mm} mm. ${words.join('; ')}`,
+    chart.host,
+    el('div.legend', {}, ...legendOf(series)),
+  );
+}
+
+export function furtherCards() {
+  const cards = [
+    boundsCard(),
+    sensitivityCard(),
+    setsCard(),
+    certificateCard(),
+    stabilityCard(),
+    convergenceCard(),
+  ].filter(Boolean);
+  return cards.length ? el('div.further', {}, .../** @type {HTMLElement[]} */ (cards)) : null;
+}

@@ -1,0 +1,79 @@
+// The path as coloured tubes, and as a curtain where the tool goes in truth, its error drawn too large.
+
+import { clamp } from '../draw/scale.js';
+import { colourOf } from './colour.js';
+import { CASES, COUNT, RAW, TASK } from './data.js';
+import { inWorkpiece } from './external-axes.js';
+import { add, cross, less, size, times, unit } from './linear.js';
+import { lathe, mesh } from './mesh.js';
+import { RUNS } from './path.js';
+/** @import { Case } from './data.js' */
+/** @import { Vec } from './linear.js' */
+/** @import { Mesh } from './mesh.js' */
+
+/** The direction of the deflection that is scored. @type {string | null} */
+export const DIRECTION = RAW.criterion.direction;
+
+/** What the scored deflection spoils, in words. */
+export const SCORED = { wall: 'wall', surface: 'surface', axis: 'floor' }[DIRECTION || ''] || 'tool';
+
+/** The scored part of the deflection at a point, in the workpiece frame. @param {Case} of @param {number} i @returns {Vec} */
+function errorAt(of, i) {
+  const columns = of.columns;
+  if (DIRECTION === 'wall') return times(unit(cross(TASK.axis[i], TASK.feed[i])), columns.normal_mm[i]);
+  if (DIRECTION === 'axis') return times(TASK.axis[i], columns.axial_mm[i]);
+  const whole = [columns.deflection_x_mm[i], columns.deflection_y_mm[i], columns.deflection_z_mm[i]];
+  return inWorkpiece(of, i, whole);
+}
+
+/** The extent of the path in the workpiece frame. */
+export const EXTENT = [0, 1, 2].map((k) => {
+  const values = TASK.position.map((position) => position[k]);
+  return [values.reduce((a, b) => Math.min(a, b), Infinity), values.reduce((a, b) => Math.max(a, b), -Infinity)];
+});
+export const PATH_SIZE = Math.max(Math.hypot(...EXTENT.map(([low, high]) => high - low)), 50);
+
+/** How many times too large the error is drawn: a round number, the same for all cases. */
+export const MAGNIFIED = (() => {
+  const largest = CASES.reduce((most, of) => Math.max(most, of.max), 0);
+  const steps = [1000, 500, 200, 100, 50, 20, 10, 5, 2, 1];
+  return steps.find((step) => step * largest < 0.6 * PATH_SIZE) || 1;
+})();
+
+/** No more tubes than this: a longer path is drawn by every so many points. */
+const MOST_TUBES = 1500;
+
+/** Both in the workpiece frame. @param {Case} of @returns {{ tube: Mesh, curtain: Mesh }} */
+export function pathMeshes(of) {
+  const [tube, curtain] = [mesh(), mesh()];
+  const tips = TASK.position;
+  const offs = tips.map((tip, i) => add(tip, times(errorAt(of, i), MAGNIFIED)));
+  const radius = clamp(PATH_SIZE * 0.011, 2, 8);
+  const stride = Math.ceil(COUNT / MOST_TUBES);
+  for (const [first, last] of RUNS) {
+    for (let i = first; i < last; i += stride) {
+      const next = Math.min(i + stride, last);
+      const length = size(less(tips[next], tips[i]));
+      const score = Math.max(of.columns.score_mm[i], of.columns.score_mm[next]);
+      if (length > 0) {
+        // Of a long path the ends of its many tubes are not seen.
+        const side = [
+          [-2, radius],
+          [length + 2, radius],
+        ];
+        const profile = /** @type {[number, number][]} */ (stride > 1 ? side : [[-2, 0], ...side, [length + 2, 0]]);
+        lathe(tube, tips[i], tips[next], profile, stride > 1 ? 5 : 8, colourOf(score));
+      }
+      const base = curtain.p.length / 3;
+      for (const k of [i, next]) {
+        for (const corner of [tips[k], offs[k]]) {
+          curtain.p.push(...corner);
+          curtain.n.push(0, 0, 1);
+          curtain.c.push(...colourOf(of.columns.score_mm[k]));
+        }
+      }
+      curtain.i.push(base, base + 1, base + 3, base, base + 3, base + 2);
+    }
+  }
+  return { tube, curtain };
+}

@@ -1,0 +1,113 @@
+// The figures of where the tool is: tiles, and a gauge for each joint.
+
+import { card, el } from '../draw/dom.js';
+import { clamp, fixed } from '../draw/scale.js';
+import { JOINT_COLOURS } from './colour.js';
+import { LIMITS, ROWS } from './data.js';
+import { AXES, axesAt } from './external-axes.js';
+import { reasonText } from './map.js';
+import { SCORED } from './path-mesh.js';
+import { chosenState, current, currentJoints, currentPoint, onChange, state } from './state.js';
+
+export function tiles() {
+  const make = (/** @type {string} */ id, /** @type {string} */ name) => {
+    const [value, unit_, more] = [el('span', { id }), el('span.u'), el('div.d', { id: `${id}-more` })];
+    const tile = el('div.tile', {}, el('div.k', {}, name), el('div.v', {}, value, unit_), more);
+    const show_ = (/** @type {string} */ number, /** @type {string} */ unitText, /** @type {string} */ words) => {
+      [value.textContent, unit_.textContent, more.textContent] = [number, unitText, words];
+    };
+    return { tile, show: show_ };
+  };
+  const here = make('here', `${SCORED[0].toUpperCase()}${SCORED.slice(1)} error here`);
+  const mean = make('mean', 'Mean of this case');
+  const kappa = make('kappa', '1/κ here');
+  const limit = make('limit', 'To the nearest limit');
+  onChange(() => {
+    const of = current();
+    const i = currentPoint();
+    const columns = of.columns;
+    const chosen = chosenState();
+    if (!chosen) {
+      const more = `total ${fixed(columns.total_mm[i], 2)} mm`;
+      here.show(fixed(columns.score_mm[i]), 'mm', more);
+      kappa.show(fixed(columns.inverse_condition[i]), '', `limit ${LIMITS.inverse}`);
+    } else {
+      here.show(
+        chosen.isAllowed ? fixed(chosen.score) : '–',
+        'mm',
+        chosen.isAllowed ? 'chosen in the map' : reasonText(chosen.reason),
+      );
+      kappa.show('–', '', 'along plans only');
+    }
+    mean.show(fixed(of.mean), 'mm', `largest ${fixed(of.max)} mm`);
+    if (chosen && !chosen.isAllowed) return limit.show('–', '', 'state not allowed');
+    const joints = currentJoints();
+    const gaps = ROWS.map((row, j) => Math.min(joints[j] - row.min, row.max - joints[j]));
+    const nearest = gaps.indexOf(Math.min(...gaps));
+    limit.show(fixed(gaps[nearest], 1), '°', `joint ${nearest + 1}`);
+  });
+  return el('div.tiles', {}, here.tile, mean.tile, kappa.tile, limit.tile);
+}
+
+/**
+ * @typedef {{
+ *   name: string, low: number, high: number, unit: string, colour: string, id: string,
+ *   now: () => number, used: () => number[]
+ * }} Gauge something that moves within a range; `used` are its values along the path
+ */
+
+/** @returns {Gauge[]} the joints, and the external axes behind them */
+function gaugesOf() {
+  const joints = ROWS.map((row, j) => ({
+    name: `A${j + 1}`,
+    low: row.min,
+    high: row.max,
+    unit: '°',
+    colour: JOINT_COLOURS[j],
+    id: `joint-${j + 1}`,
+    now: () => currentJoints()[j],
+    used: () => current().joints.map((angles) => angles[j]),
+  }));
+  const axes = AXES.map((axis, k) => ({
+    name: axis.name,
+    low: axis.range[0],
+    high: axis.range[1],
+    unit: axis.isRail ? ' mm' : '°',
+    colour: '--accent',
+    id: `axis-${k + 1}`,
+    now: () => axesAt(current(), state.t)[k],
+    used: () => Array.from(current().columns[axis.column]),
+  }));
+  return [...joints, ...axes];
+}
+
+export function gauges() {
+  const rows = gaugesOf().map((gauge) => {
+    const [range, pin, value] = [el('div.rng'), el('div.pin'), el('b', { id: gauge.id })];
+    range.style.background = pin.style.background = `var(${gauge.colour})`;
+    const host = el(
+      'div.g',
+      {},
+      el('b', { title: gauge.name }, gauge.name),
+      el('span', {}, fixed(gauge.low, 0)),
+      el('div.rail', {}, range, pin),
+      el('span', {}, fixed(gauge.high, 0)),
+      value,
+    );
+    const share_ = (/** @type {number} */ at) => (100 * (at - gauge.low)) / (gauge.high - gauge.low || 1);
+    return { gauge, host, range, pin, value, share_ };
+  });
+  onChange(({ case: isOther }) => {
+    rows.forEach(({ gauge, range, pin, value, share_ }) => {
+      const at = gauge.now();
+      pin.style.left = `${clamp(share_(at), 0, 100)}%`;
+      value.textContent = `${fixed(at, 1)}${gauge.unit}`;
+      if (!isOther) return;
+      const [least, most] = gauge.used().map(share_).reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [100, 0]);
+      range.style.left = `${least}%`;
+      range.style.width = `${most - least}%`;
+    });
+  });
+  const words = AXES.some((axis) => axis.isRail) ? 'deg, rails in mm; shaded: range over the whole path' : 'deg; shaded: range over the whole path';
+  return card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
+}

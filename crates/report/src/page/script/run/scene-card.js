@@ -1,0 +1,84 @@
+// The card of the view: its switches, its words, and the keys that turn it.
+
+import { el } from '../draw/dom.js';
+import { fixed } from '../draw/scale.js';
+import { HAS_ILLUSTRATIONS } from './bodies.js';
+import { AXES } from './external-axes.js';
+import { LAYERS, sceneIn } from './scene.js';
+import { current, onChange } from './state.js';
+import { HAS_BLOCK } from './surroundings.js';
+
+/** Gives the view as it is now, as the address of a picture; the card of the scene puts it in. */
+let picture = () => '';
+
+/** That address. */
+export const viewPicture = () => picture();
+
+/** The card with the view, its switches and its words. */
+export function sceneCard() {
+  const view = el('div.view');
+  const [title, where] = [el('h2'), el('div.sub')];
+  const host = el(
+    'section.card.scene',
+    { 'aria-label': 'The cell in three dimensions', id: 'scene' },
+    view,
+    el('div.tl', {}, title, where),
+  );
+  const scene = sceneIn(view);
+  picture = scene.picture;
+  const views = [
+    ['cell', '3-D'],
+    ['top', 'Top'],
+    ['front', 'Front'],
+    ['tool', 'Tool'],
+  ].map(([name, text]) =>
+    el('button.chip', { type: 'button', 'data-view': name, onclick: () => scene.view(name) }, text),
+  );
+  const layers = LAYERS.map(({ name, words: text, isOff }) => {
+    const box = /** @type {HTMLInputElement} */ (
+      el('input', {
+        type: 'checkbox',
+        checked: !isOff,
+        'data-layer': name,
+        onchange: () => scene.layer(name, box.checked),
+      })
+    );
+    return el('label.chip', {}, box, text);
+  });
+  const words = [
+    HAS_ILLUSTRATIONS ? 'Shapes of arm and spindle are illustrations made from the robot’s rows' : '',
+    HAS_BLOCK ? 'the block is the extent of the path' : '',
+    AXES.length ? 'external axes show how they move, not their looks' : '',
+  ];
+  host.append(
+    el('div.tr', {}, ...views),
+    el('div.bl', {}, el('div.tags', {}, ...layers), el('div.sub', {}, words.filter(Boolean).join('; '))),
+  );
+  view.tabIndex = 0;
+  view.setAttribute('role', 'img');
+  view.setAttribute('aria-label', 'Robot, spindle, path and cell; arrow keys turn the view, plus and minus zoom');
+  view.addEventListener('keydown', (event) => {
+    const turn = { ArrowLeft: [-25, 0], ArrowRight: [25, 0], ArrowUp: [0, 25], ArrowDown: [0, -25] }[event.key];
+    if (turn) scene.turn(turn[0], turn[1]);
+    else if (event.key === '+' || event.key === '=') scene.zoom(0.85);
+    else if (event.key === '-') scene.zoom(1 / 0.85);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  });
+  onChange(({ case: isOther }) => {
+    if (!isOther) return;
+    const { x, y, z, yaw } = current().at;
+    title.textContent = current().name;
+    const { orientation } = current().entry;
+    const lies = orientation ? `, part “${orientation}”` : '';
+    where.textContent = `x ${fixed(x, 1)}  y ${fixed(y, 1)}  z ${fixed(z, 1)} mm, yaw ${fixed(yaw, 1)}°${lies}`;
+  });
+  // WebGL is not printed: a picture takes its place.
+  const still = /** @type {HTMLImageElement} */ (el('img.still', { alt: '' }));
+  view.append(still);
+  addEventListener('beforeprint', () => {
+    still.src = viewPicture();
+  });
+  return host;
+}

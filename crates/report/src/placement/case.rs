@@ -1,0 +1,188 @@
+//! A case as documents state it: a placement with its plan, feeds and moves.
+
+use super::setup::SetupFigures;
+use crate::document::{DeflectionByDirection, FeedFigures, JointTravelFigures, PlacementExact, PlacementFigures};
+use crate::figure::{AngleDeg, DeflectionMm, Gain, MmPerPercent, PlaceMm, Plain, TimeS, each, some};
+use crate::names;
+use schemars::JsonSchema;
+use serde::Serialize;
+use stead_model::robot::Posture;
+use stead_placement::outcome::{Case, Cycle, Plan, PlanPoint};
+use stead_planning::collision;
+use stead_planning::criterion::CANCELLATION;
+use stead_planning::limit::ActiveBound;
+use stead_planning::transfer::Transfer;
+use stead_planning::transfer_path;
+
+records! {
+    /// A case: where the workpiece is, and how it is milled there.
+    pub struct CaseFigures of (case: &Case, with_points: bool) {
+        let slope = |(slope, joint): (f64, usize)| StiffnessSlope::of(slope, joint, case);
+    } with {
+        /// 1 to 4: best or worst placement under its best or worst plan.
+        case: u8 = case.number(),
+        /// The placement.
+        placement: PlacementFigures = (&case.placement).into(),
+        /// The placement with every digit.
+        placement_exact: PlacementExact = (&case.placement).into(),
+        #[serde(flatten)]
+        setup: SetupFigures = SetupFigures::of(case.orientation.as_ref(), &case.setup, &case.plan.axes),
+        #[serde(flatten)] plan: PlanFigures = PlanFigures::of(&case.plan, &case.cycle),
+        /// What one per cent more stiffness of each joint does to the objective.
+        objective_by_stiffness: Option<Vec<StiffnessSlope>> =
+            case.objective_by_stiffness.map(|of| of.into_iter().zip(1..).map(slope).collect()),
+        /// The bounds that hold the placement; null where they were not looked for.
+        active_bounds: Option<Vec<ActiveBoundFigures>> =
+            case.active_bounds.as_ref().map(|bounds| bounds.iter().map(Into::into).collect()),
+        /// The moves between segments.
+        transfers: Vec<TransferFigures> = case.cycle.transfers.iter().map(Into::into).collect(),
+        /// The plan, point by point.
+        #[serde(rename = "plan", skip_serializing_if = "Option::is_none")]
+        points: Option<Vec<PlanPointFigures>> = with_points.then(|| case.plan.points.iter().map(Into::into).collect()),
+    }
+
+    /// A plan with its feeds and times.
+    pub struct PlanFigures of (plan: &Plan, cycle: &Cycle) {
+        let [p50_mm, p95_mm] = each(plan.percentiles);
+        let unfollowed =
+            |(point, end): &(usize, _)| UnfollowedMove { to_point: *point, since: ToString::to_string(end) };
+    } with {
+        /// What was minimised or maximised.
+        objective_mm: DeflectionMm = plan.objective.into(),
+        /// Mean of the scores.
+        mean_mm: DeflectionMm = plan.mean.into(),
+        /// Largest score.
+        max_mm: DeflectionMm = plan.max.into(),
+        /// The score that half of the points are below.
+        p50_mm: DeflectionMm = p50_mm,
+        /// The score that 95 % of the points are below.
+        p95_mm: DeflectionMm = p95_mm,
+        /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
+        #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
+        /// Deflections by direction.
+        deflection_mm: DeflectionByDirection = (&plan.deflection).into(),
+        /// The posture of each segment, 1 to 8.
+        #[schemars(with = "Vec<u8>")] postures: Vec<Posture> = plan.postures.clone(),
+        /// How much the joints turn.
+        joint_travel: JointTravelFigures = (&plan.travel).into(),
+        /// Feeds that the plan holds.
+        feed: FeedFigures = (&cycle.feed).into(),
+        /// Time of the cut at the programmed feed.
+        cutting_s: TimeS = cycle.cutting.into(),
+        /// Time with the moves between segments; null where a joint speed is not known.
+        cycle_s: Option<TimeS> = some(cycle.total()),
+        /// Path points to which the arm cannot follow the straight move of the tool, or not within its joint limits.
+        unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(unfollowed).collect(),
+        /// The least clearance at the points, among shapes of a cell.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        clearance: Option<ClearanceFigures> = plan.clearance.as_ref().map(ClearanceFigures::of),
+    }
+}
+
+/// A straight move of the tool that the arm cannot follow.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct UnfollowedMove {
+    /// The path point that it leads to, from 0.
+    to_point: usize,
+    /// Why not.
+    since: String,
+}
+
+records! {
+    /// The least clearance at the points of a plan.
+    pub struct ClearanceFigures of (of: &collision::PlanClearance) {
+        /// The path point, from 0.
+        point: usize = of.point,
+        /// The distance.
+        distance_mm: PlaceMm = of.distance.into(),
+        /// The two shapes.
+        pair: [String; 2] = (*of.names).clone(),
+    }
+
+    /// What one per cent more stiffness of a joint does to the objective.
+    pub struct StiffnessSlope of (slope: f64, joint: usize, case: &Case) {
+        let objective = case.plan.objective;
+    } with {
+        /// The joint, from 1.
+        joint: usize = joint,
+        /// Change of the objective.
+        mm_per_percent: MmPerPercent = MmPerPercent(slope / 100.0),
+        /// The same in per cent of it; null where the objective is nothing.
+        percent_per_percent: Option<Plain> = (objective > CANCELLATION).then(|| Plain(slope / objective)),
+    }
+
+    /// A bound that holds an optimum.
+    pub struct ActiveBoundFigures from bound: &ActiveBound {
+        let (gain, unit) = names::gain(bound);
+    } with {
+        /// The bound, by its key of the files where it has one.
+        bound: String = names::bound(bound),
+        /// `lower` or `upper`.
+        side: &'static str = if bound.side.is_upper { "upper" } else { "lower" },
+        /// What moving it gains.
+        gain: Gain = gain.into(),
+        /// The unit of the gain.
+        unit: &'static str = unit,
+    }
+
+    /// A path point of a plan.
+    pub struct PlanPointFigures from point: &PlanPoint {
+        /// The point, from 0.
+        point: usize = point.point,
+        /// Its segment, from 1.
+        segment: usize = point.segment,
+        /// Angle about the tool axis.
+        beta_deg: AngleDeg = point.beta.into(),
+        /// The posture, 1 to 8.
+        #[schemars(with = "u8")] posture: Posture = point.posture,
+        /// Joint angles.
+        joints_deg: [AngleDeg; 6] = each(point.joints),
+        /// Inverse of the condition number of the Jacobian.
+        inverse_condition: Plain = point.inverse_condition.into(),
+        /// Deflection normal to the wall.
+        normal_mm: DeflectionMm = point.normal_part.into(),
+        /// Size of the deflection.
+        total_mm: DeflectionMm = point.deflection.norm().into(),
+        /// The scored part of the deflection.
+        score_mm: DeflectionMm = point.score.into(),
+        /// Standard deviation of the scored part, where the robot's uncertainty is known.
+        #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+    }
+
+    /// A move between two segments.
+    pub struct TransferFigures from transfer: &Transfer {
+        /// The segment that it follows, from 1.
+        after_segment: usize = transfer.after_segment,
+        /// How long it takes; null where a joint speed is not known.
+        duration_s: Option<TimeS> = some(transfer.duration),
+        /// What the joint that turns most turns.
+        travel_deg: AngleDeg = transfer.travel.into(),
+        #[serde(flatten)] way: Option<TransferPath> = transfer.way.as_ref().map(Into::into),
+    }
+
+    /// How a move between segments goes round the shapes of a cell.
+    pub struct TransferPath from way: &transfer_path::TransferPath {
+        let [retracts, approaches] = way.along_axis;
+    } with {
+        /// The pair that hits where no free path was found.
+        blocked_by: Option<String> = way.blocked_by.as_deref().map(|[a, b]| format!("{a} and {b}")),
+        /// Lines out of the cut and into it that are shorter than they should be.
+        short_lines: [Option<ShortLine>; 2] = way.short_lines.each_ref().map(|found| found.as_ref().map(ShortLine::of)),
+        /// Joint angles at its corners.
+        joints_deg: Vec<[AngleDeg; 6]> = way.joints.iter().map(|joints| each(*joints)).collect(),
+        /// Whether it begins with a line along the tool axis.
+        retracts: bool = retracts,
+        /// Whether it ends with one.
+        approaches: bool = approaches,
+    }
+
+    /// A line along the tool axis that is not as long as it should be.
+    pub struct ShortLine of (line: &transfer_path::ShortLine) {
+        /// Its length.
+        length_mm: PlaceMm = line.length.into(),
+        /// The length that it should have.
+        wanted_mm: PlaceMm = line.wanted.into(),
+        /// Why it is shorter.
+        since: String = line.end.to_string(),
+    }
+}

@@ -1,0 +1,124 @@
+//! Results as data, each stated once: what a field means, its type and where its value comes from stand together.
+//!
+//! ```text
+//! records! {
+//!     /// A mode of the arm.
+//!     pub struct ModeFigures from mode: &Mode {
+//!         /// Natural frequency.
+//!         frequency_hz: FrequencyHz = mode.natural_frequency().into(),
+//!     }
+//! }
+//! ```
+//!
+//! declares a struct that serialises and has a schema, and makes it from a `&Mode` by `From`. With
+//! `of (mode: &Mode, number: usize)` in place of `from mode: &Mode` it is made by `ModeFigures::of(mode, number)`. What
+//! several fields share is computed by statements before them: `{ let .. } with { fields }`.
+
+/// Declares results, as the head of this module says.
+macro_rules! records {
+    () => {};
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident from $source:ident: $given:ty { $($shared:tt)* } with {
+            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
+        }
+        $($rest:tt)*
+    ) => {
+        records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
+        impl From<$given> for $name {
+            fn from($source: $given) -> Self {
+                $($shared)*
+                Self { $($field: $value),* }
+            }
+        }
+        records! { $($rest)* }
+    };
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident of ($($source:ident: $given:ty),* $(,)?) { $($shared:tt)* } with {
+            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
+        }
+        $($rest:tt)*
+    ) => {
+        records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
+        impl $name {
+            /// It, as its fields say.
+            pub(crate) fn of($($source: $given),*) -> Self {
+                $($shared)*
+                Self { $($field: $value),* }
+            }
+        }
+        records! { $($rest)* }
+    };
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident from $source:ident: $given:ty {
+            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
+        }
+        $($rest:tt)*
+    ) => {
+        records! {
+            $(#[$about])* $seen struct $name from $source: $given {} with {
+                $($(#[$meaning])* $shown $field: $type = $value),*
+            }
+        }
+        records! { $($rest)* }
+    };
+    (
+        $(#[$about:meta])*
+        $seen:vis struct $name:ident of ($($source:ident: $given:ty),* $(,)?) {
+            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
+        }
+        $($rest:tt)*
+    ) => {
+        records! {
+            $(#[$about])* $seen struct $name of ($($source: $given),*) {} with {
+                $($(#[$meaning])* $shown $field: $type = $value),*
+            }
+        }
+        records! { $($rest)* }
+    };
+    (
+        @declare $(#[$about:meta])* $seen:vis struct $name:ident {
+            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty),*
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, schemars::JsonSchema)]
+        $seen struct $name { $($(#[$meaning])* $shown $field: $type),* }
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::document::value;
+    use crate::figure::PlaceMm;
+    use serde_json::json;
+
+    records! {
+        /// From one thing.
+        struct Length from length: f64 {
+            /// In mm.
+            length_mm: PlaceMm = length.into(),
+        }
+
+        /// From two, with what its fields share.
+        #[derive(Default)]
+        struct Ends of (middle: f64, half: f64) {
+            let [from, to] = [middle - half, middle + half];
+        } with {
+            /// The first.
+            from_mm: PlaceMm = from.into(),
+            /// The last.
+            #[serde(skip_serializing_if = "Option::is_none")] to_mm: Option<PlaceMm> = (to > from).then(|| to.into()),
+        }
+    }
+
+    #[test]
+    fn records_are_made_of_what_their_fields_say() {
+        assert_eq!(value(&Length::from(0.5)), json!({ "length_mm": 500.0 }));
+        assert_eq!(value(&Ends::of(1.0, 0.25)), json!({ "from_mm": 750.0, "to_mm": 1250.0 }));
+        assert_eq!(value(&Ends::of(1.0, 0.0)), json!({ "from_mm": 1000.0 }));
+        assert_eq!(Ends::default().from_mm, PlaceMm(0.0));
+    }
+}

@@ -1,0 +1,117 @@
+//! Compensation files: the config of `stead compensate`.
+
+mod file;
+#[cfg(test)]
+mod tests;
+
+pub use file::*;
+
+use super::run::read_run;
+use crate::plan::plan_from;
+use std::path::Path;
+use stead_calibration::compensation::{CompensationProblem, Settings, other_geometry};
+use stead_format::input::{InputError, InputFile, input_file};
+use stead_format::quantity::Quantity;
+use stead_format::robot::robot_from;
+use stead_format::toml_file::TomlFile;
+use stead_model::robot::Robot;
+use stead_planning::problem::Placement;
+
+/// A compensation file and the files it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompensateRun {
+    /// What is to be compensated.
+    pub job: CompensationProblem,
+    /// Where the workpiece stands, as the plan has it.
+    pub placement: Placement,
+    /// Whether the commands are played on another robot file than the run's.
+    pub has_reality: bool,
+    /// The files that were read: config, run, robot, task, plan, reality.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Reads a compensation file, the keys of [`CompensationFile`], and the files that it names. Where `reality` is given
+/// here too, as a path of its own, it takes the place of the file's.
+///
+/// The plan must fit the run: as many points, joint angles that bring the tool to the positions, one placement for all
+/// rows, the forces of the task.
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key or column,
+/// a value of the wrong kind or out of range, a plan that does not fit the run or that its manifest does not vouch for,
+/// a reality of another geometry than the run's robot.
+pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<CompensateRun, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    let at = document.root();
+    let file: CompensationFile = document.read()?;
+    let run_file = at.key("run").named_file()?;
+    let run = read_run(&run_file.file)?;
+    let length = run.problem.constraints.characteristic_length;
+    let settings = Settings { characteristic_length: length, ..file.compensation.unwrap_or_default().settings() };
+
+    let mut inputs = vec![source.as_config()];
+    for read in run.inputs {
+        let is_run = read.role == "config";
+        inputs.push(if is_run { InputFile { role: "run", name: run_file.name.clone(), ..read } } else { read });
+    }
+    let plan_file = at.key("plan").named_file()?;
+    let plan = plan_from(&plan_file.file, &plan_file.bytes, &run.problem)?;
+    inputs.push(input_file("plan", &plan_file.name, &plan_file.bytes));
+
+    let real = match (reality, file.reality) {
+        (Some(path), _) => {
+            let (name, source) = (path.to_string_lossy().replace('\\', "/"), TomlFile::read(path)?);
+            let input = input_file("reality", name, source.bytes());
+            Some((source, input))
+        }
+        (None, Some(_)) => Some(at.key("reality").named_toml("reality")?),
+        (None, None) => None,
+    };
+    let has_reality = real.is_some();
+    let notes = run.problem.notes().into_iter().chain(plan.notes).collect();
+    // The margin is one of the plan: a correction may use it up.
+    let robot = run.problem.robot_to_its_limits();
+    let reality = match real {
+        None => robot.clone(),
+        Some((source, input)) => {
+            inputs.push(input);
+            reality_from(&source, &robot)?
+        }
+    };
+    let job = CompensationProblem { robot, reality, spindle: run.problem.spindle, points: plan.points, settings };
+    Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes })
+}
+
+impl CompensationTable {
+    fn settings(&self) -> Settings {
+        let default = Settings::default();
+        Settings {
+            alpha: self.alpha.map_or(default.alpha, Quantity::si),
+            tolerance: self.tolerance_mm.map_or(default.tolerance, Quantity::si),
+            max_iterations: self.max_iterations.map_or(default.max_iterations, |max| max.count()),
+            model: self.model.map_or(default.model, |word| word.0),
+            ..default
+        }
+    }
+}
+
+/// The robot that stands for reality, which must have the geometry of the run's.
+fn reality_from(source: &TomlFile, robot: &Robot) -> Result<Robot, InputError> {
+    let reality = robot_from(source)?.mounted(&robot.cell_from_base());
+    let Some(other) = other_geometry(robot, &reality) else { return Ok(reality) };
+    let key = match other.field {
+        "alpha" => "alpha_deg",
+        "a" => "a_mm",
+        _ => "d_mm",
+    };
+    let unit = |value: f64| if other.field == "alpha" { value.to_degrees() } else { value * 1e3 };
+    let document = source.parse()?;
+    let problem = format!("'{}' has another geometry than '{}', the robot of the run", reality.name(), robot.name());
+    let allowed =
+        format!("{}, as in the robot of the run: a reality differs in its compliances alone", unit(other.expected));
+    let row = document.root().key("joints").element(other.joint);
+    Err(row.key(key).error(problem, allowed))
+}

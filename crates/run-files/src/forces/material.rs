@@ -1,0 +1,63 @@
+//! Published cutting coefficients by material.
+
+use stead_format::scalars::{Words, words};
+use stead_model::cutting::Coefficients;
+
+/// A material with published coefficients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Material {
+    /// Aluminium 6060-T6.
+    Aluminium6060,
+    /// Aluminium 6082-T6.
+    Aluminium6082,
+    /// Aluminium 7075-T6.
+    Aluminium7075,
+    /// Structural steel St 52-3.
+    SteelSt52,
+}
+
+words!(Material:
+    "aluminium-6060" => Material::Aluminium6060,
+    "aluminium-6082" => Material::Aluminium6082,
+    "aluminium-7075" => Material::Aluminium7075,
+    "steel-st52" => Material::SteelSt52,
+);
+
+const REVIEW: &str = "Milling Force Model for Aviation Aluminum Alloy, Chinese Journal of Mechanical Engineering 34 (2021), doi \
+     10.1186/s10033-021-00536-9, table 5, cemented carbide, dry";
+const UMONS: &str = "the UMONS work on robotic milling, which states neither edge nor axial coefficients";
+
+impl Material {
+    /// K_t, K_r and K_a (MPa), K_te and K_re (N/mm), and where they are printed.
+    fn published(self) -> ([f64; 3], [f64; 2], &'static str) {
+        match self {
+            Self::Aluminium6060 => ([661.553, 253.458, 0.0], [0.0, 0.0], UMONS),
+            // The axial edge coefficients of the review, 0.7 and 2.8 N/mm, have no place in the force law.
+            Self::Aluminium6082 => ([631.0, 99.0, 273.0], [13.0, 10.0], REVIEW),
+            Self::Aluminium7075 => ([767.01, 168.8, 222.0], [27.7, 26.6], REVIEW),
+            Self::SteelSt52 => ([3333.0, 2289.0, 0.0], [0.0, 0.0], UMONS),
+        }
+    }
+
+    /// Its coefficients.
+    pub fn coefficients(self) -> Coefficients {
+        let ([tangential, radial, axial], [tangential_edge, radial_edge], _) = self.published();
+        Coefficients {
+            tangential: tangential * 1e6,
+            radial: radial * 1e6,
+            axial: axial * 1e6,
+            tangential_edge: tangential_edge * 1e3,
+            radial_edge: radial_edge * 1e3,
+        }
+    }
+
+    /// That the coefficients are not those of the user's cutter, and whose they are.
+    pub fn note(self) -> String {
+        let ([kt, kr, ka], [kte, kre], source) = self.published();
+        let name = Self::words().into_iter().find(|(_, known)| *known == self).map_or("", |(word, _)| word);
+        format!(
+            "the cutting coefficients are published ones for {name} with another cutter (K_t {kt}, K_r {kr}, K_a {ka} MPa, K_te {kte}, K_re \
+             {kre} N/mm; {source}): measure your own"
+        )
+    }
+}

@@ -1,0 +1,372 @@
+//! Forces files: the config of `stead forces`.
+
+mod file;
+pub mod material;
+#[cfg(test)]
+mod tests;
+
+pub use file::*;
+
+use crate::Word;
+use material::Material;
+use std::path::{Path, PathBuf};
+use stead_format::cam::{ProgramTool, ReadSettings, import_bytes};
+use stead_format::file_kind::FileKind;
+use stead_format::input::{InputError, InputFile, input_file};
+use stead_format::place::{Place, required};
+use stead_format::quantity::Quantity;
+use stead_format::sources::Sources;
+use stead_format::surroundings::{PartTable, StockTable};
+use stead_format::toml_file::TomlFile;
+use stead_format::tool::{CutTable, Cutting, ToolTable};
+use stead_model::cutting::Coefficients;
+use stead_model::task::ToolPath;
+use stead_removal::forces::ForcesError;
+use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, Stock};
+
+/// A forces file and the files that it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForcesRun {
+    /// What is to be cut.
+    pub problem: ForcesProblem,
+    /// The files that were read: config, path, and others that it names.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+    /// The file with the place of the path, for errors that the job finds.
+    source: Located,
+}
+
+/// Where things that only the job can find wrong are stated.
+#[derive(Debug, Clone, PartialEq)]
+struct Located {
+    stock: InputError,
+    path: InputError,
+    cell: InputError,
+}
+
+impl ForcesRun {
+    /// What the job found wrong, at its place in the file; nothing for a stop.
+    pub fn located(&self, error: &ForcesError) -> Option<InputError> {
+        let at = |place: &InputError, allowed: &str| Some(place.clone().because(error).allowed(allowed));
+        match error {
+            ForcesError::Stopped(_) => None,
+            ForcesError::Form | ForcesError::Large { .. } => {
+                at(&self.source.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
+            }
+            ForcesError::Open { .. } => at(&self.source.stock, "a closed mesh whose surface does not cross itself"),
+            ForcesError::Untouched => {
+                at(&self.source.stock, "stock that the path cuts: look at its place and its unit")
+            }
+            ForcesError::Memory { .. } => at(&self.source.cell, "larger cells, or more memory_gb"),
+            ForcesError::NoFeeds(_) | ForcesError::Path(_) => at(&self.source.path, "a path with feeds"),
+        }
+    }
+}
+
+/// Reads a forces file, the keys of [`ForcesFile`], and the files that it names.
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
+/// the wrong kind or out of range, a path or a mesh that cannot be read, a cutter without a length, coefficients from
+/// two places or none, an operation that names its own path as one before it.
+pub fn read_forces(file: &Path) -> Result<ForcesRun, InputError> {
+    read_forces_from(&TomlFile::read(file)?)
+}
+
+/// As [`read_forces`], from a file already read.
+pub(crate) fn read_forces_from(source: &TomlFile) -> Result<ForcesRun, InputError> {
+    let document = source.parse()?;
+    let at = document.root();
+    let file: ForcesFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
+        Some(kind @ (FileKind::RobotFile | FileKind::RunFile)) => kind.refused(source.file()),
+        _ => error,
+    })?;
+    let reading = file.reading.unwrap_or_default();
+    let named = read_path(&at.key("path"), &reading, &source.sources)?;
+    let tables = RemovalTables {
+        path_key: "path",
+        reading,
+        stock: &file.stock,
+        tool: &file.tool,
+        material: file.material,
+        cut: file.cut.as_ref(),
+        finished_part: file.finished_part.as_ref(),
+        before: file.before.as_deref().unwrap_or_default(),
+        is_for_stability: false,
+    };
+    let mut run = tables.run(named, source, &at)?;
+    run.inputs.insert(0, source.as_config());
+    Ok(run)
+}
+
+/// The tables of a forces file or a run file that say what is removed.
+#[derive(Debug)]
+pub(crate) struct RemovalTables<'a> {
+    /// The key that names the path.
+    pub path_key: &'static str,
+    /// How the paths before are read that do not say it.
+    pub reading: ReadingTable,
+    pub stock: &'a StockTable,
+    pub tool: &'a ToolTable,
+    pub material: Option<Word<Material>>,
+    pub cut: Option<&'a CutTable>,
+    pub finished_part: Option<&'a PartTable>,
+    pub before: &'a [BeforeTable],
+    /// Whether `[cut]` may describe the cut too, as stability needs it.
+    pub is_for_stability: bool,
+}
+
+impl RemovalTables<'_> {
+    /// What is to be cut along a path; the file of the tables is not among the inputs yet.
+    ///
+    /// # Errors
+    /// Those of [`read_forces`].
+    pub fn run(&self, named: NamedPath, source: &TomlFile, at: &Place<'_>) -> Result<ForcesRun, InputError> {
+        let mut inputs = vec![named.input.clone()];
+        let mut notes = named.notes;
+        let cut_at = at.key("cut");
+        if let (Some(cut), false) = (self.cut, self.is_for_stability) {
+            check_cut(cut, &cut_at)?;
+        }
+        let stated = self.cut.and_then(|cut| cut.spindle_rpm).map(|speed| speed.si() / std::f64::consts::TAU);
+        let Some(spindle_speed) = stated.or(named.spindle_speed) else {
+            return Err(cut_at.key("spindle_rpm").missing("the speed of the spindle, which the path does not state"));
+        };
+        if stated.is_none() {
+            notes.push(format!("spindle speed {:.0} 1/min, as the path states it", spindle_speed * 60.0));
+        }
+        let mill = end_mill(self.tool, self.material, at)?;
+        notes.extend(self.material.map(|material| material.0.note()));
+        let mut path = named.path;
+        if path.feed(0).is_none() {
+            let Some(feed) = self.cut.and_then(|cut| cut.feed_per_tooth_mm) else {
+                let allowed = "the feed per tooth, for the path has no feeds";
+                return Err(cut_at.key("feed_per_tooth_mm").missing(allowed));
+            };
+            let feed = feed.si() * mill.cutter.teeth().len() as f64 * spindle_speed;
+            let feeds = vec![feed; path.points().len()];
+            path = path.with_feeds(feeds).map_err(|error| cut_at.error(error.to_string(), "a feed above 0"))?;
+            notes.push(format!("the path has no feeds: {:.4} mm/s everywhere, by feed_per_tooth_mm", feed * 1e3));
+        } else if self.cut.is_some_and(|cut| cut.feed_per_tooth_mm.is_some()) && !self.is_for_stability {
+            let problem = "is given, and the path has feeds";
+            return Err(cut_at.key("feed_per_tooth_mm").error(problem, "spindle_rpm alone"));
+        }
+        let mut before = Vec::new();
+        for (table, number) in self.before.iter().zip(1..) {
+            let at = at.key("before").element(number);
+            let reading = table.reading.unwrap_or(self.reading);
+            let named_before = read_path(&at.key("path"), &reading, &source.sources)?;
+            if is_same(&named_before.file, &named.file) {
+                return Err(at
+                    .key("path")
+                    .error("is the path of the operation itself", "the path of an earlier operation"));
+            }
+            let mill = shape(&table.tool, Coefficients::default(), &at)?;
+            before.push(Operation {
+                name: named_before.input.name.clone(),
+                path: named_before.path,
+                rapids: named_before.rapids,
+                mill,
+                spindle_speed,
+            });
+            inputs.push(named_before.input);
+        }
+        let stock_at = at.key("stock");
+        let placed = self.stock.solid(&path, &stock_at)?;
+        inputs.extend(placed.file);
+        let finished_part = match self.finished_part {
+            Some(table) => {
+                let (mesh, pose, input) = table.mesh(&at.key("finished_part"))?;
+                inputs.push(input);
+                Some((mesh, pose))
+            }
+            None => None,
+        };
+        let problem = ForcesProblem {
+            stock: Stock { solid: placed.solid, pose: placed.pose },
+            before,
+            operation: Operation { name: named.input.name, path, rapids: named.rapids, mill, spindle_speed },
+            finished_part,
+            cell: self.stock.cell(),
+            memory: self.stock.memory(),
+        };
+        let located = Located {
+            stock: stock_at.error("", "").found_if(None),
+            path: at.key(self.path_key).error("", ""),
+            cell: stock_at.key("cell_mm").error("", ""),
+        };
+        Ok(ForcesRun { problem, inputs, notes, source: located })
+    }
+}
+
+/// Whether two names are of one file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    let whole = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    whole(a) == whole(b)
+}
+
+/// A path with what goes with it.
+pub(crate) struct NamedPath {
+    /// Where it lies.
+    pub file: PathBuf,
+    pub path: ToolPath,
+    pub rapids: Vec<Vec<AirPoint>>,
+    pub spindle_speed: Option<f64>,
+    /// What a program says of its tool.
+    pub tool: Option<ProgramTool>,
+    pub input: InputFile,
+    pub notes: Vec<String>,
+}
+
+/// Reads the path that is named here: a program of CAM, or a task file.
+fn read_path(at: &Place<'_>, reading: &ReadingTable, sources: &Sources) -> Result<NamedPath, InputError> {
+    let named = at.named_file()?;
+    path_of(named.name, &named.file, &named.bytes, reading, sources)
+}
+
+/// The path of a file already read, by its name for results and its place.
+pub(crate) fn path_of(
+    name: String,
+    file: &Path,
+    bytes: &[u8],
+    reading: &ReadingTable,
+    sources: &Sources,
+) -> Result<NamedPath, InputError> {
+    let input = input_file("path", &name, bytes);
+    let is_cam = reading.format.is_some() || matches!(FileKind::of(bytes), Some(FileKind::Cldata | FileKind::GCode));
+    if !is_cam {
+        let imported = sources.task(file, bytes)?;
+        let notes = imported
+            .wrenches
+            .map(|_| format!("{name}: its forces are left aside, those of what is removed take their place"));
+        return Ok(NamedPath {
+            file: file.to_owned(),
+            path: imported.path,
+            rapids: Vec::new(),
+            spindle_speed: None,
+            tool: None,
+            input,
+            notes: notes.into_iter().collect(),
+        });
+    }
+    let imported = import_bytes(file, bytes, &reading.settings()).map_err(by_keys)?;
+    let air = |moves: &Vec<stead_format::cam::Move>| {
+        moves.iter().map(|one| AirPoint { position: one.position, axis: one.axis }).collect()
+    };
+    Ok(NamedPath {
+        file: file.to_owned(),
+        path: imported.path(file)?,
+        rapids: imported.rapids().iter().map(air).collect(),
+        spindle_speed: imported.tool().and_then(|tool| tool.spindle_speed),
+        tool: imported.tool().cloned(),
+        notes: imported.notes().iter().map(|note| format!("{name}: {note}")).collect(),
+        input,
+    })
+}
+
+/// An error of an import with the keys of `[reading]` in place of the options of the command line.
+fn by_keys(error: InputError) -> InputError {
+    let keys = ["units", "format", "machine", "pivot_mm", "tcp", "skip_cycles", "step_mm", "chord_mm"];
+    let keyed = |text: &str| {
+        let option = |key: &str| format!("--{}", key.replace('_', "-"));
+        keys.iter().fold(text.to_owned(), |text, key| text.replace(&option(key), &format!("reading.{key}")))
+    };
+    InputError {
+        problem: keyed(&error.problem).into(),
+        field: error.field.as_deref().map(|field| keyed(field).into()),
+        allowed: error.allowed.as_deref().map(|allowed| keyed(allowed).into()),
+        ..error
+    }
+}
+
+impl ReadingTable {
+    fn settings(&self) -> ReadSettings {
+        let default = ReadSettings::default();
+        let mut resampling = default.resampling;
+        resampling.step = self.step_mm.map_or(resampling.step, Quantity::si);
+        resampling.chord = self.chord_mm.map_or(resampling.chord, Quantity::si);
+        ReadSettings {
+            format: self.format.map(|word| word.0),
+            units: self.units.map(|word| word.0),
+            machine: self.machine.map(|word| word.0),
+            pivot: self.pivot_mm.map(|pivot| pivot.vector()),
+            tool_centre_point: self.tcp.unwrap_or_default(),
+            skip_cycles: self.skip_cycles.unwrap_or_default(),
+            resampling,
+        }
+    }
+}
+
+/// Refuses keys of a cut that the path and the stock say.
+fn check_cut(cut: &CutTable, at: &Place<'_>) -> Result<(), InputError> {
+    let given = [
+        ("milling", cut.milling.is_some()),
+        ("radial_depth_mm", cut.radial_depth_mm.is_some()),
+        ("axial_depth_mm", cut.axial_depth_mm.is_some()),
+        ("engagement", cut.engagement.is_some()),
+        ("open_width_mm", cut.open_width_mm.is_some()),
+        ("concave_corners", cut.concave_corners.is_some()),
+    ];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((key, _)) => Err(at.key(key).error(
+            "is given, and the path and the stock say what is cut",
+            "spindle_rpm, and feed_per_tooth_mm where the path has no feeds",
+        )),
+        None => Ok(()),
+    }
+}
+
+/// The end mill of a file, with the coefficients of its table or those published for the material.
+fn end_mill(tool: &ToolTable, material: Option<Word<Material>>, at: &Place<'_>) -> Result<EndMill, InputError> {
+    let tool_at = at.key("tool");
+    let stated = ["kt_mpa", "kr", "kr_mpa", "ka_mpa", "kte_n_per_mm", "kre_n_per_mm"];
+    let given = stated.iter().map(|key| tool_at.key(key)).find(Place::is_given);
+    let coefficients = match (material, given) {
+        (Some(material), None) => material.0.coefficients(),
+        (Some(_), Some(key)) => {
+            return Err(key.error("is given beside material", "coefficients in [tool], or material"));
+        }
+        (None, None) => {
+            let allowed =
+                "coefficients kt_mpa, kr (or kr_mpa), kte_n_per_mm and kre_n_per_mm, or material beside [tool]";
+            return Err(tool_at.key("kt_mpa").missing(allowed));
+        }
+        (None, Some(_)) => {
+            required!(tool_at, tool.kte_n_per_mm)?;
+            required!(tool_at, tool.kre_n_per_mm)?;
+            let coefficients = Cutting::new(tool, &CutTable::default(), at).coefficients()?;
+            if coefficients.radial < 0.0 {
+                return Err(tool_at.key("kr_mpa").out_of_range("a number not below 0 for forces along a path"));
+            }
+            coefficients
+        }
+    };
+    shape(tool, coefficients, at)
+}
+
+/// The end mill with these coefficients.
+fn shape(tool: &ToolTable, coefficients: Coefficients, at: &Place<'_>) -> Result<EndMill, InputError> {
+    let tool_at = at.key("tool");
+    let flutes = required!(tool_at, tool.flute_length_mm)?;
+    let corner_radius = tool.corner_radius_mm.map_or(0.0, Quantity::si);
+    let diameter = tool.cutter_diameter_mm;
+    if corner_radius > diameter.si() / 2.0 + 1e-12 {
+        let allowed = format!("a number not below 0 and not above half of cutter_diameter_mm = {}", diameter.written());
+        return Err(tool_at.key("corner_radius_mm").out_of_range(allowed));
+    }
+    if corner_radius > flutes.si() {
+        let allowed = format!("at least corner_radius_mm = {}", corner_radius * 1e3);
+        return Err(tool_at.key("flute_length_mm").out_of_range(allowed));
+    }
+    let cutter = Cutting::new(tool, &CutTable::default(), at).cutter(coefficients, "kt_mpa")?;
+    Ok(EndMill {
+        flute_length: flutes.si(),
+        // With runout the mean radius may be the smaller one.
+        corner_radius: corner_radius.min(cutter.radius()),
+        cutter,
+        taper: tool.taper_deg.map_or(0.0, Quantity::si),
+        is_centre_cutting: tool.centre_cutting.unwrap_or(true),
+        holder: tool.body().holder,
+    })
+}

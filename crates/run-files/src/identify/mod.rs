@@ -1,0 +1,185 @@
+//! Identification files: the config of `stead identify fit` and `stead identify plan`, so that one file serves both.
+
+mod directions;
+mod file;
+mod locate;
+mod plan;
+
+pub use directions::{Directions, NamedDirections};
+pub use file::*;
+pub use locate::LocatedError;
+pub use plan::{PlanRun, PlanTable, TestTable, VolumeTable, read_plan};
+
+use super::sheet::sheet_from;
+use nalgebra::{Matrix3, Vector3};
+use std::path::{Path, PathBuf};
+use stead_calibration::identification::Problem;
+use stead_calibration::identification::law::Law;
+use stead_calibration::identification::spring::Geometry;
+use stead_format::input::{InputError, InputFile, input_file};
+use stead_format::orientation::orientation_keys;
+use stead_format::place::Place;
+use stead_format::quantity::Quantity;
+use stead_format::robot::robot_from;
+use stead_format::scalars::{Whole, joint_set};
+use stead_format::shapes::List;
+use stead_format::toml_file::TomlFile;
+use stead_model::plausibility;
+use stead_model::robot::{Compliance, Robot};
+
+/// An identification file and the files it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IdentifyRun {
+    /// What is to be identified.
+    pub problem: Problem,
+    /// Text of the robot file to start from.
+    pub robot_text: String,
+    /// The measurement sheet, to name it in messages.
+    pub sheet_file: PathBuf,
+    /// The files that were read: config, robot, sheet.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Reads an identification file with the robot file and the measurement sheet that it names.
+///
+/// Its keys are those of [`IdentificationFile`].
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
+/// the wrong kind or out of range, or a sheet that is not in order.
+pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    let at = document.root();
+    let file: IdentificationFile = document.read()?;
+    let Shared { robot, robot_input, robot_text, load_point, angle_tolerance, hold, varying, note, start } =
+        Shared::new(&file, &at)?;
+    let fit = file.fit.unwrap_or_default();
+    let sheet_file = at.key("sheet").named_file()?;
+    let readings = sheet_from(&sheet_file.file, &sheet_file.bytes, &robot)?;
+    if readings.is_full_pose() {
+        for field in ["noise_mm", "noise_deg"].map(|key| at.key(key)) {
+            if !field.is_given() {
+                let allowed = "a number above 0: positions and orientations are weighted by their noise";
+                return Err(field.error("is missing, but the sheet has orientations", allowed));
+            }
+        }
+    }
+    let inputs = vec![source.as_config(), robot_input, input_file("sheet", &sheet_file.name, &sheet_file.bytes)];
+    let problem = Problem {
+        robot,
+        sheet: readings,
+        load_point,
+        noise: file.noise_mm.map(Quantity::si),
+        orientation_noise: file.noise_deg.map(Quantity::si),
+        varying,
+        angle_tolerance,
+        start,
+        reduce: fit.reduce.unwrap_or_default(),
+        hold,
+    };
+    let largest =
+        problem.sheet.configurations.iter().map(|configuration| configuration.force.norm()).fold(0.0, f64::max);
+    let odd = plausibility::arm(&problem.robot).into_iter().chain(plausibility::force(largest));
+    let notes = note.into_iter().chain(odd).collect();
+    Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
+}
+
+/// What the file says to both commands.
+struct Shared {
+    robot: Robot,
+    robot_input: InputFile,
+    robot_text: String,
+    load_point: Vector3<f64>,
+    angle_tolerance: f64,
+    hold: [bool; 6],
+    varying: Option<(usize, Law)>,
+    note: Option<String>,
+    start: Option<Matrix3<f64>>,
+}
+
+/// Angles of the joint beside a compensator that differ by no more than this count as one, where the file does not say.
+const TOLERANCE_DEG: f64 = 0.05;
+
+impl Shared {
+    fn new(file: &IdentificationFile, at: &Place<'_>) -> Result<Self, InputError> {
+        let (robot_source, robot_input) = at.key("robot").named_toml("robot")?;
+        let robot = robot_from(&robot_source)?;
+        let given =
+            file.compensator.map(|table| compensator_from(&table, &at.key("compensator"), &robot)).transpose()?;
+        let start = file.base.map(|table| orientation_keys!(table).rotation(&at.key("base"))).transpose()?;
+        let fit = file.fit.clone().unwrap_or_default();
+        let hold = fit.hold.map(|joints| held_from(&joints, &at.key("fit").key("hold"))).transpose()?;
+        let (varying, note) = varying_from(&robot, given, fit.distinct_q2.unwrap_or_default());
+        Ok(Self {
+            robot,
+            robot_input,
+            robot_text: robot_source.without_schema().to_owned(),
+            load_point: file.load_point_mm.vector(),
+            angle_tolerance: fit.angle_tolerance_deg.map_or(TOLERANCE_DEG.to_radians(), Quantity::si),
+            hold: hold.unwrap_or_default(),
+            varying,
+            note,
+            start,
+        })
+    }
+}
+
+/// The joints that keep the compliance of the robot file.
+fn held_from(joints: &List<Whole<1, 6>>, at: &Place<'_>) -> Result<[bool; 6], InputError> {
+    let hold = joint_set(joints, at)?;
+    if hold == [true; 6] {
+        let allowed = "numbers of one to five joints, from 1 to 6, each once";
+        return Err(at.error("holds every joint, so that nothing is left to identify", allowed));
+    }
+    Ok(hold)
+}
+
+fn compensator_from(
+    table: &CompensatorGeometryTable,
+    at: &Place<'_>,
+    robot: &Robot,
+) -> Result<(usize, Law), InputError> {
+    let geometry = Geometry { a: table.a_mm.si(), l: table.l_mm.si(), alpha: table.alpha_deg.si() };
+    if geometry.a == geometry.l {
+        return Err(at.key("l_mm").error("lets the two ends of the spring meet", "another length than a_mm"));
+    }
+    let index = table.joint.count() - 1;
+    if let Some(other) = compensated(robot).filter(|other| *other != index) {
+        let problem = format!("is another joint than the robot file's compensator is beside, {}", other + 1);
+        return Err(at.key("joint").error(problem, "one joint with a compensator"));
+    }
+    Ok((index, Law::Spring(geometry)))
+}
+
+/// The joint (from 0) beside which the robot file has a compensator.
+fn compensated(robot: &Robot) -> Option<usize> {
+    robot.joints().iter().position(|joint| matches!(joint.compliance, Compliance::Compensated { .. }))
+}
+
+/// The joint whose compliance changes with its angle, by the config or else by the robot file.
+fn varying_from(
+    robot: &Robot,
+    given: Option<(usize, Law)>,
+    is_distinct: bool,
+) -> (Option<(usize, Law)>, Option<String>) {
+    let known = compensated(robot).and_then(|index| match robot.joints()[index].compliance {
+        Compliance::Compensated { compensator, .. } => {
+            let (a, l, alpha) = (compensator.a, compensator.l, compensator.alpha);
+            Some((index, Law::Spring(Geometry { a, l, alpha })))
+        }
+        _ => None,
+    });
+    let varying = given.or(known).or_else(|| is_distinct.then_some((1, Law::Constant)));
+    let ranged = |index: usize| matches!(robot.joints()[index].compliance, Compliance::Range { .. });
+    let is_spring = |index: usize| matches!(varying, Some((joint, Law::Spring(_))) if joint == index);
+    let note = (0..6).find(|index| ranged(*index) && !is_spring(*index)).map(|index| {
+        let number = index + 1;
+        format!(
+            "joint {number} has a range of compliances in the robot file; one compliance is identified in its place"
+        )
+    });
+    (varying, note)
+}

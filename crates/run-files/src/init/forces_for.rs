@@ -1,0 +1,100 @@
+//! A forces file for a tool path that is there.
+
+use super::run_for::{relative, tool_beside};
+use crate::forces::{ReadingTable, path_of};
+use std::path::Path;
+use stead_format::cam::LengthUnit;
+use stead_format::files::{
+    new::{Existing, write_new},
+    read,
+};
+use stead_format::input::InputError;
+use stead_format::sources::Sources;
+
+/// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The
+/// cutter is that of the program, or that beside a task (`NAME-tool.toml`). What is not known is filled in by a guess,
+/// and marked as one.
+///
+/// # Errors
+/// [`InputError`]: the path or what is beside it is wrong, or the file is there already and to be kept, or cannot be
+/// written.
+pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Existing) -> Result<(), InputError> {
+    let bytes = read(path).map_err(|e| InputError::new(path, format!("cannot be read: {e}")))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let read = |keys: &ReadingTable| path_of(name.to_string(), path, &bytes, keys, &Sources::disk());
+    let stated = read(&ReadingTable::default());
+    let in_mm = ReadingTable { units: Some(LengthUnit::Millimetre.into()), ..ReadingTable::default() };
+    let has_units = stated.is_ok();
+    let known = stated.or_else(|error| read(&in_mm).map_err(|_| error))?;
+    let beside = tool_beside(path)?;
+    let of_program = known.tool.as_ref();
+    let mm = |metres: f64| (metres * 1e9).round() / 1e6;
+    let diameter = of_program.and_then(|tool| tool.diameter).map(mm);
+    let diameter = diameter.or(beside.as_ref().map(|tool| tool.cutter_diameter_mm.written()));
+    let corner = of_program.and_then(|tool| tool.corner_radius).map(mm);
+    let corner = corner.or(beside.as_ref().and_then(|tool| tool.corner_radius_mm).map(|corner| corner.written()));
+    let length = of_program.and_then(|tool| tool.length).map(mm);
+    let about = |is_known: bool| if is_known { "as the program has it" } else { "guess" };
+    let folder = out.parent().unwrap_or(Path::new(""));
+    let quoted = |file: &Path| toml::Value::from(relative(folder, file)).to_string();
+    let half = diameter.unwrap_or(10.0) / 2.0;
+    let stock = match stock {
+        Some(mesh) => format!(
+            "mesh = {}\n# unit = \"mm\"                        # of the mesh file; or \"m\"\n\
+             # xyz_mm = [0.0, 0.0, 0.0]             # where its origin is",
+            quoted(mesh)
+        ),
+        None => format!(
+            "allowance_mm = {:<23} # guess: a box about the scored points, larger by this along x and y to either side, along z above",
+            format!("[{half:?}, {half:?}, 2.0]")
+        ),
+    };
+    let row = |key: String, comment: &str| format!("{key:<38} # {comment}\n");
+    let mut text = format!(
+        "# Forces along a tool path from what it removes of the stock. Written by `stead init forces`. What says \"guess\" is to be replaced\n\
+         # by the figures of your cutter and stock. Run it with\n#     stead forces {} --out TASK.csv\n\npath = {}\n",
+        out.display(),
+        quoted(path)
+    );
+    if !has_units {
+        text +=
+            &row("reading = { units = \"mm\" }".to_owned(), "guess: the program does not state its unit; or \"inch\"");
+    }
+    text += &row(
+        "# material = \"aluminium-7075\"".to_owned(),
+        "published cutting coefficients, in place of kt_mpa to kre_n_per_mm",
+    );
+    text += &format!(
+        "\n[stock]                                # the material before it is cut, in the workpiece frame\n{stock}\n\n[tool]\n"
+    );
+    text += &row(format!("cutter_diameter_mm = {:?}", 2.0 * half), about(diameter.is_some()));
+    match corner {
+        Some(corner) => text += &row(format!("corner_radius_mm = {corner:?}"), about(true)),
+        None => text += &row("# corner_radius_mm = 0.0".to_owned(), "half the diameter for a ball"),
+    }
+    text += &row("teeth = 2".to_owned(), "guess");
+    let flutes = length.unwrap_or(6.0 * half);
+    let of_length = if length.is_some() { "as the program has it, perhaps with the shank" } else { "guess" };
+    text += &row(format!("flute_length_mm = {flutes:?}"), of_length);
+    text += &row("helix_deg = 30.0".to_owned(), "guess");
+    for (key, comment) in [
+        ("kt_mpa = 800.0", "guess: cutting coefficients of an aluminium alloy"),
+        ("kr = 0.4", "guess"),
+        ("ka_mpa = 100.0", "guess"),
+        ("kte_n_per_mm = 20.0", "guess: edge forces"),
+        ("kre_n_per_mm = 20.0", "guess"),
+    ] {
+        text += &row(key.to_owned(), comment);
+    }
+    text += "\n[cut]\n";
+    match known.spindle_speed {
+        Some(speed) => {
+            text += &row(format!("# spindle_rpm = {:?}", (speed * 6e4).round() / 1e3), "as the program has it")
+        }
+        None => text += &row("spindle_rpm = 9000.0".to_owned(), "guess: the path states none"),
+    }
+    if known.path.feed(0).is_none() {
+        text += &row("feed_per_tooth_mm = 0.05".to_owned(), "guess: the path has no feeds");
+    }
+    write_new(out, &text, existing)
+}

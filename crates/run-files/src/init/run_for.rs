@@ -1,0 +1,302 @@
+//! A run file for a robot and a task that are there.
+
+use super::ground::{Ground, ground};
+use serde::Deserialize;
+use std::fmt::Write;
+use std::path::{Component, Path, PathBuf, absolute};
+use stead_format::cam::file_beside;
+use stead_format::document::Document;
+use stead_format::files::new::{Existing, write_new};
+use stead_format::input::InputError;
+use stead_format::robot::{read_geometry, says_stiffness};
+use stead_format::shipped;
+use stead_format::task::read_csv;
+use stead_format::toml_file::TomlFile;
+use stead_format::tool::{CutTable, ToolTable};
+use stead_model::robot::Robot;
+use stead_model::task::ToolPath;
+
+/// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What
+/// neither says is filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task
+/// without forces, the forces. Shapes of the links beside the robot file (`NAME-cell.toml`) are its surroundings, and a
+/// table or a floor among them gives the height of the cell; the cutter beside the task file (`NAME-tool.toml`) is its
+/// tool.
+///
+/// # Errors
+/// [`InputError`]: robot or task are wrong, or what is beside them, or the run file is there already and to be kept, or
+/// cannot be written.
+pub fn init_run(robot: &Path, task: &Path, out: &Path, existing: Existing) -> Result<(), InputError> {
+    let arm = read_geometry(robot)?;
+    let imported = read_csv(task)?;
+    let folder = out.parent().unwrap_or(Path::new(""));
+    let quoted = |name: String| toml::Value::from(name).to_string();
+    let is_shipped = shipped::text(robot).is_some();
+    let reach = arm.geometry().reach();
+    let area = [[0.45 * reach, 0.8 * reach], [-0.3 * reach, 0.3 * reach]];
+    let cell = shapes_beside(robot);
+    let known = Known {
+        robot: quoted(if is_shipped { robot.display().to_string() } else { relative(folder, robot) }),
+        has_stiffness: says_stiffness(robot)?.unwrap_or(true),
+        task: quoted(relative(folder, task)),
+        has_forces: imported.wrenches.is_some(),
+        surroundings: cell.as_ref().map(|cell| quoted(relative(folder, cell))),
+        ground: cell.map(|cell| ground(&cell, area, reach)).transpose()?.flatten(),
+        cutter: cutter_beside(task)?,
+    };
+    write_new(out, &text(&arm, &imported.path, area, &known), existing)
+}
+
+/// What is known of a run.
+struct Known {
+    /// Names of the files as the run file has them, in quotes.
+    robot: String,
+    task: String,
+    surroundings: Option<String>,
+    has_stiffness: bool,
+    has_forces: bool,
+    ground: Option<Ground>,
+    cutter: Option<Cutter>,
+}
+
+/// The tables of a cutter for a run file.
+struct Cutter {
+    text: String,
+    has_cut: bool,
+}
+
+/// What a file of a cutter declares.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CutterFile {
+    tool: Option<ToolTable>,
+    cut: Option<CutTable>,
+}
+
+/// The cutter that `stead import path` has written beside a task file, without the comment at the head of the file.
+fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
+    let file = file_beside(task);
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let source = TomlFile::read(&file)?;
+    let read: CutterFile = source.parse().and_then(|document: Document<'_>| document.read())?;
+    if let (None, Some(_)) = (&read.tool, &read.cut) {
+        return Err(InputError::new(&file, "has [cut] without [tool]").allowed("a table [tool] beside [cut]"));
+    }
+    let is_comment = |line: &&str| line.starts_with('#');
+    let head = source.text().lines().take_while(is_comment).count();
+    let lines: Vec<&str> = source.text().lines().skip(head).collect();
+    Ok(Some(Cutter { text: lines.join("\n").trim().to_owned(), has_cut: read.cut.is_some() }))
+}
+
+/// The cutter that is beside a task file.
+pub(super) fn tool_beside(task: &Path) -> Result<Option<ToolTable>, InputError> {
+    let file = file_beside(task);
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let source = TomlFile::read(&file)?;
+    let read: CutterFile = source.parse().and_then(|document: Document<'_>| document.read())?;
+    Ok(read.tool)
+}
+
+/// The shapes of the links that `stead import robot --collision` has written beside a robot file.
+fn shapes_beside(robot: &Path) -> Option<PathBuf> {
+    let cell = robot.with_file_name(format!("{}-cell.toml", robot.file_stem()?.to_string_lossy()));
+    (shipped::text(robot).is_none() && cell.is_file()).then_some(cell)
+}
+
+/// The name of a file seen from a folder, with forward slashes; the whole name where there is no way between them.
+pub(super) fn relative(folder: &Path, file: &Path) -> String {
+    let (Ok(folder), Ok(file)) = (absolute(folder.join(".")), absolute(file)) else { return shown(file) };
+    let (from, to): (Vec<Component<'_>>, Vec<Component<'_>>) =
+        (folder.components().collect(), file.components().collect());
+    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    // Another drive, or a way through a folder whose name is not known.
+    if common == 0 || from[common..].contains(&Component::ParentDir) {
+        return shown(&file);
+    }
+    let up = std::iter::repeat_n(Component::ParentDir, from.len() - common);
+    shown(&up.chain(to[common..].iter().copied()).collect::<PathBuf>())
+}
+
+fn shown(file: &Path) -> String {
+    file.to_string_lossy().replace('\\', "/")
+}
+
+/// A length to the next 10 mm. mm
+fn rounded(metres: f64) -> f64 {
+    (metres * 100.0).round() * 10.0
+}
+
+/// The text of the run file; `area` are the ranges of x and y of its cell. m
+fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 2], known: &Known) -> String {
+    let reach = robot.geometry().reach();
+    let [x, y, z] = [0, 1, 2].map(|axis| {
+        let [low, high] = ends(path, axis);
+        rounded((low + high) / 2.0)
+    });
+    let range = |[from, to]: [f64; 2]| format!("[{:?}, {:?}]", rounded(from), rounded(to));
+    let (heights, about_heights) = heights(robot, path, known.ground.as_ref());
+    let (feed, about_feed) = feed(path);
+    let (turn, about_turn) = spindle_turn(path);
+    let mut text = format!(
+        "\
+# A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. What says \"guess\"
+# is to be replaced by the figures of your cell; `stead check` shows what was understood.
+
+robot = {}{}
+task = {}
+{}
+[spindle]                              # guess: a spindle across the flange. The tool frame in the flange frame, as the controller
+xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
+abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
+
+[cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in the base frame
+x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
+y_mm = {}
+z_mm = {:<31} # {about_heights}
+# yaw_deg = [-180.0, 180.0]            # how the workpiece may be turned about the vertical; or q4, sin(yaw / 2)
+# A robot on a pedestal or a wall, a part on its side: the page cell_setup has the tables.
+
+{AXES}# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
+# range_deg = [-180.0, 180.0]
+# speed_deg_per_s = 60.0
+# use = \"indexed\"
+
+[constraints]
+min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
+characteristic_length_mm = {:<11} # by which the translational part of the Jacobian is scaled: a quarter of the reach
+joint_margin_deg = 2.0                 # kept from every joint limit
+
+[criterion]                            # what is minimised
+direction = \"total\"                    # the whole deflection counts: one part alone can be balanced while the tool is off
+force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
+
+[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
+beta_step_deg = 5.0                    # grid of beta; a fraction of 360
+feed_mm_per_s = {feed:<22} # {about_feed}
+max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
+",
+        known.robot,
+        if known.has_stiffness { "" } else { LIKE },
+        known.task,
+        known.surroundings.as_ref().map_or(String::new(), |name| format!(
+            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them\n"
+        )),
+        range(area[0]),
+        range(area[1]),
+        range(heights),
+        rounded(0.6 * reach),
+        format!("{:?}", rounded(reach / 4.0)),
+    );
+    if let Some(cutter) = &known.cutter {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{}", cutter.text);
+    }
+    if !known.has_forces && !known.cutter.as_ref().is_some_and(|cutter| cutter.has_cut) {
+        text.push_str(FORCES);
+    }
+    text
+}
+
+/// Where the origin of the workpiece may be above a ground (m), and where that comes from.
+fn heights(robot: &Robot, path: &ToolPath, ground: Option<&Ground>) -> ([f64; 2], String) {
+    let reach = robot.geometry().reach();
+    if let Some(Ground { name, height, is_floor: false }) = ground {
+        // No point of the path is below the table.
+        let from = height - ends(path, 2)[0];
+        let about = format!(
+            "from where the lowest point of the path is on {name:?} of the surroundings, {} mm high",
+            rounded(*height)
+        );
+        return ([from, from + 0.25 * reach], about);
+    }
+    // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
+    let root = robot.controller().and_then(|controller| controller.root_from_base);
+    let (floor, about) = match ground {
+        Some(floor) => (floor.height, format!("{:?} of the surroundings", floor.name)),
+        None => (root.map_or(0.0, |root| -root.translation.z.max(0.0)), "the foot of the robot".to_owned()),
+    };
+    let about = format!("guess: above the floor, which is taken at {} mm, {about}", rounded(floor));
+    ([floor + 0.15 * reach, floor + 0.4 * reach], about)
+}
+
+/// The programmed feed as the file has it, and where it comes from.
+fn feed(path: &ToolPath) -> (String, String) {
+    let feeds = (0..path.points().len()).filter_map(|point| path.feed(point)).map(|feed| (feed * 1e9).round() / 1e6);
+    let ends = feeds.map(|feed| [feed; 2]).reduce(|[low, high], [feed, _]| [low.min(feed), high.max(feed)]);
+    match ends {
+        Some([low, high]) => {
+            (format!("{high:?}"), format!("the highest of the task, whose own feeds count: {low:?} to {high:?} mm/s"))
+        }
+        None => ("50.0".to_owned(), "guess: the task has no feeds of its own".to_owned()),
+    }
+}
+
+/// How fast the spindle may turn in space (deg/mm), and why: never less than the tool axis itself turns along the path.
+fn spindle_turn(path: &ToolPath) -> (String, String) {
+    let axis = |point: usize| path.points()[point].axis;
+    let inner = path.segments().iter().flat_map(|span| span.clone().skip(1)).filter(|p| !path.turns_in_place(*p));
+    let rates = inner.map(|point| {
+        let (from, to) = (axis(point - 1), axis(point));
+        libm::atan2(from.cross(&to).norm(), from.dot(&to)).to_degrees() / (1e3 * path.step_length(point))
+    });
+    let fastest = rates.fold(0.0, f64::max);
+    if fastest < SPINDLE_TURN / AXIS_ROOM {
+        let about = "how fast the spindle turns in space: a plan that turns faster is driven more slowly".to_owned();
+        return (format!("{SPINDLE_TURN:?}"), about);
+    }
+    let turn = (fastest * AXIS_ROOM * 10.0).ceil() / 10.0;
+    let about = format!(
+        "how fast the spindle turns in space; guess: the tool axis alone turns by up to {fastest:.2} along the path"
+    );
+    (format!("{turn:?}"), about)
+}
+
+/// The limit on the turn of the spindle that the guide recommends. deg/mm
+const SPINDLE_TURN: f64 = 0.5;
+/// By how much (as a factor) the spindle may turn faster than the tool axis does where that is the fastest, so that
+/// beta is free there.
+const AXIS_ROOM: f64 = 1.25;
+
+/// For an arm that states no joint stiffness.
+const LIKE: &str = "
+# stiffness_like = \"kuka-kr270-r2700\" # the robot states no joint stiffness, without which nothing can be placed: that of a shipped arm
+#                                        of the class compares placements, and does not predict millimetres";
+
+/// Tables of external axes, to be taken in; the second is not at its end.
+const AXES: &str = "\
+# [[external_axis]]                    # a rail under the robot
+# name = \"rail\"
+# kind = \"rail\"
+# carries = \"robot\"
+# direction = [0.0, 1.0, 0.0]          # in the cell frame: that of the base while all axes are at zero
+# range_mm = [-1000.0, 1000.0]
+# speed_mm_per_s = 500.0
+# use = \"fixed\"                        # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
+
+# [[external_axis]]                    # a table that turns the workpiece
+# name = \"table\"
+# kind = \"turntable\"
+# carries = \"workpiece\"
+# axis = [0.0, 0.0, 1.0]
+";
+
+/// Forces for a task that has none.
+const FORCES: &str = "
+[forces]                               # guess: the task has no forces. What the workpiece does to the tool, in the path's own frame
+feed_n = -60.0                         # along the feed
+normal_n = 120.0                       # to the left of the feed: towards or away from the wall
+axis_n = 40.0                          # along the tool axis, from the work into the spindle
+# In place of [forces]: the cutter and its cut, tables [tool] and [cut]
+";
+
+/// The ends of a path along an axis of the workpiece frame. m
+fn ends(path: &ToolPath, axis: usize) -> [f64; 2] {
+    let values = path.points().iter().map(|point| point.position[axis]);
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! The files that ask for a job, read and checked.
+//!
+//! A run file (TOML) names a robot file (TOML) and a task file (CSV) and states the spindle, the cell, the constraints
+//! and the settings of the search; [`read_run`] reads all three into a [`Run`], which holds a
+//! [`Problem`](stead_planning::problem::Problem) that needs no further checks. Files of studies, assessments,
+//! identifications and simulations do the same for their jobs; [`schema`] describes all of them.
+//!
+//! ```
+//! use stead_run_files::read_run;
+//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+//! let run = read_run(&folder.join("../../configs/caro-2013.toml"))?;
+//! assert_eq!(run.problem.robot.name(), "KUKA KR270-2");
+//! assert_eq!(run.problem.task.points().len(), 105);
+//! # Ok(())
+//! # }
+//! ```
+
+pub mod assess;
+pub mod compensate;
+pub mod forces;
+#[cfg(any(test, feature = "fuzzing"))]
+pub mod fuzzing;
+pub mod identify;
+pub mod init;
+mod placed;
+pub mod plan;
+mod points;
+pub mod published_tables;
+pub mod run;
+pub mod schema;
+mod sheet;
+pub mod simulation;
+mod stated;
+pub mod study;
+#[cfg(test)]
+mod testing;
+
+pub use assess::{AssessRun, read_assessment};
+pub use compensate::{CompensateRun, read_compensation};
+pub use forces::{ForcesRun, read_forces};
+pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
+pub use placed::{read_placement_of, read_setup_of};
+pub use points::{PointFile, read_points};
+pub use run::{GAPS_ALLOWED, Run, read_run, read_run_with};
+pub use simulation::{MAX_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
+pub use study::read_study;
+
+/// The vocabulary of the words in the files of this crate ([`stead_format::scalars::Words`]).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vocabulary;
+
+/// One of the words of this crate's files.
+pub type Word<T> = stead_format::scalars::Word<T, Vocabulary>;

@@ -1,0 +1,121 @@
+//! Cutting forces from a tool path and the stock that it cuts.
+
+pub use stead_removal::forces::{ForcesError, forces};
+pub use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, Stock};
+pub use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
+pub use stead_removal::surface::Surface;
+pub use stead_run_files::forces::material::Material;
+
+use crate::monitor::Warning;
+use crate::{Error, Monitor};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stead_format::Existing;
+use stead_format::files::new::write_all_new;
+use stead_report::forces::{forces_files, forces_json, forces_text};
+use stead_run_files as run_files;
+
+/// A forces file with the path, the stock and the part that it names, read and checked.
+#[derive(Debug, Clone)]
+pub struct ForcesRun {
+    run: Arc<run_files::ForcesRun>,
+}
+
+impl ForcesRun {
+    /// Reads a forces file and the files that it names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with file, line, field, value found and what is allowed.
+    pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(run_files::read_forces(file.as_ref())?) })
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.run.notes
+    }
+
+    /// What is to be cut.
+    pub fn problem(&self) -> &ForcesProblem {
+        &self.run.problem
+    }
+
+    /// Mean force and moment over a turn at every point of the path.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, and for cells that
+    /// take too much memory; [`Error::Stopped`] when the monitor asked to stop before the last point.
+    pub fn compute(&self, monitor: &Monitor) -> Result<PathForces, Error> {
+        let forces = match forces(&self.run.problem, monitor) {
+            Ok(forces) => forces,
+            Err(ForcesError::Stopped(stop)) => return Err(Error::Stopped(stop)),
+            Err(error) => match self.run.located(&error) {
+                Some(located) => return Err(Error::Input(located)),
+                None => return Err(Error::failed(error)),
+            },
+        };
+        let notes = self.run.notes.iter().chain(&forces.notes).cloned().collect();
+        Ok(PathForces { run: Arc::clone(&self.run), forces, notes })
+    }
+}
+
+/// Forces along a path, with the files that `stead forces` writes.
+#[derive(Debug, Clone)]
+pub struct PathForces {
+    run: Arc<run_files::ForcesRun>,
+    forces: RemovalForces,
+    notes: Vec<String>,
+}
+
+impl PathForces {
+    /// Point by point, in SI units.
+    pub fn outcome(&self) -> &RemovalForces {
+        &self.forces
+    }
+
+    /// Writes the task with forces to a file, and beside it `NAME-engagement.csv`, `NAME-forces.svg`,
+    /// `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none. Returns their
+    /// paths.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file that is there already and to be kept, or that cannot be written.
+    pub fn write(&self, task: impl AsRef<Path>, existing: Existing) -> Result<Vec<PathBuf>, Error> {
+        let task = task.as_ref();
+        let stem = task.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = |ending: &str| match ending {
+            "" => task.to_owned(),
+            ending => task.with_file_name(format!("{stem}{ending}")),
+        };
+        let files: Vec<(PathBuf, String)> = forces_files(&self.run, &self.forces)?
+            .into_iter()
+            .map(|(ending, bytes)| (name(&ending), String::from_utf8_lossy(&bytes).into_owned()))
+            .collect();
+        let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
+        write_all_new(&texts, existing)?;
+        Ok(files.into_iter().map(|(file, _)| file).collect())
+    }
+
+    /// The JSON document that the command prints with `--json`. Units are in the names of the fields.
+    pub fn to_json(&self) -> Value {
+        forces_json(&self.run, &self.forces)
+    }
+
+    /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values left at
+    /// their defaults.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Why the result may not be what was wanted.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.forces.warnings
+    }
+}
+
+impl std::fmt::Display for PathForces {
+    /// The text that the command prints.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&forces_text(&self.run, &self.forces))
+    }
+}
