@@ -5,7 +5,7 @@ use crate::robot::Arm;
 use crate::{Error, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_format::robot::says_stiffness;
 use stead_placement::overview::Overview;
 use stead_planning::problem::Problem;

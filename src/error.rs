@@ -2,7 +2,7 @@
 
 use stead_assessment::comparison::AssessError;
 use stead_calibration::compensation::NotCompensated;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_numerics::monitor::Stop;
 use stead_placement::place::Infeasible;
 use stead_report::ReportError;

@@ -11,8 +11,8 @@ use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use stead_format::Existing;
-use stead_format::files::new::write_all_new;
+use stead_disk::Existing;
+use stead_disk::files::new::write_all_new;
 use stead_report::forces::{forces_files, forces_json, forces_text};
 use stead_run_files as run_files;
 

@@ -174,7 +174,7 @@ impl Run {
     }
 
     /// The files that were read.
-    pub(crate) fn inputs(&self) -> &[stead_format::input::InputFile] {
+    pub(crate) fn inputs(&self) -> &[stead_disk::input::InputFile] {
         &self.run.inputs
     }
 

@@ -8,7 +8,7 @@ use super::{Failure, on_threads, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::forces::ForcesRun;
-use stead_format::files::new::check_all_new;
+use stead_disk::files::new::check_all_new;
 
 #[derive(Debug, Args)]
 pub(super) struct ForcesOptions {

@@ -6,7 +6,7 @@ use super::values::{case, damping_scale, field, finite, quaternion, rpm, variant
 use clap::Args;
 use std::path::PathBuf;
 use stead::{Error, Run};
-use stead_format::Existing;
+use stead_disk::Existing;
 use stead_format::field::FieldOverride;
 use stead_planning::problem::Placement;
 use stead_run_files::Overrides;

@@ -1,11 +1,11 @@
 //! The arms that stead ships with: robot files that are part of the program, named `name:kuka-kr270-2` where a file is
 //! requested.
 
-use crate::input::InputError;
 use crate::robot::{RobotFile, geometry_from, has_stiffness};
 use crate::shipped::{ARMS, PREFIX, text};
 use crate::toml_file::{TomlFile, without_schema};
 use std::path::Path;
+use stead_disk::input::InputError;
 use stead_model::robot::Robot;
 
 /// A shipped arm.

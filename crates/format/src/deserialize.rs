@@ -5,13 +5,13 @@
 //! missing key is refused with what its type expects; keys that the type does not declare are refused with the nearest
 //! one that it does.
 
-use crate::input::InputError;
 use crate::place::Place;
-use crate::quote::{GARBLED, garbles};
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, Deserializer, Error, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::fmt;
 use std::rc::Rc;
+use stead_disk::input::InputError;
+use stead_disk::quote::{GARBLED, garbles};
 use toml::Spanned;
 use toml::de::DeValue;
 

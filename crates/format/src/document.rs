@@ -5,7 +5,7 @@
 //! use stead_format::shapes::Interval;
 //! use stead_format::toml_file::TomlFile;
 //! use stead_format::units::{Mm, Positive};
-//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! # fn main() -> Result<(), stead_disk::input::InputError> {
 //! #[derive(Deserialize)]
 //! struct Cell {
 //!     x_mm: Interval<Mm>,
@@ -29,16 +29,16 @@
 use crate::deserialize::Node;
 use crate::field::{FieldOverride, FieldOverrides, put, shifted};
 use crate::file_kind::FileKind;
-use crate::input::{InputError, InputFile, input_file};
-use crate::manifest::{self, Unlisted};
 use crate::place::Place;
-use crate::quote::shorten;
 use crate::shipped;
 use crate::sources::Sources;
 use crate::toml_file::TomlFile;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stead_disk::input::{InputError, InputFile, input_file};
+use stead_disk::manifest::{self, Unlisted};
+use stead_disk::quote::shorten;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 

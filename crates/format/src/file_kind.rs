@@ -1,8 +1,8 @@
 //! What a file is that was given in place of another: told by how it begins, so that the message can name the command
 //! that takes it.
 
-use crate::input::InputError;
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// Lines of a file that are looked at.
 const LINES: usize = 200;

@@ -1,6 +1,5 @@
 //! Fields of a rigid body: mass, centre of mass, inertia tensor.
 
-use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::{Expects, Quantity};
 use crate::shapes::Vector;
@@ -8,6 +7,7 @@ use crate::units::{Kg, KgM2, Mm, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use stead_disk::input::InputError;
 use stead_model::robot::{Inertial, InertialError};
 
 pub(super) const MASS: &str = "mass_kg";

@@ -1,10 +1,10 @@
 //! Files into checked objects: values with their units, robots, tasks, tools, shapes, paths from CAM, arms from URDF.
 //!
 //! All fields carry their unit in their name; inside all is SI and radians. Whatever is wrong in a file comes back as
-//! an [`InputError`](crate::input::InputError) that names file, line, field, value found and what is allowed.
+//! an [`InputError`](stead_disk::input::InputError) that names file, line, field, value found and what is allowed.
 //!
 //! ```
-//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! # fn main() -> Result<(), stead_disk::input::InputError> {
 //! let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
 //! let robot = stead_format::read_robot(&folder.join("../../configs/robots/kuka-kr270-2.toml"))?;
 //! assert_eq!(robot.name(), "KUKA KR270-2");
@@ -18,16 +18,12 @@ mod deserialize;
 pub mod document;
 pub mod field;
 pub mod file_kind;
-pub mod files;
 pub mod inertial;
-pub mod input;
-pub mod manifest;
 pub mod mesh;
 pub mod mount;
 pub mod orientation;
 pub mod place;
 pub mod quantity;
-pub mod quote;
 pub mod robot;
 pub mod scalars;
 pub mod shapes;
@@ -43,7 +39,6 @@ pub mod tool;
 pub mod units;
 pub mod urdf;
 
-pub use files::new::Existing;
 pub use robot::{covariance, read_geometry, read_robot};
 pub use tool::MAX_SPINDLE_SPEED_RPM;
 

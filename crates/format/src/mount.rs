@@ -1,6 +1,5 @@
 //! The table `[mount]`: where the robot stands in its cell.
 
-use crate::input::InputError;
 use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
@@ -8,6 +7,7 @@ use crate::units::{Deg, Mm};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use stead_disk::input::InputError;
 use stead_model::robot::Pose;
 
 /// The base frame of the robot's rows in the cell frame, whose z axis points up: on a pedestal, on a wall, under the

@@ -1,10 +1,10 @@
 //! The keys by which any table of a file states an orientation.
 
-use crate::input::InputError;
 use crate::place::Place;
 use crate::shapes::{Array, Matrix, Vector};
 use crate::units::{Deg, Number};
 use nalgebra::Matrix3;
+use stead_disk::input::InputError;
 use stead_numerics::rotation::{ROTATION_TOLERANCE, orthonormal, rotation_from_quaternion, rotation_from_zyx};
 
 /// A quaternion `[w, x, y, z]`.

@@ -1,8 +1,8 @@
 //! A place in a TOML file where a value is, or would be: what errors are located by.
 
-use crate::input::InputError;
 use crate::quantity::Expects;
 use crate::toml_file::TomlFile;
+use stead_disk::input::InputError;
 use toml::Spanned;
 use toml::de::DeValue;
 

@@ -1,6 +1,5 @@
 //! Values of a file that are one whole number, one text, or one of some words.
 
-use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::{Expects, Reading, expecting, inline_schema};
 use crate::shapes::List;
@@ -8,6 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::marker::PhantomData;
+use stead_disk::input::InputError;
 
 /// A whole number from `MIN` to `MAX`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

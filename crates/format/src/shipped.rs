@@ -1,7 +1,7 @@
 //! The texts of the robot files that are part of the program, by their names.
 
-use crate::input::InputError;
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// What the name of a shipped arm begins with where a file is requested.
 pub const PREFIX: &str = "name:";

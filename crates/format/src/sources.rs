@@ -1,7 +1,5 @@
 //! Where files come from: the disk, or what was read from it once for many runs.
 
-use crate::files;
-use crate::input::InputError;
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::task::{Imported, parse_csv};
 use std::any::Any;
@@ -10,6 +8,8 @@ use std::hash::Hash;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use stead_cell::TriangleMesh;
+use stead_disk::files;
+use stead_disk::input::InputError;
 use stead_model::robot::Robot;
 
 /// Where files come from. Clones share what was read.

@@ -1,7 +1,6 @@
 //! The table `[spindle]`: the tool frame in the flange frame, and what the flange carries.
 
 use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from};
-use crate::input::InputError;
 use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
@@ -10,6 +9,7 @@ use crate::units::{Deg, Kg, Mm, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use stead_disk::input::InputError;
 use stead_model::robot::{Pose, Spindle};
 
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool

@@ -1,13 +1,13 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
 use crate::file_kind::FileKind;
-use crate::files;
-use crate::input::InputError;
-use crate::input::csv_table::{CsvTable, Row, try_each};
-use crate::manifest::{self, Unlisted};
-use crate::quote::shorten;
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_disk::files;
+use stead_disk::input::InputError;
+use stead_disk::input::csv_table::{CsvTable, Row, try_each};
+use stead_disk::manifest::{self, Unlisted};
+use stead_disk::quote::shorten;
 use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
 
 /// What a task file holds.

@@ -1,14 +1,14 @@
 //! The text of one TOML file: where its lines are, and how pieces of it are quoted.
 
 use crate::field::{FieldOverride, FieldOverrides};
-use crate::files;
-use crate::input::{InputError, InputFile, input_file};
-use crate::manifest::{self, Unlisted};
-use crate::quote::shorten;
 use crate::shipped::{self, PREFIX};
 use crate::sources::Sources;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use stead_disk::files;
+use stead_disk::input::{InputError, InputFile, input_file};
+use stead_disk::manifest::{self, Unlisted};
+use stead_disk::quote::shorten;
 
 /// A TOML file read into memory, with its name for messages, and the values that take the place of its own.
 #[derive(Debug, Clone)]

@@ -5,7 +5,6 @@ mod engagement;
 mod force_model;
 mod milling;
 
-use crate::input::InputError;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use crate::scalars::{Whole, Word, words};
@@ -16,6 +15,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
 use stead_cell::tool_scene::{Cylinder, ToolBody};
+use stead_disk::input::InputError;
 use stead_model::cutting::{MillingDirection, Rotation, Side};
 
 /// Speeds beyond this are those of no spindle. rpm

@@ -1,6 +1,6 @@
 //! Why a plan is not exported, or a program not compared with its plan.
 
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_numerics::monitor::Stop;
 
 /// Why a plan that is sound makes no program.

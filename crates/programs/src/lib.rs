@@ -16,7 +16,7 @@
 //! assert_eq!((program.joint_moves, program.linear_moves), (5, 110));
 //! // Written, and read back by what shares nothing with the writers.
 //! let folder = tempfile::tempdir()?;
-//! let written = program.write(folder.path(), stead_format::Existing::Kept)?;
+//! let written = program.write(folder.path(), stead_disk::Existing::Kept)?;
 //! let found = check(&run, plan, &written.files[0], &ReadBackOptions::default(), &Monitor::silent())?;
 //! assert!(found.is_sound() && found.moves == 115);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -52,9 +52,9 @@ use motion::{Frames, Move, MoveKind, Target};
 use stale::StaleParts;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use stead_format::files::new::{Existing, write_all_new};
-use stead_format::input::{InputError, InputFile};
-use stead_format::manifest::interruption_note;
+use stead_disk::files::new::{Existing, write_all_new};
+use stead_disk::input::{InputError, InputFile};
+use stead_disk::manifest::interruption_note;
 use stead_model::robot::ControllerKind;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;

@@ -2,7 +2,7 @@
 
 use super::{Program, ProgramFormat, names};
 use std::path::{Path, PathBuf};
-use stead_format::files;
+use stead_disk::files;
 
 /// What every file of a KRL or RAPID program says of itself.
 pub(super) const MARK: &str = "written by stead";

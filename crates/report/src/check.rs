@@ -5,7 +5,7 @@ use crate::document::{Document, PlacementFigures};
 use crate::figure::{AngleDeg, PlaceMm, SpeedMmPerS, each};
 use crate::units::{Unit, fixed};
 use serde_json::Value;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_model::robot::Robot;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::rotation::zyx_from_rotation;

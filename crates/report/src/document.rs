@@ -4,7 +4,7 @@ use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, Plain, SpeedMmPerS};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_placement::outcome::DeflectionFigures;
 use stead_planning::feed::{CutFeed, FeedLimit, FeedLimitKind};

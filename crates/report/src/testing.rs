@@ -3,7 +3,7 @@
 
 use crate::placement::Context;
 use std::sync::OnceLock;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeFace, Rotation};
 use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};

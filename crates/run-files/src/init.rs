@@ -8,8 +8,8 @@ pub use forces_for::init_forces;
 pub use run_for::init_run;
 
 use std::path::{Path, PathBuf};
-use stead_format::files::new::{Existing, write_all_new};
-use stead_format::input::InputError;
+use stead_disk::files::new::{Existing, write_all_new};
+use stead_disk::input::InputError;
 use stead_format::toml_file::without_schema;
 
 /// What a starter set is for.

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use stead_run_files::read_run;
-//! # fn main() -> Result<(), stead_format::input::InputError> {
+//! # fn main() -> Result<(), stead_disk::input::InputError> {
 //! let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
 //! let run = read_run(&folder.join("../../configs/caro-2013.toml"))?;
 //! assert_eq!(run.problem.robot.name(), "KUKA KR270-2");

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use stead_assessment::circle::CircleError;
 use stead_assessment::roundness::{Measured, RoundnessError};
-use stead_format::files;
-use stead_format::input::csv_table::CsvTable;
-use stead_format::input::input_file;
-use stead_format::input::{InputError, InputFile};
-use stead_format::manifest::{self, Unlisted};
-use stead_format::quote::shorten;
+use stead_disk::files;
+use stead_disk::input::csv_table::CsvTable;
+use stead_disk::input::input_file;
+use stead_disk::input::{InputError, InputFile};
+use stead_disk::manifest::{self, Unlisted};
+use stead_disk::quote::shorten;
 
 /// What a file of points holds.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use stead_assessment::comparison::Load;
 use stead_assessment::map::Elbow;
 use stead_assessment::published::{PublishedTables, Quantity, Reading};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::place::Place;
 use stead_format::quantity::{self, Range, Unit};
 use stead_format::shapes::{Array, List};

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use stead_calibration::identification::{Configuration, Reading, Sheet};
-use stead_format::input::InputError;
-use stead_format::input::csv_table::{CsvTable, Row, try_each};
+use stead_disk::input::InputError;
+use stead_disk::input::csv_table::{CsvTable, Row, try_each};
 use stead_model::robot::Robot;
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};

@@ -1,7 +1,7 @@
 //! Files for the tests of this crate.
 
 use crate::{Run, read_run};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::testing::root;
 
 /// A run in a folder of its own, with the shipped robot and a task of two points.

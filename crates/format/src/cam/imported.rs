@@ -3,12 +3,12 @@
 use super::segments::{Counts, Point, Resampling, Segments, expected_points, segments};
 use super::tool::{self, ProgramTool, Use};
 use super::{Move, Program, counted, rounded};
-use crate::files::new::{Existing, write_all_new};
-use crate::input::InputError;
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
+use stead_disk::files::new::{Existing, write_all_new};
+use stead_disk::input::InputError;
 use stead_model::plausibility;
 use stead_model::task::ToolPath;
 

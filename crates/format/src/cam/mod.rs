@@ -18,13 +18,13 @@ pub use segments::Resampling;
 pub use tool::ProgramTool;
 pub use tool::file_beside;
 
-use crate::files;
-use crate::input::InputError;
 use gcode::Machine;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
+use stead_disk::files;
+use stead_disk::input::InputError;
 
 /// No coordinate is larger than this: a wrong unit, or no coordinate at all. m
 const LARGEST: f64 = 100.0;

@@ -1,10 +1,10 @@
 //! The cutter of a program, as far as it is described there, as tables of a run file.
 
 use super::{Program, rounded};
-use crate::quote::shorten;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use stead_disk::quote::shorten;
 
 /// A tool and how it turns.
 #[derive(Debug, Clone, PartialEq, Default)]

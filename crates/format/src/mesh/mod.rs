@@ -11,10 +11,10 @@ mod stl;
 mod tests;
 
 use crate::file_kind::FileKind;
-use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{MeshError, TriangleMesh};
+use stead_disk::input::InputError;
 
 /// The unit of length of a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

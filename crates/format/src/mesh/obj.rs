@@ -3,9 +3,9 @@
 
 use super::stl::{number_of, shortened};
 use super::{MAX_TRIANGLES, THINNER, Triangles};
-use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface
 /// (points, lines).

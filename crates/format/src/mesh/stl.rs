@@ -4,9 +4,9 @@
 //! count of its triangles says, to the byte. What is not, begins with `solid` and holds no zero byte is text.
 
 use super::{MAX_TRIANGLES, THINNER, Triangles};
-use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// The header of a binary file with the count of triangles.
 const HEADER: usize = 84;
@@ -120,5 +120,5 @@ pub(super) fn number_of(word: &str) -> Option<f64> {
 
 /// A line as messages quote it.
 pub(super) fn shortened(line: &str) -> String {
-    crate::quote::shorten(line)
+    stead_disk::quote::shorten(line)
 }

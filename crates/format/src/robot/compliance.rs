@@ -2,8 +2,8 @@
 
 use super::file::JointRow;
 use super::one_or_range::OneOrRange;
-use crate::input::InputError;
 use crate::place::Place;
+use stead_disk::input::InputError;
 use stead_model::robot::{Compensator, Compliance};
 
 pub(super) const STIFFNESS: &str = "stiffness_mnm_per_rad";

@@ -1,10 +1,10 @@
 //! The tables `[controller]` and `[root]` of a robot file.
 
 use super::file::{ControllerTable, RobotFile, RootTable};
-use crate::input::InputError;
 use crate::orientation::orientation_keys;
 use crate::place::Place;
 use crate::scalars::Words;
+use stead_disk::input::InputError;
 use stead_model::robot::{Controller, ControllerKind, Pose, Robot};
 
 impl Words<crate::Vocabulary> for ControllerKind {

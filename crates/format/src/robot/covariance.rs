@@ -7,9 +7,9 @@
 
 use super::compliance::{COMPENSATOR, COMPLIANCE};
 use super::file::CovarianceTable;
-use crate::input::InputError;
 use crate::place::Place;
 use nalgebra::DMatrix;
+use stead_disk::input::InputError;
 use stead_model::robot::{Parameter, Robot, Uncertainty, UncertaintyError};
 
 pub(super) const COVARIANCE: &str = "covariance";

@@ -3,10 +3,10 @@
 use super::file::JointRow;
 use super::robot_from;
 use crate::inertial::{CENTRE, INERTIA, MASS, inertial_from};
-use crate::input::InputError;
 use crate::place::{Place, required};
 use crate::quantity::Quantity;
 use crate::toml_file::TomlFile;
+use stead_disk::input::InputError;
 use stead_model::robot::{JointDynamics, Orthogonal, Robot};
 
 const DAMPING: &str = "damping_nms_per_rad";

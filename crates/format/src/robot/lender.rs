@@ -3,10 +3,10 @@
 use super::file::{JointRow, RobotFile};
 use super::has_stiffness;
 use super::one_or_range::OneOrRange;
-use crate::input::{InputFile, input_file};
 use crate::shipped::{PREFIX, by_name, names_near};
 use crate::toml_file::TomlFile;
 use std::path::Path;
+use stead_disk::input::{InputFile, input_file};
 
 /// Why an arm lends no stiffness, and what does.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -12,10 +12,8 @@ pub use file::{CompensatorTable, ControllerTable, CovarianceTable, JointRow, Rob
 pub(crate) use lender::{NoLender, lender, lent_urad_per_nm};
 pub use one_or_range::OneOrRange;
 
-use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::quantity::Quantity;
-use crate::quote::garbles;
 use crate::toml_file::TomlFile;
 use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
 use controller::with_controller;
@@ -23,6 +21,8 @@ use covariance::{COVARIANCE, with_covariance};
 use dynamics::dynamics_from;
 pub use dynamics::{checked_to_move, moving_robot_from};
 use std::path::Path;
+use stead_disk::input::{InputError, InputFile};
+use stead_disk::quote::garbles;
 use stead_model::robot::{Compliance, DataSheet, Joint, Robot, RobotError};
 
 /// Reads a robot file: the keys of [`RobotFile`].

@@ -11,12 +11,12 @@ pub use tables::{
     CapsuleTable, CollisionTable, CylinderTable, HalfSpaceTable, KeepOutTable, ShapeTable, SurroundingsFile,
 };
 
-use crate::input::{InputError, InputFile};
 use crate::place::Place;
 use crate::toml_file::TomlFile;
 use std::path::Path;
 use std::sync::Arc;
 use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
+use stead_disk::input::{InputError, InputFile};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Robot, Spindle};
 use tables::axis_of;

@@ -2,12 +2,12 @@
 
 use super::MESH;
 use super::tables::ShapeTable;
-use crate::input::{InputError, InputFile, input_file};
 use crate::mesh::MeshUnit;
 use crate::place::Place;
 use crate::quantity::Quantity;
 use std::sync::Arc;
 use stead_cell::{Solid, TriangleMesh};
+use stead_disk::input::{InputError, InputFile, input_file};
 
 const FORMS: &str = "exactly one of box_mm, cylinder_mm = { radius, length }, capsule_mm = { radius, length }, hull (a mesh file), mesh";
 

@@ -2,7 +2,6 @@
 
 use super::solid::read;
 use super::tables::{CylinderTable, pose};
-use crate::input::{InputError, InputFile};
 use crate::mesh::MeshUnit;
 use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
@@ -15,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use stead_cell::{Solid, TriangleMesh};
+use stead_disk::input::{InputError, InputFile};
 use stead_model::robot::Pose;
 use stead_model::task::ToolPath;
 

@@ -1,11 +1,9 @@
 //! The tables `[[shape]]`, `[[keep_out]]` and `[collision]`, in a file of their own or in a run file.
 
-use crate::input::InputError;
 use crate::mesh::MeshUnit;
 use crate::orientation::{OrientationKeys, Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::quantity::Quantity;
-use crate::quote::garbles;
 use crate::scalars::{Word, words};
 use crate::shapes::{Array, List, Matrix, Vector};
 use crate::units::{Deg, Mm, NotNegative, Number, Positive};
@@ -13,6 +11,8 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stead_cell::{Attachment, KeepOut, TrackedPoint, Zone};
+use stead_disk::input::InputError;
+use stead_disk::quote::garbles;
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::Pose;
 

@@ -1,12 +1,12 @@
 //! The cutter, whatever its forces are computed for.
 
 use super::Cutting;
-use crate::input::InputError;
 use crate::place::required;
 use crate::quantity::{Expects, Quantity, Unit};
 use crate::shapes::List;
 use crate::units::{NotNegative, Number};
 use std::f64::consts::TAU;
+use stead_disk::input::InputError;
 use stead_model::cutting::{Coefficients, Cutter, CutterError, Rotation, Tooth};
 
 impl Cutting<'_> {

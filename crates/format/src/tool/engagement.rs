@@ -1,10 +1,10 @@
 //! Cutter and cut for the forces of teeth with a geometry (Klimchik et al. 2017, section 2.2).
 
 use super::Cutting;
-use crate::input::InputError;
 use crate::place::required;
 use crate::quantity::Quantity;
 use crate::scalars::words;
+use stead_disk::input::InputError;
 use stead_model::cutting::{Coefficients, Cutter, CuttingForce, Engagement, ForceHistory, RakeFace};
 use stead_model::task::Wrench;
 

@@ -1,9 +1,9 @@
 //! Cutter and cut for the forces along a tool path.
 
 use super::Cutting;
-use crate::input::InputError;
 use crate::place::required;
 use crate::units::{Mm, Positive};
+use stead_disk::input::InputError;
 use stead_model::cutting::{Cut, PathForces};
 
 impl Cutting<'_> {

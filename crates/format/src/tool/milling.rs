@@ -1,8 +1,8 @@
 //! Cutter and cut for simulation and stability.
 
 use super::Cutting;
-use crate::input::InputError;
 use crate::place::required;
+use stead_disk::input::InputError;
 use stead_model::cutting::{Cut, Cutter};
 use stead_model::cutting::{CutError, PassCut};
 

@@ -6,8 +6,6 @@ use super::read::{Geometry, Urdf};
 use super::rows::Rows;
 use super::tree::Chain;
 use super::xml::{one_line, quoted};
-use crate::files;
-use crate::input::InputError;
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::surroundings::{CLEARANCE, attachment};
 use nalgebra::Vector3;
@@ -16,6 +14,8 @@ use std::sync::Arc;
 use stead_cell::collider::Collider;
 use stead_cell::scene::PairKind;
 use stead_cell::{Attachment, Scene, SceneError, Shape, Solid, Surroundings, TriangleMesh};
+use stead_disk::files;
+use stead_disk::input::InputError;
 use stead_model::robot::{Pose, Robot};
 
 /// A shape of a link, and the mesh file that it is made of.

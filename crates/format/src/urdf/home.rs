@@ -1,9 +1,9 @@
 //! The controller's angles, found from one pose that the user has read at it.
 
 use super::bodies::about_z;
-use crate::input::InputError;
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_disk::input::InputError;
 use stead_model::robot::{Controller, ControllerKind, Pose, Robot};
 use stead_numerics::digits::figures;
 use stead_numerics::rotation::{rotation_from_quaternion, rotation_from_zyx, rotation_vector, zyx_from_rotation};

@@ -11,7 +11,7 @@
 //! let robot = import_robot(&file, &ImportOptions::default())?;
 //! assert_eq!(robot.rows[1].a_mm, 350.0);
 //! assert!(robot.deviation.position_mm < 1e-9);
-//! # Ok::<(), stead_format::input::InputError>(())
+//! # Ok::<(), stead_disk::input::InputError>(())
 //! ```
 
 mod bodies;
@@ -35,13 +35,13 @@ pub use deviation::{Deviation, POSTURES};
 pub use home::HomePose;
 pub use rows::ImportedRow;
 
-use crate::files::new::{Existing, write_all_new};
-use crate::input::{InputError, sha256};
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};
 use rows::Rows;
 use std::path::{Path, PathBuf};
+use stead_disk::files::new::{Existing, write_all_new};
+use stead_disk::input::{InputError, sha256};
 use stead_model::plausibility;
 use stead_model::robot::{Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
 use stiffness::Borrowed;

@@ -1,12 +1,12 @@
 //! The elements of a URDF: links and joints, with what stead uses of them.
 
 use super::xml::{Element, one_line, quoted};
-use crate::files;
-use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::{Document, Error as XmlError, Node};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use stead_disk::files;
+use stead_disk::input::InputError;
 use stead_model::robot::{Inertial, InertialError, Pose};
 
 /// No length is above this, m.

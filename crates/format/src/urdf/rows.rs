@@ -8,9 +8,9 @@
 use super::forward::{link_at, tip_at};
 use super::read::Urdf;
 use super::tree::Chain;
-use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI};
+use stead_disk::input::InputError;
 use stead_model::robot::Pose;
 use stead_model::robot::angles::wrap;
 

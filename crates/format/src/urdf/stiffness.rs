@@ -1,8 +1,8 @@
 //! Joint stiffness for an arm whose URDF has none: the values of a shipped arm, with their source.
 
-use crate::input::InputError;
 use crate::robot::{JointRow, OneOrRange, lender, lent_urad_per_nm};
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// The stiffness of another arm.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::read::{Kind, Urdf};
 use super::xml::quoted;
-use crate::input::InputError;
+use stead_disk::input::InputError;
 
 /// The joints from the base link to the tip link.
 #[derive(Debug, Clone)]

@@ -1,11 +1,11 @@
 //! Elements of an XML document with their place in the file: attributes read as text and numbers, errors with line, tag
 //! and value.
 
-use crate::input::InputError;
-pub(super) use crate::quote::one_line;
-use crate::quote::{GARBLED, garbles};
 use roxmltree::Node;
 use std::path::Path;
+use stead_disk::input::InputError;
+pub(super) use stead_disk::quote::one_line;
+use stead_disk::quote::{GARBLED, garbles};
 
 /// An element, and the file that it is in.
 #[derive(Debug, Clone, Copy)]

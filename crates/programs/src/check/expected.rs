@@ -5,7 +5,7 @@ use super::super::transfer_paths::TransferPaths;
 use super::super::{corrected, motion};
 use super::geometry::{Frame, Matrix, about_z, cross, flange, length, seen};
 use std::path::Path;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_model::robot::Pose;
 use stead_model::task::PathPoint;
 use stead_planning::problem::{Placement, Problem};

@@ -4,7 +4,7 @@ use super::geometry::{Frame, turned_xyz};
 use super::written::{
     Base, DEEPEST, End, Goal, Moves, Pace, Source, Step, entries, exactly, external, frame_of, number,
 };
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 
 /// Words that begin a statement whose effect on the path is not understood.
 const NOT_UNDERSTOOD: [&str; 23] = [

@@ -23,7 +23,7 @@ use expected::{Expected, frame, workpiece};
 use geometry::{Frame, apart, flange, floor_seen, of_rows, seen, table as table_at_zero};
 use nalgebra::{Matrix3, Vector3};
 use std::path::{Path, PathBuf};
-use stead_format::input::{InputError, InputFile, input_file};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Controller, Pose, Robot};
 use stead_numerics::monitor::Monitor;

@@ -3,7 +3,7 @@
 use super::geometry::{Frame, turned_by_quaternion};
 use super::written::{Base, DEEPEST, End, External, Goal, Moves, Pace, Source, Step, frame_of, number};
 use std::collections::{BTreeMap, BTreeSet};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 
 /// Words that begin a statement whose effect on the path is not understood.
 const NOT_UNDERSTOOD: [&str; 10] =

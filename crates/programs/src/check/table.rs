@@ -2,8 +2,8 @@
 
 use super::geometry::{Frame, apart, turned_by_quaternion, turned_xyz};
 use super::written::{Goal, Moves, Pace, Source, frame_of};
-use stead_format::input::InputError;
-use stead_format::input::csv_table::{CsvTable, Row, try_each};
+use stead_disk::input::InputError;
+use stead_disk::input::csv_table::{CsvTable, Row, try_each};
 
 /// How far apart the two ways may be in which the table states an orientation. deg
 const BOTH_WAYS_DEG: f64 = 1e-3;

@@ -3,8 +3,8 @@
 use super::geometry::{Frame, Matrix};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use stead_format::files;
-use stead_format::input::InputError;
+use stead_disk::files;
+use stead_disk::input::InputError;
 
 /// One move as written.
 #[derive(Debug, Clone)]

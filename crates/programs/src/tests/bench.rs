@@ -4,7 +4,7 @@ use crate::check::{ProgramCheck, ReadBackOptions, check};
 use crate::{ExportError, ExportOptions, Program, ProgramFormat, export};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use stead_format::Existing;
+use stead_disk::Existing;
 use stead_format::urdf::{ImportOptions, ImportedRobot, import_robot_text};
 use stead_model::external_axis::AxisKind;
 use stead_model::robot::turns::Range;

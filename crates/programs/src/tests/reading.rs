@@ -6,7 +6,7 @@ use super::bench::{ARMS, Bench};
 use proptest::prelude::*;
 use std::path::Path;
 use std::sync::OnceLock;
-use stead_format::Existing;
+use stead_disk::Existing;
 use stead_numerics::monitor::Monitor;
 
 /// Whether a program is found to be another than the plan's.

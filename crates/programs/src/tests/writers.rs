@@ -5,7 +5,7 @@ use super::super::split::parts;
 use super::super::{CorrectedPath, ExportError, ExportOptions, Program, ProgramError, ProgramFormat};
 use super::bench::{ARMS, Bench};
 use std::path::Path;
-use stead_format::Existing;
+use stead_disk::Existing;
 
 fn text<'a>(program: &'a Program, name: &str) -> &'a str {
     let file = program.files.iter().find(|file| file.name == name);

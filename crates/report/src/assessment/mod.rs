@@ -14,7 +14,7 @@ use super::{Files, cutting, document as documents, picture};
 use std::path::PathBuf;
 use stead_assessment::comparison::{Assessment, Comparison};
 use stead_assessment::published::{Agreement, PublishedTables};
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_model::cutting::ForceHistory;
 use stead_model::published::Published;
 

@@ -4,7 +4,7 @@ use crate::document::{Document, PlacementFigures};
 use crate::figure::{DeflectionMm, Plain, TimeS};
 use serde_json::Value;
 use stead_certify::{Certificate, NoProof, Proof, Status};
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 
 records! {
     /// What is proved of the best and of the worst placement.

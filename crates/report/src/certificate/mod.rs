@@ -18,7 +18,7 @@ use crate::page::{PAGE, put_page};
 use crate::placement::{PLACE, SUMMARY};
 use std::path::PathBuf;
 use stead_certify::{Certificate, NoProof, Proof};
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_planning::problem::Problem;
 
 /// The file that states what is proved.

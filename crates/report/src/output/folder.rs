@@ -5,9 +5,9 @@ use super::transaction::Transaction;
 use super::{ReportError, transaction};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use stead_format::files::{self, PREFIX, Staged, remove_stale};
-use stead_format::input::InputFile;
-use stead_format::manifest::{MANIFEST, ResultSet};
+use stead_disk::files::{self, PREFIX, Staged, remove_stale};
+use stead_disk::input::InputFile;
+use stead_disk::manifest::{MANIFEST, ResultSet};
 
 /// The name of the lock file, which is there as long as a run writes.
 const LOCK: &str = ".stead.lock";

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
-use stead_format::files::{self, TryLock};
+use stead_disk::files::{self, TryLock};
 
 /// A lock file that this process holds. It is removed when this is dropped.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! The folder that results go to, and the error of this room.
 //!
 //! One process at a time writes to a [`Folder`] (`lock`). The files of a run are put in place as one set
-//! (`transaction`), with `manifest.json` ([`stead_format::manifest`]) last: a run that is killed leaves the results of
+//! (`transaction`), with `manifest.json` ([`stead_disk::manifest`]) last: a run that is killed leaves the results of
 //! the run before, or a folder that every reader refuses, and the next run clears up what it has left.
 
 mod folder;
@@ -13,7 +13,7 @@ pub use lock::{Lock, LockError};
 pub use transaction::Transaction;
 
 use std::path::PathBuf;
-use stead_format::files::is_full;
+use stead_disk::files::is_full;
 
 /// Why a result could not be written.
 #[derive(Debug, thiserror::Error)]

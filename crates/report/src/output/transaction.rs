@@ -7,9 +7,9 @@
 
 use super::ReportError;
 use std::path::{Path, PathBuf};
-use stead_format::files::{self, PREFIX, Staged};
-use stead_format::input::{InputFile, sha256};
-use stead_format::manifest::{Found, MANIFEST, Manifest, ResultFile, ResultSet, RunInput};
+use stead_disk::files::{self, PREFIX, Staged};
+use stead_disk::input::{InputFile, sha256};
+use stead_disk::manifest::{Found, MANIFEST, Manifest, ResultFile, ResultSet, RunInput};
 
 /// The results of a run, about to be written. Files of the last run of the same command that this one does not write
 /// are removed, as its manifest lists them; no other file is touched.

@@ -4,9 +4,9 @@ use super::{DATA, PageError, content, made_of};
 use crate::Files;
 use crate::output::{Folder, ReportError};
 use std::path::{Path, PathBuf};
-use stead_format::files;
-use stead_format::input::InputError;
-use stead_format::manifest::{self, Found, MANIFEST, Manifest, Unlisted};
+use stead_disk::files;
+use stead_disk::input::InputError;
+use stead_disk::manifest::{self, Found, MANIFEST, Manifest, Unlisted};
 
 /// Why a folder gets no page.
 #[derive(Debug, thiserror::Error)]

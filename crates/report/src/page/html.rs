@@ -2,7 +2,7 @@
 
 use super::packed::base64;
 use super::script::script;
-use stead_format::input::sha256;
+use stead_disk::input::sha256;
 
 const MARKUP: &str = include_str!("page.html");
 /// The style of all pages.

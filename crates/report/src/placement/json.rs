@@ -14,7 +14,7 @@ use crate::stability::path::PathStabilityFigures;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
     ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome,

@@ -21,7 +21,7 @@ use crate::page::data::{MapOf, Placed, page_data};
 use crate::{Files, named, picture};
 use serde_json::Value;
 use std::path::PathBuf;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_model::published::Published;
 use stead_numerics::message::Warning;
 use stead_placement::outcome::{Case, Cases, Outcome};

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_study::analysis::{
     self, Analysis, AxisEffect, Effects, Failures, Front, Layout, Layouts, Measure, Ranked, Ranking, TaskRanking,
 };

@@ -23,7 +23,7 @@ use crate::page::PAGE;
 use crate::picture;
 use crate::{Files, named};
 use std::path::PathBuf;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_study::analysis::{Analysis, Layout};
 
 /// Writes the files of a report into the folder of its study and returns their paths; the page leads to the pages of

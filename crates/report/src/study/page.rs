@@ -4,7 +4,7 @@ use super::{cases, number, percent};
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series, Style, Table, Text, Tile, Tiles};
 use crate::units::figures;
 use std::collections::BTreeMap;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_planning::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure};
 

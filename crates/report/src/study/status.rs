@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use serde_json::Value;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 use stead_study::cases::{ShardStatus, StudyStatus};
 
 records! {

@@ -4,7 +4,7 @@ use super::file::{BenchmarkTable, StiffnessTable, Traced};
 use nalgebra::{Matrix3, Vector3};
 use stead_assessment::benchmark::{Benchmark, LimitsAt, Plane, StiffnessModel, Turning};
 use stead_assessment::comparison::ElbowNames;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::place::{Place, required};
 use stead_format::quantity::Quantity;
 use stead_format::scalars::joint_set;

@@ -16,7 +16,7 @@ use stead_assessment::comparison::Comparison;
 use stead_assessment::map::Grid;
 use stead_assessment::published::PublishedTables;
 use stead_assessment::ranking::Selection;
-use stead_format::input::{InputError, InputFile};
+use stead_disk::input::{InputError, InputFile};
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;
 use stead_format::robot::robot_from;

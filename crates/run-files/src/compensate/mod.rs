@@ -10,7 +10,7 @@ use super::run::read_run;
 use crate::plan::plan_from;
 use std::path::Path;
 use stead_calibration::compensation::{CompensationProblem, Settings, other_geometry};
-use stead_format::input::{InputError, InputFile, input_file};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::quantity::Quantity;
 use stead_format::robot::robot_from;
 use stead_format::toml_file::TomlFile;

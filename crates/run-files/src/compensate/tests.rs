@@ -22,7 +22,7 @@ fn shipped_file_is_the_best_plan_played_on_the_same_arm() {
     assert_eq!(Settings { tolerance: expected.tolerance, ..run.job.settings }, expected);
     let roles: Vec<&str> = run.inputs.iter().map(|input| input.role).collect();
     assert_eq!(roles, ["config", "run", "robot", "task", "plan"]);
-    assert_eq!(run.inputs[4].sha256, stead_format::input::sha256(&plan("best.csv")));
+    assert_eq!(run.inputs[4].sha256, stead_disk::input::sha256(&plan("best.csv")));
     assert!(run.notes.is_empty());
     let reality = root().join("configs/robots/kuka-kr270-2-k1-0.8.toml");
     let other = read_compensation(&root().join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();

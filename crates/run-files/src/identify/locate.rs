@@ -3,7 +3,7 @@
 use super::{IdentifyRun, PlanRun};
 use stead_calibration::identification::IdentifyError;
 use stead_calibration::identification::design::DesignError;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 
 /// Why a job on files gave no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use stead_calibration::identification::Problem;
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::spring::Geometry;
-use stead_format::input::{InputError, InputFile, input_file};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::orientation::orientation_keys;
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;

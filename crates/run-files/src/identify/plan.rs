@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::sheet::LoadCase;
-use stead_format::input::{InputError, InputFile};
+use stead_disk::input::{InputError, InputFile};
 use stead_format::place::{Place, required};
 use stead_format::quantity::{Expects, Quantity};
 use stead_format::scalars::Whole;

@@ -3,12 +3,12 @@
 use super::run_for::{relative, tool_beside};
 use crate::forces::{ReadingTable, path_of};
 use std::path::Path;
-use stead_format::cam::LengthUnit;
-use stead_format::files::{
+use stead_disk::files::{
     new::{Existing, write_new},
     read,
 };
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
+use stead_format::cam::LengthUnit;
 use stead_format::sources::Sources;
 
 /// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The

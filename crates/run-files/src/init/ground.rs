@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{Attachment, Shape, Zone};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::surroundings::read_surroundings;
 
 /// A level surface in the base frame.

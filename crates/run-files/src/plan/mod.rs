@@ -9,9 +9,9 @@ pub use rows::axis_column;
 pub use stations::PlacedPlan;
 
 use std::path::Path;
-use stead_format::files;
-use stead_format::input::{InputError, InputFile, input_file};
-use stead_format::manifest::{self, Unlisted};
+use stead_disk::files;
+use stead_disk::input::{InputError, InputFile, input_file};
+use stead_disk::manifest::{self, Unlisted};
 use stead_planning::problem::Problem;
 
 /// Reads a plan (`best.csv` and the like) of a problem from the bytes of its file. It must fit: as many points, joint

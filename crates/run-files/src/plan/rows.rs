@@ -2,9 +2,9 @@
 
 use nalgebra::Vector3;
 use std::path::Path;
-use stead_format::input::InputError;
-use stead_format::input::csv_table::{CsvTable, Row, try_each};
-use stead_format::quote::shorten;
+use stead_disk::input::InputError;
+use stead_disk::input::csv_table::{CsvTable, Row, try_each};
+use stead_disk::quote::shorten;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::Posture;
 use stead_planning::problem::Problem;

@@ -9,7 +9,7 @@ use super::rows::{FORCE, JOINTS, POSITION, PlanRow};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_calibration::compensation::PathPoint;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_model::robot::{Frames, Pose, angles::wrap, point_from_tool};
 use stead_model::stiffness::displacement;
 use stead_planning::problem::{Placement, Problem};

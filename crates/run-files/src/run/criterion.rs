@@ -4,7 +4,7 @@ use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
-use stead_format::input::{InputError, InputFile, input_file};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;
 use stead_format::robot::robot_from;

@@ -3,10 +3,10 @@
 use super::tables::CellTable;
 use nalgebra::Matrix3;
 use std::sync::Arc;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
+use stead_disk::quote::garbles;
 use stead_format::orientation::orientation_keys;
 use stead_format::place::Place;
-use stead_format::quote::garbles;
 use stead_model::task::Task;
 use stead_planning::setup::Orientation;
 

@@ -3,7 +3,7 @@
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;
 use stead_format::scalars::words;

@@ -1,8 +1,8 @@
 //! The table `[stock]` of a run: forces from what its path removes.
 
 use crate::forces::{NamedPath, RemovalTables};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::document::NamedFile;
-use stead_format::input::{InputError, InputFile, input_file};
 use stead_format::place::Place;
 use stead_format::task::Imported;
 use stead_format::toml_file::TomlFile;

@@ -4,7 +4,7 @@ use crate::Word;
 use crate::simulation::{DampingScale, max_depth};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::place::Place;
 use stead_format::tool::Cutting;
 use stead_format::units::{Mm, Number, Positive};

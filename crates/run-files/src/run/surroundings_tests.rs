@@ -112,7 +112,7 @@ fn a_cell_is_read_with_its_meshes_and_joined_with_tables_of_the_run() {
     let added = [("surroundings", "cells/cell.toml"), ("mesh", "meshes/wedge.stl"), ("mesh", "meshes/wedge.obj")];
     assert_eq!(inputs[3..], added);
     let fixtures = include_bytes!("../../../format/src/mesh/fixtures/wedge.stl");
-    assert_eq!(read.inputs[4].sha256, stead_format::input::sha256(fixtures));
+    assert_eq!(read.inputs[4].sha256, stead_disk::input::sha256(fixtures));
     let notes = read.notes.join("\n");
     for part in [
         "\"fixture\" is 100000 mm long, and the robot reaches",

@@ -8,7 +8,7 @@ use std::ops::Bound::{Excluded, Included};
 use std::sync::Arc;
 use stead_cell::Scene;
 use stead_cell::tool_scene::{SegmentMoves, ToolScene};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::orientation::Quaternion;
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;

@@ -57,7 +57,7 @@ fn inputs_are_the_bytes_that_were_read() {
         ("task", "../tasks/five-segments.csv", "tasks/five-segments.csv"),
     ];
     for (input, (role, name, file)) in run.inputs.iter().zip(expected) {
-        let digest = stead_format::input::sha256(&std::fs::read(root().join(file)).unwrap());
+        let digest = stead_disk::input::sha256(&std::fs::read(root().join(file)).unwrap());
         assert_eq!((input.role, input.name.as_str(), &input.sha256), (role, name, &digest));
     }
     assert_eq!(run.inputs.len(), 3);

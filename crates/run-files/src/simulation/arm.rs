@@ -1,7 +1,7 @@
 //! The arm of a simulation file and the pass that it makes.
 
 use super::file::{PassTable, SimulationFile};
-use stead_format::input::{InputError, InputFile};
+use stead_disk::input::{InputError, InputFile};
 use stead_format::place::Place;
 use stead_format::robot::moving_robot_from;
 use stead_format::scalars::Words;

@@ -1,7 +1,7 @@
 //! How a simulated pass is evaluated, and what it is compared with.
 
 use super::file::{ForcesTable, ProfileTable, PublishedTable, SettingsTable};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;
 use stead_format::shapes::Span;

@@ -15,7 +15,7 @@ use evaluation::{check_duration, check_step, evaluation_from};
 use stability::analysis_from;
 pub(crate) use stability::max_depth;
 use std::path::Path;
-use stead_format::input::{InputError, InputFile};
+use stead_disk::input::{InputError, InputFile};
 use stead_format::place::Place;
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::Cutting;

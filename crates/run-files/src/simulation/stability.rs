@@ -1,7 +1,7 @@
 //! The `[stability]` table of a simulation file.
 
 use super::file::AnalysisTable;
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;
 use stead_format::shapes::Span;

@@ -4,8 +4,8 @@ use super::file::{AxisTable, RangeTable, Spacing};
 use super::value::{data, shown, toml};
 use serde_json::Value;
 use std::path::Path;
+use stead_disk::input::InputError;
 use stead_format::field::{FieldOverride, FieldPath};
-use stead_format::input::InputError;
 use stead_format::place::Place;
 use toml::de::DeValue;
 

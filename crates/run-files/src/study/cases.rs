@@ -7,8 +7,8 @@ use super::tasks::Tasks;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
+use stead_disk::input::InputError;
 use stead_format::field::FieldOverrides;
-use stead_format::input::InputError;
 use stead_format::place::Place;
 
 /// More cases than this are a mistake.

@@ -17,9 +17,9 @@ use axis::Axis;
 use cases::cases;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use stead_disk::input::{InputError, InputFile, sha256};
 use stead_format::document::Document;
 use stead_format::field::FieldOverrides;
-use stead_format::input::{InputError, InputFile, sha256};
 use stead_format::place::Place;
 use stead_format::sources::Sources;
 use stead_format::surroundings::MESH;
@@ -97,7 +97,7 @@ pub fn read_study(file: &Path) -> Result<Study, InputError> {
     let mut names: Vec<String> = axes.into_iter().map(|axis| axis.name).collect();
     names.extend(tasks.axis().map(|axis| axis.name.clone()));
     let mut inputs = vec![source.as_config()];
-    inputs.push(stead_format::input::input_file("base", base.name, base_source.bytes()));
+    inputs.push(stead_disk::input::input_file("base", base.name, base_source.bytes()));
     let base_bytes = base_source.bytes().to_vec();
     let file = file.to_owned();
     Ok(Study { file, base: base.file, base_bytes, sources, is_certified, keep, axes: names, cases, inputs })

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
-use stead_format::files;
-use stead_format::input::sha256;
+use stead_disk::files;
+use stead_disk::input::sha256;
 
 /// A finished case.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::StudyError;
 use std::path::Path;
-use stead_format::files::{self, TryLock};
+use stead_disk::files::{self, TryLock};
 
 /// A lock that is held until this is dropped, or none where the file system knows no locks.
 #[derive(Debug)]

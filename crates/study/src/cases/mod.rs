@@ -33,7 +33,7 @@ pub use table::{Cell, Column, Kind, Table};
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use stead_format::input::InputError;
+use stead_disk::input::InputError;
 
 /// Why a study cannot go on.
 #[derive(Debug, thiserror::Error)]

@@ -5,7 +5,7 @@ use super::row::result_columns;
 use super::table::{Cell, Column, Kind};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-use stead_format::input::{InputError, sha256};
+use stead_disk::input::{InputError, sha256};
 use stead_run_files::study::{AxisValue, Study, StudyCase};
 
 /// A case with what its result is found by.

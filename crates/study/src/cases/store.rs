@@ -9,7 +9,7 @@ use super::table::{Cell, Column, Kind, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use stead_format::files::{self, Staged, is_full};
+use stead_disk::files::{self, Staged, is_full};
 
 /// One of several parts of a study: the cases I, I + N, and so on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

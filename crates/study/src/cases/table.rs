@@ -14,8 +14,8 @@ use parquet::schema::types::Type;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-use stead_format::files;
-use stead_format::input::sha256;
+use stead_disk::files;
+use stead_disk::input::sha256;
 
 /// The entry of a Parquet file's metadata that has the digest of the file, taken with [`BLANK`] in its place.
 const DIGEST: &str = "stead.sha256";

@@ -13,10 +13,10 @@ mod words;
 pub(super) use words::is_known;
 
 use super::{LengthUnit, Program, ReadSettings};
-use crate::input::InputError;
 use reader::Reader;
 use statement::{Statement, Statements};
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// Reads the moves of a CLDATA file.
 ///

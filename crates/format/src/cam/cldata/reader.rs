@@ -7,10 +7,10 @@ use super::cutter::cutter;
 use super::cycle::{Cycle, FORMS};
 use super::statement::Statement;
 use super::words::is_harmless;
-use crate::input::InputError;
-use crate::quote::one_line;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
+use stead_disk::input::InputError;
+use stead_disk::quote::one_line;
 
 /// Directions of a frame may be this far from unit length and right angles: digits as printed.
 const FRAME_ROUNDING: f64 = 1e-3;

@@ -4,8 +4,8 @@ use super::super::ReadSettings;
 use super::super::arc::{Arc, ArcError};
 use super::block::Block;
 use super::state::State;
-use crate::input::InputError;
 use nalgebra::Vector3;
+use stead_disk::input::InputError;
 
 /// A radius may be so much less than half the way to the end: digits as printed. m
 const ROUNDING: f64 = 5e-5;

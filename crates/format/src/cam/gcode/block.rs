@@ -1,7 +1,7 @@
 //! Blocks of G-code: letters with numbers, comments left out; and programs that are something else by their name.
 
-use crate::input::InputError;
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// A letter, in upper case, with its number.
 pub(super) type Word = (char, f64);

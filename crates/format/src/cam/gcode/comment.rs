@@ -2,7 +2,7 @@
 //! `(TOOL - 1 | TOOL DIA. - 12.)`, `(MILL DIA 10.0 R0.)`.
 
 use super::super::tool::ProgramTool;
-use crate::quote::shorten;
+use stead_disk::quote::shorten;
 
 /// The tool that a line describes in a comment, its lengths in the unit of the program.
 pub(super) fn tool_in(line: &str) -> Option<ProgramTool> {

@@ -14,9 +14,9 @@ pub(super) use block::foreign;
 pub use machine::Machine;
 
 use super::{Program, ReadSettings};
-use crate::input::InputError;
 use reader::Reader;
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// Reads the moves of a G-code program.
 ///

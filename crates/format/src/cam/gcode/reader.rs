@@ -8,9 +8,9 @@ use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings};
 use super::arc::arc_of;
 use super::block::{Block, Motion, Word, failed};
 use super::state::State;
-use crate::input::InputError;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
+use stead_disk::input::InputError;
 
 /// No rotary axis is programmed beyond this. deg
 const LARGEST_ANGLE: f64 = 3.6e4;

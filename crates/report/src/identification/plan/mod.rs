@@ -13,8 +13,8 @@ use super::super::{Files, named, picture};
 use std::path::{Path, PathBuf};
 use stead_calibration::identification::design::Design;
 use stead_calibration::identification::sheet::COLUMNS;
-use stead_format::files;
-use stead_format::input::InputError;
+use stead_disk::files;
+use stead_disk::input::InputError;
 use stead_run_files::PlanRun;
 
 /// The name of the sheet among the files of a plan.

@@ -1,7 +1,7 @@
 use super::super::Folder;
 use super::*;
 use std::collections::BTreeMap;
-use stead_format::manifest::{Unlisted, check};
+use stead_disk::manifest::{Unlisted, check};
 
 type Files<'a> = [(&'a str, Vec<u8>)];
 type Content = BTreeMap<String, Vec<u8>>;
@@ -148,7 +148,7 @@ fn commands_share_a_folder_and_leave_each_others_files_alone() {
 fn the_manifest_states_inputs_sizes_and_digests() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::create(place.path()).unwrap();
-    let input = stead_format::input::input_file("config", "run.toml", b"abc");
+    let input = stead_disk::input::input_file("config", "run.toml", b"abc");
     folder.results("place", std::slice::from_ref(&input)).write(&[("x.csv", b"abc".to_vec())]).unwrap();
     let document: serde_json::Value = serde_json::from_slice(&content(place.path())[MANIFEST]).unwrap();
     let set = &document["results"][0];

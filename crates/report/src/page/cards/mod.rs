@@ -12,7 +12,7 @@ pub use table::{Cell, Column, Table};
 
 use super::html::{CARDS, html};
 use serde::Serialize;
-use stead_format::input::InputFile;
+use stead_disk::input::InputFile;
 
 /// A page: what it is about, and its cards in their order.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]

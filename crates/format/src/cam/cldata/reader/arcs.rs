@@ -4,9 +4,9 @@ use super::super::super::Move;
 use super::super::super::arc::{Arc, ArcError, MISSED};
 use super::super::statement::{Minor, Statement};
 use super::{MOST_TURNS, NO_LENGTH, Pending, Reader, TURNED_BACK};
-use crate::input::InputError;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
+use stead_disk::input::InputError;
 
 impl Reader<'_> {
     pub(super) fn arc(&mut self, statement: &Statement<'_>, pending: &Pending, end: Move) -> Result<(), InputError> {

@@ -4,8 +4,8 @@ use super::super::super::LARGEST;
 use super::super::block::{Block, Motion, Word};
 use super::super::state::State;
 use super::{CYCLES, LARGEST_ANGLE, Reader};
-use crate::input::InputError;
 use nalgebra::Vector3;
+use stead_disk::input::InputError;
 
 impl Reader<'_> {
     /// Takes a hole of a canned cycle, which is left out; how deep the tool is then is not known.

@@ -13,7 +13,7 @@ pub fn shorten(text: &str) -> String {
 }
 
 /// What is refused in a text of a file.
-pub(crate) const GARBLED: &str = "holds a control character or a mark of writing direction";
+pub const GARBLED: &str = "holds a control character or a mark of writing direction";
 
 /// Whether a character is none that is seen, and changes how what is around it is shown: a control, an end of a line,
 /// or a mark of writing direction, which makes a name look like another one.
@@ -23,7 +23,7 @@ pub fn garbles(c: char) -> bool {
 }
 
 /// A text with a space for each character that [`garbles`] it.
-pub(crate) fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     text.replace(garbles, " ")
 }
 
