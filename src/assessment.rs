@@ -18,7 +18,7 @@ use stead_run_files as run_files;
 /// An assessment file with the robots that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct AssessmentRun {
-    run: Arc<run_files::AssessRun>,
+    run: Arc<stead_runs::AssessRun>,
 }
 
 impl AssessmentRun {
@@ -83,7 +83,7 @@ impl AssessmentRun {
 /// Circularity maps, zones and rankings of robots.
 #[derive(Debug, Clone)]
 pub struct RobotAssessment {
-    run: Arc<run_files::AssessRun>,
+    run: Arc<stead_runs::AssessRun>,
     assessment: Assessment,
     context: AssessmentContext,
     timing: Timing,

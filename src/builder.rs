@@ -11,7 +11,6 @@ use stead_placement::lookup::LookupTable;
 use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings};
 use stead_planning::problem::Problem;
 use stead_planning::transfer::TransferSettings;
-use stead_run_files as run_files;
 
 /// What [`Run::place`] does with a problem, and how hard it tries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,7 +138,7 @@ impl RunBuilder {
         notes.extend(problem.notes());
         notes.extend(problem.unchecked_collisions());
         let (inputs, stated, path_stability) = (Vec::new(), Value::Null, None);
-        let run = run_files::Run {
+        let run = stead_runs::Run {
             problem,
             search,
             transfer,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, assess};
 use stead_report::circularity::{circularity_files, circularity_json, circularity_text, write_circularity};
 use stead_report::{Files, Folder};
-use stead_run_files::{PointFile, read_points};
+use stead_runs::{PointFile, read_points};
 
 /// Measured points of a circular profile.
 #[derive(Debug, Clone)]

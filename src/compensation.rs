@@ -16,7 +16,7 @@ use stead_run_files as run_files;
 /// A compensation file with the run and the plan that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct CompensationRun {
-    run: Arc<run_files::CompensateRun>,
+    run: Arc<stead_runs::CompensateRun>,
 }
 
 impl CompensationRun {
@@ -79,7 +79,7 @@ impl CompensationRun {
 /// A corrected path, with what remains of the deflection.
 #[derive(Debug, Clone)]
 pub struct CompensatedPath {
-    run: Arc<run_files::CompensateRun>,
+    run: Arc<stead_runs::CompensateRun>,
     outcome: Outcome,
     notes: Vec<String>,
 }

@@ -66,11 +66,11 @@ impl Error {
     }
 }
 
-impl From<stead_run_files::LocatedError> for Error {
-    fn from(error: stead_run_files::LocatedError) -> Self {
+impl From<stead_runs::LocatedError> for Error {
+    fn from(error: stead_runs::LocatedError) -> Self {
         match error {
-            stead_run_files::LocatedError::Input(error) => Self::Input(error),
-            stead_run_files::LocatedError::Job(error) => Self::Failed(error),
+            stead_runs::LocatedError::Input(error) => Self::Input(error),
+            stead_runs::LocatedError::Job(error) => Self::Failed(error),
         }
     }
 }

@@ -19,7 +19,7 @@ use stead_run_files as run_files;
 /// A forces file with the path, the stock and the part that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct ForcesRun {
-    run: Arc<run_files::ForcesRun>,
+    run: Arc<stead_runs::ForcesRun>,
 }
 
 impl ForcesRun {
@@ -63,7 +63,7 @@ impl ForcesRun {
 /// Forces along a path, with the files that `stead forces` writes.
 #[derive(Debug, Clone)]
 pub struct PathForces {
-    run: Arc<run_files::ForcesRun>,
+    run: Arc<stead_runs::ForcesRun>,
     forces: RemovalForces,
     notes: Vec<String>,
 }

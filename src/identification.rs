@@ -16,13 +16,13 @@ use stead_run_files as run_files;
 /// An identification file with the robot and the filled measurement sheet that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct FitRun {
-    run: Arc<run_files::IdentifyRun>,
+    run: Arc<stead_runs::IdentifyRun>,
 }
 
 /// An identification file with a table `[plan]` and the robot that it names, read and checked.
 #[derive(Debug, Clone)]
 pub struct DesignRun {
-    run: Arc<run_files::PlanRun>,
+    run: Arc<stead_runs::PlanRun>,
 }
 
 impl FitRun {
@@ -101,14 +101,14 @@ impl DesignRun {
 /// Joint compliances with their covariance, and the robot file that states them.
 #[derive(Debug, Clone)]
 pub struct IdentifiedRobot {
-    run: Arc<run_files::IdentifyRun>,
+    run: Arc<stead_runs::IdentifyRun>,
     identified: Identified,
 }
 
 /// Configurations and loads to measure, and what they will tell.
 #[derive(Debug, Clone)]
 pub struct MeasurementPlan {
-    run: Arc<run_files::PlanRun>,
+    run: Arc<stead_runs::PlanRun>,
     design: Design,
 }
 

@@ -1,6 +1,6 @@
 //! Arms alone: the poses of joint angles, and the arms that stead ships with.
 
-pub use stead_format::catalogue::ShippedArm;
+pub use stead_model::robot::ShippedArm;
 
 use crate::Error;
 use crate::result::{Report, result};

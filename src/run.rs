@@ -37,7 +37,7 @@ use stead_study::{self as study, Placed, Scored};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Run {
-    pub(crate) run: Arc<run_files::Run>,
+    pub(crate) run: Arc<stead_runs::Run>,
     /// Whether the positions of the external axes are those of a result, and not to be looked for.
     is_set_up: bool,
 }
@@ -46,7 +46,7 @@ impl Run {
     /// The relative size of the force error of `stead place --sensitivity`.
     pub const FORCE_ERROR: f64 = stead_placement::settings::SearchSettings::FORCE_ERROR;
 
-    pub(crate) fn of(run: run_files::Run) -> Self {
+    pub(crate) fn of(run: stead_runs::Run) -> Self {
         Self { run: Arc::new(run), is_set_up: false }
     }
 
@@ -142,7 +142,7 @@ impl Run {
     /// # Errors
     /// [`Error::Input`] for a folder that is no such result, or one of other files.
     pub fn set_up_as_in(mut self, results: impl AsRef<Path>, case: u8) -> Result<(Self, Placement), Error> {
-        let (placement, setup, notes) = run_files::read_setup_of(results.as_ref(), case, &self.run)?;
+        let (placement, setup, notes) = stead_runs::read_setup_of(results.as_ref(), case, &self.run)?;
         let problem = self.run.problem.in_setup(&setup).into_owned();
         let run = Arc::make_mut(&mut self.run);
         run.problem = problem;
@@ -152,13 +152,13 @@ impl Run {
     }
 
     /// The run with the external axes where a given placement is best, unless they are set up already.
-    fn set_up_at(&self, placement: &Placement, monitor: &Monitor) -> Arc<run_files::Run> {
+    fn set_up_at(&self, placement: &Placement, monitor: &Monitor) -> Arc<stead_runs::Run> {
         let problem = &self.run.problem;
         if self.is_set_up || problem.external_axes.is_empty() {
             return Arc::clone(&self.run);
         }
         let problem = problem.in_setup(&setup_at(problem, placement, monitor)).into_owned();
-        Arc::new(run_files::Run { problem, ..(*self.run).clone() })
+        Arc::new(stead_runs::Run { problem, ..(*self.run).clone() })
     }
 
     /// The same run without a page among its files, whatever the file says of one.
@@ -235,7 +235,7 @@ impl Run {
     /// # Errors
     /// [`Error::Input`] for a folder that is no such result, or one of other files.
     pub fn placement_of(&self, results: impl AsRef<Path>, case: u8) -> Result<Placement, Error> {
-        Ok(run_files::read_placement_of(results.as_ref(), case, &self.run)?)
+        Ok(stead_runs::read_placement_of(results.as_ref(), case, &self.run)?)
     }
 
     /// Plans a given placement, best and worst: external axes stand where it is best, unless a result says where
@@ -274,7 +274,7 @@ impl Run {
 /// The best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.
 #[derive(Debug, Clone)]
 pub struct Placements {
-    run: Arc<run_files::Run>,
+    run: Arc<stead_runs::Run>,
     outcome: Outcome,
     context: Context,
     timing: Timing,

@@ -12,12 +12,11 @@ use stead_planning::feasibility::{self, DeflectionMap, Explanation};
 use stead_planning::problem::Placement;
 use stead_report::placement::{Context, evaluation, score_files, write_score};
 use stead_report::{Files, Folder};
-use stead_run_files as run_files;
 
 /// A given placement with its best and its worst plan.
 #[derive(Debug, Clone)]
 pub struct PlacementScore {
-    pub(crate) run: Arc<run_files::Run>,
+    pub(crate) run: Arc<stead_runs::Run>,
     pub(crate) score: Score,
     pub(crate) map: Option<DeflectionMap>,
     pub(crate) context: Context,

@@ -23,13 +23,13 @@ use stead_simulation::stability_analysis::{StabilityAnalysis as Analysis, Stabil
 /// A simulation file with its robot, read and checked for a simulation in time.
 #[derive(Debug, Clone)]
 pub struct SimulationRun {
-    run: Arc<run_files::SimulationRun>,
+    run: Arc<stead_runs::SimulationRun>,
 }
 
 /// A simulation file with its robot, read and checked for an analysis of stability, which takes no time steps.
 #[derive(Debug, Clone)]
 pub struct StabilityRun {
-    run: Arc<run_files::SimulationRun>,
+    run: Arc<stead_runs::SimulationRun>,
 }
 
 /// Values in place of a simulation file's: the variant of the arm by its name, the factor on all damping and the
@@ -144,7 +144,7 @@ impl StabilityRun {
 /// A simulated pass: forces, the wall that is left, and whether the cut stayed calm.
 #[derive(Debug, Clone)]
 pub struct SimulatedPass {
-    run: Arc<run_files::SimulationRun>,
+    run: Arc<stead_runs::SimulationRun>,
     simulation: Simulation,
     making: Making,
 }
@@ -152,7 +152,7 @@ pub struct SimulatedPass {
 /// Whether a cut chatters.
 #[derive(Debug, Clone)]
 pub struct StabilityAnalysis {
-    run: Arc<run_files::SimulationRun>,
+    run: Arc<stead_runs::SimulationRun>,
     analysis: Analysis,
 }
 

@@ -1,6 +1,6 @@
 //! Studies: many cases of one run.
 
-pub use stead_run_files::study::{AxisValue, StudyCase};
+pub use stead_runs::study::{AxisValue, StudyCase};
 pub use stead_study::analysis::{Analysis as StudyAnalysis, Question as StudyQuestion, SEARCH_NOISE};
 pub use stead_study::cases::{
     Cell, Column, Finished, Kind as ColumnKind, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table,
@@ -293,7 +293,7 @@ impl Keeping for StudyFolder<'_> {
     fn keep(
         &self,
         case: &PlannedCase,
-        run: &run_files::Run,
+        run: &stead_runs::Run,
         placed: Placed,
         certificate: Option<Certificate>,
     ) -> Result<(), String> {

@@ -38,6 +38,11 @@ pub enum ElbowNames {
     Swapped,
 }
 
+impl ElbowNames {
+    /// Each with its word in files and results.
+    pub const WORDS: [(&'static str, Self); 2] = [("geometric", Self::Geometric), ("swapped", Self::Swapped)];
+}
+
 /// Under which load a circle is milled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Load {

@@ -6,22 +6,7 @@ use crate::shipped::{ARMS, PREFIX, text};
 use crate::toml_file::{TomlFile, without_schema};
 use std::path::Path;
 use stead_disk::input::InputError;
-use stead_model::robot::Robot;
-
-/// A shipped arm.
-#[derive(Debug, Clone)]
-pub struct ShippedArm {
-    /// The name to ask for it by.
-    pub name: &'static str,
-    /// Its geometry, limits and controller.
-    pub robot: Robot,
-    /// Where its numbers come from.
-    pub source: String,
-    /// Whether the stiffness of every joint is known.
-    pub has_stiffness: bool,
-    /// Whether masses and damping of the links are known, for motion and stability.
-    pub has_dynamics: bool,
-}
+use stead_model::robot::ShippedArm;
 
 /// All shipped arms, in the order of their names.
 ///
@@ -58,6 +43,7 @@ fn shipped_arm(name: &'static str) -> Result<ShippedArm, InputError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stead_model::robot::Robot;
     use nalgebra::{Matrix3, Vector3};
     use std::collections::BTreeSet;
     use stead_model::robot::{ControllerKind, Pose};

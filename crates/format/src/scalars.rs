@@ -87,11 +87,19 @@ pub trait Words<Vocabulary>: Copy + PartialEq + 'static {
     fn words() -> Vec<(&'static str, Self)>;
 }
 
-/// Implements [`Words`] by a table of words and meanings, in the vocabulary of the crate that calls it.
+/// Implements [`Words`] by a table of words and meanings, the one given or the constant `WORDS` of the type, in the
+/// vocabulary of the crate that calls it.
 // The vocabulary is meant to be the one of the crate that calls the macro.
 #[allow(clippy::crate_in_macro_def)]
 #[macro_export]
 macro_rules! words {
+    ($kind:ty) => {
+        impl $crate::scalars::Words<crate::Vocabulary> for $kind {
+            fn words() -> Vec<(&'static str, Self)> {
+                Self::WORDS.to_vec()
+            }
+        }
+    };
     ($kind:ty: $($word:literal => $meaning:expr),+ $(,)?) => {
         impl $crate::scalars::Words<crate::Vocabulary> for $kind {
             fn words() -> Vec<(&'static str, Self)> {

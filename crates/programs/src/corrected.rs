@@ -11,7 +11,7 @@ use stead_model::robot::Pose;
 use stead_model::robot::angles::wrap;
 use stead_numerics::rotation::rotation_from_vector;
 use stead_planning::problem::Problem;
-use stead_run_files::plan;
+use stead_runs::plan;
 
 /// A target of the corrected path may miss that of the plan by this much, which is printed with a tenth of it. m
 const TARGET_TOLERANCE: f64 = 1e-6;

@@ -59,8 +59,8 @@ use stead_model::robot::ControllerKind;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem, UNCHECKED};
-use stead_run_files::plan::{PlacedPlan, read_plan};
-use stead_run_files::run::Run;
+use stead_runs::Run;
+use stead_runs::plan::{PlacedPlan, read_plan};
 use transfer_paths::{Ends, TransferPaths};
 
 /// The form of a program.

@@ -8,7 +8,7 @@ use stead_numerics::monitor::{Monitor, Progress, Stop};
 use stead_planning::problem::Problem;
 use stead_planning::redundancy::SegmentPlan;
 use stead_planning::transfer_path::{AtPoint, LineEnd, ShortLine, Space, TransferPath, transfer_path};
-use stead_run_files::plan::PlacedPlan;
+use stead_runs::plan::PlacedPlan;
 
 /// How close to its points a program goes.
 #[derive(Debug, Clone, Copy, PartialEq)]

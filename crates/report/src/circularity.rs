@@ -16,7 +16,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 use stead_assessment::circle::{Fit, plane::FittedPlane};
 use stead_assessment::roundness::{Assessed, Measured, Roundness};
-use stead_run_files::PointFile;
+use stead_runs::PointFile;
 
 /// Writes `circularity.json`, `deviations.csv`, `polar.svg` and `report.html` into a folder and returns their paths in
 /// that order.

@@ -13,14 +13,14 @@ use crate::document::{Document, PlacementFigures, bytes};
 use crate::figure::{DeflectionMm, Direction, FinestAngleDeg, Percent, each, some};
 use crate::placement::plan_row::JointColumns;
 use crate::units::fixed;
+use crate::word::Word;
 use nalgebra::Vector3;
 use serde_json::Value;
 use std::path::PathBuf;
 use stead_calibration::compensation::{
     CompensatedPath, CompensatedPoint, Deflection, DeflectionModel, MeanAndMax, NotCompensated, PointError, reduction,
 };
-use stead_run_files::CompensateRun;
-use stead_run_files::Word;
+use stead_runs::CompensateRun;
 
 /// Writes `corrected-path.csv`, `summary.json`, `compensation.svg` and `report.html`. Returns their paths in that
 /// order.

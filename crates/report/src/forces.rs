@@ -19,7 +19,7 @@ use std::fmt::Write;
 use stead_model::task::{PathPoint, Wrench};
 use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
 use stead_removal::surface::Surface;
-use stead_run_files::ForcesRun;
+use stead_runs::ForcesRun;
 
 /// The files of forces from a path, by the endings of their names; the task first, which has none.
 ///

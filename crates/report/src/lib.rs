@@ -44,6 +44,7 @@ pub mod simulation;
 pub mod stability;
 pub mod study;
 pub mod units;
+mod word;
 
 #[cfg(test)]
 mod testing;

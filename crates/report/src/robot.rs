@@ -6,8 +6,7 @@ use crate::figure::{AngleDeg, ControllerMm, each};
 use crate::units::{Unit, fixed};
 use serde_json::Value;
 use stead_disk::input::InputFile;
-use stead_format::catalogue::ShippedArm;
-use stead_model::robot::{Controller, Pose, Posture, Robot, Spindle, turns::Range};
+use stead_model::robot::{Controller, Pose, Posture, Robot, ShippedArm, Spindle, turns::Range};
 use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 
 /// An arm at given joint angles.

@@ -1,7 +1,7 @@
 //! The files that ask for a job, read and checked.
 //!
 //! A run file (TOML) names a robot file (TOML) and a task file (CSV) and states the spindle, the cell, the constraints
-//! and the settings of the search; [`read_run`] reads all three into a [`Run`], which holds a
+//! and the settings of the search; [`read_run`] reads all three into a [`Run`](stead_runs::Run), which holds a
 //! [`Problem`](stead_planning::problem::Problem) that needs no further checks. Files of studies, assessments,
 //! identifications and simulations do the same for their jobs; [`schema`] describes all of them.
 //!
@@ -23,9 +23,8 @@ pub mod forces;
 pub mod fuzzing;
 pub mod identify;
 pub mod init;
-mod placed;
-pub mod plan;
-mod points;
+#[cfg(test)]
+mod plan_tests;
 pub mod published_tables;
 pub mod run;
 pub mod schema;
@@ -36,14 +35,12 @@ pub mod study;
 #[cfg(test)]
 mod testing;
 
-pub use assess::{AssessRun, read_assessment};
-pub use compensate::{CompensateRun, read_compensation};
-pub use forces::{ForcesRun, read_forces};
-pub use identify::{IdentifyRun, LocatedError, PlanRun, read_identification, read_plan};
-pub use placed::{read_placement_of, read_setup_of};
-pub use points::{PointFile, read_points};
-pub use run::{GAPS_ALLOWED, Run, read_run, read_run_with};
-pub use simulation::{MAX_DAMPING_SCALE, Overrides, SimulationRun, read_simulation, read_stability};
+pub use assess::read_assessment;
+pub use compensate::read_compensation;
+pub use forces::read_forces;
+pub use identify::{read_identification, read_plan};
+pub use run::{GAPS_ALLOWED, read_run, read_run_with};
+pub use simulation::{MAX_DAMPING_SCALE, Overrides, read_simulation, read_stability};
 pub use study::read_study;
 
 /// The vocabulary of the words in the files of this crate ([`stead_format::scalars::Words`]).

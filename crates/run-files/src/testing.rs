@@ -1,8 +1,9 @@
 //! Files for the tests of this crate.
 
-use crate::{Run, read_run};
+use crate::read_run;
 use stead_disk::input::InputError;
 use stead_format::testing::root;
+use stead_runs::Run;
 
 /// A run in a folder of its own, with the shipped robot and a task of two points.
 pub fn folder() -> tempfile::TempDir {

@@ -7,7 +7,7 @@ use stead_placement::outcome::{Outcome, Plan, left_out};
 use stead_placement::place::{self, Infeasible, Score};
 use stead_planning::problem::Placement;
 use stead_planning::setup::Setup;
-use stead_run_files::Run;
+use stead_runs::Run;
 use stead_simulation::stability_analysis::StabilityError;
 
 /// Why a run ends without a result.

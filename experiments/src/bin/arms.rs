@@ -15,7 +15,8 @@ use stead_placement::outcome::DeflectionFigures;
 use stead_placement::place::place;
 use stead_planning::criterion::Weights;
 use stead_planning::problem::Problem;
-use stead_run_files::{Run, read_run};
+use stead_run_files::read_run;
+use stead_runs::Run;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);

@@ -17,7 +17,8 @@ use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::Monitor;
 use stead_placement::place::score;
 use stead_planning::problem::Placement;
-use stead_run_files::{Run, read_run};
+use stead_run_files::read_run;
+use stead_runs::Run;
 
 /// Distance between neighbours. m
 const SPACING: f64 = 1e-4;

@@ -31,7 +31,8 @@ use stead_placement::place::{LongPath, place};
 use stead_placement::settings::SearchSettings;
 use stead_planning::problem::{Problem, ProblemError};
 use stead_planning::redundancy::Planner;
-use stead_run_files::{Run, read_run};
+use stead_run_files::read_run;
+use stead_runs::Run;
 
 type Failure = Box<dyn Error>;
 

@@ -59,6 +59,11 @@ pub enum Turning {
     AgainstTool,
 }
 
+impl Turning {
+    /// Each with its word in files and results.
+    pub const WORDS: [(&'static str, Self); 2] = [("with-tool", Self::WithTool), ("against-tool", Self::AgainstTool)];
+}
+
 /// Where the limits of the joints are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LimitsAt {
@@ -66,6 +71,11 @@ pub enum LimitsAt {
     Circle,
     /// At its centre only. The circle may then have points that the joints cannot reach.
     Centre,
+}
+
+impl LimitsAt {
+    /// Each with its word in files and results.
+    pub const WORDS: [(&'static str, Self); 2] = [("circle", Self::Circle), ("centre", Self::Centre)];
 }
 
 /// The deflection of one pose.

@@ -73,6 +73,11 @@ pub enum DeflectionModel {
     Linear,
 }
 
+impl DeflectionModel {
+    /// Each with its word in files and results.
+    pub const WORDS: [(&'static str, Self); 2] = [("equilibrium", Self::Equilibrium), ("linear", Self::Linear)];
+}
+
 /// Settings of the iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {

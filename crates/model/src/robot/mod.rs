@@ -40,6 +40,7 @@ mod margin;
 mod mount;
 mod pose;
 pub mod posture;
+mod shipped;
 mod spindle;
 pub mod turns;
 mod uncertainty;
@@ -54,6 +55,7 @@ pub use inertial::{Inertial, InertialError};
 pub use inverse::Unreachable;
 pub use pose::{Pose, cast};
 pub use posture::{Posture, PostureClass};
+pub use shipped::ShippedArm;
 pub use spindle::{Spindle, point_from_tool};
 pub use uncertainty::{Parameter, Uncertainty, UncertaintyError};
 

@@ -10,7 +10,7 @@ use stead_model::robot::Pose;
 use stead_model::task::PathPoint;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::TransferPath;
-use stead_run_files::plan::PlacedPlan;
+use stead_runs::plan::PlacedPlan;
 
 /// One move as it has to be.
 #[derive(Debug, Clone, Copy)]

@@ -28,8 +28,8 @@ use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Controller, Pose, Robot};
 use stead_numerics::monitor::Monitor;
 use stead_planning::transfer_path::LineEnd;
-use stead_run_files::plan::read_plan;
-use stead_run_files::run::Run;
+use stead_runs::Run;
+use stead_runs::plan::read_plan;
 use written::{Base, End, Goal, Source, Written};
 
 /// How far the tool may be off. mm

@@ -12,8 +12,9 @@ use stead_model::robot::{Pose, Posture};
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::{AxisPositions, Setup};
-use stead_run_files::plan::axis_column;
-use stead_run_files::{Run, read_run};
+use stead_run_files::read_run;
+use stead_runs::Run;
+use stead_runs::plan::axis_column;
 
 /// Fixtures of the makers with a form of their own.
 pub const ARMS: [(&str, &str, ProgramFormat); 3] = [

@@ -94,7 +94,7 @@ fn a_static_base_under_a_part_that_turns_is_found() {
     let kuka = bench("kuka");
     let mut program = kuka.export(&options(&kuka, ProgramFormat::Krl)).unwrap();
     // What was written before: the workpiece in the robot root with all axes at zero.
-    let placed = stead_run_files::plan::read_plan(&kuka.plan, &kuka.run.problem).unwrap().0;
+    let placed = stead_runs::plan::read_plan(&kuka.plan, &kuka.run.problem).unwrap().0;
     let problem = kuka.run.problem.in_setup(&placed.setup).into_owned();
     let at_zero = super::super::motion::at_zero(&problem, &placed.placement);
     let frames = super::super::motion::frames(&problem, &at_zero, None).unwrap();

@@ -90,7 +90,7 @@ fn the_moves_of_a_program_are_the_task_through_the_urdf() {
         let (joints, flanges) = moves(&program);
         assert_eq!((joints.len(), flanges.len()), (4, 14), "{name}");
         let problem = &bench.run.problem;
-        let (plan, _) = stead_run_files::plan::read_plan(&bench.plan, problem).unwrap();
+        let (plan, _) = stead_runs::plan::read_plan(&bench.plan, problem).unwrap();
         // The tool on the URDF's flange, in its base link.
         let tool = |degrees: &[f64; 6]| {
             let mut values = degrees.map(f64::to_radians);

@@ -3,12 +3,12 @@
 use super::AssessmentContext;
 use crate::document::{Document, Timing};
 use crate::figure::{DeflectionMm, ForceN, MomentNm, PlaceMm, Plain, TimeS, each, some};
+use crate::word::Word;
 use serde_json::Value;
 use stead_assessment::benchmark::{Benchmark, LimitsAt, StiffnessModel, Turning};
 use stead_assessment::comparison::{Assessment, Comparison, Configuration, ElbowNames, MapPoint, RobotResult, Zones};
 use stead_assessment::published::Agreement;
 use stead_assessment::ranking::{Accuracy, Capable};
-use stead_run_files::Word;
 
 records! {
     /// An assessment of robots.

@@ -4,7 +4,7 @@ use super::circles;
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Page, Polar, PolarChoice, Series, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
 use stead_assessment::roundness::Roundness;
-use stead_run_files::PointFile;
+use stead_runs::PointFile;
 
 /// The polar plot about each of the four circles, and the circles beside each other.
 pub(super) fn page(file: &PointFile, found: &Roundness) -> Page {

@@ -3,7 +3,7 @@
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
 use stead_calibration::compensation::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, reduction};
-use stead_run_files::CompensateRun;
+use stead_runs::CompensateRun;
 
 /// Figures before and after, both along the path, and which points keep their target.
 pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {

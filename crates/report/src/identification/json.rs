@@ -11,7 +11,7 @@ use stead_calibration::identification::model::Parameter;
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{Held, Identified, RowResult};
 use stead_model::robot::{Compensator, Compliance};
-use stead_run_files::IdentifyRun;
+use stead_runs::IdentifyRun;
 
 /// Significant digits of estimates.
 const DIGITS: usize = 12;

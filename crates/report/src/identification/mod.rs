@@ -22,7 +22,7 @@ use super::{Files, named};
 use std::path::PathBuf;
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
-use stead_run_files::IdentifyRun;
+use stead_runs::IdentifyRun;
 
 /// Writes `robot-identified.toml`, `report.json`, `compliances.csv`, `residuals.csv`, `deflections.svg` and
 /// `report.html` into a folder and returns their paths in that order.

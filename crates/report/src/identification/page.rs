@@ -5,7 +5,7 @@ use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, St
 use crate::units::{figures, fixed};
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{Identified, RowResult};
-use stead_run_files::IdentifyRun;
+use stead_runs::IdentifyRun;
 
 /// Compliances with their intervals, how well they explain the readings, and every reading.
 pub(super) fn page(run: &IdentifyRun, found: &Identified) -> Page {

@@ -8,7 +8,7 @@ use crate::figure::{AngleDeg, DeflectionMm, Studentised, each, some};
 use nalgebra::Vector3;
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::outcome::RowResult;
-use stead_run_files::IdentifyRun;
+use stead_runs::IdentifyRun;
 
 /// Significant digits of estimates.
 const DIGITS: usize = 9;

@@ -5,7 +5,7 @@ use crate::columns::aligned;
 use crate::units::fixed;
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{Identified, RowResult};
-use stead_run_files::IdentifyRun;
+use stead_runs::IdentifyRun;
 
 /// Compliances with their 95 % intervals, the parameters of the robot file, how well they explain and predict the
 /// readings, outliers, and warnings.

@@ -31,7 +31,7 @@ use stead_planning::feasibility::DeflectionMap;
 use stead_planning::problem::Problem;
 use stead_planning::sense::BySense;
 use stead_planning::transfer::TransferSettings;
-use stead_run_files::Run;
+use stead_runs::Run;
 use stead_study::PathStability;
 
 /// What the reports state besides the problem and its result.

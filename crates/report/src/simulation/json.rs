@@ -8,7 +8,7 @@ use crate::figure::{
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::outcome::{Simulation, Statistics};
 use stead_simulation::roughness::Roughness;

@@ -15,7 +15,7 @@ use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use std::path::PathBuf;
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::outcome::Simulation;
 

@@ -5,7 +5,7 @@ use crate::page::cards::{Axis, Card, Chart, Mark, Page, Series, Tile, Tiles};
 use crate::stability::page::modes;
 use crate::units::{figures, fixed};
 use std::f64::consts::TAU;
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::outcome::Simulation;
 use stead_simulation::roughness::Profile;
 

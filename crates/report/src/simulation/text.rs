@@ -3,7 +3,7 @@
 use super::{Making, end_words};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::judgement::{Judgement, MAX_PERIOD_VARIATION};
 use stead_simulation::outcome::{Simulation, Statistics};

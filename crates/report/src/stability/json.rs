@@ -3,7 +3,7 @@
 use crate::document::Document;
 use crate::figure::{DepthMm, Exponent, FrequencyHz, PlaceMm, RatePerS, Share, SpeedRpm, TimeS, some};
 use serde_json::Value;
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability::Lobe;
 use stead_simulation::stability_analysis::{CutStability, StabilityAnalysis};

@@ -19,7 +19,7 @@ use super::picture;
 use super::{Files, named};
 use crate::units::Unit;
 use std::path::PathBuf;
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Spindle speeds, from rad/s to turns a minute.

@@ -3,7 +3,7 @@
 use super::RPM;
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability::Lobe;
 use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};

@@ -4,7 +4,7 @@ use super::RPM;
 use super::tables::joint_name;
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
-use stead_run_files::SimulationRun;
+use stead_runs::SimulationRun;
 use stead_simulation::modes::Mode;
 use stead_simulation::stability::Kind;
 use stead_simulation::stability_analysis::StabilityAnalysis;

@@ -88,9 +88,9 @@ pub enum Traced {
 }
 
 words!(Traced: "tool" => Traced::Tool, "wrist-centre" => Traced::WristCentre);
-words!(Turning: "with-tool" => Turning::WithTool, "against-tool" => Turning::AgainstTool);
-words!(LimitsAt: "circle" => LimitsAt::Circle, "centre" => LimitsAt::Centre);
-words!(ElbowNames: "geometric" => ElbowNames::Geometric, "swapped" => ElbowNames::Swapped);
+words!(Turning);
+words!(LimitsAt);
+words!(ElbowNames);
 
 /// The plane of the circle: an origin and two directions in the base frame, of length 1 and normal to each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -14,7 +14,6 @@ use std::path::Path;
 use stead_assessment::benchmark::Plane;
 use stead_assessment::comparison::Comparison;
 use stead_assessment::map::Grid;
-use stead_assessment::published::PublishedTables;
 use stead_assessment::ranking::Selection;
 use stead_disk::input::{InputError, InputFile};
 use stead_format::place::Place;
@@ -24,27 +23,9 @@ use stead_format::shapes::List;
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::Cutting;
 use stead_format::units::{Mm, Positive};
-use stead_model::cutting::ForceHistory;
 use stead_model::plausibility;
-use stead_model::published::Published;
 use stead_model::robot::{Compliance, Pose, Robot};
-
-/// An assessment file and the files it names, read and checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AssessRun {
-    /// What is to be assessed.
-    pub comparison: Comparison,
-    /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
-    pub range_share: Option<f64>,
-    /// The cutting forces behind the load, where the file computes them.
-    pub force_history: Option<ForceHistory>,
-    /// Published tables to set beside ours.
-    pub published: Option<Published<PublishedTables>>,
-    /// The files that were read: config, robots, reference.
-    pub inputs: Vec<InputFile>,
-    /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
-}
+use stead_runs::AssessRun;
 
 /// Reads an assessment file, the keys of [`AssessmentFile`], and the robot files that it names.
 ///

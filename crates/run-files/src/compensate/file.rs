@@ -13,10 +13,7 @@ ranges! {
     Tolerance: Included(1e-9), Included(1.0);
 }
 
-words!(DeflectionModel:
-    "equilibrium" => DeflectionModel::Equilibrium,
-    "linear" => DeflectionModel::Linear,
-);
+words!(DeflectionModel);
 
 /// The compensation of the deflections of a plan, for `stead compensate`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,7 +7,6 @@ mod tests;
 pub use file::*;
 
 use super::run::read_run;
-use crate::plan::plan_from;
 use std::path::Path;
 use stead_calibration::compensation::{CompensationProblem, Settings, other_geometry};
 use stead_disk::input::{InputError, InputFile, input_file};
@@ -15,22 +14,8 @@ use stead_format::quantity::Quantity;
 use stead_format::robot::robot_from;
 use stead_format::toml_file::TomlFile;
 use stead_model::robot::Robot;
-use stead_planning::problem::Placement;
-
-/// A compensation file and the files it names, read and checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CompensateRun {
-    /// What is to be compensated.
-    pub job: CompensationProblem,
-    /// Where the workpiece stands, as the plan has it.
-    pub placement: Placement,
-    /// Whether the commands are played on another robot file than the run's.
-    pub has_reality: bool,
-    /// The files that were read: config, run, robot, task, plan, reality.
-    pub inputs: Vec<InputFile>,
-    /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
-}
+use stead_runs::CompensateRun;
+use stead_runs::plan::plan_from;
 
 /// Reads a compensation file, the keys of [`CompensationFile`], and the files that it names. Where `reality` is given
 /// here too, as a path of its own, it takes the place of the file's.

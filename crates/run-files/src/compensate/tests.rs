@@ -1,7 +1,7 @@
 use super::*;
-use crate::Run;
 use std::sync::OnceLock;
 use stead_format::testing::root;
+use stead_runs::Run;
 
 fn shipped() -> &'static Run {
     static RUN: OnceLock<Run> = OnceLock::new();

@@ -21,48 +21,8 @@ use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
 use stead_model::cutting::Coefficients;
 use stead_model::task::ToolPath;
-use stead_removal::forces::ForcesError;
 use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, Stock};
-
-/// A forces file and the files that it names, read and checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ForcesRun {
-    /// What is to be cut.
-    pub problem: ForcesProblem,
-    /// The files that were read: config, path, and others that it names.
-    pub inputs: Vec<InputFile>,
-    /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
-    /// The file with the place of the path, for errors that the job finds.
-    source: Located,
-}
-
-/// Where things that only the job can find wrong are stated.
-#[derive(Debug, Clone, PartialEq)]
-struct Located {
-    stock: InputError,
-    path: InputError,
-    cell: InputError,
-}
-
-impl ForcesRun {
-    /// What the job found wrong, at its place in the file; nothing for a stop.
-    pub fn located(&self, error: &ForcesError) -> Option<InputError> {
-        let at = |place: &InputError, allowed: &str| Some(place.clone().because(error).allowed(allowed));
-        match error {
-            ForcesError::Stopped(_) => None,
-            ForcesError::Form | ForcesError::Large { .. } => {
-                at(&self.source.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
-            }
-            ForcesError::Open { .. } => at(&self.source.stock, "a closed mesh whose surface does not cross itself"),
-            ForcesError::Untouched => {
-                at(&self.source.stock, "stock that the path cuts: look at its place and its unit")
-            }
-            ForcesError::Memory { .. } => at(&self.source.cell, "larger cells, or more memory_gb"),
-            ForcesError::NoFeeds(_) | ForcesError::Path(_) => at(&self.source.path, "a path with feeds"),
-        }
-    }
-}
+use stead_runs::forces::{ForcesPlaces, ForcesRun};
 
 /// Reads a forces file, the keys of [`ForcesFile`], and the files that it names.
 ///
@@ -191,12 +151,12 @@ impl RemovalTables<'_> {
             cell: self.stock.cell(),
             memory: self.stock.memory(),
         };
-        let located = Located {
+        let places = ForcesPlaces {
             stock: stock_at.error("", "").found_if(None),
             path: at.key(self.path_key).error("", ""),
             cell: stock_at.key("cell_mm").error("", ""),
         };
-        Ok(ForcesRun { problem, inputs, notes, source: located })
+        Ok(ForcesRun { problem, inputs, notes, places })
     }
 }
 

@@ -2,17 +2,15 @@
 
 mod directions;
 mod file;
-mod locate;
 mod plan;
 
 pub use directions::{Directions, NamedDirections};
 pub use file::*;
-pub use locate::LocatedError;
-pub use plan::{PlanRun, PlanTable, TestTable, VolumeTable, read_plan};
+pub use plan::{PlanTable, TestTable, VolumeTable, read_plan};
 
 use super::sheet::sheet_from;
 use nalgebra::{Matrix3, Vector3};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stead_calibration::identification::Problem;
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::spring::Geometry;
@@ -26,21 +24,7 @@ use stead_format::shapes::List;
 use stead_format::toml_file::TomlFile;
 use stead_model::plausibility;
 use stead_model::robot::{Compliance, Robot};
-
-/// An identification file and the files it names, read and checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct IdentifyRun {
-    /// What is to be identified.
-    pub problem: Problem,
-    /// Text of the robot file to start from.
-    pub robot_text: String,
-    /// The measurement sheet, to name it in messages.
-    pub sheet_file: PathBuf,
-    /// The files that were read: config, robot, sheet.
-    pub inputs: Vec<InputFile>,
-    /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
-}
+use stead_runs::IdentifyRun;
 
 /// Reads an identification file with the robot file and the measurement sheet that it names.
 ///

@@ -6,11 +6,11 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
 use stead_calibration::identification::law::Law;
 use stead_calibration::identification::sheet::LoadCase;
-use stead_disk::input::{InputError, InputFile};
+use stead_disk::input::InputError;
 use stead_format::place::{Place, required};
 use stead_format::quantity::{Expects, Quantity};
 use stead_format::scalars::Whole;
@@ -19,6 +19,7 @@ use stead_format::toml_file::TomlFile;
 use stead_format::units::{Deg, Mm, N, Nm, NotNegative, Percent, Positive};
 use stead_model::plausibility;
 use stead_model::robot::Robot;
+use stead_runs::PlanRun;
 
 /// Which measurements to choose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -81,23 +82,6 @@ pub struct TestTable {
     pub force_n: Vector<N>,
     /// Moment at the tip, in the base frame; 0 where left out.
     pub moment_nm: Option<Vector<Nm>>,
-}
-
-/// What `stead identify plan` reads.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PlanRun {
-    /// What is to be planned.
-    pub request: Request,
-    /// The config, to name it in messages.
-    pub file: PathBuf,
-    /// Line of the number of configurations, from 1.
-    pub configurations_line: usize,
-    /// Line of the table, from 1.
-    pub table_line: usize,
-    /// The files that were read: config, robot.
-    pub inputs: Vec<InputFile>,
-    /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
 }
 
 /// Candidates where the file does not say.

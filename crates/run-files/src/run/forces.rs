@@ -123,7 +123,7 @@ mod tests {
                          [cut]\nmilling = 'climb'\nradial_depth_mm = 2\naxial_depth_mm = 5\nfeed_per_tooth_mm = 0.05\n";
 
     /// A run with tables added, of a task with or without its force columns.
-    fn read(tables: &str, with_columns: bool) -> Result<crate::Run, stead_disk::input::InputError> {
+    fn read(tables: &str, with_columns: bool) -> Result<stead_runs::Run, stead_disk::input::InputError> {
         let folder = folder();
         if !with_columns {
             let rows = TASK.lines().map(|line| line.split(',').take(10).collect::<Vec<_>>().join(",") + "\n");

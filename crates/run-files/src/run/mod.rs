@@ -39,10 +39,8 @@ use redundancy::check_axis_turns;
 use removed::removed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::path::Path;
-use stead_certify::settings::CertificateSettings;
-use stead_disk::input::{InputError, InputFile, input_file};
+use stead_disk::input::{InputError, input_file};
 use stead_format::document::Document;
 use stead_format::field::FieldOverrides;
 use stead_format::file_kind::FileKind;
@@ -56,13 +54,10 @@ use stead_format::surroundings::{
 };
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
-use stead_model::published::Published;
-use stead_placement::settings::SearchSettings;
-use stead_planning::problem::{Problem, ProblemParts};
+use stead_planning::problem::ProblemParts;
 use stead_planning::setup::Setup;
-use stead_planning::transfer::TransferSettings;
+use stead_runs::Run;
 use stead_simulation::arm::Variant;
-use stead_simulation::path_stability::PathStabilityAnalysis;
 use stead_simulation::stability_analysis::runout_note;
 use tables::{check_path_points, check_tables};
 
@@ -134,33 +129,6 @@ pub struct RunFile {
     pub output: Option<OutputTable>,
     /// Published figures to print beside ours.
     pub reference: Option<ReferenceTable>,
-}
-
-/// A run file and the files it names, read and checked.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// What is to be solved.
-    pub problem: Problem,
-    /// How hard to search.
-    pub search: SearchSettings,
-    /// Limits of the moves between segments.
-    pub transfer: TransferSettings,
-    /// The certificate, where one is requested.
-    pub certificate: Option<CertificateSettings>,
-    /// Whether deflection maps are made.
-    pub maps: bool,
-    /// Whether a page is left with the files.
-    pub page: bool,
-    /// The files that were read, in the order config, robot, task, and others that they name.
-    pub inputs: Vec<InputFile>,
-    /// The keys of the run file with their values as written there, those of `--set` among them.
-    pub stated: Value,
-    /// Published figures to print beside ours.
-    pub reference: Option<Published<[f64; 4]>>,
-    /// What is to be cut along the path, where its stability is requested.
-    pub path_stability: Option<PathStabilityAnalysis>,
-    /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
 }
 
 /// Reads a run file, the keys of [`RunFile`], and the robot and task files that it names.

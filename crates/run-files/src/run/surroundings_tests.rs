@@ -1,12 +1,13 @@
 //! Shapes of a cell file, read by a run.
 
+use crate::read_run;
 use crate::testing::{RUN, folder};
-use crate::{Run, read_run};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{Attachment, Solid, Zone};
 use stead_format::testing::root;
 use stead_numerics::rotation::rotation_from_zyx;
+use stead_runs::Run;
 
 /// A cell file with every key.
 const CELL: &str = "[[shape]]

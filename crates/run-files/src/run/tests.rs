@@ -2,9 +2,12 @@ use super::*;
 use crate::testing::{RUN, TASK, assert_refused, folder, read_text as read};
 use proptest::prelude::*;
 use std::f64::consts::PI;
+use stead_disk::input::InputFile;
 use stead_format::task::read_csv;
 use stead_format::testing::root;
+use stead_placement::settings::SearchSettings;
 use stead_planning::problem::Interval;
+use stead_planning::transfer::TransferSettings;
 
 fn shipped(name: &str) -> Run {
     read_run(&root().join("configs").join(name)).unwrap_or_else(|e| panic!("{e}"))

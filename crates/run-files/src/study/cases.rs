@@ -10,48 +10,12 @@ use serde_json::Value;
 use stead_disk::input::InputError;
 use stead_format::field::FieldOverrides;
 use stead_format::place::Place;
+use stead_runs::study::{AxisValue, StudyCase};
 
 /// More cases than this are a mistake.
 const MAX_CASES: usize = 1_000_000;
 
-/// What stands for the value of an axis in the table of results.
-#[derive(Debug, Clone, PartialEq)]
-pub enum AxisValue {
-    /// A number, in the unit of the field.
-    Number(f64),
-    /// A label, the name of a file, an array, a word.
-    Text(String),
-}
-
-/// A case of a study: values that take the place of those of its base.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StudyCase {
-    /// Its number, from 1, in the order of the study.
-    pub number: usize,
-    /// The values.
-    pub overrides: FieldOverrides,
-    /// What stands for them, one for each axis.
-    pub values: Vec<AxisValue>,
-    /// The task, where the study has tasks.
-    pub task: Option<String>,
-    /// What the task counts beside the others, where each has its own placement.
-    pub weight: f64,
-}
-
-impl StudyCase {
-    /// The values of the axes, in words; nothing without axes.
-    pub(crate) fn combination(&self, axes: &[String]) -> String {
-        let value = |value: &AxisValue| match value {
-            AxisValue::Number(number) => number.to_string(),
-            AxisValue::Text(text) => text.clone(),
-        };
-        let all: Vec<String> =
-            axes.iter().zip(&self.values).map(|(axis, shown)| format!("{axis} = {}", value(shown))).collect();
-        if all.is_empty() { String::new() } else { format!(" ({})", all.join(", ")) }
-    }
-}
-
-/// All cases that no condition excludes.
+/// All cases that no condition excludes, each with the values that take the place of those of the base.
 ///
 /// # Errors
 /// [`InputError`]: axes that cannot be combined like this, a condition that is none, no case or too many.
@@ -60,7 +24,7 @@ pub(super) fn cases(
     axes: &[Axis],
     tasks: &Tasks,
     at: &Place<'_>,
-) -> Result<Vec<StudyCase>, InputError> {
+) -> Result<Vec<(StudyCase, FieldOverrides)>, InputError> {
     check_names(axes, tasks, at)?;
     let conditions = conditions(study, axes, tasks, at)?;
     let rows = rows(study, axes, at)?;
@@ -88,13 +52,13 @@ pub(super) fn cases(
                 label = Some(name.clone());
             }
             let value = |point: &&AxisPoint| point.shown.clone().map_or_else(AxisValue::Text, AxisValue::Number);
-            cases.push(StudyCase {
+            let case = StudyCase {
                 number: cases.len() + 1,
-                overrides: FieldOverrides(overrides),
                 values: points.iter().map(value).collect(),
                 task: label,
                 weight: task.as_ref().map_or(1.0, |(_, weight)| *weight),
-            });
+            };
+            cases.push((case, FieldOverrides(overrides)));
         }
     }
     if cases.is_empty() {

@@ -9,14 +9,14 @@ mod tasks;
 mod tests;
 mod value;
 
-pub use cases::{AxisValue, StudyCase};
 pub use file::{AxisTable, Combine, RangeTable, Spacing, StudyFile, TaskPlacement, TaskTable, Values};
 
-use crate::run::{Run, read_run_tables};
+use crate::run::read_run_tables;
 use axis::Axis;
 use cases::cases;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use stead_disk::input::{InputError, InputFile, sha256};
 use stead_format::document::Document;
 use stead_format::field::FieldOverrides;
@@ -24,48 +24,18 @@ use stead_format::place::Place;
 use stead_format::sources::Sources;
 use stead_format::surroundings::MESH;
 use stead_format::toml_file::TomlFile;
+use stead_runs::study::{CaseRun, Keep, ReadCase, Study, StudyCase};
 use tasks::Tasks;
 
-/// Which cases leave their files in a folder of their own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Keep {
-    /// None.
-    None,
-    /// Those with the smallest objective, so many.
-    Best(usize),
-    /// All that have a placement.
-    All,
-}
-
-/// A study file, read and checked: the cases, each a run that can be read ([`Study::case`]).
-#[derive(Debug, Clone)]
-pub struct Study {
-    file: PathBuf,
+/// What the cases of a study file are read from. Files that several cases have in common are read and parsed once.
+#[derive(Debug)]
+struct Cases {
     base: PathBuf,
     base_bytes: Vec<u8>,
     sources: Sources,
     is_certified: bool,
-    /// Which cases leave their files.
-    pub keep: Keep,
-    /// Names of the axes, the tasks last where the file has tasks.
-    pub axes: Vec<String>,
-    /// All cases, in the order of their numbers.
-    pub cases: Vec<StudyCase>,
-    /// The study file and its base.
-    pub inputs: Vec<InputFile>,
-}
-
-/// A case of a study as a run, with its digest.
-#[derive(Debug, Clone)]
-pub struct CaseRun {
-    /// What is to be done.
-    pub run: Run,
-    /// SHA-256 digest, in lower-case hexadecimal, of all that the result depends on: the run file with the values of
-    /// the case in place, the bytes of every file that it names, whether it is certified, and the version of the
-    /// results.
-    pub id: String,
-    /// The task, as the run file or the study file names it.
-    pub task: String,
+    /// By case, the values that take the place of those of the base.
+    overrides: Vec<FieldOverrides>,
 }
 
 /// Version of the results of a study: with another one, finished cases are computed anew.
@@ -98,40 +68,19 @@ pub fn read_study(file: &Path) -> Result<Study, InputError> {
     names.extend(tasks.axis().map(|axis| axis.name.clone()));
     let mut inputs = vec![source.as_config()];
     inputs.push(stead_disk::input::input_file("base", base.name, base_source.bytes()));
+    let (cases, overrides) = cases.into_iter().unzip();
     let base_bytes = base_source.bytes().to_vec();
-    let file = file.to_owned();
-    Ok(Study { file, base: base.file, base_bytes, sources, is_certified, keep, axes: names, cases, inputs })
+    let reader = Arc::new(Cases { base: base.file, base_bytes, sources, is_certified, overrides });
+    Ok(Study { file: file.to_owned(), is_certified, keep, axes: names, cases, inputs, reader })
 }
 
-impl Study {
-    /// The study file as the user named it.
-    pub fn file(&self) -> &Path {
-        &self.file
-    }
-
-    /// Whether cases are certified.
-    pub fn is_certified(&self) -> bool {
-        self.is_certified
-    }
-
-    /// Reads the run of a case. Files that several cases have in common are read and parsed once.
-    ///
-    /// # Errors
-    /// Those of [`read_run`](crate::read_run), with the case.
-    pub fn case(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
-        let mut read = self.read_case(case).map_err(|error| {
-            let name = self.file.file_name().unwrap_or_default().to_string_lossy();
-            error.set_by(format!("case {} of {name}{}", case.number, case.combination(&self.axes)))
-        })?;
-        if let Some(task) = &case.task {
-            read.task.clone_from(task);
-        }
-        Ok(read)
-    }
-
-    fn read_case(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
+impl ReadCase for Cases {
+    fn read(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
         let source = TomlFile::new(&self.base, self.base_bytes.clone())?;
-        let source = source.with_overrides(&case.overrides, self.sources.clone());
+        let Some(overrides) = case.number.checked_sub(1).and_then(|index| self.overrides.get(index)) else {
+            return Err(InputError::new(&self.base, format!("there is no case {} of it", case.number)));
+        };
+        let source = source.with_overrides(overrides, self.sources.clone());
         let document = source.parse()?;
         let mut run = read_run_tables(&source, &document)?;
         if self.is_certified {
@@ -140,10 +89,13 @@ impl Study {
             run.certificate = None;
         }
         let id = self.id(&document, &run.inputs);
-        let task = run.inputs.iter().find(|input| input.role == "task").map(|input| file_name(&input.name));
-        Ok(CaseRun { run, id, task: task.unwrap_or_default() })
+        let read = run.inputs.iter().find(|input| input.role == "task").map(|input| file_name(&input.name));
+        let task = case.task.clone().or(read).unwrap_or_default();
+        Ok(CaseRun { run, id, task })
     }
+}
 
+impl Cases {
     /// The digest of a case.
     fn id(&self, document: &Document<'_>, inputs: &[InputFile]) -> String {
         let mut root = document.root().value.map_or(Value::Null, |root| value::data(root.get_ref()));

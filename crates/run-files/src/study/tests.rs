@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::testing::{RUN, TASK, folder};
+use stead_runs::study::AxisValue;
 use tempfile::TempDir;
 
 /// A study of this text beside the run of the tests.

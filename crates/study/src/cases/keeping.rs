@@ -3,7 +3,7 @@
 use super::plan::PlannedCase;
 use crate::run::Placed;
 use stead_certify::Certificate;
-use stead_run_files::Run;
+use stead_runs::Run;
 
 /// Puts results where readers look for them: the files of a case into a folder of its own, the table into that of the
 /// study.

@@ -6,7 +6,7 @@ use super::table::{Cell, Column, Kind};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use stead_disk::input::{InputError, sha256};
-use stead_run_files::study::{AxisValue, Study, StudyCase};
+use stead_runs::study::{AxisValue, Study, StudyCase};
 
 /// A case with what its result is found by.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ impl Plan {
             |name: &&String| fixed_columns().iter().chain(&result_columns()).any(|column| column.name == **name);
         if let Some(name) = study.axes.iter().filter(|name| *name != TASK).find(taken) {
             let error =
-                InputError::new(study.file(), "an axis has the name of a column of the results").in_field("axis");
+                InputError::new(&study.file, "an axis has the name of a column of the results").in_field("axis");
             return Err(error.found(name).allowed("a name of its own").into());
         }
         let read = |case: &StudyCase| {
@@ -59,7 +59,7 @@ impl Plan {
 
     /// The name of the study: that of its file.
     pub fn name(&self) -> String {
-        self.study.file().file_stem().unwrap_or_default().to_string_lossy().into_owned()
+        self.study.file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
     /// The digest of the plan: of all its cases.

@@ -16,7 +16,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 use stead_certify::certify;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_run_files::study::Keep;
+use stead_runs::study::Keep;
 
 /// Where and how a shard is done.
 #[derive(Clone, Copy)]

@@ -8,7 +8,7 @@ use stead_calibration::identification::design::Design;
 use stead_calibration::identification::design::expected::{ExpectedCompliance, ExpectedParameter};
 use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason, WeaklyObserved};
 use stead_calibration::identification::sheet::Configuration;
-use stead_run_files::PlanRun;
+use stead_runs::PlanRun;
 
 /// Significant digits of expected errors.
 const DIGITS: usize = 9;

@@ -15,7 +15,7 @@ use stead_calibration::identification::design::Design;
 use stead_calibration::identification::sheet::COLUMNS;
 use stead_disk::files;
 use stead_disk::input::InputError;
-use stead_run_files::PlanRun;
+use stead_runs::PlanRun;
 
 /// The name of the sheet among the files of a plan.
 pub const SHEET: &str = "sheet.csv";

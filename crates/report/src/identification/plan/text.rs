@@ -4,7 +4,7 @@ use super::super::{URAD, key};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_calibration::identification::design::{Design, TestCases};
-use stead_run_files::PlanRun;
+use stead_runs::PlanRun;
 
 /// Expected errors of the compliances beside those of random sets, the expected error of the deflection, where the
 /// candidates come from, and what the plan does not show.

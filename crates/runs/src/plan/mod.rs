@@ -2,11 +2,9 @@
 
 mod rows;
 mod stations;
-#[cfg(test)]
-mod tests;
 
-pub use rows::axis_column;
-pub use stations::PlacedPlan;
+pub use rows::{PlanRow, axis_column, rows_from};
+pub use stations::{PlacedPlan, set_up};
 
 use std::path::Path;
 use stead_disk::files;
@@ -19,7 +17,7 @@ use stead_planning::problem::Problem;
 ///
 /// # Errors
 /// [`InputError`] with file, line and column for a plan that does not fit, or that its manifest does not vouch for.
-pub(crate) fn plan_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<PlacedPlan, InputError> {
+pub fn plan_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<PlacedPlan, InputError> {
     manifest::check(file, bytes, Unlisted::Refused)?;
     let rows = rows::rows_from(file, bytes, problem)?;
     let mut plan = stations::set_up(file, &rows, problem)?;

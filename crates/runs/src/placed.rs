@@ -1,6 +1,6 @@
 //! A placement out of the results of `stead place`: the exact one of a case, from `summary.json`.
 
-use crate::run::Run;
+use crate::Run;
 use crate::stated::{Change, changes};
 use serde_json::Value;
 use std::collections::BTreeSet;

@@ -52,7 +52,7 @@ type Misfit = (String, String);
 /// # Errors
 /// [`InputError`] at the line of the first row that does not fit the run or the other rows, the part as it lies in the
 /// run.
-pub(super) fn set_up(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan, InputError> {
+pub fn set_up(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan, InputError> {
     let positions = match &problem.external_axes[..] {
         [] => problem.setup.positions.clone(),
         _ => AxisPositions::PerPoint(rows.iter().map(|row| row.axes.clone()).collect()),

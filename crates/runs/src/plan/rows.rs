@@ -11,7 +11,7 @@ use stead_planning::problem::Problem;
 
 /// One row of a plan, in SI units and radians.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct PlanRow {
+pub struct PlanRow {
     /// Line in the file, from 1.
     pub line: usize,
     /// Tool centre point in the base frame. m
@@ -54,7 +54,7 @@ const DEFLECTION: [&str; 3] = ["deflection_x_mm", "deflection_y_mm", "deflection
 /// # Errors
 /// [`InputError`] naming line and column: a missing or doubled column, a value of the wrong kind, points that are not
 /// those of the path in their order.
-pub(super) fn rows_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<Vec<PlanRow>, InputError> {
+pub fn rows_from(file: &Path, bytes: &[u8], problem: &Problem) -> Result<Vec<PlanRow>, InputError> {
     let path = problem.task.path();
     let mut table = CsvTable::new(file, bytes)?;
     let columns = columns(&table, &problem.external_axes)?;

@@ -1,11 +1,13 @@
-use super::rows::rows_from;
-use super::stations::set_up as placed;
-use super::*;
-use crate::{Run, read_run};
+//! Plans of shipped results, read back.
+
+use crate::read_run;
 use proptest::prelude::*;
+use std::path::Path;
 use std::sync::OnceLock;
 use stead_format::testing::root;
 use stead_model::robot::Posture;
+use stead_runs::Run;
+use stead_runs::plan::*;
 
 fn shipped() -> &'static Run {
     static RUN: OnceLock<Run> = OnceLock::new();
@@ -29,7 +31,7 @@ fn a_plan_tells_its_placement() {
     let problem = &shipped().problem;
     for (name, number) in [("best.csv", 1), ("best-worst-plan.csv", 2), ("worst.csv", 3), ("worst-worst-plan.csv", 4)] {
         let rows = rows_from(Path::new(name), &plan(name), problem).unwrap();
-        let placed = placed(Path::new(name), &rows, problem).unwrap();
+        let placed = set_up(Path::new(name), &rows, problem).unwrap();
         let [x, y, z, yaw] = printed_placement(number);
         let found = &placed.placement;
         for (found, printed) in [found.x, found.y, found.z].iter().zip([x, y, z]) {
@@ -59,7 +61,7 @@ proptest! {
         let end = (at + cut).min(bytes.len());
         bytes.splice(at..end, put.bytes());
         let file = Path::new("plan.csv");
-        let result = rows_from(file, &bytes, problem).and_then(|rows| placed(file, &rows, problem));
+        let result = rows_from(file, &bytes, problem).and_then(|rows| set_up(file, &rows, problem));
         match result {
             Ok(placed) => prop_assert_eq!(placed.points.len(), 105),
             Err(error) => prop_assert!(error.line.is_some() && error.allowed.is_some(), "{}", error),

@@ -1,9 +1,41 @@
-//! Errors of identifications, at the entry of the file that is at fault.
+//! Stiffness to be identified, measurements to be chosen, and their errors at the entry of the file that is at fault.
 
-use super::{IdentifyRun, PlanRun};
-use stead_calibration::identification::IdentifyError;
-use stead_calibration::identification::design::DesignError;
-use stead_disk::input::InputError;
+use std::path::PathBuf;
+use stead_calibration::identification::design::{DesignError, Request};
+use stead_calibration::identification::{IdentifyError, Problem};
+use stead_disk::input::{InputError, InputFile};
+
+/// An identification file and the files it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IdentifyRun {
+    /// What is to be identified.
+    pub problem: Problem,
+    /// Text of the robot file to start from.
+    pub robot_text: String,
+    /// The measurement sheet, to name it in messages.
+    pub sheet_file: PathBuf,
+    /// The files that were read: config, robot, sheet.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// What `stead identify plan` reads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanRun {
+    /// What is to be planned.
+    pub request: Request,
+    /// The config, to name it in messages.
+    pub file: PathBuf,
+    /// Line of the number of configurations, from 1.
+    pub configurations_line: usize,
+    /// Line of the table, from 1.
+    pub table_line: usize,
+    /// The files that were read: config, robot.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+}
 
 /// Why a job on files gave no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,0 +1,48 @@
+//! A cut whose forces are to be computed.
+
+use stead_disk::input::{InputError, InputFile};
+use stead_removal::forces::ForcesError;
+use stead_removal::operation::ForcesProblem;
+
+/// A forces file and the files that it names, read and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForcesRun {
+    /// What is to be cut.
+    pub problem: ForcesProblem,
+    /// The files that were read: config, path, and others that it names.
+    pub inputs: Vec<InputFile>,
+    /// What the user should know about the input though it is not wrong, in sentences.
+    pub notes: Vec<String>,
+    /// The file with the place of the path, for errors that the job finds.
+    pub places: ForcesPlaces,
+}
+
+/// Where things that only the job can find wrong are stated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForcesPlaces {
+    /// The stock.
+    pub stock: InputError,
+    /// The path.
+    pub path: InputError,
+    /// The size of the cells.
+    pub cell: InputError,
+}
+
+impl ForcesRun {
+    /// What the job found wrong, at its place in the file; nothing for a stop.
+    pub fn located(&self, error: &ForcesError) -> Option<InputError> {
+        let at = |place: &InputError, allowed: &str| Some(place.clone().because(error).allowed(allowed));
+        match error {
+            ForcesError::Stopped(_) => None,
+            ForcesError::Form | ForcesError::Large { .. } => {
+                at(&self.places.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
+            }
+            ForcesError::Open { .. } => at(&self.places.stock, "a closed mesh whose surface does not cross itself"),
+            ForcesError::Untouched => {
+                at(&self.places.stock, "stock that the path cuts: look at its place and its unit")
+            }
+            ForcesError::Memory { .. } => at(&self.places.cell, "larger cells, or more memory_gb"),
+            ForcesError::NoFeeds(_) | ForcesError::Path(_) => at(&self.places.path, "a path with feeds"),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! What is asked of a job, read and checked, whatever file it came from, beside what its results cite; and plans and
+//! placements of earlier results, which jobs go on from.
+//!
+//! ```
+//! use stead_runs::study::Keep;
+//! assert_ne!(Keep::All, Keep::Best(20));
+//! ```
+
+pub mod assessment;
+pub mod compensation;
+pub mod forces;
+pub mod identification;
+mod placed;
+pub mod plan;
+mod points;
+mod run;
+pub mod simulation;
+pub mod stated;
+pub mod study;
+
+pub use assessment::AssessRun;
+pub use compensation::CompensateRun;
+pub use forces::ForcesRun;
+pub use identification::{IdentifyRun, LocatedError, PlanRun};
+pub use placed::{read_placement_of, read_setup_of};
+pub use points::{PointFile, read_points};
+pub use run::Run;
+pub use simulation::SimulationRun;
