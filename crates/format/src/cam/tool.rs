@@ -154,31 +154,46 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     if let Some(corner) = tool.corner_radius {
         lines.row(&key(format!("corner_radius_mm = {:?}", mm(corner))), "of the CAM file");
     }
-    if let Some(length) = tool.length {
-        let comment = "of the CAM file, perhaps with its shank: kept out of the part between segments";
-        lines.row(&format!("# flute_length_mm = {:?}", mm(length)), comment);
+    match (tool.length, tool.diameter) {
+        (Some(length), _) => {
+            let comment = "of the CAM file, perhaps with its shank: kept out of the part between segments";
+            lines.row(&key(format!("flute_length_mm = {:?}", mm(length))), comment);
+        }
+        (None, Some(diameter)) => lines.row(&format!("flute_length_mm = {:?}", mm(3.0 * diameter)), "guess"),
+        (None, None) => {}
     }
-    lines.row("# teeth = 2", "guess; these and [cut] compute the forces, in place of [forces]");
-    lines.row("# kt_mpa = 800.0", "guess: tangential cutting coefficient, aluminium");
-    lines.row("# kr = 0.4", "guess: radial over tangential coefficient");
-    lines.row("# kte_n_per_mm = 20.0", "guess: edge forces");
-    lines.row("# kre_n_per_mm = 20.0", "guess");
-    lines.0.push_str("\n# [cut]\n");
-    lines.row("# milling = \"climb\"", "guess; or \"conventional\"");
+    for (row, comment) in [
+        ("teeth = 2", "guess"),
+        ("helix_deg = 30.0", "guess"),
+        ("kt_mpa = 800.0", "guess: cutting coefficients of an aluminium alloy; or `material` beside [stock]"),
+        ("kr = 0.4", "guess"),
+        ("kte_n_per_mm = 20.0", "guess: edge forces"),
+        ("kre_n_per_mm = 20.0", "guess"),
+    ] {
+        lines.row(&key(row.to_owned()), comment);
+    }
+    lines.0.push_str(if is_known { "\n[cut]\n" } else { "\n# [cut]\n" });
+    let (speed, comment) = match tool.spindle_speed {
+        Some(speed) => (rounded(speed * 60.0), "of the CAM file"),
+        None => (9000.0, "guess"),
+    };
+    lines.row(&key(format!("spindle_rpm = {speed:?}")), comment);
+    lines.row("# milling = \"climb\"", "guess; in place of [stock], one engagement for the whole path: these keys");
     lines.row("# radial_depth_mm = 2.0", "guess");
     lines.row("# axial_depth_mm = 2.0", "guess");
-    match (tool.spindle_speed, first.feed) {
+    let feed_per_tooth = match (tool.spindle_speed, first.feed) {
         (Some(speed), Some(feed)) => {
             let fine = |mm: f64| (mm * 1e4).round() / 1e4;
             let (turn, speed, feed) = (fine(feed / speed * 1e3), rounded(speed * 60.0), rounded(feed * 6e4));
             let comment = format!("{turn} mm a turn at {feed} mm/min and {speed} rpm, over 2 teeth");
-            lines.row(&format!("# feed_per_tooth_mm = {:?}", fine(turn / 2.0)), &comment);
+            (fine(turn / 2.0), comment)
         }
-        _ => lines.row("# feed_per_tooth_mm = 0.05", "guess"),
-    }
-    if let Some(speed) = tool.spindle_speed {
-        lines.row(&format!("# spindle_rpm = {:?}", rounded(speed * 60.0)), "of the CAM file");
-    }
+        _ => (0.05, "guess".to_owned()),
+    };
+    // A path without feeds has need of it in any case.
+    let is_needed = is_known && first.feed.is_none();
+    let row = format!("feed_per_tooth_mm = {:?}", feed_per_tooth.0);
+    lines.row(&if is_needed { row } else { format!("# {row}") }, &feed_per_tooth.1);
     for other in uses.iter().filter(|other| *other != first) {
         let words = other.words();
         let words = if words.is_empty() { "not described".to_owned() } else { words };

@@ -2,7 +2,6 @@
 
 use super::ground::{Ground, ground};
 use serde::Deserialize;
-use std::fmt::Write;
 use std::path::{Component, Path, PathBuf, absolute};
 use stead_disk::files::new::{Existing, write_new};
 use stead_disk::input::InputError;
@@ -20,7 +19,7 @@ use stead_model::task::ToolPath;
 /// neither says is filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task
 /// without forces, the forces. Shapes of the links beside the robot file (`NAME-cell.toml`) are its surroundings, and a
 /// table or a floor among them gives the height of the cell; the cutter beside the task file (`NAME-tool.toml`) is its
-/// tool.
+/// tool. Where it states no engagement, the forces of a task without any are those of what the path removes of a stock.
 ///
 /// # Errors
 /// [`InputError`]: robot or task are wrong, or what is beside them, or the run file is there already and to be kept, or
@@ -61,7 +60,18 @@ struct Known {
 /// The tables of a cutter for a run file.
 struct Cutter {
     text: String,
-    has_cut: bool,
+    /// Half its diameter, where it is a table. mm
+    half: Option<f64>,
+    /// Whether it states one engagement for the whole path.
+    has_engagement: bool,
+}
+
+impl Known {
+    /// Half the diameter of the cutter (mm) where the forces are to be those of what it removes of a stock.
+    fn removes(&self) -> Option<f64> {
+        let cutter = self.cutter.as_ref().filter(|cutter| !self.has_forces && !cutter.has_engagement)?;
+        cutter.half
+    }
 }
 
 /// What a file of a cutter declares.
@@ -86,7 +96,11 @@ fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
     let is_comment = |line: &&str| line.starts_with('#');
     let head = source.text().lines().take_while(is_comment).count();
     let lines: Vec<&str> = source.text().lines().skip(head).collect();
-    Ok(Some(Cutter { text: lines.join("\n").trim().to_owned(), has_cut: read.cut.is_some() }))
+    Ok(Some(Cutter {
+        text: lines.join("\n").trim().to_owned(),
+        half: read.tool.map(|tool| tool.cutter_diameter_mm.written() / 2.0),
+        has_engagement: read.cut.is_some_and(|cut| cut.radial_depth_mm.is_some() || cut.engagement.is_some()),
+    }))
 }
 
 /// The cutter that is beside a task file.
@@ -147,7 +161,7 @@ fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 2], known: &Known) -> S
 
 robot = {}{}
 task = {}
-{}
+{}{}
 [spindle]                              # guess: a spindle across the flange. The tool frame in the flange frame, as the controller
 xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
 abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
@@ -184,17 +198,23 @@ max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
         known.surroundings.as_ref().map_or(String::new(), |name| format!(
             "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them\n"
         )),
+        known.removes().map_or("", |_| MATERIAL),
         range(area[0]),
         range(area[1]),
         range(heights),
         rounded(0.6 * reach),
         format!("{:?}", rounded(reach / 4.0)),
     );
-    if let Some(cutter) = &known.cutter {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "\n{}", cutter.text);
+    if let Some(half) = known.removes() {
+        let stock = format!("allowance_mm = [{half:?}, {half:?}, 2.0]");
+        text.push_str(&format!("\n{STOCK}{stock:<38} # x and y to either side, z above\n"));
     }
-    if !known.has_forces && !known.cutter.as_ref().is_some_and(|cutter| cutter.has_cut) {
+    if let Some(cutter) = &known.cutter {
+        // A cut beside the forces of the task would be a second source of them.
+        let end = cutter.text.find("\n[cut]").filter(|_| known.has_forces).unwrap_or(cutter.text.len());
+        text.push_str(&format!("\n{}\n", cutter.text[..end].trim_end()));
+    }
+    if !known.has_forces && known.removes().is_none() && !known.cutter.as_ref().is_some_and(|own| own.has_engagement) {
         text.push_str(FORCES);
     }
     text
@@ -265,6 +285,10 @@ const LIKE: &str = "
 # stiffness_like = \"kuka-kr270-r2700\" # the robot states no joint stiffness, without which nothing can be placed: that of a shipped arm
 #                                        of the class compares placements, and does not predict millimetres";
 
+/// What stands for cutting coefficients.
+const MATERIAL: &str =
+    "# material = \"aluminium-7075\"          # published cutting coefficients in place of those of [tool]\n";
+
 /// Tables of external axes, to be taken in; the second is not at its end.
 const AXES: &str = "\
 # [[external_axis]]                    # a rail under the robot
@@ -281,6 +305,13 @@ const AXES: &str = "\
 # kind = \"turntable\"
 # carries = \"workpiece\"
 # axis = [0.0, 0.0, 1.0]
+";
+
+/// Stock for a task that has no forces.
+const STOCK: &str = "\
+[stock]                                # guess: the material before it is cut, a box about the scored points that is larger by this. Or
+#                                      # box_mm and xyz_mm, or a closed mesh. In place of it: one engagement for the whole path, in
+#                                      # [cut], or one force in its frame, [forces] without [cut]
 ";
 
 /// Forces for a task that has none.

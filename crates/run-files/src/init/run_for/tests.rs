@@ -119,17 +119,21 @@ fn the_cutter_beside_the_task_is_taken_and_with_its_cut_gives_the_forces() {
         (std::fs::read_to_string(at("run.toml")).unwrap(), run)
     };
     let (text, guessed) = made();
-    assert!(text.contains("\ncutter_diameter_mm = 16.0 ") && text.contains("\n[forces]"), "{text}");
+    assert!(
+        text.contains("\ncutter_diameter_mm = 16.0 ") && text.contains("\nallowance_mm = [8.0, 8.0, 2.0]"),
+        "{text}"
+    );
+    assert!(!text.contains("\n[forces]") && text.contains("\nspindle_rpm = 9000.0 "), "{text}");
+    assert!(guessed.notes.iter().any(|note| note.contains("removes of [stock]")), "{:?}", guessed.notes);
     assert!(text.contains("\nfeed_mm_per_s = 30.0 ") && text.contains("whose own feeds count: 30.0 to 30.0"), "{text}");
     assert!(!text.contains("The cutter of part.cls"), "{text}");
     // All of it taken in, as the user would.
     let tool = std::fs::read_to_string(at("part-tool.toml")).unwrap();
-    let keys =
-        ["[cut]", "teeth", "kt_mpa", "kr ", "kte", "kre", "milling", "radial", "axial", "feed_per", "spindle_rpm"];
+    let keys = ["milling", "radial", "axial", "feed_per"];
     let tool = keys.iter().fold(tool, |text, key| text.replace(&format!("# {key}"), key));
     std::fs::write(at("part-tool.toml"), tool).unwrap();
     let (text, cut) = made();
-    assert!(!text.contains("\n[forces]"), "{text}");
+    assert!(!text.contains("\n[forces]") && !text.contains("\n[stock]"), "{text}");
     assert!(cut.problem.task.wrenches()[1].force.norm() > 1.0 && cut.problem.task != guessed.problem.task);
     std::fs::write(at("part-tool.toml"), "[tool]\ncutter_diameter_mm = 0\n").unwrap();
     let refused = init_run(Path::new("name:kuka-kr500"), &at("part.csv"), &at("run.toml"), Existing::Replaced);
