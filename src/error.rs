@@ -75,6 +75,15 @@ impl From<stead_run_files::LocatedError> for Error {
     }
 }
 
+impl From<stead_run_files::ReadError> for Error {
+    fn from(error: stead_run_files::ReadError) -> Self {
+        match error {
+            stead_run_files::ReadError::Input(error) => Self::Input(error),
+            stead_run_files::ReadError::Stopped(stop) => Self::Stopped(stop),
+        }
+    }
+}
+
 impl From<stead_study::RunError> for Error {
     fn from(error: stead_study::RunError) -> Self {
         match error {
@@ -88,6 +97,7 @@ impl From<StudyError> for Error {
     fn from(error: StudyError) -> Self {
         match error {
             StudyError::Input(error) => Self::Input(error),
+            StudyError::Stopped(stop) => Self::Stopped(stop),
             error => Self::Study(error),
         }
     }

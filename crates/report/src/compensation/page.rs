@@ -24,7 +24,10 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
     }
     lead.push('.');
     let mut page = Page::new(run.job.robot.name(), subtitle, lead, &run.inputs)
-        .messages(&outcome.warnings, &[run.notes.as_slice(), &outcome.notes].concat())
+        .messages(
+            &[run.warnings.as_slice(), &outcome.warnings].concat(),
+            &[run.notes.as_slice(), &outcome.notes].concat(),
+        )
         .with(tiles(outcome));
     for chart in before_and_after(outcome) {
         page = page.with(Card::Chart(chart));
@@ -155,7 +158,9 @@ mod tests {
     fn outcome() -> CompensatedPath {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
-        let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
+        let run =
+            read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality), &Monitor::silent())
+                .unwrap();
         compensate(&run.job, &stead_numerics::monitor::Monitor::silent()).unwrap()
     }
 

@@ -64,7 +64,7 @@ impl Context {
             inputs: run.inputs.clone(),
             stated: run.stated.clone(),
             notes: run.notes.clone(),
-            warnings: Vec::new(),
+            warnings: run.warnings.clone(),
             search,
             transfer: run.transfer,
             reference: run.reference.clone(),

@@ -7,7 +7,7 @@ mod tests;
 
 pub use file::*;
 
-use crate::Word;
+use crate::{ReadError, Word};
 use material::Material;
 use std::path::{Path, PathBuf};
 use stead_format::cam::{ProgramTool, ReadSettings, import_bytes};
@@ -46,11 +46,11 @@ struct Located {
 }
 
 impl ForcesRun {
-    /// What the job found wrong, at its place in the file; nothing for a stop.
-    pub fn located(&self, error: &ForcesError) -> Option<InputError> {
-        let at = |place: &InputError, allowed: &str| Some(place.clone().because(error).allowed(allowed));
+    /// What the job found wrong, at its place in the file; or that it was stopped.
+    pub fn located(&self, error: &ForcesError) -> ReadError {
+        let at = |place: &InputError, allowed: &str| place.clone().because(error).allowed(allowed).into();
         match error {
-            ForcesError::Stopped(_) => None,
+            ForcesError::Stopped(stop) => (*stop).into(),
             ForcesError::Form | ForcesError::Large { .. } => {
                 at(&self.source.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
             }

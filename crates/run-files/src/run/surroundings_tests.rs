@@ -290,7 +290,7 @@ fn cases_of_a_study_know_the_files_of_the_cell() {
         study
             .cases
             .iter()
-            .map(|case| study.case(case).unwrap())
+            .map(|case| study.case(case, &Monitor::silent()).unwrap())
             .map(|case| (case.id, case.run.problem.scene.clone().unwrap()))
             .collect::<Vec<_>>()
     };

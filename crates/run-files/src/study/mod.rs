@@ -12,6 +12,7 @@ mod value;
 pub use cases::{AxisValue, StudyCase};
 pub use file::{AxisTable, Combine, RangeTable, Spacing, StudyFile, TaskPlacement, TaskTable, Values};
 
+use crate::ReadError;
 use crate::run::{Run, read_run_tables};
 use axis::Axis;
 use cases::cases;
@@ -24,6 +25,7 @@ use stead_format::place::Place;
 use stead_format::sources::Sources;
 use stead_format::surroundings::MESH;
 use stead_format::toml_file::TomlFile;
+use stead_numerics::monitor::Monitor;
 use tasks::Tasks;
 
 /// Which cases leave their files in a folder of their own.
@@ -117,9 +119,9 @@ impl Study {
     /// Reads the run of a case. Files that several cases have in common are read and parsed once.
     ///
     /// # Errors
-    /// Those of [`read_run`](crate::read_run), with the case.
-    pub fn case(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
-        let mut read = self.read_case(case).map_err(|error| {
+    /// Those of [`read_run_with`](crate::read_run_with), with the case.
+    pub fn case(&self, case: &StudyCase, monitor: &Monitor) -> Result<CaseRun, ReadError> {
+        let mut read = self.read_case(case, monitor).map_err(|error| {
             let name = self.file.file_name().unwrap_or_default().to_string_lossy();
             error.set_by(format!("case {} of {name}{}", case.number, case.combination(&self.axes)))
         })?;
@@ -129,11 +131,11 @@ impl Study {
         Ok(read)
     }
 
-    fn read_case(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
+    fn read_case(&self, case: &StudyCase, monitor: &Monitor) -> Result<CaseRun, ReadError> {
         let source = TomlFile::new(&self.base, self.base_bytes.clone())?;
         let source = source.with_overrides(&case.overrides, self.sources.clone());
         let document = source.parse()?;
-        let mut run = read_run_tables(&source, &document)?;
+        let mut run = read_run_tables(&source, &document, monitor)?;
         if self.is_certified {
             check_certificate(&document.root().key("certificate"))?;
         } else {
