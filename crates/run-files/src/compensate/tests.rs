@@ -1,5 +1,5 @@
 use super::*;
-use crate::Run;
+use crate::{Run, read_run};
 use std::sync::OnceLock;
 use stead_format::testing::root;
 

@@ -60,7 +60,9 @@ pub(super) fn removed(
     let key = format!("{tables:?} {:?} {feed:?}", run.inputs);
     let make = || forces(&run.problem, monitor).map_err(|error| run.located(&error));
     let outcome = source.sources.made(key, make)?;
+    let edges = outcome.points.iter().map(|point| point.edge).collect();
     let task = Task::new(outcome.path.clone(), outcome.wrenches())
+        .and_then(|task| task.with_edge_parts(edges))
         .map_err(|e| at.key("stock").error(format!("gives no usable forces: {e}"), "values whose forces are finite"))?;
     let mut notes = run.notes;
     notes.push(

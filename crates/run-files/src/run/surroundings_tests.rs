@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{Attachment, Solid, Zone};
 use stead_format::testing::root;
+use stead_numerics::monitor::Monitor;
 use stead_numerics::rotation::rotation_from_zyx;
 
 /// A cell file with every key.
