@@ -153,6 +153,7 @@ mod tests {
     use crate::testing::assert_well_formed;
     use std::path::Path;
     use stead_calibration::compensation::compensate;
+    use stead_numerics::monitor::Monitor;
     use stead_run_files::read_compensation;
 
     fn outcome() -> CompensatedPath {
@@ -161,7 +162,7 @@ mod tests {
         let run =
             read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality), &Monitor::silent())
                 .unwrap();
-        compensate(&run.job, &stead_numerics::monitor::Monitor::silent()).unwrap()
+        compensate(&run.job, &Monitor::silent()).unwrap()
     }
 
     #[test]
