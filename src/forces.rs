@@ -68,8 +68,8 @@ impl PathForces {
     }
 
     /// Writes the task with forces to a file, and beside it `NAME-engagement.csv`, `NAME-forces.svg`,
-    /// `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none. Returns their
-    /// paths.
+    /// `NAME-forces.html`, `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none.
+    /// Returns their paths.
     ///
     /// # Errors
     /// [`Error::Input`] for a file that is there already and to be kept, or that cannot be written.

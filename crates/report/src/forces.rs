@@ -1,5 +1,7 @@
-//! Reports of forces from a path: the task with forces, `engagement.csv`, a picture, the stock that is left, a JSON
-//! document, and a table for people.
+//! Reports of forces from a path: the task with forces, `engagement.csv`, a picture, a page, the stock that is left, a
+//! JSON document, and a table for people.
+
+mod page;
 
 use super::output::ReportError;
 use super::picture;
@@ -30,6 +32,7 @@ pub fn forces_files(run: &ForcesRun, forces: &RemovalForces) -> Result<Files, Re
         ("", task(forces)?),
         ("-engagement.csv", engagement(forces)?),
         ("-forces.svg", picture::charts(&charts(forces)).into_bytes()),
+        ("-forces.html", page::page(run, forces).html()),
         ("-stock-before.stl", stl(&forces.stock[0])),
         ("-stock-after.stl", stl(&forces.stock[1])),
         ("-forces.json", bytes(&forces_json(run, forces))),
