@@ -149,7 +149,9 @@ impl RunBuilder {
             stated,
             reference,
             path_stability,
+            removal: None,
             notes,
+            warnings: Vec::new(),
         };
         Ok(Run::of(run))
     }

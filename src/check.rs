@@ -1,14 +1,13 @@
 //! What was understood of a run or a robot file.
 
+use crate::monitor::Warning;
 use crate::result::{Report, result};
 use crate::robot::Arm;
-use crate::{Error, Run};
+use crate::{Error, Monitor, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use stead_disk::input::InputFile;
 use stead_format::robot::says_stiffness;
 use stead_placement::overview::Overview;
-use stead_planning::problem::Problem;
 use stead_report::check::{CheckedRun, robot_json, robot_lines, run_json, run_text};
 use stead_report::picture::{arm_alone, arm_of_run};
 use stead_report::{Files, Folder};
@@ -20,6 +19,7 @@ pub struct Checked {
     document: Value,
     picture: String,
     notes: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 impl Checked {
@@ -35,6 +35,15 @@ impl Checked {
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(file, &Monitor::silent())
+    }
+
+    /// As [`Checked::read`], with a monitor: the forces of a run file with a table `[stock]` are computed, which may
+    /// take long.
+    ///
+    /// # Errors
+    /// As [`Checked::read`]; [`Error::Stopped`] when the monitor asked to stop before that was done.
+    pub fn read_with(file: impl AsRef<Path>, monitor: &Monitor) -> Result<Self, Error> {
         let file = file.as_ref();
         match says_stiffness(file)? {
             Some(has_stiffness) => {
@@ -42,8 +51,8 @@ impl Checked {
                 Ok(Self::of_arm(&arm, has_stiffness))
             }
             None => {
-                let run = Run::read(file)?;
-                Ok(Self::of_run(run.problem(), run.inputs(), run.notes()))
+                let run = Run::read_with(file, Vec::new(), monitor)?;
+                Ok(Self::of_run(&run))
             }
         }
     }
@@ -56,14 +65,18 @@ impl Checked {
             document: robot_json(robot, has_stiffness, &notes, arm.inputs()),
             picture: arm_alone(robot),
             notes,
+            warnings: Vec::new(),
         }
     }
 
-    fn of_run(problem: &Problem, inputs: &[InputFile], notes: &[String]) -> Self {
+    fn of_run(run: &Run) -> Self {
+        let problem = run.problem();
         let overview = Overview::of(problem);
-        let notes: Vec<String> = notes.iter().cloned().chain(overview.notes()).collect();
-        let run = CheckedRun { problem, overview: &overview, inputs, notes: &notes };
-        Self { text: run_text(&run), document: run_json(&run), picture: arm_of_run(problem, &overview), notes }
+        let notes: Vec<String> = run.notes().iter().cloned().chain(overview.notes()).collect();
+        let warnings = run.warnings().to_vec();
+        let run = CheckedRun { problem, overview: &overview, inputs: run.inputs(), notes: &notes, warnings: &warnings };
+        let (text, document, picture) = (run_text(&run), run_json(&run), arm_of_run(problem, &overview));
+        Self { text, document, picture, notes, warnings }
     }
 
     /// The arm as it was understood, as SVG.
@@ -91,6 +104,10 @@ impl Report for Checked {
 
     fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.warnings
     }
 }
 

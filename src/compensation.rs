@@ -25,15 +25,21 @@ impl CompensationRun {
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::read_with(file, None)
+        Self::read_with(file, None, &Monitor::silent())
     }
 
     /// As [`CompensationRun::read`], with another robot file on which the corrected path is played.
     ///
     /// # Errors
-    /// As [`CompensationRun::read`].
-    pub fn read_with(file: impl AsRef<Path>, reality: Option<&Path>) -> Result<Self, Error> {
-        Ok(Self { run: Arc::new(run_files::read_compensation(file.as_ref(), reality)?) })
+    /// As [`CompensationRun::read`]; [`Error::Stopped`] when the monitor asked to stop before the forces of a run with
+    /// a table `[stock]` were computed.
+    pub fn read_with(file: impl AsRef<Path>, reality: Option<&Path>, monitor: &Monitor) -> Result<Self, Error> {
+        Ok(Self { run: Arc::new(run_files::read_compensation(file.as_ref(), reality, monitor)?) })
+    }
+
+    /// What the user should see to in the run.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.run.warnings
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
@@ -72,7 +78,8 @@ impl CompensationRun {
 
     fn path(&self, outcome: Outcome) -> CompensatedPath {
         let notes = self.run.notes.iter().chain(&outcome.notes).cloned().collect();
-        CompensatedPath { run: Arc::clone(&self.run), outcome, notes }
+        let warnings = self.run.warnings.iter().chain(&outcome.warnings).cloned().collect();
+        CompensatedPath { run: Arc::clone(&self.run), outcome, notes, warnings }
     }
 }
 
@@ -82,6 +89,7 @@ pub struct CompensatedPath {
     run: Arc<stead_runs::CompensateRun>,
     outcome: Outcome,
     notes: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 impl CompensatedPath {
@@ -113,7 +121,7 @@ impl Report for CompensatedPath {
     }
 
     fn warnings(&self) -> &[Warning] {
-        &self.outcome.warnings
+        &self.warnings
     }
 }
 

@@ -75,6 +75,15 @@ impl From<stead_runs::LocatedError> for Error {
     }
 }
 
+impl From<stead_runs::ReadError> for Error {
+    fn from(error: stead_runs::ReadError) -> Self {
+        match error {
+            stead_runs::ReadError::Input(error) => Self::Input(error),
+            stead_runs::ReadError::Stopped(stop) => Self::Stopped(stop),
+        }
+    }
+}
+
 impl From<stead_study::RunError> for Error {
     fn from(error: stead_study::RunError) -> Self {
         match error {
@@ -88,6 +97,7 @@ impl From<StudyError> for Error {
     fn from(error: StudyError) -> Self {
         match error {
             StudyError::Input(error) => Self::Input(error),
+            StudyError::Stopped(stop) => Self::Stopped(stop),
             error => Self::Study(error),
         }
     }

@@ -47,14 +47,7 @@ impl ForcesRun {
     /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, and for cells that
     /// take too much memory; [`Error::Stopped`] when the monitor asked to stop before the last point.
     pub fn compute(&self, monitor: &Monitor) -> Result<PathForces, Error> {
-        let forces = match forces(&self.run.problem, monitor) {
-            Ok(forces) => forces,
-            Err(ForcesError::Stopped(stop)) => return Err(Error::Stopped(stop)),
-            Err(error) => match self.run.located(&error) {
-                Some(located) => return Err(Error::Input(located)),
-                None => return Err(Error::failed(error)),
-            },
-        };
+        let forces = forces(&self.run.problem, monitor).map_err(|error| self.run.located(&error))?;
         let notes = self.run.notes.iter().chain(&forces.notes).cloned().collect();
         Ok(PathForces { run: Arc::clone(&self.run), forces, notes })
     }
@@ -75,8 +68,8 @@ impl PathForces {
     }
 
     /// Writes the task with forces to a file, and beside it `NAME-engagement.csv`, `NAME-forces.svg`,
-    /// `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none. Returns their
-    /// paths.
+    /// `NAME-forces.html`, `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none.
+    /// Returns their paths.
     ///
     /// # Errors
     /// [`Error::Input`] for a file that is there already and to be kept, or that cannot be written.

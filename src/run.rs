@@ -50,7 +50,8 @@ impl Run {
         Self { run: Arc::new(run), is_set_up: false }
     }
 
-    /// Reads a run file and the files that it names.
+    /// Reads a run file and the files that it names. Forces of a table `[stock]` are computed at once, which may take
+    /// long: [`Run::read_with`] shows how far it is.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line, field, value found and what is allowed.
@@ -62,18 +63,20 @@ impl Run {
     /// path from the run file on.
     ///
     /// # Errors
-    /// As [`Run::read`]; an error in such a value says which it is.
+    /// As [`Run::read`]; an error in such a value says which it is. [`Error::Stopped`] when the monitor asked to stop
+    /// before the forces of a table `[stock]` were computed.
     ///
     /// ```
+    /// use stead::Monitor;
     /// use stead::files::FieldOverride;
     /// let values = ["cell.z_mm=[-602, -402]", "robot.joints[1].stiffness_mnm_per_rad=0.8"];
     /// let values = values.map(FieldOverride::parse).into_iter().collect::<Result<Vec<_>, _>>()?;
-    /// let run = stead::Run::read_with("configs/caro-2013.toml", values)?;
+    /// let run = stead::Run::read_with("configs/caro-2013.toml", values, &Monitor::silent())?;
     /// assert_eq!(run.problem().cell.position[2].max, -0.402);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn read_with(file: impl AsRef<Path>, values: Vec<FieldOverride>) -> Result<Self, Error> {
-        Ok(Self::of(run_files::read_run_with(file.as_ref(), &FieldOverrides(values))?))
+    pub fn read_with(file: impl AsRef<Path>, values: Vec<FieldOverride>, monitor: &Monitor) -> Result<Self, Error> {
+        Ok(Self::of(run_files::read_run_with(file.as_ref(), &FieldOverrides(values), monitor)?))
     }
 
     /// The same run with a certificate of this gap (relative), whatever the file says of one.
@@ -182,6 +185,11 @@ impl Run {
     pub fn notes(&self) -> &[String] {
         &self.run.notes
     }
+
+    /// What the user should see to in the input.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.run.warnings
+    }
 }
 
 impl Run {
@@ -205,8 +213,8 @@ impl Run {
         let started = Instant::now();
         let Placed { outcome, stability } = study::place(&self.run, monitor)?;
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
-        let warnings = outcome.warnings.clone();
-        let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        let mut context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        context.warnings.extend(outcome.warnings.iter().cloned());
         context.notes.extend(outcome.notes.iter().cloned());
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
     }
@@ -246,8 +254,8 @@ impl Run {
     pub fn score(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
         let run = self.set_up_at(placement, monitor);
         let Scored { score, stability, notes } = study::score(&run, placement, monitor)?;
-        let warnings = score.warnings.clone();
-        let mut context = Context { stability, warnings, ..Context::new(&self.run, self.run.search) };
+        let mut context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        context.warnings.extend(score.warnings.iter().cloned());
         context.notes.extend(notes);
         context.notes.extend(score.notes.iter().cloned());
         Ok(PlacementScore { run, score, map: None, context })

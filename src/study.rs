@@ -46,7 +46,16 @@ impl Study {
     /// [`Error::Input`] with file, line, field, value found and what is allowed, and where a case is wrong with its
     /// combination of values.
     pub fn read(file: impl AsRef<Path>) -> Result<Self, Error> {
-        Ok(Self { plan: Arc::new(Plan::of(run_files::read_study(file.as_ref())?)?) })
+        Self::read_with(file, &Monitor::silent())
+    }
+
+    /// As [`Study::read`], with a monitor: where the run file has a table `[stock]`, the forces of every case are
+    /// computed at once, which may take long.
+    ///
+    /// # Errors
+    /// As [`Study::read`]; [`Error::Stopped`] when the monitor asked to stop before the last case was read.
+    pub fn read_with(file: impl AsRef<Path>, monitor: &Monitor) -> Result<Self, Error> {
+        Ok(Self { plan: Arc::new(Plan::of(run_files::read_study(file.as_ref())?, monitor)?) })
     }
 
     /// All cases, in the order of their numbers.
@@ -298,7 +307,8 @@ impl Keeping for StudyFolder<'_> {
         certificate: Option<Certificate>,
     ) -> Result<(), String> {
         let Placed { outcome, stability } = placed;
-        let mut context = Context { stability, warnings: outcome.warnings.clone(), ..Context::new(run, run.search) };
+        let mut context = Context { stability, ..Context::new(run, run.search) };
+        context.warnings.extend(outcome.warnings.iter().cloned());
         context.notes.extend(outcome.notes.iter().cloned());
         let folder = Folder::create(&self.of_case(case)).map_err(|error| error.to_string())?;
         write_placement(&folder, &run.problem, &outcome, &context).map_err(|error| error.to_string())?;

@@ -40,6 +40,7 @@ mod simulate;
 mod stability;
 mod standard_output;
 mod starting;
+mod stock_in_run;
 mod stop;
 mod study;
 #[cfg(unix)]

@@ -26,6 +26,19 @@ fn done<T>(
     }
 }
 
+/// What was read, and whether Ctrl-C stopped what had to be computed for it.
+pub fn read_or_stopped<T>(
+    py: Python<'_>,
+    result: Result<T, Error>,
+    was_stopped: bool,
+) -> PyResult<(Option<T>, bool)> {
+    match result {
+        Ok(read) => Ok((Some(read), was_stopped)),
+        Err(_) if was_stopped => Ok((None, true)),
+        Err(error) => Err(raised(py, error)),
+    }
+}
+
 /// x, y, z in mm, and yaw in degrees.
 type PlaceMm = (f64, f64, f64, f64);
 
@@ -53,15 +66,17 @@ impl Run {
         certify: Option<f64>,
         seed: Option<u64>,
         sensitivity: bool,
-    ) -> PyResult<Self> {
-        let read = || {
+        options: Options,
+    ) -> PyResult<(Option<Self>, bool)> {
+        let read = move |monitor: &stead::Monitor| {
             let gap = certify.map(stead::Run::gap).transpose()?;
-            let run = stead::Run::read(&file)?;
+            let run = stead::Run::read_with(&file, Vec::new(), monitor)?;
             let run = if let Some(gap) = gap { run.with_certificate(gap) } else { run };
             let run = if let Some(seed) = seed { run.with_seed(seed) } else { run };
             Ok(if sensitivity { run.with_sensitivity(stead::Run::FORCE_ERROR) } else { run })
         };
-        py.detach(read).map(Self).map_err(|error| raised(py, error))
+        let (result, was_stopped) = run_stoppable(py, &options, read)?;
+        read_or_stopped(py, result.map(Self), was_stopped)
     }
 
     fn with_seed(&self, seed: u64) -> Self {
@@ -78,6 +93,10 @@ impl Run {
 
     fn notes(&self) -> Vec<String> {
         self.0.notes().to_vec()
+    }
+
+    fn warnings(&self) -> Vec<(&'static str, String)> {
+        self.0.warnings().iter().map(|warning| (warning.kind, warning.message.clone())).collect()
     }
 
     fn robot(&self) -> &str {
@@ -211,9 +230,16 @@ pub struct CompensationRun(stead::CompensationRun);
 #[pymethods]
 impl CompensationRun {
     #[staticmethod]
-    fn read(py: Python<'_>, file: PathBuf, reality: Option<PathBuf>) -> PyResult<Self> {
-        let read = || stead::CompensationRun::read_with(&file, reality.as_deref());
-        py.detach(read).map(Self).map_err(|error| raised(py, error))
+    fn read(
+        py: Python<'_>,
+        file: PathBuf,
+        reality: Option<PathBuf>,
+        options: Options,
+    ) -> PyResult<(Option<Self>, bool)> {
+        let read =
+            move |monitor: &stead::Monitor| stead::CompensationRun::read_with(&file, reality.as_deref(), monitor);
+        let (result, was_stopped) = run_stoppable(py, &options, read)?;
+        read_or_stopped(py, result.map(Self), was_stopped)
     }
 
     fn notes(&self) -> Vec<String> {

@@ -87,24 +87,6 @@ pub fn run_stoppable<T: Send + 'static>(
     }
 }
 
-/// Runs a job that does not look whether it should stop: Ctrl-C leaves it to itself, and nobody takes its result.
-///
-/// # Errors
-/// `KeyboardInterrupt` at Ctrl-C.
-pub fn run<T: Send + 'static>(
-    py: Python<'_>,
-    options: &Options,
-    job: impl FnOnce() -> T + Send + 'static,
-) -> PyResult<T> {
-    let results = started(py, options, job)?;
-    loop {
-        if let Some(result) = waited(py, &results)? {
-            return Ok(result);
-        }
-        py.check_signals()?;
-    }
-}
-
 /// The result of a job, once.
 type Results<T> = Mutex<Receiver<Result<T, Error>>>;
 

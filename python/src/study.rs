@@ -1,7 +1,8 @@
 //! Studies: a study file with its cases, and what becomes of them in a folder.
 
 use crate::errors::raised;
-use crate::jobs::{Options, run, run_stoppable};
+use crate::inputs::read_or_stopped;
+use crate::jobs::{Options, run_stoppable};
 use crate::results::{Kind, Outcome};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -94,8 +95,10 @@ pub struct Study(stead::Study);
 #[pymethods]
 impl Study {
     #[staticmethod]
-    fn read(py: Python<'_>, file: PathBuf, options: Options) -> PyResult<Self> {
-        run(py, &options, move || stead::Study::read(&file))?.map(Self).map_err(|error| raised(py, error))
+    fn read(py: Python<'_>, file: PathBuf, options: Options) -> PyResult<(Option<Self>, bool)> {
+        let read = move |monitor: &stead::Monitor| stead::Study::read_with(&file, monitor);
+        let (result, was_stopped) = run_stoppable(py, &options, read)?;
+        read_or_stopped(py, result.map(Self), was_stopped)
     }
 
     fn axes(&self) -> Vec<String> {

@@ -1,7 +1,8 @@
 //! `stead check`: what was understood of a file, and what looks wrong.
 
 use super::manual::Manual;
-use super::{Failure, files_written, say_notes, show};
+use super::progress::Terminal;
+use super::{Failure, files_written, say_notes, say_warnings, show};
 use clap::Args;
 use std::path::PathBuf;
 use stead::Checked;
@@ -35,8 +36,12 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), Failure> {
-    let checked = Checked::read(&options.file)?;
+    let shown = Terminal::start(None).show(None);
+    let checked = Checked::read_with(&options.file, &shown.monitor);
+    drop(shown);
+    let checked = checked?;
     say_notes(checked.notes());
+    say_warnings(checked.warnings());
     if let Some(out) = &options.out {
         let folder = Folder::create(out).map_err(Failure::Output)?;
         files_written(checked.write_in(&folder))?;

@@ -45,10 +45,16 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
-    let run = CompensationRun::read_with(&options.config, options.reality.as_deref())?;
+    let terminal = Terminal::start(None);
+    let shown = terminal.show(None);
+    let run = CompensationRun::read_with(&options.config, options.reality.as_deref(), &shown.monitor);
+    drop(shown);
+    let run = run?;
     let out = out_folder(options.out.as_deref(), &options.config)?;
+    terminal.holds(&out.folder);
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
+    say_warnings(run.warnings());
+    let shown = terminal.show(None);
     let path = if options.all_or_nothing { run.compensate_all(&shown.monitor) } else { run.compensate(&shown.monitor) };
     drop(shown);
     let path = path.inspect_err(|error| {
@@ -58,7 +64,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
         }
     })?;
     say_notes(path.notes().get(run.notes().len()..).unwrap_or_default());
-    say_warnings(path.warnings());
+    say_warnings(path.warnings().get(run.warnings().len()..).unwrap_or_default());
     out.show(path.write_in(&out.folder), &path, options.json, |folder| {
         if folder.is_empty() { folder } else { format!("results in {folder}\n") }
     })

@@ -2,8 +2,9 @@
 
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
+use super::progress::Terminal;
 use super::values::{finite, point};
-use super::{Failure, say_notes, show};
+use super::{Failure, say_notes, say_warnings, show};
 use clap::Args;
 
 #[derive(Debug, Args)]
@@ -35,10 +36,11 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
-    let run = options.run.read()?;
+    let run = options.run.read(&Terminal::start(None), None)?;
     let (run, placement) = options.place.of(run)?;
     let beta = options.beta_deg.to_radians();
     let explanations = run.explain(&placement, options.point, beta).map_err(|error| Failure::at("--point", error))?;
     say_notes(explanations.notes());
+    say_warnings(explanations.warnings());
     show(&explanations, options.json)
 }

@@ -104,11 +104,16 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &ExportCommand) -> Result<(), Failure> {
-    let run = Run::read(&options.config)?;
+    let terminal = Terminal::start(None);
+    let shown = terminal.show(None);
+    let run = Run::read_with(&options.config, Vec::new(), &shown.monitor);
+    drop(shown);
+    let run = run?;
     say_notes(run.notes());
+    say_warnings(run.warnings());
     match &options.check {
-        Some(program) => check(options, &run, program),
-        None => export(options, &run),
+        Some(program) => check(options, &run, program, &terminal),
+        None => export(options, &run, &terminal),
     }
 }
 
@@ -117,7 +122,7 @@ fn corrected(options: &ExportCommand) -> Option<CorrectedPath<'_>> {
     options.corrected.as_deref().map(|file| CorrectedPath { file, is_uncorrected_as_planned })
 }
 
-fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
+fn export(options: &ExportCommand, run: &Run, terminal: &Terminal) -> Result<(), Failure> {
     let (Some(format), Some(out)) = (options.format, &options.out) else {
         return Err(Failure::Usage("--format and --out are needed to write a program".to_owned()));
     };
@@ -134,7 +139,7 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
         spindle_off: options.spindle_off.as_deref(),
         ..ExportOptions::new(format, &name)
     };
-    let shown = Terminal::start(None).show(None);
+    let shown = terminal.show(None);
     let program = run.export(&options.plan, &requested, &shown.monitor);
     drop(shown);
     let program = program?;
@@ -149,7 +154,7 @@ fn export(options: &ExportCommand, run: &Run) -> Result<(), Failure> {
     print(format!("{program}\nwritten:\n{files}").as_bytes())
 }
 
-fn check(options: &ExportCommand, run: &Run, program: &Path) -> Result<(), Failure> {
+fn check(options: &ExportCommand, run: &Run, program: &Path, terminal: &Terminal) -> Result<(), Failure> {
     for (option, found, most) in
         [("--approach-mm", options.approach_mm, 1000.0), ("--blend-mm", options.blend_mm, 100.0)]
     {
@@ -163,7 +168,7 @@ fn check(options: &ExportCommand, run: &Run, program: &Path) -> Result<(), Failu
         approach: options.approach_mm / 1e3,
         blend: options.blend_mm / 1e3,
     };
-    let shown = Terminal::start(None).show(None);
+    let shown = terminal.show(None);
     let checked = run.check_program(&options.plan, program, &exported, &shown.monitor);
     drop(shown);
     let checked = checked?;

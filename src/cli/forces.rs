@@ -44,6 +44,7 @@ pub(super) const MANUAL: Manual = Manual {
             "chip and edge part, removed volume, heights and angles of the cut, largest force in a turn",
         ),
         ("NAME-forces.svg", "force, moment, height, angles and chip along the path"),
+        ("NAME-forces.html", "a page whose charts answer to the pointer"),
         ("NAME-stock-before.stl, NAME-stock-after.stl", "the stock before the path and what is left, thinned, in mm"),
         ("NAME-forces.json", "what --json prints"),
     ],

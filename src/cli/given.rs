@@ -1,8 +1,9 @@
 //! The arguments that several commands share: a run file, those that give a placement, and those of a simulation's
 //! model.
 
-use super::Failure;
+use super::progress::Terminal;
 use super::values::{case, damping_scale, field, finite, quaternion, rpm, variant};
+use super::{Failure, on_threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::{Error, Run};
@@ -24,8 +25,10 @@ pub(super) struct GivenRun {
 }
 
 impl GivenRun {
-    pub fn read(&self) -> Result<Run, Failure> {
-        Ok(Run::read_with(&self.config, self.set.clone())?)
+    /// Reads the run, whose forces may have to be computed, on so many threads.
+    pub fn read(&self, terminal: &Terminal, threads: Option<usize>) -> Result<Run, Failure> {
+        let shown = terminal.show(None);
+        Ok(on_threads(threads, || Run::read_with(&self.config, self.set.clone(), &shown.monitor))??)
     }
 }
 

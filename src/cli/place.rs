@@ -85,7 +85,8 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let mut run = options.run.read()?;
+    let terminal = Terminal::start(None);
+    let mut run = options.run.read(&terminal, options.threads)?;
     if let Some(gap) = options.certify {
         run = run.with_certificate(gap);
     }
@@ -103,10 +104,11 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     }
     let mut out = out_folder(options.out.as_deref(), &options.run.config)?;
     out.folder = out.folder.keeping_partial(options.keep_partial);
+    terminal.holds(&out.folder);
     say_notes(run.notes());
+    say_warnings(run.warnings());
     say_warnings(run.certificate_warning().as_slice());
 
-    let terminal = Terminal::start(Some(&out.folder));
     let shown = terminal.show(None);
     let found = on_threads(options.threads, || run.search(&shown.monitor))?;
     let was_stopped = shown.monitor.should_stop();
@@ -139,7 +141,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     }
     // What was read was said before.
     say_notes(placements.notes().get(run.notes().len()..).unwrap_or_default());
-    say_warnings(placements.warnings());
+    say_warnings(placements.warnings().get(run.warnings().len()..).unwrap_or_default());
 
     let shown = terminal.show(None);
     let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;

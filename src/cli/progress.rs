@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -18,6 +19,8 @@ pub(super) struct Terminal {
     stop: StopHandle,
     /// The bar that is shown, which a word about Ctrl-C must not tear.
     bar: Arc<Mutex<ProgressBar>>,
+    /// The lock file of the folder that the results go to.
+    lock: Arc<Mutex<Option<PathBuf>>>,
 }
 
 /// A monitor that shows progress on standard error, until it is dropped.
@@ -39,14 +42,16 @@ impl Terminal {
     /// Takes over Ctrl-C: the first asks the jobs to stop and keep what they have, the second ends the process and with
     /// it the hold on the folder of the results.
     pub fn start(out: Option<&Folder>) -> Self {
-        let terminal = Self { stop: StopHandle::default(), bar: Arc::new(Mutex::new(ProgressBar::hidden())) };
-        let lock = out.map(|out| out.lock_file().to_owned());
+        let bar = Arc::new(Mutex::new(ProgressBar::hidden()));
+        let terminal = Self { stop: StopHandle::default(), bar, lock: Arc::default() };
+        out.into_iter().for_each(|out| terminal.holds(out));
         let (stop, bar) = (terminal.stop.clone(), Arc::clone(&terminal.bar));
+        let lock = Arc::clone(&terminal.lock);
         // Without a handler Ctrl-C simply ends the process, which is no reason not to run.
         let _ = ctrlc::set_handler(move || {
             if stop.stop() {
                 // What stays of it would keep nobody out.
-                let _ = lock.as_ref().map(std::fs::remove_file);
+                let _ = locked(&lock).as_ref().map(std::fs::remove_file);
                 // Nobody is left to return to.
                 std::process::exit(130);
             }
@@ -54,6 +59,11 @@ impl Terminal {
             locked(&bar).suspend(|| super::say(word));
         });
         terminal
+    }
+
+    /// States the folder of the results, where it is held later.
+    pub fn holds(&self, out: &Folder) {
+        *locked(&self.lock) = Some(out.lock_file().to_owned());
     }
 
     /// A monitor of one job, stopped by Ctrl-C, or at a deadline.

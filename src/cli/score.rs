@@ -57,15 +57,18 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
-    let run = options.run.read()?;
+    let terminal = Terminal::start(None);
+    let run = options.run.read(&terminal, None)?;
     let (run, placement) = options.place.of(run)?;
     // Taken before the work is done.
     let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
+    out.iter().for_each(|out| terminal.holds(out));
     say_notes(run.notes());
+    say_warnings(run.warnings());
     let outside_cell = run.outside_cell(&placement);
     say_notes(outside_cell.as_slice());
-    let shown = Terminal::start(out.as_ref()).show(None);
+    let shown = terminal.show(None);
     let score = on_threads(None, || {
         let mut score = run.score(&placement, &shown.monitor)?;
         if options.out.is_some() {
@@ -82,7 +85,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     })?;
     // What was known before was said then.
     say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
-    say_warnings(score.warnings());
+    say_warnings(score.warnings().get(run.warnings().len()..).unwrap_or_default());
     let written = out
         .as_ref()
         .map_or(Ok(()), |out| files_written(score.write_in(out).inspect(|files| drop(left_in(out, files)))));

@@ -149,6 +149,24 @@ const identify = async (page) => {
 };
 await must('identify fit: residuals, intervals, readings', join(out('identify'), 'report.html'), identify);
 
+run('forces', 'configs/forces-pocket.toml', '--out', out('pocket.csv'));
+const engagement = table(out('pocket-engagement.csv'));
+await must('forces: every chart of the picture, warnings, zoom', out('pocket-forces.html'), async (page) => {
+  const title = 'Force on the tool';
+  const force = (text) => +text.match(/force \(N\) ([-\d.]+)/)[1];
+  await plot(page, title).press('Home');
+  const [first] = engagement;
+  const read = force(await tip(page, title));
+  assert.ok(Math.abs(read - first.force_n) <= 0.002 * first.force_n + 1e-3, `${read}, ${first.force_n}`);
+  for (const other of ['Moment about the tool centre point', 'Height of the cut above the tool centre point', 'Angles of the cut', 'Thickest chip'])
+    assert.equal(await plot(page, other).count(), 1, other);
+  const { warnings } = JSON.parse(readFileSync(out('pocket-forces.json'), 'utf8'));
+  const said = await page.locator('main').textContent();
+  assert.ok(warnings.length > 0 && warnings.every((warning) => said.includes(warning)));
+  await zooms(page, title);
+  await darkens(page, title);
+});
+
 cpSync(join(root, 'results/study-k1'), out('study'), { recursive: true });
 const ranking = table(join(out('study'), 'study-ranking.csv'));
 await must('study: a table that sorts and filters, effects', join(out('study'), 'report.html'), async (page) => {

@@ -87,6 +87,19 @@ impl DeflectionFigures {
     }
 }
 
+/// A plan at the feed that the arm holds, with the forces of that feed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtHeldFeed {
+    /// Number of segments that are cut slower than programmed.
+    pub slowed: usize,
+    /// Mean of the scores. m
+    pub mean: f64,
+    /// Largest score. m
+    pub max: f64,
+    /// The deflection itself.
+    pub deflection: DeflectionFigures,
+}
+
 /// A redundancy plan with its posture scheme, for one placement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -109,6 +122,9 @@ pub struct Plan {
     pub percentiles: [f64; 2],
     /// The deflection itself.
     pub deflection: DeflectionFigures,
+    /// The same figures at the feed that the arm holds, where it is known how the forces change with the feed: the
+    /// others are those of the programmed one.
+    pub held: Option<AtHeldFeed>,
     /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err
     /// together, so that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,

@@ -14,7 +14,7 @@ use super::sensitivity::{objective_by_stiffness, objective_with_force_errors};
 use super::settings::SearchSettings;
 use basins::{best_alone, choose, leading, refine_basins};
 use notes::{cancellation, interruption};
-use plan::{StatedPlans, detailed};
+use plan::{StatedPlans, detailed, stated};
 use refined::Refined;
 use searched::{Searched, search_cell};
 use sets::Sets;
@@ -25,7 +25,6 @@ use stead_planning::problem::Problem;
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::{BySense, Sense};
 use stead_planning::transfer::TransferSettings;
-use stead_planning::transfer::cycle;
 
 mod axes;
 mod basins;
@@ -154,11 +153,11 @@ fn stated_cases(
 ) -> BySense<Case> {
     let with_tie_rule = (problem.postures.tie > 0.0).then(|| Planner::finer(problem));
     let (solution, scheme) = (&refined.solution, refined.scheme.as_deref());
-    let stated = StatedPlans::of(with_tie_rule.as_ref().unwrap_or(without_tie_rule), refined, monitor);
+    let of_sense = StatedPlans::of(with_tie_rule.as_ref().unwrap_or(without_tie_rule), refined, monitor);
     BySense::from_fn(|plan_sense| {
         let plans = match plan_sense {
-            Sense::Min => &stated.best,
-            Sense::Max => &stated.worst,
+            Sense::Min => &of_sense.best,
+            Sense::Max => &of_sense.worst,
         };
         let active_bounds = match plan_sense {
             Sense::Min if monitor.should_stop() => None,
@@ -166,14 +165,15 @@ fn stated_cases(
             Sense::Min => Some(active_walls(without_tie_rule, solution, scheme)),
             Sense::Max => Some(Vec::new()),
         };
+        let (plan, cycle) = stated(problem, &solution.placement, transfer, plans);
         Case {
             placement_sense,
             plan_sense,
             placement: solution.placement,
             setup: problem.setup.clone(),
             orientation: problem.orientation().map(|orientation| orientation.name.clone()),
-            plan: detailed(problem, &solution.placement, plans),
-            cycle: cycle(problem, &solution.placement, transfer, plans),
+            plan,
+            cycle,
             active_bounds,
             objective_by_stiffness: (!monitor.should_stop())
                 .then(|| objective_by_stiffness(problem, &solution.placement, plans, plan_sense)),

@@ -126,6 +126,13 @@ impl CutFeed {
         limit.filter(|limit| self.is_beyond(limit)).map_or_else(|| self.programmed_for(segment), |limit| limit.feed)
     }
 
+    /// The feed at a point of a segment (from 0) over the feed that the point is programmed with (m/s): 1 where that is
+    /// held.
+    pub fn share(&self, segment: usize, programmed: f64) -> f64 {
+        let limit = self.segments.get(segment).copied().flatten();
+        limit.filter(|limit| self.is_beyond(limit)).map_or(1.0, |limit| (limit.feed / programmed).min(1.0))
+    }
+
     /// Number of segments that cannot be cut with the programmed feed.
     pub fn slowed(&self) -> usize {
         self.segments.iter().flatten().filter(|limit| self.is_beyond(limit)).count()

@@ -8,6 +8,7 @@ use serde_json::Value;
 use stead_disk::input::InputFile;
 use stead_model::robot::Robot;
 use stead_numerics::mean_max::MeanAndMax;
+use stead_numerics::message::Warning;
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::overview::{Hit, Overview, Stand};
 use stead_planning::problem::Problem;
@@ -23,6 +24,8 @@ pub struct CheckedRun<'a> {
     pub inputs: &'a [InputFile],
     /// What the user should know, in sentences.
     pub notes: &'a [String],
+    /// What the user should see to.
+    pub warnings: &'a [Warning],
 }
 
 const MM: Unit = Unit { factor: 1e3, decimals: 1 };
@@ -222,7 +225,7 @@ records! {
 
 /// What `stead check --json` prints of a run.
 pub fn run_json(run: &CheckedRun<'_>) -> Value {
-    Document::new(run.inputs).notes(run.notes.iter()).with(CheckFigures::of(run))
+    Document::new(run.inputs).notes(run.notes).warnings(run.warnings).with(CheckFigures::of(run))
 }
 
 records! {

@@ -221,7 +221,7 @@ pub fn compensation_json(run: &CompensateRun, outcome: &CompensatedPath) -> Valu
 }
 
 fn document(run: &CompensateRun) -> Document {
-    Document::new(&run.inputs).notes(&run.notes)
+    Document::new(&run.inputs).notes(&run.notes).warnings(&run.warnings)
 }
 
 /// What `stead compensate --json` prints where points cannot be compensated.

@@ -1,5 +1,7 @@
-//! Reports of forces from a path: the task with forces, `engagement.csv`, a picture, the stock that is left, a JSON
-//! document, and a table for people.
+//! Reports of forces from a path: the task with forces, `engagement.csv`, a picture, a page, the stock that is left, a
+//! JSON document, and a table for people.
+
+mod page;
 
 use super::output::ReportError;
 use super::picture;
@@ -30,6 +32,7 @@ pub fn forces_files(run: &ForcesRun, forces: &RemovalForces) -> Result<Files, Re
         ("", task(forces)?),
         ("-engagement.csv", engagement(forces)?),
         ("-forces.svg", picture::charts(&charts(forces)).into_bytes()),
+        ("-forces.html", page::page(run, forces).html()),
         ("-stock-before.stl", stl(&forces.stock[0])),
         ("-stock-after.stl", stl(&forces.stock[1])),
         ("-forces.json", bytes(&forces_json(run, forces))),
@@ -89,12 +92,13 @@ records! {
         moment_z_nm: MomentNm = moment_z_nm,
         /// Feed of the move to the point.
         feed_mm_per_s: SpeedMmPerS = feed.into(),
-        /// 0 for a point that is followed but not scored.
+        /// 0 for a point that is followed but not scored: its force is stated, and has no part in a score.
         scored: u8 = is_scored.into(),
     }
 
     /// What is cut at a point of the path. Forces and moments are means over a turn of what the workpiece does to the
-    /// tool, in the workpiece frame, moments about the tool centre point.
+    /// tool, in the workpiece frame, moments about the tool centre point, in two parts: at the share s of the
+    /// programmed feed the force is s times that of the chips, and that of the edges.
     pub struct EngagementRow of (index: usize, segment: usize, along: f64, is_scored: bool, load: &PointForces) {
         let [lowest_mm, highest_mm] = [0, 1].map(|k| load.heights.map(|heights| PlaceMm(heights[k])));
         let [entry_deg, exit_deg] = [0, 1].map(|k| load.angles.map(|angles| AngleDeg(angles[k])));
@@ -125,37 +129,37 @@ records! {
         removed_mm3_per_mm: RemovalMm2 = load.removed.into(),
         /// Lowest height above the tool centre point that cuts; empty where nothing does, as what follows.
         lowest_mm: Option<PlaceMm> = lowest_mm,
-        /// Highest one.
+        /// Highest height that cuts.
         highest_mm: Option<PlaceMm> = highest_mm,
         /// Angle at which a tooth enters, 0 where it moves along the feed, in the sense of rotation.
         entry_deg: Option<AngleDeg> = entry_deg,
-        /// Angle at which it leaves.
+        /// Angle at which a tooth leaves.
         exit_deg: Option<AngleDeg> = exit_deg,
         /// Thickest chip.
         chip_um: HeightUm = load.chip_thickness.into(),
     }
 
-    /// A force in a row.
+    /// A part of the force in a row.
     pub struct ForceColumns from force: Vector3<f64> {
         let [x_n, y_n, z_n] = each(force.into());
     } with {
-        /// x.
+        /// Along x, of the part that the name begins with.
         x_n: ForceN = x_n,
-        /// y.
+        /// Along y.
         y_n: ForceN = y_n,
-        /// z.
+        /// Along z.
         z_n: ForceN = z_n,
     }
 
-    /// A moment in a row.
+    /// A part of the moment in a row.
     pub struct MomentColumns from moment: Vector3<f64> {
         let [x_nm, y_nm, z_nm] = each(moment.into());
     } with {
-        /// x.
+        /// About x, of the part that the name begins with.
         x_nm: MomentNm = x_nm,
-        /// y.
+        /// About y.
         y_nm: MomentNm = y_nm,
-        /// z.
+        /// About z.
         z_nm: MomentNm = z_nm,
     }
 

@@ -8,8 +8,10 @@
 //! use stead_report::compensation::compensation_files;
 //! // A job gives figures in SI units; the files of its command are made of them, and the tables of these have units in
 //! // their names.
-//! let run = stead_run_files::read_compensation("../../configs/compensate-caro-2013.toml".as_ref(), None)?;
-//! let files = compensation_files(&run, &compensate(&run.job, &Monitor::silent())?)?;
+//! let monitor = Monitor::silent();
+//! let file = "../../configs/compensate-caro-2013.toml".as_ref();
+//! let run = stead_run_files::read_compensation(file, None, &monitor)?;
+//! let files = compensation_files(&run, &compensate(&run.job, &monitor)?)?;
 //! let (name, table) = &files[0];
 //! assert_eq!(name, "corrected-path.csv");
 //! assert!(table.starts_with(b"point,segment,target_x_mm,target_y_mm,target_z_mm,"));

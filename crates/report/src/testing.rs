@@ -91,6 +91,7 @@ pub fn context() -> Context {
             figures: [0.083, 0.35, 0.82, 1.2],
         }),
         stability: None,
+        removal: None,
         page: true,
     }
 }
@@ -172,6 +173,7 @@ impl Grid {
             ),
             percentiles: [0.8 * mean, max],
             deflection: DeflectionFigures::of(points.iter()),
+            held: None,
             mean_deviation: None,
             clearance: None,
             axes: Vec::new(),

@@ -16,6 +16,7 @@ use stead_format::task::parse_csv;
 use stead_format::toml_file::TomlFile;
 use stead_format::urdf::{ImportOptions, import_robot_text};
 use stead_model::robot::Pose;
+use stead_numerics::monitor::Monitor;
 
 /// A reader of files that others write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +55,10 @@ impl Reader {
         });
         let taken = match self {
             Self::Robot => TomlFile::new(file, bytes.to_vec()).and_then(|source| robot_from(&source)).map(drop),
-            Self::Run => TomlFile::new(file, bytes.to_vec()).and_then(|source| read_from(&source)).map(drop),
+            Self::Run => {
+                let run = |source| read_from(&source, &Monitor::silent()).map_err(|error| error.input(file));
+                TomlFile::new(file, bytes.to_vec()).and_then(run).map(drop)
+            }
             Self::Forces => TomlFile::new(file, bytes.to_vec()).and_then(|source| read_forces_from(&source)).map(drop),
             Self::Urdf => {
                 import_robot_text(file, &String::from_utf8_lossy(bytes), &ImportOptions::default()).map(|robot| {

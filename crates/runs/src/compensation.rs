@@ -2,6 +2,7 @@
 
 use stead_calibration::compensation::CompensationProblem;
 use stead_disk::input::InputFile;
+use stead_numerics::message::Warning;
 use stead_planning::problem::Placement;
 
 /// A compensation file and the files it names, read and checked.
@@ -17,4 +18,6 @@ pub struct CompensateRun {
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
+    /// What the user should see to in the run.
+    pub warnings: Vec<Warning>,
 }

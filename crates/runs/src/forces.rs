@@ -1,5 +1,6 @@
 //! A cut whose forces are to be computed.
 
+use crate::ReadError;
 use stead_disk::input::{InputError, InputFile};
 use stead_removal::forces::ForcesError;
 use stead_removal::operation::ForcesProblem;
@@ -29,11 +30,11 @@ pub struct ForcesPlaces {
 }
 
 impl ForcesRun {
-    /// What the job found wrong, at its place in the file; nothing for a stop.
-    pub fn located(&self, error: &ForcesError) -> Option<InputError> {
-        let at = |place: &InputError, allowed: &str| Some(place.clone().because(error).allowed(allowed));
+    /// What the job found wrong, at its place in the file; or that it was stopped.
+    pub fn located(&self, error: &ForcesError) -> ReadError {
+        let at = |place: &InputError, allowed: &str| place.clone().because(error).allowed(allowed).into();
         match error {
-            ForcesError::Stopped(_) => None,
+            ForcesError::Stopped(stop) => (*stop).into(),
             ForcesError::Form | ForcesError::Large { .. } => {
                 at(&self.places.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
             }

@@ -1,12 +1,15 @@
 //! A run: what `place`, `score`, `explain` and `certify` are asked.
 
 use serde_json::Value;
+use std::sync::Arc;
 use stead_certify::settings::CertificateSettings;
 use stead_disk::input::InputFile;
 use stead_model::published::Published;
+use stead_numerics::message::Warning;
 use stead_placement::settings::SearchSettings;
 use stead_planning::problem::Problem;
 use stead_planning::transfer::TransferSettings;
+use stead_removal::outcome::RemovalForces;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 
 /// A run file and the files it names, read and checked.
@@ -32,6 +35,10 @@ pub struct Run {
     pub reference: Option<Published<[f64; 4]>>,
     /// What is to be cut along the path, where its stability is requested.
     pub path_stability: Option<PathStabilityAnalysis>,
+    /// What the path removes of a table `[stock]`, and the forces that the task has of it.
+    pub removal: Option<Arc<RemovalForces>>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<String>,
+    /// What the user should see to in the input.
+    pub warnings: Vec<Warning>,
 }

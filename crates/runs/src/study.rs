@@ -1,9 +1,10 @@
 //! A study: a run, what is varied of it, and the cases that this makes.
 
-use crate::run::Run;
+use crate::{ReadError, Run};
 use std::path::PathBuf;
 use std::sync::Arc;
-use stead_disk::input::{InputError, InputFile};
+use stead_disk::input::InputFile;
+use stead_numerics::monitor::Monitor;
 
 /// Which cases leave their files in a folder of their own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,9 +40,9 @@ impl Study {
     /// Reads the run of a case.
     ///
     /// # Errors
-    /// What is wrong in the files of the case, with the values that make it.
-    pub fn case(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
-        self.reader.read(case).map_err(|error| {
+    /// What is wrong in the files of the case, with the values that make it; or that the monitor stopped it.
+    pub fn case(&self, case: &StudyCase, monitor: &Monitor) -> Result<CaseRun, ReadError> {
+        self.reader.read(case, monitor).map_err(|error| {
             let name = self.file.file_name().unwrap_or_default().to_string_lossy();
             error.set_by(format!("case {} of {name}{}", case.number, case.combination(&self.axes)))
         })
@@ -53,8 +54,8 @@ pub trait ReadCase: std::fmt::Debug + Send + Sync {
     /// The run of a case.
     ///
     /// # Errors
-    /// What is wrong in the files of the case.
-    fn read(&self, case: &StudyCase) -> Result<CaseRun, InputError>;
+    /// What is wrong in the files of the case, or that the monitor stopped it.
+    fn read(&self, case: &StudyCase, monitor: &Monitor) -> Result<CaseRun, ReadError>;
 }
 
 /// A case of a study as a run, with its digest.

@@ -98,9 +98,22 @@ class UnfollowedMove(Record):
     to_point: int
 
 
+class HeldFeed(Record):
+    """A plan at the feed that the arm holds."""
+
+    deflection_mm: Deflections
+    max_mm: float
+    mean_mm: float
+    slowed_segments: int
+    _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
+        "deflection_mm": Deflections,
+    }
+
+
 class PlanEntries(Record):
     """A plan with its feeds and times."""
 
+    at_held_feed: HeldFeed | None
     clearance: Clearance | None
     cutting_s: float
     cycle_s: float | None
@@ -116,6 +129,7 @@ class PlanEntries(Record):
     postures: list[int]
     unfollowed_moves: list[UnfollowedMove]
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
+        "at_held_feed": HeldFeed,
         "clearance": Clearance,
         "deflection_mm": Deflections,
         "feed": CutFeed,
@@ -177,6 +191,7 @@ class CaseEntries(Record):
     """A case: where the workpiece is, and how it is milled there."""
 
     active_bounds: list[ActiveBound] | None
+    at_held_feed: HeldFeed | None
     case: int
     clearance: Clearance | None
     cutting_s: float
@@ -200,6 +215,7 @@ class CaseEntries(Record):
     unfollowed_moves: list[UnfollowedMove]
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
         "active_bounds": ActiveBound,
+        "at_held_feed": HeldFeed,
         "clearance": Clearance,
         "deflection_mm": Deflections,
         "external_axes": ExternalAxes,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from . import _stead
-from ._jobs import File, Progress, checked_seed, finished, options_of
+from ._jobs import File, Progress, checked_seed, finished, options_of, read_done
 from ._results import (
     Circularity,
     CompensatedPath,
@@ -135,8 +135,16 @@ class CompensationRun:
         self._native = native
 
     @classmethod
-    def read(cls, file: File, *, reality: File | None = None) -> CompensationRun:
-        """Reads a compensation file and the files that it names.
+    def read(
+        cls,
+        file: File,
+        *,
+        reality: File | None = None,
+        progress: Progress | None = None,
+        threads: int | None = None,
+        time_limit_s: float | None = None,
+    ) -> CompensationRun:
+        """Reads a compensation file and the files that it names; `progress` and what follows as in `Run.read`.
 
         Args:
             file: The compensation file (TOML).
@@ -145,7 +153,9 @@ class CompensationRun:
         Raises:
             InputError: with file, line, field, value found and what is allowed.
         """
-        return cls(_stead.CompensationRun.read(Path(file), None if reality is None else Path(reality)))
+        options = options_of(progress, threads, time_limit_s)
+        done = _stead.CompensationRun.read(Path(file), None if reality is None else Path(reality), options)
+        return cls(read_done(done))
 
     @property
     def notes(self) -> list[str]:

@@ -4,8 +4,7 @@
   a certificate, `done` are the nodes bounded and `total` those and the open ones.
 - `threads`: by default one for each processor, at most 1024. It does not change a result.
 - `time_limit_s`: the job ends then with what it has; where that is nothing, with `Error`.
-- Ctrl-C stops a job that takes `progress`, and raises `Interrupted`, a `KeyboardInterrupt` with what was found as `result`; the second one
-  does not wait. Other jobs raise `KeyboardInterrupt` at once, and what they have begun ends unheard.
+- Ctrl-C stops a job, and raises `Interrupted`, a `KeyboardInterrupt` with what was found as `result`; the second one does not wait.
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ from ._results import Result
 File = str | PathLike[str]
 Progress = Callable[[str, int, int], object]
 _R = TypeVar("_R", bound=Result)
+_N = TypeVar("_N")
 
 
 def options_of(
@@ -38,6 +38,14 @@ def finished(kind: type[_R], done: tuple[_stead.Outcome | None, bool]) -> _R:
     if was_stopped or result is None:
         raise Interrupted(result)
     return result
+
+
+def read_done(done: tuple[_N | None, bool]) -> _N:
+    """What was read, or `Interrupted` where Ctrl-C stopped what had to be computed for it."""
+    native, was_stopped = done
+    if was_stopped or native is None:
+        raise Interrupted()
+    return native
 
 
 def checked_seed(seed: int | None) -> int | None:

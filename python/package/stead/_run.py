@@ -7,7 +7,7 @@ from typing import Literal
 
 from . import _stead
 from ._errors import ArgumentError
-from ._jobs import File, Progress, checked_seed, finished, options_of
+from ._jobs import File, Progress, checked_seed, finished, options_of, read_done
 from ._records import Placement
 from ._results import Explanations, PlacementScore, Placements, Warning
 
@@ -24,20 +24,34 @@ class Run:
 
     @classmethod
     def read(
-        cls, file: File, *, certify: float | None = None, seed: int | None = None, sensitivity: bool = False
+        cls,
+        file: File,
+        *,
+        certify: float | None = None,
+        seed: int | None = None,
+        sensitivity: bool = False,
+        progress: Progress | None = None,
+        threads: int | None = None,
+        time_limit_s: float | None = None,
     ) -> Run:
-        """Reads a run file and the files that it names.
+        """Reads a run file and the files that it names. Forces of a table `[stock]` are computed at once, which may take long.
 
         Args:
             file: The run file (TOML).
             certify: Gap of a certificate in per cent, whatever the file says of one.
             seed: Seed of the random numbers, instead of the file's.
             sensitivity: Refine once more for force errors of 10 %, and say how far the best placement moves.
+            progress: Called with stage, steps done and steps in all, where forces are computed.
+            threads: Number of threads; it does not change the result.
+            time_limit_s: After so many seconds there is no run, but an `Error`, where forces are computed.
 
         Raises:
             InputError: with file, line, field, value found and what is allowed.
+            Error: The time was up.
+            Interrupted: at Ctrl-C, without a result.
         """
-        return cls(_stead.Run.read(Path(file), certify, checked_seed(seed), sensitivity))
+        options = options_of(progress, threads, time_limit_s)
+        return cls(read_done(_stead.Run.read(Path(file), certify, checked_seed(seed), sensitivity, options)))
 
     def with_seed(self, seed: int) -> Run:
         """The same run with another seed of the random numbers."""
@@ -56,6 +70,11 @@ class Run:
     def notes(self) -> list[str]:
         """What the user should know about the input though it is not wrong."""
         return self._native.notes()
+
+    @property
+    def warnings(self) -> list[Warning]:
+        """What the user should see to in the input."""
+        return [Warning(*warning) for warning in self._native.warnings()]
 
     @property
     def robot(self) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from . import _stead
 from ._errors import ArgumentError, Interrupted
-from ._jobs import File, Progress, options_of
+from ._jobs import File, Progress, options_of, read_done
 from ._results import StudyReport
 from ._tables import Table
 
@@ -103,13 +103,28 @@ class Study:
         self._native = native
 
     @classmethod
-    def read(cls, file: File, *, threads: int | None = None) -> Study:
-        """Reads a study file, the run file that it varies, and every case once.
+    def read(
+        cls,
+        file: File,
+        *,
+        progress: Progress | None = None,
+        threads: int | None = None,
+        time_limit_s: float | None = None,
+    ) -> Study:
+        """Reads a study file, the run file that it varies, and every case once, with its forces where there is `[stock]`.
+
+        Args:
+            file: The study file (TOML).
+            progress: Called with stage, cases read and cases in all.
+            threads: Number of threads; it does not change the result.
+            time_limit_s: After so many seconds there is no study, but an `Error`.
 
         Raises:
             InputError: with file, line, field, value found and what is allowed, and where a case is wrong with its combination of values.
+            Error: The time was up.
+            Interrupted: at Ctrl-C, without a result.
         """
-        return cls(_stead.Study.read(Path(file), options_of(threads=threads)))
+        return cls(read_done(_stead.Study.read(Path(file), options_of(progress, threads, time_limit_s))))
 
     @property
     def axes(self) -> list[str]:

@@ -5,9 +5,11 @@ pub(super) mod run;
 pub(super) mod slurm;
 pub(super) mod status;
 
-use super::{Failure, say};
+use super::progress::Terminal;
+use super::{Failure, on_threads, say};
 use clap::Subcommand;
 use std::path::{Path, PathBuf};
+use stead::Study;
 use stead::study::StudyStatus;
 
 #[derive(Debug, Subcommand)]
@@ -29,6 +31,12 @@ pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
         StudyCommand::Status(options) => status::run(options),
         StudyCommand::Report(options) => report::run(options),
     }
+}
+
+/// Reads a study and all its cases, whose forces may have to be computed, on so many threads.
+fn read(config: &Path, threads: Option<usize>, terminal: &Terminal) -> Result<Study, Failure> {
+    let shown = terminal.show(None);
+    Ok(on_threads(threads, || Study::read_with(config, &shown.monitor))??)
 }
 
 /// The folder requested, or `results/` and the name of the study.

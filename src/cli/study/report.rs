@@ -1,12 +1,12 @@
 //! `stead study report`: what a study says.
 
-use super::folder;
+use super::{folder, read};
 use crate::cli::manual::Manual;
+use crate::cli::progress::Terminal;
 use crate::cli::values::noise;
-use crate::cli::{Failure, files_written, on_threads, print, print_json, results_in};
+use crate::cli::{Failure, files_written, print, print_json, results_in};
 use clap::Args;
 use std::path::PathBuf;
-use stead::Study;
 use stead::study::StudyQuestion;
 use stead_report::output::Folder;
 
@@ -70,7 +70,7 @@ pub(super) fn run(options: &StudyReportOptions) -> Result<(), Failure> {
         map: map.transpose()?,
         noise: options.noise_percent,
     };
-    let study = on_threads(None, || Study::read(&options.config))??;
+    let study = read(&options.config, None, &Terminal::start(None))?;
     let folder = folder(options.out.as_deref(), &options.config);
     let report = study.report(&folder, &question)?;
     // The last shards may have ended at the same time or elsewhere, or the study may have been edited since.

@@ -1,13 +1,12 @@
 //! `stead study run`: what is left to do of a study, or of a shard of it.
 
-use super::{counted_cases, folder, say_stale};
+use super::{counted_cases, folder, read, say_stale};
 use crate::cli::manual::Manual;
 use crate::cli::progress::Terminal;
 use crate::cli::values::{shard, threads};
 use crate::cli::{Failure, on_threads, print, say};
 use clap::Args;
 use std::path::PathBuf;
-use stead::Study;
 use stead::study::Shard;
 
 #[derive(Debug, Args)]
@@ -55,7 +54,8 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &StudyRunOptions) -> Result<(), Failure> {
-    let study = on_threads(options.threads, || Study::read(&options.config))??;
+    let terminal = Terminal::start(None);
+    let study = read(&options.config, options.threads, &terminal)?;
     let folder = folder(options.out.as_deref(), &options.config);
     let shard = options.shard.unwrap_or(Shard::WHOLE);
     if options.prune {
@@ -63,7 +63,7 @@ pub(super) fn run(options: &StudyRunOptions) -> Result<(), Failure> {
         say(&format!("note: {} removed that the study has no longer", counted_cases(gone.len())));
     }
     say_stale(&study.status(&folder)?);
-    let shown = Terminal::start(None).show(None);
+    let shown = terminal.show(None);
     let finished = on_threads(options.threads, || study.run(&folder, shard, &shown.monitor))?;
     drop(shown);
     let finished = finished?;

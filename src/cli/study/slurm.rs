@@ -1,12 +1,12 @@
 //! `stead study slurm`: the script of a Slurm array.
 
-use super::folder;
+use super::{folder, read};
 use crate::cli::manual::Manual;
+use crate::cli::progress::Terminal;
 use crate::cli::values::{shards, threads};
-use crate::cli::{Failure, on_threads, print};
+use crate::cli::{Failure, print};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use stead::Study;
 use stead::study::slurm_script;
 
 #[derive(Debug, Args)]
@@ -35,7 +35,7 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &StudySlurmOptions) -> Result<(), Failure> {
     // What is wrong in the study is better said here than by every element.
-    on_threads(None, || Study::read(&options.config))??;
+    read(&options.config, None, &Terminal::start(None))?;
     // Where this program lies, for all nodes.
     let stead = std::env::current_exe().unwrap_or_else(|_| "stead".into());
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

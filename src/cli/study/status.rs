@@ -1,12 +1,12 @@
 //! `stead study status`: how far a study is.
 
-use super::{folder, say_stale};
+use super::{folder, read, say_stale};
 use crate::cli::manual::Manual;
-use crate::cli::{Failure, on_threads, print, print_json, say};
+use crate::cli::progress::Terminal;
+use crate::cli::{Failure, print, print_json, say};
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
-use stead::Study;
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct StudyStatusOptions {
@@ -33,7 +33,7 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &StudyStatusOptions) -> Result<(), Failure> {
-    let study = on_threads(None, || Study::read(&options.config))??;
+    let study = read(&options.config, None, &Terminal::start(None))?;
     let status = study.status(folder(options.out.as_deref(), &options.config))?;
     if options.json {
         return print_json(&study.status_json(&status));

@@ -2,6 +2,7 @@
 //!
 //! Everything is in the workpiece frame. A [`ToolPath`] is geometry alone; a [`Task`] has the wrenches too.
 
+mod feed_parts;
 mod following;
 mod thinned;
 mod turned;
@@ -77,6 +78,8 @@ pub struct ToolPath {
 pub struct Task {
     path: ToolPath,
     wrenches: Vec<Wrench>,
+    /// The part of each wrench that does not grow with the feed, where that is known.
+    edges: Option<Vec<Wrench>>,
 }
 
 /// Why points do not make a task. Points are counted from 0, in the order given.
@@ -308,7 +311,7 @@ impl Task {
         }
         let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
         unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
-        Ok(Self { path, wrenches })
+        Ok(Self { path, wrenches, edges: None })
     }
 
     /// The geometry.

@@ -1,6 +1,6 @@
 //! A path thinned to some of its points, which stand for the others.
 
-use super::{SAME_PLACE, Task, ToolPath};
+use super::{SAME_PLACE, Task, ToolPath, Wrench};
 
 /// A point that is kept of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,7 +104,8 @@ impl ToolPath {
 impl Task {
     /// The task thinned to some of its points, ascending and at least one of every segment.
     pub fn thinned(&self, kept: &[KeptPoint]) -> Self {
-        Self { path: self.path.thinned(kept), wrenches: kept.iter().map(|kept| self.wrenches[kept.point]).collect() }
+        let those = |wrenches: &Vec<Wrench>| kept.iter().map(|kept| wrenches[kept.point]).collect();
+        Self { path: self.path.thinned(kept), wrenches: those(&self.wrenches), edges: self.edges.as_ref().map(those) }
     }
 }
 

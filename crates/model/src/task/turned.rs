@@ -8,7 +8,8 @@ impl Task {
     /// directions of the frame in which the rotation is given.
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         let turned = |wrench: &Wrench| Wrench { force: rotation * wrench.force, moment: rotation * wrench.moment };
-        Self { path: self.path.turned(rotation), wrenches: self.wrenches.iter().map(turned).collect() }
+        let all = |wrenches: &Vec<Wrench>| wrenches.iter().map(turned).collect();
+        Self { path: self.path.turned(rotation), wrenches: all(&self.wrenches), edges: self.edges.as_ref().map(all) }
     }
 }
 

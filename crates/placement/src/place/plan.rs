@@ -1,17 +1,19 @@
 //! Plans with everything that there is to say of them.
 
 use super::refined::Refined;
-use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
+use crate::outcome::{AtHeldFeed, Cycle, DeflectionFigures, Plan, PlanPoint};
 use crate::refine::planned;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
 use stead_planning::collision::PlanClearance;
 use stead_planning::evaluate::reference::scored_part_by_parameters;
+use stead_planning::feed::CutFeed;
 use stead_planning::joint_travel::JointTravel;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use stead_planning::sense::Sense;
+use stead_planning::transfer::{TransferSettings, cycle};
 
 /// What is stated at a refined placement: its best plan, or one within the tie whose moves are shorter, and its worst.
 pub(super) struct StatedPlans {
@@ -50,6 +52,40 @@ pub(super) fn worst_plan(
     scheme: Option<&[Posture]>,
 ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
     planner.plan_fine(placement, Sense::Max, scheme, &mut planner.workspace())
+}
+
+/// A plan with its times, and what it comes to at the feed that the arm holds.
+pub(super) fn stated(
+    problem: &Problem,
+    placement: &Placement,
+    transfer: &TransferSettings,
+    plans: &[SegmentPlan],
+) -> (Plan, Cycle) {
+    let cycle = cycle(problem, placement, transfer, plans);
+    let mut plan = detailed(problem, placement, plans);
+    plan.held = at_held_feed(problem, placement, plans, &plan, &cycle.feed);
+    (plan, cycle)
+}
+
+/// A plan with the forces of the feed that the arm holds, where it is known how they change with the feed.
+fn at_held_feed(
+    problem: &Problem,
+    placement: &Placement,
+    plans: &[SegmentPlan],
+    programmed: &Plan,
+    feed: &CutFeed,
+) -> Option<AtHeldFeed> {
+    if !problem.task.has_edge_parts() {
+        return None;
+    }
+    let of = |plan: &Plan| {
+        let (mean, max, deflection) = (plan.mean, plan.max, plan.deflection);
+        AtHeldFeed { slowed: feed.slowed(), mean, max, deflection }
+    };
+    if feed.slowed() == 0 {
+        return Some(of(programmed));
+    }
+    problem.at_held_feed(feed).map(|slower| of(&detailed(&slower, placement, plans)))
 }
 
 /// A plan with everything that there is to say of each point, from the reference evaluator.
@@ -98,6 +134,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         max: scored.clone().map(|p| p.score).fold(0.0, f64::max),
         percentiles: [0.5, 0.95].map(|share| percentile(scored.clone().map(|p| p.score), share)),
         deflection: DeflectionFigures::of(scored),
+        held: None,
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         clearance: plan_clearance(problem, &points),
         travel,

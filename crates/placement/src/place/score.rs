@@ -2,7 +2,7 @@
 
 use super::infeasible::{Infeasible, infeasible};
 use super::notes::{self, cancellation};
-use super::plan::{detailed, worst_plan};
+use super::plan::{stated, worst_plan};
 use crate::outcome::{Case, Cycle, Plan};
 use crate::refine::planned;
 use stead_numerics::message::Warning;
@@ -12,7 +12,6 @@ use stead_planning::redundancy::Planner;
 use stead_planning::sense::{BySense, Sense};
 use stead_planning::setup::Setup;
 use stead_planning::transfer::TransferSettings;
-use stead_planning::transfer::cycle;
 
 /// What one given placement is worth.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,9 +68,8 @@ pub fn score(
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
     let cancelled = cancellation(problem, best.objective);
-    let plans = BySense { best: best.plans, worst };
-    let cycles = plans.as_ref().map(|plans| cycle(problem, placement, transfer, plans));
-    let plans = plans.map(|plans| detailed(problem, placement, &plans));
+    let [best, worst] = [best.plans, worst].map(|plans| stated(problem, placement, transfer, &plans));
+    let (plans, cycles) = (BySense { best: best.0, worst: worst.0 }, BySense { best: best.1, worst: worst.1 });
     let warnings = cancelled
         .into_iter()
         .chain(notes::moves(&[("best plan", &cycles.best), ("worst plan", &cycles.worst)]))

@@ -17,6 +17,7 @@ use stead_planning::testing::{five_segments, with_uncertainty};
 
 mod choice;
 mod following;
+mod held_feed;
 mod long_path;
 mod setup;
 

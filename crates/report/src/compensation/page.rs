@@ -24,7 +24,10 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
     }
     lead.push('.');
     let mut page = Page::new(run.job.robot.name(), subtitle, lead, &run.inputs)
-        .messages(&outcome.warnings, &[run.notes.as_slice(), &outcome.notes].concat())
+        .messages(
+            &[run.warnings.as_slice(), &outcome.warnings].concat(),
+            &[run.notes.as_slice(), &outcome.notes].concat(),
+        )
         .with(tiles(outcome));
     for chart in before_and_after(outcome) {
         page = page.with(Card::Chart(chart));
@@ -150,13 +153,16 @@ mod tests {
     use crate::testing::assert_well_formed;
     use std::path::Path;
     use stead_calibration::compensation::compensate;
+    use stead_numerics::monitor::Monitor;
     use stead_run_files::read_compensation;
 
     fn outcome() -> CompensatedPath {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let reality = root.join("configs/robots/kuka-kr270-2-k1-0.8.toml");
-        let run = read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
-        compensate(&run.job, &stead_numerics::monitor::Monitor::silent()).unwrap()
+        let run =
+            read_compensation(&root.join("configs/compensate-caro-2013.toml"), Some(&reality), &Monitor::silent())
+                .unwrap();
+        compensate(&run.job, &Monitor::silent()).unwrap()
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! What is in a page: `page-data.json` and the other files of a run, as the script reads them.
 
+use super::packed::chosen_singles;
 use super::table::Table;
-use super::{PageError, map_data};
+use super::{PageError, map_data, removal};
 use crate::Files;
 use crate::document::value;
 use serde::Serialize;
@@ -98,7 +99,10 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     if let Some(chosen) = &chosen {
         for key in ["position_mm", "feed", "axis"] {
             let all = data["task"][key].as_str().unwrap_or_default();
-            data["task"][key] = vectors(all, chosen).into();
+            data["task"][key] = chosen_singles(all, chosen, 3).into();
+        }
+        if let Some(removal) = data.get_mut("removal") {
+            removal::keep(removal, chosen);
         }
     }
     data["maps"] = maps.into();
@@ -173,11 +177,6 @@ fn open_region(boxes: &Table<'_>) -> Result<Regions, PageError> {
         }
     }
     Ok(regions)
-}
-
-/// Those chosen of a list of three singles each in Base64, which are sixteen characters.
-fn vectors(all: &str, chosen: &[usize]) -> String {
-    chosen.iter().filter_map(|point| all.get(16 * point..16 * (point + 1))).collect()
 }
 
 pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {

@@ -4,6 +4,7 @@ use super::map_data::MapData;
 use super::moves::{MoveData, moves};
 use super::packed::{base64, singles};
 use super::pose::PoseData;
+use super::removal::RemovalData;
 use super::setup::{AxisData, external_axes, part_turns};
 use super::shapes::{BodyFrame, BodyMesh, bodies};
 use super::surroundings::surroundings;
@@ -17,9 +18,19 @@ use stead_planning::feasibility::DeflectionMap;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::Setup;
 use stead_planning::transfer::TransferSettings;
+use stead_removal::outcome::RemovalForces;
 
 /// A deflection map with the placement and the setup that it is of and the name of its table.
 pub(crate) type MapOf<'a> = (Placed<'a>, &'a DeflectionMap, &'static str);
+
+/// What a run knows beside its problem.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RunOf<'a> {
+    /// Limits of its moves between segments.
+    pub transfer: &'a TransferSettings,
+    /// What its path removes of a table `[stock]`.
+    pub removal: Option<&'a RemovalForces>,
+}
 
 /// A placement with the setup of the cell.
 pub(crate) type Placed<'a> = (&'a Placement, &'a Setup);
@@ -27,7 +38,7 @@ pub(crate) type Placed<'a> = (&'a Placement, &'a Setup);
 records! {
     /// The content of `page-data.json`. Lists of numbers are in single precision, little endian, as Base64.
     pub struct PageData of (
-        command: &str, problem: &Problem, settings: &TransferSettings, plans: &[&Case], maps: &[MapOf<'_>]
+        command: &str, problem: &Problem, run: &RunOf<'_>, plans: &[&Case], maps: &[MapOf<'_>]
     ) {
         let map =
             |((placement, setup), map, table): &MapOf<'_>| MapData::of(&problem.in_setup(setup), placement, map, table);
@@ -60,7 +71,10 @@ records! {
         /// For each plan its moves between segments, null where a move is straight in joint space; left out where no
         /// plan has a path round shapes.
         #[serde(skip_serializing_if = "Option::is_none")]
-        moves: Option<Vec<Vec<Option<MoveData>>>> = moves(problem, settings, plans),
+        moves: Option<Vec<Vec<Option<MoveData>>>> = moves(problem, run.transfer, plans),
+        /// What the path removes of its stock, where the run has one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        removal: Option<RemovalData> = run.removal.map(|removal| RemovalData::of(problem, removal)),
     }
 }
 
@@ -194,11 +208,11 @@ pub(crate) fn page_data(
     document: Document,
     command: &str,
     problem: &Problem,
-    settings: &TransferSettings,
+    run: &RunOf<'_>,
     plans: &[&Case],
     maps: &[MapOf<'_>],
 ) -> Value {
-    document.with(PageData::of(command, problem, settings, plans, maps))
+    document.with(PageData::of(command, problem, run, plans, maps))
 }
 
 fn frame(frame: BodyFrame) -> String {

@@ -20,6 +20,7 @@ mod map_data;
 mod moves;
 mod packed;
 mod pose;
+mod removal;
 mod script;
 pub mod setup;
 mod shapes;
@@ -27,6 +28,7 @@ mod surroundings;
 mod table;
 #[cfg(test)]
 mod tests;
+mod thinned;
 
 pub use folder::{RewriteError, rewrite};
 pub use shapes::{BodyFrame, BodyMesh, bodies};

@@ -18,6 +18,13 @@ pub(super) fn singles(values: impl IntoIterator<Item = f64>) -> String {
     base64(&values.into_iter().flat_map(|value| (value as f32).to_le_bytes()).collect::<Vec<u8>>())
 }
 
+/// Those chosen of rows of so many singles in Base64.
+pub(super) fn chosen_singles(all: &str, chosen: &[usize], width: usize) -> String {
+    let bytes = bytes_of(all);
+    let row = |row: &usize| bytes.get(4 * width * row..4 * width * (row + 1)).unwrap_or_default();
+    base64(&chosen.iter().flat_map(row).copied().collect::<Vec<u8>>())
+}
+
 /// Whole numbers that change little from one to the next: each as seven bits a byte, the lowest first, the sign in
 /// bit 0.
 #[derive(Debug, Default)]
@@ -85,5 +92,7 @@ mod tests {
     #[test]
     fn singles_are_little_endian() {
         assert_eq!(singles([1.0, -2.0]), "AACAPwAAAMA=");
+        assert_eq!(chosen_singles(&singles([1.0, -2.0, 3.0, 4.0]), &[0, 3], 1), singles([1.0, 4.0]));
+        assert_eq!(chosen_singles(&singles([1.0, -2.0, 3.0, 4.0]), &[1], 2), singles([3.0, 4.0]));
     }
 }

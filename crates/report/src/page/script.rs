@@ -35,6 +35,7 @@ const MODULES: &[(&str, &str)] = modules![
     "run/colour.js",
     "run/data.js",
     "run/external-axes.js",
+    "run/forces.js",
     "run/gpu.js",
     "run/header.js",
     "run/kinematics.js",

@@ -7,7 +7,7 @@ use crate::names;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stead_model::robot::Posture;
-use stead_placement::outcome::{Case, Cycle, Plan, PlanPoint};
+use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
 use stead_planning::collision;
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::limit::ActiveBound;
@@ -61,6 +61,10 @@ records! {
         #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
         /// Deflections by direction.
         deflection_mm: DeflectionByDirection = (&plan.deflection).into(),
+        /// The same at the feed that the arm holds, with forces of a table `[stock]`, of which a part grows with the
+        /// feed: what stands above is at the programmed feed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        at_held_feed: Option<HeldFeedFigures> = plan.held.as_ref().map(Into::into),
         /// The posture of each segment, 1 to 8.
         #[schemars(with = "Vec<u8>")] postures: Vec<Posture> = plan.postures.clone(),
         /// How much the joints turn.
@@ -76,6 +80,21 @@ records! {
         /// The least clearance at the points, among shapes of a cell.
         #[serde(skip_serializing_if = "Option::is_none")]
         clearance: Option<ClearanceFigures> = plan.clearance.as_ref().map(ClearanceFigures::of),
+    }
+}
+
+records! {
+    /// A plan at the feed that the arm holds.
+    pub struct HeldFeedFigures from held: &AtHeldFeed {
+    } with {
+        /// Segments that are cut slower than programmed.
+        slowed_segments: usize = held.slowed,
+        /// Mean of the scores.
+        mean_mm: DeflectionMm = held.mean.into(),
+        /// Largest score.
+        max_mm: DeflectionMm = held.max.into(),
+        /// Deflections by direction.
+        deflection_mm: DeflectionByDirection = (&held.deflection).into(),
     }
 }
 

@@ -114,6 +114,7 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         least_room(plan, name).iter().for_each(|row| line(&mut feed, row));
     }
     super::text::highest_feed(&score.cycles.best.feed).iter().for_each(|row| line(&mut feed, row));
+    super::text::held_feed(&score.plans.best).iter().for_each(|row| line(&mut feed, row));
     line(&mut feed, &super::text::joint_travel(&score.plans.best));
     let feed = format!("\n{feed}");
     let stability = stability.unwrap_or_default();

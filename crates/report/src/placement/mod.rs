@@ -17,10 +17,11 @@ pub use text::placement_text;
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
 use crate::page;
-use crate::page::data::{MapOf, Placed, page_data};
+use crate::page::data::{MapOf, Placed, RunOf, page_data};
 use crate::{Files, named, picture};
 use serde_json::Value;
 use std::path::PathBuf;
+use std::sync::Arc;
 use stead_disk::input::InputFile;
 use stead_model::published::Published;
 use stead_numerics::message::Warning;
@@ -31,6 +32,7 @@ use stead_planning::feasibility::DeflectionMap;
 use stead_planning::problem::Problem;
 use stead_planning::sense::BySense;
 use stead_planning::transfer::TransferSettings;
+use stead_removal::outcome::RemovalForces;
 use stead_runs::Run;
 use stead_study::PathStability;
 
@@ -53,6 +55,8 @@ pub struct Context {
     pub reference: Option<Published<[f64; 4]>>,
     /// How deep may be cut along the path, where that was requested.
     pub stability: Option<PathStability>,
+    /// What the path removes of a table `[stock]`.
+    pub removal: Option<Arc<RemovalForces>>,
     /// Whether a page is left with the files.
     pub page: bool,
 }
@@ -64,11 +68,12 @@ impl Context {
             inputs: run.inputs.clone(),
             stated: run.stated.clone(),
             notes: run.notes.clone(),
-            warnings: Vec::new(),
+            warnings: run.warnings.clone(),
             search,
             transfer: run.transfer,
             reference: run.reference.clone(),
             stability: None,
+            removal: run.removal.clone(),
             page: run.page,
         }
     }
@@ -88,7 +93,8 @@ impl Context {
         maps: &[MapOf<'_>],
     ) -> Result<Files, ReportError> {
         if self.page {
-            let data = page_data(self.document(), command, problem, &self.transfer, plans, maps);
+            let run = RunOf { transfer: &self.transfer, removal: self.removal.as_deref() };
+            let data = page_data(self.document(), command, problem, &run, plans, maps);
             files.push((page::DATA.to_owned(), bytes(&data)));
             page::put_page(&mut files)?;
         }

@@ -5,7 +5,7 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_placement::outcome::{Case, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
+use stead_placement::outcome::{Case, DeflectionFigures, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
 use stead_planning::collision::PlanClearance;
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::criterion::Over;
@@ -40,6 +40,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     stiffest(&outcome.cases.best).iter().for_each(|row| line(&mut text, row));
     least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
     highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
+    held_feed(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, row));
     line(&mut text, &joint_travel(&outcome.cases.best.plan));
     if let [_, ..] = &outcome.sets[..] {
         text.push('\n');
@@ -149,6 +150,27 @@ pub(super) fn highest_feed(feed: &CutFeed) -> Vec<String> {
         ]
     };
     feed.highest().map_or_else(Vec::new, lines)
+}
+
+/// What a best plan comes to at the feed that the arm holds, beside the programmed one, where it is known how the
+/// forces change with the feed.
+pub(super) fn held_feed(plan: &Plan) -> Vec<String> {
+    let Some(held) = &plan.held else { return Vec::new() };
+    if held.slowed == 0 {
+        return vec!["forces and deflections are those of the programmed feed, which the best plan holds".to_owned()];
+    }
+    let row = |name: &str, mean: f64, max: f64, deflection: &DeflectionFigures| {
+        let [mean, max, total, most] =
+            [mean, max, deflection.total.mean, deflection.total.max].map(|value| fixed(value * 1e3, 4));
+        format!(
+            "  at the {name} feed: mean {mean} mm, largest {max} mm; whole deflection {total} mm, largest {most} mm"
+        )
+    };
+    vec![
+        format!("segments of the best plan that are cut slower than programmed, with less force: {}", held.slowed),
+        row("programmed", plan.mean, plan.max, &plan.deflection),
+        row("held", held.mean, held.max, &held.deflection),
+    ]
 }
 
 /// How much a best plan turns the joints.

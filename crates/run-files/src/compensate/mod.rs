@@ -6,15 +6,18 @@ mod tests;
 
 pub use file::*;
 
-use super::run::read_run;
+use super::run::read_run_with;
 use std::path::Path;
 use stead_calibration::compensation::{CompensationProblem, Settings, other_geometry};
 use stead_disk::input::{InputError, InputFile, input_file};
+use stead_format::field::FieldOverrides;
 use stead_format::quantity::Quantity;
 use stead_format::robot::robot_from;
 use stead_format::toml_file::TomlFile;
 use stead_model::robot::Robot;
+use stead_numerics::monitor::Monitor;
 use stead_runs::CompensateRun;
+use stead_runs::ReadError;
 use stead_runs::plan::plan_from;
 
 /// Reads a compensation file, the keys of [`CompensationFile`], and the files that it names. Where `reality` is given
@@ -26,14 +29,15 @@ use stead_runs::plan::plan_from;
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key or column,
 /// a value of the wrong kind or out of range, a plan that does not fit the run or that its manifest does not vouch for,
-/// a reality of another geometry than the run's robot.
-pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<CompensateRun, InputError> {
+/// a reality of another geometry than the run's robot. [`ReadError::Stopped`] when the monitor asked to stop before the
+/// forces of a run with a table `[stock]` were computed.
+pub fn read_compensation(file: &Path, reality: Option<&Path>, monitor: &Monitor) -> Result<CompensateRun, ReadError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;
     let at = document.root();
     let file: CompensationFile = document.read()?;
     let run_file = at.key("run").named_file()?;
-    let run = read_run(&run_file.file)?;
+    let run = read_run_with(&run_file.file, &FieldOverrides::none(), monitor)?;
     let length = run.problem.constraints.characteristic_length;
     let settings = Settings { characteristic_length: length, ..file.compensation.unwrap_or_default().settings() };
 
@@ -67,7 +71,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>) -> Result<Compensa
         }
     };
     let job = CompensationProblem { robot, reality, spindle: run.problem.spindle, points: plan.points, settings };
-    Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes })
+    Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes, warnings: run.warnings })
 }
 
 impl CompensationTable {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::read_run;
 use std::sync::OnceLock;
 use stead_format::testing::root;
 use stead_runs::Run;
@@ -14,7 +15,7 @@ fn plan(name: &str) -> Vec<u8> {
 
 #[test]
 fn shipped_file_is_the_best_plan_played_on_the_same_arm() {
-    let run = read_compensation(&root().join("configs/compensate-caro-2013.toml"), None).unwrap();
+    let run = read_compensation(&root().join("configs/compensate-caro-2013.toml"), None, &Monitor::silent()).unwrap();
     assert_eq!(run.job.robot, shipped().problem.robot);
     assert_eq!((&run.job.reality, run.has_reality), (&run.job.robot, false));
     let expected = Settings { characteristic_length: 0.682, ..Settings::default() };
@@ -25,7 +26,9 @@ fn shipped_file_is_the_best_plan_played_on_the_same_arm() {
     assert_eq!(run.inputs[4].sha256, stead_disk::input::sha256(&plan("best.csv")));
     assert!(run.notes.is_empty());
     let reality = root().join("configs/robots/kuka-kr270-2-k1-0.8.toml");
-    let other = read_compensation(&root().join("configs/compensate-caro-2013.toml"), Some(&reality)).unwrap();
+    let other =
+        read_compensation(&root().join("configs/compensate-caro-2013.toml"), Some(&reality), &Monitor::silent())
+            .unwrap();
     assert!(other.has_reality && other.inputs[5].role == "reality");
     assert_eq!(other.job.reality.joints()[0].compliance, (1e-6 / 0.8).into());
 }

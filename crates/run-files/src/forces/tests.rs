@@ -155,7 +155,7 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
 fn what_the_job_finds_is_told_at_its_place() {
     let run = read(&TEXT.replace("[40, 17, -10]", "[40, 17, 1000]")).unwrap();
     let error = stead_removal::forces::forces(&run.problem, &stead_numerics::monitor::Monitor::silent()).unwrap_err();
-    let message = run.located(&error).unwrap().to_string();
+    let message = run.located(&error).to_string();
     assert!(
         message.contains(":2: stock: the path never touches the stock; allowed: stock that the path cuts"),
         "{message}"

@@ -54,9 +54,10 @@ use stead_format::surroundings::{
 };
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
+use stead_numerics::monitor::Monitor;
 use stead_planning::problem::ProblemParts;
 use stead_planning::setup::Setup;
-use stead_runs::Run;
+use stead_runs::{ReadError, Run};
 use stead_simulation::arm::Variant;
 use stead_simulation::stability_analysis::runout_note;
 use tables::{check_path_points, check_tables};
@@ -137,26 +138,27 @@ pub struct RunFile {
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key, a value of
 /// the wrong kind or out of range, an arm or a task that breaks a rule, forces from two places or from none.
 pub fn read_run(file: &Path) -> Result<Run, InputError> {
-    read_from(&TomlFile::read(file)?)
+    read_run_with(file, &FieldOverrides::none(), &Monitor::silent()).map_err(|error| error.input(file))
 }
 
 /// Reads a run file as [`read_run`] does, with values that take the place of its own or of those of the files that it
-/// names.
+/// names. Forces of a table `[stock]` are computed at once, which may take long.
 ///
 /// # Errors
-/// Those of [`read_run`]; an error in such a value says which it is.
-pub fn read_run_with(file: &Path, overrides: &FieldOverrides) -> Result<Run, InputError> {
-    read_from(&TomlFile::read(file)?.with_overrides(overrides, Sources::disk()))
+/// Those of [`read_run`]; an error in such a value says which it is. [`ReadError::Stopped`] when the monitor asked to
+/// stop before the forces were computed.
+pub fn read_run_with(file: &Path, overrides: &FieldOverrides, monitor: &Monitor) -> Result<Run, ReadError> {
+    read_from(&TomlFile::read(file)?.with_overrides(overrides, Sources::disk()), monitor)
 }
 
 /// The run that a file already read asks for.
-pub(crate) fn read_from(source: &TomlFile) -> Result<Run, InputError> {
+pub(crate) fn read_from(source: &TomlFile, monitor: &Monitor) -> Result<Run, ReadError> {
     let document = source.parse()?;
-    read_run_tables(source, &document)
+    read_run_tables(source, &document, monitor)
 }
 
 /// The run that a parsed file asks for.
-pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>) -> Result<Run, InputError> {
+pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monitor: &Monitor) -> Result<Run, ReadError> {
     let at = document.root();
     let run: RunFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
         Some(kind @ (FileKind::RobotFile | FileKind::ForcesFile)) => kind.refused(source.file()),
@@ -217,6 +219,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>) -> Res
     ];
     let is_for_stability = run.stability.is_some();
     let tables = ForceTables { forces: run.forces.as_ref(), cutting: cutting.as_ref(), is_for_stability };
+    let mut removal = None;
     let task = match &run.stock {
         Some(stock) => {
             let tool = run.tool.as_ref().ok_or_else(|| at.key("tool").missing("a table [tool] beside [stock]"))?;
@@ -231,9 +234,10 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>) -> Res
                 before: run.before.as_deref().unwrap_or_default(),
                 is_for_stability,
             };
-            let removed = removed(&tables, imported, &task_file, redundancy.feed, source, &at)?;
+            let removed = removed(&tables, imported, &task_file, redundancy.feed, source, &at, monitor)?;
             inputs.extend(removed.inputs);
             notes.extend(removed.notes);
+            removal = Some(removed.forces);
             removed.task
         }
         None => {
@@ -242,7 +246,8 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>) -> Res
             {
                 return Err(alone
                     .error("is there without the stock that it goes with", "a table [stock] beside it")
-                    .found_if(None));
+                    .found_if(None)
+                    .into());
             }
             tables.task(imported, &task_file, &task_field, &at.key("forces"))?
         }
@@ -295,5 +300,20 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>) -> Res
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     let stated = stated(&at);
-    Ok(Run { problem, search, transfer, certificate, maps, page, inputs, stated, reference, path_stability, notes })
+    let warnings = removal.iter().flat_map(|removal| removal.warnings.iter().cloned()).collect();
+    Ok(Run {
+        problem,
+        search,
+        transfer,
+        certificate,
+        maps,
+        page,
+        inputs,
+        stated,
+        reference,
+        path_stability,
+        removal,
+        notes,
+        warnings,
+    })
 }

@@ -1,6 +1,7 @@
 //! The table `[stock]` of a run: forces from what its path removes.
 
 use crate::forces::{NamedPath, RemovalTables};
+use std::sync::Arc;
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::document::NamedFile;
 use stead_format::place::Place;
@@ -10,6 +11,7 @@ use stead_model::task::{Task, ToolPath};
 use stead_numerics::monitor::Monitor;
 use stead_removal::forces::forces;
 use stead_removal::outcome::RemovalForces;
+use stead_runs::ReadError;
 
 /// What a run gets of its stock.
 pub(super) struct Removed {
@@ -18,13 +20,15 @@ pub(super) struct Removed {
     /// Files beside that of the task.
     pub inputs: Vec<InputFile>,
     pub notes: Vec<String>,
+    /// All that was computed.
+    pub forces: Arc<RemovalForces>,
 }
 
 /// Computes the forces of a task, once for all runs of shared sources in which nothing that they depend on differs.
 /// `feed` (m/s) is that of a path that states none.
 ///
 /// # Errors
-/// [`InputError`]: forces from two places, and those of [`RemovalTables::run`] and of the computation.
+/// [`ReadError`]: forces from two places, what [`RemovalTables::run`] and the computation find wrong, and a stop.
 pub(super) fn removed(
     tables: &RemovalTables<'_>,
     imported: Imported,
@@ -32,15 +36,16 @@ pub(super) fn removed(
     feed: f64,
     source: &TomlFile,
     at: &Place<'_>,
-) -> Result<Removed, InputError> {
+    monitor: &Monitor,
+) -> Result<Removed, ReadError> {
     let alone = "force columns in the task, [forces], or [stock], [tool] and [cut]: one of them";
     if imported.wrenches.is_some() {
         let problem = format!("forces come from one place only, and the task {} has force columns", file.name);
-        return Err(at.key("stock").error(problem, alone).found_if(None));
+        return Err(at.key("stock").error(problem, alone).found_if(None).into());
     }
     if at.key("forces").is_given() {
         let problem = "forces come from one place only, and there is a table [stock]";
-        return Err(at.key("forces").error(problem, alone).found_if(None));
+        return Err(at.key("forces").error(problem, alone).found_if(None).into());
     }
     let path = NamedPath {
         file: file.file.clone(),
@@ -53,13 +58,11 @@ pub(super) fn removed(
     };
     let run = tables.run(path, source, at)?;
     let key = format!("{tables:?} {:?} {feed:?}", run.inputs);
-    let outcome = source.sources.made(key, || -> Result<RemovalForces, InputError> {
-        forces(&run.problem, &Monitor::silent()).map_err(|error| {
-            let stopped = || at.key("stock").error(error.to_string(), "a run that is not stopped").found_if(None);
-            run.located(&error).unwrap_or_else(stopped)
-        })
-    })?;
+    let make = || forces(&run.problem, monitor).map_err(|error| run.located(&error));
+    let outcome = source.sources.made(key, make)?;
+    let edges = outcome.points.iter().map(|point| point.edge).collect();
     let task = Task::new(outcome.path.clone(), outcome.wrenches())
+        .and_then(|task| task.with_edge_parts(edges))
         .map_err(|e| at.key("stock").error(format!("gives no usable forces: {e}"), "values whose forces are finite"))?;
     let mut notes = run.notes;
     notes.push(
@@ -67,8 +70,7 @@ pub(super) fn removed(
             .to_owned(),
     );
     notes.extend(outcome.notes.iter().cloned());
-    notes.extend(outcome.warnings.iter().map(|warning| format!("forces of the path: {warning}")));
-    Ok(Removed { task, inputs: run.inputs.into_iter().skip(1).collect(), notes })
+    Ok(Removed { task, inputs: run.inputs.into_iter().skip(1).collect(), notes, forces: outcome })
 }
 
 /// The path with the feed of the run, where it states none and no feed per tooth is given.

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use std::path::Path;
 use stead_cell::{Attachment, Solid, Zone};
 use stead_format::testing::root;
+use stead_numerics::monitor::Monitor;
 use stead_numerics::rotation::rotation_from_zyx;
 use stead_runs::Run;
 
@@ -291,7 +292,7 @@ fn cases_of_a_study_know_the_files_of_the_cell() {
         study
             .cases
             .iter()
-            .map(|case| study.case(case).unwrap())
+            .map(|case| study.case(case, &Monitor::silent()).unwrap())
             .map(|case| (case.id, case.run.problem.scene.clone().unwrap()))
             .collect::<Vec<_>>()
     };

@@ -24,6 +24,8 @@ use stead_format::place::Place;
 use stead_format::sources::Sources;
 use stead_format::surroundings::MESH;
 use stead_format::toml_file::TomlFile;
+use stead_numerics::monitor::Monitor;
+use stead_runs::ReadError;
 use stead_runs::study::{CaseRun, Keep, ReadCase, Study, StudyCase};
 use tasks::Tasks;
 
@@ -75,14 +77,14 @@ pub fn read_study(file: &Path) -> Result<Study, InputError> {
 }
 
 impl ReadCase for Cases {
-    fn read(&self, case: &StudyCase) -> Result<CaseRun, InputError> {
+    fn read(&self, case: &StudyCase, monitor: &Monitor) -> Result<CaseRun, ReadError> {
         let source = TomlFile::new(&self.base, self.base_bytes.clone())?;
         let Some(overrides) = case.number.checked_sub(1).and_then(|index| self.overrides.get(index)) else {
-            return Err(InputError::new(&self.base, format!("there is no case {} of it", case.number)));
+            return Err(InputError::new(&self.base, format!("there is no case {} of it", case.number)).into());
         };
         let source = source.with_overrides(overrides, self.sources.clone());
         let document = source.parse()?;
-        let mut run = read_run_tables(&source, &document)?;
+        let mut run = read_run_tables(&source, &document, monitor)?;
         if self.is_certified {
             check_certificate(&document.root().key("certificate"))?;
         } else {

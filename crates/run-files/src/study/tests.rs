@@ -22,7 +22,7 @@ fn shown(study: &Study) -> Vec<String> {
 }
 
 fn ids(study: &Study) -> Vec<String> {
-    study.cases.iter().map(|case| study.case(case).unwrap().id).collect()
+    study.cases.iter().map(|case| study.case(case, &Monitor::silent()).unwrap().id).collect()
 }
 
 const TWO: &str = "base = 'run.toml'
@@ -42,7 +42,7 @@ fn a_grid_has_every_value_with_every_other() {
     let study = study_in(&folder, TWO).unwrap();
     assert_eq!(study.axes, ["robot.joints[1].stiffness_mnm_per_rad", "height"]);
     assert_eq!(shown(&study), ["0.2,low", "0.2,middle", "0.2,high", "0.4,low", "0.4,middle", "0.4,high"]);
-    let run = study.case(&study.cases[4]).unwrap().run;
+    let run = study.case(&study.cases[4], &Monitor::silent()).unwrap().run;
     assert_eq!(run.problem.cell.position[2].min, -0.4);
     assert_eq!(run.problem.robot.joints()[0].compliance, (1e-6 / 0.4).into());
 }
@@ -84,7 +84,7 @@ values = [[-2000, -1900], [-2100, -2000], [-2200, -2100]]
 ";
     let study = study_in(&folder, text).unwrap();
     assert_eq!(shown(&study), ["1,-100,100,-2000 & -1900", "2,-200,200,-2100 & -2000", "3,-300,400,-2200 & -2100"]);
-    let run = study.case(&study.cases[2]).unwrap().run;
+    let run = study.case(&study.cases[2], &Monitor::silent()).unwrap().run;
     assert_eq!((run.search.seed, run.problem.constraints.characteristic_length), (3, 0.4));
     assert_eq!(run.problem.cell.position[1].min, -2.2);
 }
@@ -180,7 +180,7 @@ fn tasks_joined_to_one_keep_their_segments_and_weights() {
     std::fs::write(folder.path().join("second.csv"), TASK.replace("10,20,0", "30,40,0")).unwrap();
     let tasks = "placement = 'one'\n[[task]]\nfile = 'task.csv'\nweight = 2\n[[task]]\nfile = 'second.csv'\n";
     let study = study_in(&folder, &format!("base = 'run.toml'\n{tasks}")).unwrap();
-    let CaseRun { run, task, .. } = study.case(&study.cases[0]).unwrap();
+    let CaseRun { run, task, .. } = study.case(&study.cases[0], &Monitor::silent()).unwrap();
     assert_eq!((study.cases.len(), task.as_str()), (1, "task.csv + second.csv"));
     assert_eq!((run.problem.task.segments().len(), run.problem.task.points().len()), (2, 4));
     assert_eq!(run.problem.task.wrenches()[2].force.x, 30.0);
@@ -200,7 +200,7 @@ fn tasks_joined_to_one_keep_their_segments_and_weights() {
 fn an_error_in_a_case_names_its_combination() {
     let folder = folder();
     let study = study_in(&folder, &TWO.replace("0.4", "0")).unwrap();
-    let message = study.case(&study.cases[5]).unwrap_err().to_string();
+    let message = study.case(&study.cases[5], &Monitor::silent()).unwrap_err().to_string();
     let parts = [
         "arm.toml: case 6 of study.toml (robot.joints[1].stiffness_mnm_per_rad = 0, height = high): joints[1].stiffness",
         "is out of range, found 0; allowed: a finite number above 0",

@@ -34,6 +34,8 @@ pub use table::{Cell, Column, Kind, Table};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use stead_disk::input::InputError;
+use stead_numerics::monitor::Stop;
+use stead_runs::ReadError;
 
 /// Why a study cannot go on.
 #[derive(Debug, thiserror::Error)]
@@ -42,6 +44,9 @@ pub enum StudyError {
     /// The study file, its base or a case is wrong.
     #[error(transparent)]
     Input(#[from] InputError),
+    /// The caller stopped it before the cases were read.
+    #[error(transparent)]
+    Stopped(#[from] Stop),
     /// Another process works on the same.
     #[error("{}: {what} is being worked on by another process; allowed: another folder, or wait until that has ended", path.display())]
     Locked {
@@ -81,6 +86,15 @@ pub enum StudyError {
     /// The files of a case, or the table, could not be written.
     #[error("{0}; finished cases are kept")]
     Keep(String),
+}
+
+impl From<ReadError> for StudyError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Input(error) => Self::Input(error),
+            ReadError::Stopped(stop) => Self::Stopped(stop),
+        }
+    }
 }
 
 impl StudyError {

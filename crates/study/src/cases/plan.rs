@@ -5,7 +5,10 @@ use super::row::result_columns;
 use super::table::{Cell, Column, Kind};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_disk::input::{InputError, sha256};
+use stead_numerics::monitor::{Monitor, Progress};
+use stead_runs::ReadError;
 use stead_runs::study::{AxisValue, Study, StudyCase};
 
 /// A case with what its result is found by.
@@ -35,8 +38,9 @@ impl Plan {
     ///
     /// # Errors
     /// [`StudyError::Input`] at the first case that cannot be read, with its combination of values; and for an axis
-    /// that has the name of a column of the results.
-    pub fn of(study: Study) -> Result<Self, StudyError> {
+    /// that has the name of a column of the results. [`StudyError::Stopped`] when the monitor asked to stop before the
+    /// last case, each of which may have forces to compute.
+    pub fn of(study: Study, monitor: &Monitor) -> Result<Self, StudyError> {
         let taken =
             |name: &&String| fixed_columns().iter().chain(&result_columns()).any(|column| column.name == **name);
         if let Some(name) = study.axes.iter().filter(|name| *name != TASK).find(taken) {
@@ -44,13 +48,19 @@ impl Plan {
                 InputError::new(&study.file, "an axis has the name of a column of the results").in_field("axis");
             return Err(error.found(name).allowed("a name of its own").into());
         }
+        let (count, done) = (study.cases.len(), AtomicUsize::new(0));
+        // Cases side by side would report over each other.
+        let quiet = Monitor::silent().with_stop(monitor.stop_handle()).with_deadline(monitor.deadline());
         let read = |case: &StudyCase| {
-            let read = study.case(case)?;
+            quiet.go_on()?;
+            let read = study.case(case, &quiet)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            monitor.report(Progress::Steps { stage: "reading cases", done, total: count });
             let arm = &read.run.problem.robot;
             let arm = (arm.name().to_owned(), arm.stiffness_like().is_some());
             Ok((PlannedCase { case: case.clone(), id: read.id, task: read.task }, arm))
         };
-        let cases: Vec<Result<_, InputError>> = study.cases.par_iter().map(read).collect();
+        let cases: Vec<Result<_, ReadError>> = study.cases.par_iter().map(read).collect();
         let (cases, arms): (Vec<PlannedCase>, BTreeSet<(String, bool)>) =
             cases.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
         let notes = borrowed_stiffness(&arms).into_iter().collect();

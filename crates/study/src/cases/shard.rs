@@ -16,6 +16,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 use stead_certify::certify;
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_runs::ReadError;
 use stead_runs::study::Keep;
 
 /// Where and how a shard is done.
@@ -201,7 +202,10 @@ fn do_case(
     keeping: Option<&dyn Keeping>,
     monitor: &Monitor,
 ) -> Result<Option<Vec<Cell>>, StudyError> {
-    let mut read = plan.study.case(&case.case)?.run;
+    let mut read = match plan.study.case(&case.case, monitor) {
+        Err(ReadError::Stopped(_)) => return Ok(None),
+        read => read?.run,
+    };
     read.maps &= keeping.is_some();
     let placed = match place(&read, monitor) {
         Err(RunError::Infeasible(nothing)) if nothing.interrupted => return Ok(None),

@@ -27,6 +27,9 @@ export const BODIES = RAW.bodies.map(bodyOf);
 /** @type {Body[]} the shapes in which collisions are looked for */
 export const SHAPES = (RAW.surroundings || []).map(bodyOf);
 
+/** @type {Body[]} the stock before the path and after it, where the run has one */
+export const STOCKS = (RAW.removal?.stock || []).map(bodyOf);
+
 /** Bodies that move together, as one mesh. @param {Body[]} all @param {string} frame @returns {Mesh} */
 export function bodiesOf(all, frame) {
   const parts = all.filter((body) => body.frame === frame).map((body) => body.mesh);

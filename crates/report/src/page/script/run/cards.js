@@ -158,6 +158,22 @@ function sensitivityCard() {
   return card('Sensitivity', 'to the stiffness of the joints and to the force', ...parts);
 }
 
+/** What the plans come to at the feed that the arm holds, where it is known how the forces change with the feed. */
+function heldFeedCard() {
+  const known = CASES.filter((of) => of.entry.at_held_feed);
+  if (!known.length) return null;
+  const rows = known.map((of) => {
+    const { at_held_feed: held, mean_mm, max_mm } = of.entry;
+    const figures_ = [mean_mm, max_mm, held.mean_mm, held.max_mm].map((mm) => fixed(mm, 4));
+    return [SHORT_NAMES[of.number - 1], String(held.slowed_segments), ...figures_];
+  });
+  return card(
+    'At the programmed and at the held feed',
+    'a slower cut takes less force',
+    smallTable(['Plan', 'Slower segments', 'Programmed: mean mm', 'Largest mm', 'Held: mean mm', 'Largest mm'], rows),
+  );
+}
+
 /** What each stiffness set makes of the best placement. */
 function setsCard() {
   const sets = RAW.document.stiffness_sets;
@@ -206,6 +222,7 @@ function stabilityCard() {
 
 export function furtherCards() {
   const cards = [
+    heldFeedCard(),
     boundsCard(),
     sensitivityCard(),
     setsCard(),

@@ -1,7 +1,9 @@
-// Colours: one logarithmic scale of deflections for everything.
+// Colours: one logarithmic scale of deflections for everything; the path may have those of its forces.
 
 import { viridis } from '../draw/theme.js';
-import { CASES } from './data.js';
+import { CASES, REMOVAL } from './data.js';
+import { size } from './linear.js';
+/** @import { Case } from './data.js' */
 
 /** The ends of the scale in mm: three decades, moved so that the largest score is within. @type {[number, number]} */
 export const SCALE = (() => {
@@ -17,5 +19,28 @@ const level = (mm) => Math.log(Math.max(Math.abs(mm), SCALE[0]) / SCALE[0]) / Ma
 
 /** @param {number} mm */
 export const colourOf = (mm) => viridis(level(mm));
+
+/**
+ * @typedef {{ name: string, ends: [string, string], at: (of: Case, i: number) => number, colour: (value: number) => number[] }} Colouring
+ * what the path is coloured by: its name, the ends of its scale, the value at a point, and the colour of a value
+ */
+
+/** From nothing to the largest value. @param {string} name @param {number[]} values @param {string} unit @returns {Colouring} */
+function evenly(name, values, unit) {
+  const most = values.reduce((a, b) => Math.max(a, b), 0) || 1;
+  const ends = /** @type {[string, string]} */ (['0', `${most.toPrecision(3)} ${unit}`]);
+  return { name, ends, at: (_, i) => values[i], colour: (value) => viridis(value / most) };
+}
+
+/** @type {Colouring[]} the usual one first */
+export const COLOURINGS = [
+  { name: 'error', ends: [String(SCALE[0]), `${SCALE[1]} mm`], at: (of, i) => of.columns.score_mm[i], colour: colourOf },
+  ...(REMOVAL
+    ? [
+        evenly('force', REMOVAL.force.map(size), 'N'),
+        evenly('removed', Array.from(REMOVAL.columns.removed_mm3_per_mm), 'mm³/mm'),
+      ]
+    : []),
+];
 
 export const JOINT_COLOURS = ['--j1', '--j2', '--j3', '--j4', '--j5', '--j6'];

@@ -193,6 +193,17 @@ export const TASK = {
   steps: singlesOf(RAW.task.step_s),
 };
 
+/**
+ * What the path removes of its stock, where the run has one: at each drawn point the mean force over a turn in the workpiece frame, in N,
+ * and numbers by the names of `page-data.json`, NaN where nothing is cut.
+ * @type {{ force: number[][], columns: Columns } | null}
+ */
+export const REMOVAL = (() => {
+  if (!RAW.removal) return null;
+  const { force_n, stock: _, ...packed } = RAW.removal;
+  return { force: vectorsOf(force_n), columns: columnsOf(packed) };
+})();
+
 /** @type {StateMap[]} */
 export const MAPS = RAW.maps.map(mapOf);
 

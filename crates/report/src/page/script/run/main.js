@@ -6,6 +6,7 @@ import { casesCard } from './cases.js';
 import { chartCards } from './charts.js';
 import { CASES, MAPS, RAW } from './data.js';
 import { axesAt, meets } from './external-axes.js';
+import { forcesCard } from './forces.js';
 import { header } from './header.js';
 import { framesOf, jointsAt } from './kinematics.js';
 import { mapCard } from './map.js';
@@ -55,6 +56,7 @@ function main() {
       el('div.main', {}, sceneCard(), el('div.right', {}, tiles(), mapCard())),
       transport(),
       chartCards(),
+      forcesCard(),
       el('div.low', {}, casesCard(), gauges()),
       furtherCards(),
       footer(),

@@ -1,12 +1,12 @@
 // The path as coloured tubes, and as a curtain where the tool goes in truth, its error drawn too large.
 
 import { clamp } from '../draw/scale.js';
-import { colourOf } from './colour.js';
-import { CASES, COUNT, RAW, TASK } from './data.js';
+import { CASES, COUNT, RAW, REMOVAL, TASK } from './data.js';
 import { inWorkpiece } from './external-axes.js';
 import { add, cross, less, size, times, unit } from './linear.js';
 import { lathe, mesh } from './mesh.js';
 import { RUNS } from './path.js';
+/** @import { Colouring } from './colour.js' */
 /** @import { Case } from './data.js' */
 /** @import { Vec } from './linear.js' */
 /** @import { Mesh } from './mesh.js' */
@@ -43,18 +43,19 @@ export const MAGNIFIED = (() => {
 /** No more tubes than this: a longer path is drawn by every so many points. */
 const MOST_TUBES = 1500;
 
-/** Both in the workpiece frame. @param {Case} of @returns {{ tube: Mesh, curtain: Mesh }} */
-export function pathMeshes(of) {
+/** Both in the workpiece frame. @param {Case} of @param {Colouring} by @returns {{ tube: Mesh, curtain: Mesh }} */
+export function pathMeshes(of, by) {
   const [tube, curtain] = [mesh(), mesh()];
   const tips = TASK.position;
   const offs = tips.map((tip, i) => add(tip, times(errorAt(of, i), MAGNIFIED)));
-  const radius = clamp(PATH_SIZE * 0.011, 2, 8);
+  // In a stock the path must not fill the cut.
+  const radius = clamp(PATH_SIZE * 0.011, 2, 8) * (REMOVAL ? 0.35 : 1);
   const stride = Math.ceil(COUNT / MOST_TUBES);
   for (const [first, last] of RUNS) {
     for (let i = first; i < last; i += stride) {
       const next = Math.min(i + stride, last);
       const length = size(less(tips[next], tips[i]));
-      const score = Math.max(of.columns.score_mm[i], of.columns.score_mm[next]);
+      const value = Math.max(by.at(of, i), by.at(of, next));
       if (length > 0) {
         // Of a long path the ends of its many tubes are not seen.
         const side = [
@@ -62,14 +63,14 @@ export function pathMeshes(of) {
           [length + 2, radius],
         ];
         const profile = /** @type {[number, number][]} */ (stride > 1 ? side : [[-2, 0], ...side, [length + 2, 0]]);
-        lathe(tube, tips[i], tips[next], profile, stride > 1 ? 5 : 8, colourOf(score));
+        lathe(tube, tips[i], tips[next], profile, stride > 1 ? 5 : 8, by.colour(value));
       }
       const base = curtain.p.length / 3;
       for (const k of [i, next]) {
         for (const corner of [tips[k], offs[k]]) {
           curtain.p.push(...corner);
           curtain.n.push(0, 0, 1);
-          curtain.c.push(...colourOf(of.columns.score_mm[k]));
+          curtain.c.push(...by.colour(by.at(of, k)));
         }
       }
       curtain.i.push(base, base + 1, base + 3, base, base + 3, base + 2);

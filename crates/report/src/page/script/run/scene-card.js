@@ -1,11 +1,13 @@
 // The card of the view: its switches, its words, and the keys that turn it.
 
-import { el } from '../draw/dom.js';
+import { choice, el } from '../draw/dom.js';
+import { rampOf } from '../draw/heat-map.js';
 import { fixed } from '../draw/scale.js';
 import { HAS_ILLUSTRATIONS } from './bodies.js';
+import { COLOURINGS } from './colour.js';
 import { AXES } from './external-axes.js';
 import { LAYERS, sceneIn } from './scene.js';
-import { current, onChange } from './state.js';
+import { current, onChange, set, state } from './state.js';
 import { HAS_BLOCK } from './surroundings.js';
 
 /** Gives the view as it is now, as the address of a picture; the card of the scene puts it in. */
@@ -13,6 +15,25 @@ let picture = () => '';
 
 /** That address. */
 export const viewPicture = () => picture();
+
+/** What the path is coloured by, where there is something to choose from. */
+function colouringChoice() {
+  if (COLOURINGS.length < 2) return null;
+  const ramp = el('div.legend');
+  const show = () => {
+    const { ends } = COLOURINGS[state.colouring];
+    ramp.replaceChildren(rampOf(ends[0], ends[1]));
+  };
+  const pick = choice(
+    'Colour of the path',
+    COLOURINGS.map(({ name }) => name),
+    () => state.colouring,
+    (colouring) => set({ colouring }),
+    onChange,
+  );
+  onChange(show);
+  return el('div.colouring', {}, pick, ramp);
+}
 
 /** The card with the view, its switches and its words. */
 export function sceneCard() {
@@ -52,7 +73,7 @@ export function sceneCard() {
   ];
   host.append(
     el('div.tr', {}, ...views),
-    el('div.bl', {}, el('div.tags', {}, ...layers), el('div.sub', {}, words.filter(Boolean).join('; '))),
+    el('div.bl', {}, colouringChoice(), el('div.tags', {}, ...layers), el('div.sub', {}, words.filter(Boolean).join('; '))),
   );
   view.tabIndex = 0;
   view.setAttribute('role', 'img');

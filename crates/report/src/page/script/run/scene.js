@@ -1,13 +1,15 @@
 // The cell in three dimensions.
 
 import { el } from '../draw/dom.js';
-import { clamp } from '../draw/scale.js';
+import { clamp, fixed } from '../draw/scale.js';
 import { isDark, themeRgb } from '../draw/theme.js';
 import { axisTrack, platter } from './axis-tracks.js';
-import { ARM_FRAMES, BODIES, HAS_ENVELOPES, HAS_SURROUNDINGS, SHAPES, bodiesOf } from './bodies.js';
+import { ARM_FRAMES, BODIES, HAS_ENVELOPES, HAS_SURROUNDINGS, SHAPES, STOCKS, bodiesOf } from './bodies.js';
 import { MIDDLE, lookAt, parallel, perspective, placeOf, steer, viewOf } from './camera.js';
+import { COLOURINGS } from './colour.js';
 import { CASES } from './data.js';
 import { AXES, axesAt, axisFrame, baseFrame, carriedBy, workpieceFrame } from './external-axes.js';
+import { LARGEST_FORCE, forceArrows } from './forces.js';
 import { buffersOf, free, linesOf, programOf, shadowTarget } from './gpu.js';
 import { FARTHEST, framesOf } from './kinematics.js';
 import { IDENTITY, add, product, times, unit } from './linear.js';
@@ -22,6 +24,9 @@ import { FLOOR, HAS_BLOCK, block, cellEdges, floorGrid, partEdges, reachBall, re
 /** What can be left out of the view, with its words, where there is such a thing. */
 export const LAYERS = [
   { name: 'curtain', words: `${SCORED} error ×${MAGNIFIED}`, isThere: true },
+  { name: 'forces', words: `forces, up to ${fixed(LARGEST_FORCE, 0)} N`, isThere: LARGEST_FORCE > 0 },
+  { name: 'after', words: 'stock after', isThere: STOCKS.length > 0 },
+  { name: 'before', words: 'stock before', isThere: STOCKS.length > 0, isOff: true },
   { name: 'cell', words: 'cell volume', isThere: true },
   { name: 'reach', words: 'reach', isThere: true },
   { name: 'ghost', words: 'other placement', isThere: CASES.length > 2 },
@@ -32,6 +37,8 @@ export const LAYERS = [
 const SHADOW_PIXELS = 2048;
 /** How much of a wall of the cell is seen: what is behind it stays readable. */
 const PANE = 0.16;
+/** How much is seen of what is removed of the stock, where the stock is shown both before and after. */
+const REMOVED = 0.4;
 const SUN = unit([0.42, -0.52, 0.86]);
 
 /**
@@ -62,6 +69,8 @@ function sceneParts(gl) {
     onAxes: AXES.map((_, k) => buffersOf(gl, bodiesOf(SHAPES, `axis_${k + 1}`))),
     tracks: AXES.map((_, k) => buffersOf(gl, axisTrack(k))),
     part: buffersOf(gl, bodiesOf([...BODIES, ...SHAPES], 'workpiece')),
+    stocks: STOCKS.map((body) => buffersOf(gl, body.mesh)),
+    forces: buffersOf(gl, forceArrows()),
     thin: linesOf(gl, thin),
     thick: linesOf(gl, thick),
     floor: buffersOf(gl, { p: corners, n: [], c: [], i: [0, 1, 2, 0, 2, 3] }),
@@ -76,14 +85,15 @@ function sceneParts(gl) {
 function caseParts(gl) {
   const of = current();
   const other = CASES.find((one) => one.place !== of.place && one.plan === of.plan);
-  const { tube, curtain } = pathMeshes(of);
+  const by = COLOURINGS[state.colouring];
+  const { tube, curtain } = pathMeshes(of, by);
   return {
     tube: buffersOf(gl, tube),
     curtain: buffersOf(gl, curtain),
     block: HAS_BLOCK ? buffersOf(gl, block(isDark() ? [104, 118, 134] : [186, 197, 209])) : null,
     edges: linesOf(gl, partEdges()),
     axes: buffersOf(gl, arrows(IDENTITY, FARTHEST * 0.09)),
-    ghost: other ? buffersOf(gl, pathMeshes(other).tube) : null,
+    ghost: other ? buffersOf(gl, pathMeshes(other, by).tube) : null,
     platters: AXES.map((_, k) => buffersOf(gl, platter(of, k))),
     ghostEdges: other ? buffersOf(gl, tubes(partEdges(), FARTHEST * 0.0008)) : null,
   };
@@ -165,6 +175,9 @@ export function sceneIn(host) {
       parts.tracks.forEach((buffers, k) => put(program, buffers, carriedBy(AXES[k].carries, at, k)));
       ofCase.platters.forEach((buffers, k) => put(program, buffers, axisFrame(k, at)));
       put(program, ofCase.block, part);
+      const [before, after] = parts.stocks;
+      if (shown.after) put(program, after, part);
+      else if (shown.before) put(program, before, part);
     };
     const far = FARTHEST;
     const middle = [MIDDLE[0], MIDDLE[1], MIDDLE[2]];
@@ -210,6 +223,7 @@ export function sceneIn(host) {
     bodies(program);
     put(program, parts.axes, base);
     put(program, ofCase.axes, part);
+    if (shown.forces) put(program, parts.forces, part);
     paint(MODE.plain);
     put(program, ofCase.tube, part);
     if (shown.cell) {
@@ -238,6 +252,16 @@ export function sceneIn(host) {
     if (shown.curtain) {
       paint(MODE.plain, [1, 1, 1], 0.62);
       put(program, ofCase.curtain, part);
+    }
+    if (shown.before && shown.after) {
+      // Behind what is left, where both have the same face.
+      gl.enable(gl.CULL_FACE);
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      gl.polygonOffset(4, 4);
+      paint(MODE.plain, accent, REMOVED);
+      put(program, parts.stocks[0], part);
+      gl.disable(gl.POLYGON_OFFSET_FILL);
+      gl.disable(gl.CULL_FACE);
     }
     if (shown.around) {
       // Only what faces the eye, so that a wall is one pane.
@@ -269,7 +293,7 @@ export function sceneIn(host) {
   });
   onChange((changed) => {
     if (gl.isContextLost()) return;
-    if (changed.case || changed.theme) {
+    if (changed.case || changed.theme || changed.colouring) {
       Object.values(ofCase).flat().forEach((buffers) => buffers && free(gl, buffers));
       ofCase = caseParts(gl);
     }

@@ -7,13 +7,13 @@ import { jointsAt } from './kinematics.js';
 
 /**
  * @typedef {{ column: number, beta: number }} Chosen a state of the map: number of its column and of its angle
- * @typedef {{ chosen: Chosen | null, case: number, t: number, hover: number | null }} State
+ * @typedef {{ chosen: Chosen | null, case: number, t: number, hover: number | null, colouring: number }} State
  * @typedef {{ theme?: boolean, size?: boolean, scene?: boolean }} Look what changes without the state
- * @typedef {Look & { case?: boolean }} Changes
+ * @typedef {Look & { case?: boolean, colouring?: boolean }} Changes
  */
 
 /** @type {State} */
-export const state = { case: 0, t: 0, chosen: null, hover: null };
+export const state = { case: 0, t: 0, chosen: null, hover: null, colouring: 0 };
 
 /** @type {((changes: Changes) => void)[]} */
 const listeners = [];
@@ -44,6 +44,7 @@ export function set(to, atOnce = false) {
     changes.case = true;
     state.chosen = null;
   }
+  if (next.colouring !== undefined && next.colouring !== state.colouring) changes.colouring = true;
   if (next.t !== undefined) {
     next.t = clamp(next.t, 0, COUNT - 1);
     if (next.chosen === undefined) next.chosen = null;

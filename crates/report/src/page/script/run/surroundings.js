@@ -1,6 +1,6 @@
 // What stands about the arm: the block under the path, the cell volume, the reach, and the grid on the floor.
 
-import { BODIES, SHAPES } from './bodies.js';
+import { BODIES, SHAPES, STOCKS } from './bodies.js';
 import { CASES, RAW, TASK } from './data.js';
 import { baseFrame, workpieceFrame } from './external-axes.js';
 import { FARTHEST, MOUNT, REACH } from './kinematics.js';
@@ -12,7 +12,8 @@ import { EXTENT, PATH_SIZE } from './path-mesh.js';
 /** @import { Mesh } from './mesh.js' */
 
 /** Whether a block can be drawn under the path: the tool comes from above everywhere, and no body of the part is known. */
-export const HAS_BLOCK = TASK.axis.every((axis) => axis[2] > 0.8) && ![...BODIES, ...SHAPES].some((body) => body.frame === 'workpiece');
+export const HAS_BLOCK =
+  TASK.axis.every((axis) => axis[2] > 0.8) && ![...BODIES, ...SHAPES, ...STOCKS].some((body) => body.frame === 'workpiece');
 
 /** Lowest and highest place of a body in a direction of the frame that a pose is in. @param {Body} body @param {Mat} pose @param {number} k @returns {[number, number]} */
 function spanOf({ mesh: { p } }, pose, k) {
@@ -24,10 +25,16 @@ function spanOf({ mesh: { p } }, pose, k) {
   return [low, high];
 }
 
-/** The lowest place of the path, wherever it is placed. */
+/** The extent of the stock before it is cut, where there is one. @type {[number, number][] | null} */
+const STOCK = STOCKS.length ? /** @type {[number, number][]} */ ([0, 1, 2].map((k) => spanOf(STOCKS[0], IDENTITY, k))) : null;
+
+/** The extent of path and stock in the workpiece frame. */
+const WORK = EXTENT.map(([low, high], k) => (STOCK ? [Math.min(low, STOCK[k][0]), Math.max(high, STOCK[k][1])] : [low, high]));
+
+/** The lowest place of the work, wherever it is placed. */
 const LOWEST_WORK = Math.min(
   RAW.cell.z_mm[0] + Math.min(EXTENT[2][0], 0),
-  ...CASES.map((of) => boxCorners(EXTENT).reduce((low, corner) => Math.min(low, moved(workpieceFrame(of, 0), corner)[2]), Infinity)),
+  ...CASES.map((of) => boxCorners(WORK).reduce((low, corner) => Math.min(low, moved(workpieceFrame(of, 0), corner)[2]), Infinity)),
 );
 
 /** @param {number[][]} extent along three axes @returns {Vec[]} its corners */
@@ -73,8 +80,9 @@ export function edgesOf(low, high) {
   ].flatMap(([a, b]) => [at(0, a, b), at(1, a, b), at(a, 0, b), at(a, 1, b), at(a, b, 0), at(a, b, 1)]);
 }
 
-/** The extent of the block under the path, with a margin: an illustration. @returns {[Vec, Vec]} */
+/** The extent of the stock, or of a block under the path, with a margin: an illustration. @returns {[Vec, Vec]} */
 export function blockBox() {
+  if (STOCK) return [STOCK.map(([low]) => low), STOCK.map(([, high]) => high)];
   const margin = Math.max(20, PATH_SIZE * 0.07);
   const [[x0, x1], [y0, y1], [z0]] = EXTENT;
   const top = z0 - Math.max(2, PATH_SIZE * 0.012);
@@ -112,10 +120,10 @@ export function block(colour) {
   return out;
 }
 
-/** @returns {Vec[]} edges of the block, or of the extent of the path, in the workpiece frame */
+/** @returns {Vec[]} edges of the stock, of the block, or of the extent of the path, in the workpiece frame */
 export function partEdges() {
   const [low, high] = blockBox();
-  return edgesOf(low, HAS_BLOCK ? high : [high[0], high[1], EXTENT[2][1]]);
+  return edgesOf(low, HAS_BLOCK || STOCK ? high : [high[0], high[1], EXTENT[2][1]]);
 }
 
 /** @returns {Vec[]} edges of the volume in which the workpiece origin may stand */
