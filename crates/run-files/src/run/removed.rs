@@ -9,7 +9,6 @@ use stead_format::toml_file::TomlFile;
 use stead_model::task::{Task, ToolPath};
 use stead_numerics::monitor::Monitor;
 use stead_removal::forces::forces;
-use stead_removal::outcome::RemovalForces;
 
 /// What a run gets of its stock.
 pub(super) struct Removed {
@@ -52,12 +51,14 @@ pub(super) fn removed(
         input: input_file("task", &file.name, &file.bytes),
     };
     let run = tables.run(path, source, at)?;
-    let key = format!("{tables:?} {:?} {feed:?}", run.inputs);
-    let outcome = source.sources.made(key, || -> Result<RemovalForces, InputError> {
-        forces(&run.problem, &Monitor::silent()).map_err(|error| {
-            let stopped = || at.key("stock").error(error.to_string(), "a run that is not stopped").found_if(None);
-            run.located(&error).unwrap_or_else(stopped)
-        })
+    // Of the cut nothing else counts, such as depths for the stability.
+    let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
+    let others = RemovalTables { cut: None, is_for_stability: false, ..*tables };
+    let key = format!("{others:?} {cut:?} {:?} {feed:?}", run.inputs);
+    let made = source.sources.made(key, || forces(&run.problem, &Monitor::silent()));
+    let outcome = made.map_err(|error| {
+        let stopped = || at.key("stock").error(error.to_string(), "a run that is not stopped").found_if(None);
+        run.located(&error).unwrap_or_else(stopped)
     })?;
     let task = Task::new(outcome.path.clone(), outcome.wrenches())
         .map_err(|e| at.key("stock").error(format!("gives no usable forces: {e}"), "values whose forces are finite"))?;
