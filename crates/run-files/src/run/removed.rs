@@ -9,6 +9,10 @@ use stead_format::toml_file::TomlFile;
 use stead_model::task::{Task, ToolPath};
 use stead_numerics::monitor::Monitor;
 use stead_removal::forces::forces;
+use stead_removal::outcome::RemovalForces;
+
+/// Sections of a cut that are no farther apart are one. Relative
+const SAME_SECTION: f64 = 0.2;
 
 /// What a run gets of its stock.
 pub(super) struct Removed {
@@ -41,9 +45,11 @@ pub(super) fn removed(
         let problem = "forces come from one place only, and there is a table [stock]";
         return Err(at.key("forces").error(problem, alone).found_if(None));
     }
+    // With the feed of the run its task still states none.
+    let is_fed = imported.path.feed(0).is_none() && tables.cut.is_none_or(|cut| cut.feed_per_tooth_mm.is_none());
     let path = NamedPath {
         file: file.file.clone(),
-        path: fed(imported.path, feed, tables, at)?,
+        path: if is_fed { fed(imported.path, feed, at)? } else { imported.path },
         rapids: Vec::new(),
         spindle_speed: None,
         tool: None,
@@ -60,24 +66,40 @@ pub(super) fn removed(
         let stopped = || at.key("stock").error(error.to_string(), "a run that is not stopped").found_if(None);
         run.located(&error).unwrap_or_else(stopped)
     })?;
-    let task = Task::new(outcome.path.clone(), outcome.wrenches())
+    let cut = outcome.path.clone();
+    let task = Task::new(if is_fed { cut.without_feeds() } else { cut }, outcome.wrenches())
         .map_err(|e| at.key("stock").error(format!("gives no usable forces: {e}"), "values whose forces are finite"))?;
     let mut notes = run.notes;
     notes.push(
         "the forces are those of what the path removes of [stock], and the task has the points that they add"
             .to_owned(),
     );
+    notes.extend(section_note(tables, &outcome));
     notes.extend(outcome.notes.iter().cloned());
     notes.extend(outcome.warnings.iter().map(|warning| format!("forces of the path: {warning}")));
     Ok(Removed { task, inputs: run.inputs.into_iter().skip(1).collect(), notes })
 }
 
-/// The path with the feed of the run, where it states none and no feed per tooth is given.
-fn fed(path: ToolPath, feed: f64, tables: &RemovalTables<'_>, at: &Place<'_>) -> Result<ToolPath, InputError> {
-    if path.feed(0).is_some() || tables.cut.is_some_and(|cut| cut.feed_per_tooth_mm.is_some()) {
-        return Ok(path);
-    }
+/// The path with the feed of the run (m/s).
+fn fed(path: ToolPath, feed: f64, at: &Place<'_>) -> Result<ToolPath, InputError> {
     let count = path.points().len();
     let at = at.key("redundancy").key("feed_mm_per_s");
     path.with_feeds(vec![feed; count]).map_err(|error| at.error(error.to_string(), "a feed above 0"))
+}
+
+/// That the cut which `[cut]` describes for the stability is another than that of the stock, where its section is off
+/// by more than a fifth.
+fn section_note(tables: &RemovalTables<'_>, outcome: &RemovalForces) -> Option<String> {
+    let cut = tables.cut.filter(|_| tables.is_for_stability)?;
+    let stated = cut.radial_depth_mm?.si() * cut.axial_depth_mm?.si();
+    let largest = outcome.points.iter().map(|point| point.removed).fold(0.0, f64::max);
+    let is_like = (largest / stated - 1.0).abs() <= SAME_SECTION;
+    (!is_like).then(|| {
+        format!(
+            "[cut] describes a cut of {:.2} mm2 for [stability], and the path removes up to {:.2} mm2 of [stock]: critical depths are \
+             those of the first, deflections those of the second",
+            stated * 1e6,
+            largest * 1e6
+        )
+    })
 }
