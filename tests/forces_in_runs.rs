@@ -8,7 +8,8 @@ use std::fmt::Write;
 /// A shoulder around a corner, with a plunge that is not scored, then a line back beside it; no feeds.
 fn ell() -> String {
     let mut text =
-        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z,scored\n".to_owned();
+        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z,scored\n"
+            .to_owned();
     let mut row = |segment: usize, at: [i32; 3], feed: [i32; 2], scored: u8| {
         let ([x, y, z], [a, b]) = (at, feed);
         let _ = writeln!(text, "{segment},{x},{y},{z},{a},{b},0,0,0,1,{},{a},0,{scored}", -b);
@@ -75,11 +76,26 @@ fn whatever_a_run_has_its_stock_gives_what_the_same_forces_as_columns_give() {
     for (name, criterion, at, tables) in [
         ("on the floor", "wall", ["1500", "0", "800"], String::new()),
         ("normal to the surface", "surface", ["1500", "0", "800"], String::new()),
-        ("under the ceiling", "total", ["1500", "0", "1600"], "[mount]\nxyz_mm = [0, 0, 3000]\nrpy_deg = [180, 0, 0]\n".to_owned()),
-        ("on a wall", "axis", ["1500", "0", "1500"], "[mount]\nxyz_mm = [0, 0, 1500]\nrpy_deg = [0, 90, 0]\n".to_owned()),
+        (
+            "under the ceiling",
+            "total",
+            ["1500", "0", "1600"],
+            "[mount]\nxyz_mm = [0, 0, 3000]\nrpy_deg = [180, 0, 0]\n".to_owned(),
+        ),
+        (
+            "on a wall",
+            "axis",
+            ["1500", "0", "1500"],
+            "[mount]\nxyz_mm = [0, 0, 1500]\nrpy_deg = [0, 90, 0]\n".to_owned(),
+        ),
         ("on a rail", "wall", ["1500", "0", "800"], rail.to_owned()),
         ("on a tilting table", "total", ["1500", "0", "800"], table.to_owned()),
-        ("on its side", "total", ["1500", "0", "800"], "orientations = [{ name = 'side', rpy_deg = [90, 0, 0] }]\n|".to_owned()),
+        (
+            "on its side",
+            "total",
+            ["1500", "0", "800"],
+            "orientations = [{ name = 'side', rpy_deg = [90, 0, 0] }]\n|".to_owned(),
+        ),
         ("a heavy segment", "wall", ["1500", "0", "800"], "[[segment]]\nnumber = 2\nweight = 3\n".to_owned()),
     ] {
         let mut scores = Vec::new();
@@ -112,7 +128,16 @@ fn commands_on_a_plan_follow_the_path_with_the_points_that_were_added() {
     // The task states no feeds: those of the run count, and nothing says otherwise.
     let ended = done(bench.stead(&["check", "my/run.toml"]));
     assert!(!ended.stdout.contains("as the task states"), "{}", ended.stdout);
-    let ended = done(bench.stead(&["explain", "my/run.toml", "--placement-of", "my/results", "--point", "3", "--beta-deg", "10"]));
+    let ended = done(bench.stead(&[
+        "explain",
+        "my/run.toml",
+        "--placement-of",
+        "my/results",
+        "--point",
+        "3",
+        "--beta-deg",
+        "10",
+    ]));
     assert!(ended.stdout.contains("allowed"), "{}", ended.stdout);
     done(bench.stead(&["export", "my/run.toml", "my/results/best.csv", "--format", "csv", "--out", "my/program/ELL"]));
     bench.write(

@@ -6,6 +6,7 @@ mod five_axes;
 mod oracles;
 mod probing;
 mod twin;
+mod volumes;
 
 use super::*;
 use crate::outcome::PointForces;

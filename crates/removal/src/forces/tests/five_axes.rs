@@ -95,8 +95,7 @@ fn with_patch(step_deg: f64, half_deg: f64, each: &mut dyn FnMut(&Cut<'_>)) {
     };
     // The tool centre point runs on a circle about y.
     let radius = pose(0.0, 0.0).position.norm();
-    let is_stock =
-        |point: &Vector3<f64>| libm::hypot(point.x, point.z) < 61e-3 && point.y.abs() < 20e-3;
+    let is_stock = |point: &Vector3<f64>| libm::hypot(point.x, point.z) < 61e-3 && point.y.abs() < 20e-3;
     let lying = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
     each(&Cut {
         mill,

@@ -41,8 +41,7 @@ impl Probing<'_> {
         let (past, next) = ((self.at)(along - step), (self.at)(along + step));
         let ahead = (next.position - past.position) / (2.0 * step);
         let spin = here.axis.cross(&((next.axis - past.axis) / (2.0 * step)));
-        let stamps: Vec<Place> =
-            (-STAMPS..=STAMPS).map(|k| (self.before)(along + f64::from(k) * APART)).collect();
+        let stamps: Vec<Place> = (-STAMPS..=STAMPS).map(|k| (self.before)(along + f64::from(k) * APART)).collect();
         let k = self.mill.cutter.coefficients();
         let teeth = self.mill.cutter.teeth().len() as f64;
         let radius = self.mill.cutter.radius();
