@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_disk::Existing;
 use stead_disk::files::new::write_all_new;
-use stead_report::forces::{forces_files, forces_json, forces_text};
+use stead_report::forces::{ENDINGS, forces_files, forces_json, forces_text};
 use stead_run_files as run_files;
 
 /// A forces file with the path, the stock and the part that it names, read and checked.
@@ -67,6 +67,17 @@ impl PathForces {
         &self.forces
     }
 
+    /// The files that [`write`](Self::write) writes for a task: to see whether they may be there before the long work.
+    pub fn files(task: impl AsRef<Path>) -> Vec<PathBuf> {
+        let task = task.as_ref();
+        let stem = task.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = |ending: &str| match ending {
+            "" => task.to_owned(),
+            ending => task.with_file_name(format!("{stem}{ending}")),
+        };
+        ENDINGS.into_iter().map(name).collect()
+    }
+
     /// Writes the task with forces to a file, and beside it `NAME-engagement.csv`, `NAME-forces.svg`,
     /// `NAME-forces.html`, `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none.
     /// Returns their paths.
@@ -74,15 +85,11 @@ impl PathForces {
     /// # Errors
     /// [`Error::Input`] for a file that is there already and to be kept, or that cannot be written.
     pub fn write(&self, task: impl AsRef<Path>, existing: Existing) -> Result<Vec<PathBuf>, Error> {
-        let task = task.as_ref();
-        let stem = task.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let name = |ending: &str| match ending {
-            "" => task.to_owned(),
-            ending => task.with_file_name(format!("{stem}{ending}")),
-        };
-        let files: Vec<(PathBuf, String)> = forces_files(&self.run, &self.forces)?
+        let made = forces_files(&self.run, &self.forces)?;
+        let files: Vec<(PathBuf, String)> = Self::files(task)
             .into_iter()
-            .map(|(ending, bytes)| (name(&ending), String::from_utf8_lossy(&bytes).into_owned()))
+            .zip(made)
+            .map(|(file, (_, bytes))| (file, String::from_utf8_lossy(&bytes).into_owned()))
             .collect();
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
         write_all_new(&texts, existing)?;

@@ -48,8 +48,15 @@ fn a_slot_has_its_force_in_a_task_that_other_commands_read() {
     assert!((x / expected - 1.0).abs() < 0.02, "{x} for {expected}");
     assert!(bench.read("my/out-engagement.csv").starts_with("point,segment,"));
     assert!(bench.read("my/out-forces.json").contains("\"cell_mm\""));
-    // What is there is kept without --force.
+    // What is there is kept without --force, whichever of the files it is.
     let kept = bench.tree("my");
+    std::fs::rename(bench.path("my/out.csv"), bench.path("my/away.csv")).unwrap();
+    let ended = bench.stead(&["forces", "my/forces.toml", "--out", "my/out.csv"]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    ended.assert_says(&["my/out-engagement.csv", "is there already"]);
+    // It is told before the work begins.
+    assert!(!ended.stderr.contains("note: forces are those of the programmed feed"), "{}", ended.stderr);
+    std::fs::rename(bench.path("my/away.csv"), bench.path("my/out.csv")).unwrap();
     let ended = bench.stead(&["forces", "my/forces.toml", "--out", "my/out.csv"]);
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     ended.assert_says(&["is there already", "--force replaces it"]);
@@ -74,8 +81,74 @@ fn what_is_wrong_is_refused_at_its_place() {
         "{FORCES}[[before]]\npath = 'part.nc'\ntool = {{ cutter_diameter_mm = 10, teeth = 2, flute_length_mm = 20 }}\n"
     );
     refused(&itself, NC, &["before[1].path: is the path of the operation itself"]);
+    refused(&itself.replace("'part.nc'\ntool", "'../my/part.nc'\ntool"), NC, &["is the path of the operation itself"]);
     refused(FORCES, &NC.replace("F1200", "F0"), &["my/part.nc:5"]);
     refused(&FORCES.replace("path = 'part.nc'", "path = 'part.nc'\npaht = 1"), NC, &["paht", "unknown"]);
+}
+
+/// Corners of a cube of 20 mm from a place on, and its triangles, which face outwards, after so many other vertices.
+fn cube(from: i32, vertices: i32) -> String {
+    let mut text = String::new();
+    for [x, y, z] in [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]] {
+        text.push_str(&format!("v {} {} {}\n", from + 20 * x, from + 20 * y - 15, 20 * z - 19));
+    }
+    for triangle in [
+        [1, 4, 3],
+        [1, 3, 2],
+        [1, 2, 6],
+        [1, 6, 5],
+        [2, 3, 7],
+        [2, 7, 6],
+        [3, 4, 8],
+        [3, 8, 7],
+        [4, 1, 5],
+        [4, 5, 8],
+        [5, 6, 7],
+        [5, 7, 8],
+    ] {
+        let [a, b, c] = triangle.map(|vertex| vertex + vertices);
+        text.push_str(&format!("f {a} {b} {c}\n"));
+    }
+    text
+}
+
+#[test]
+fn a_mesh_that_crosses_itself_is_refused_and_a_whole_one_is_cut() {
+    let of_mesh = FORCES.replace("box_mm = [60, 40, 10]\nxyz_mm = [30, 0, -5]", "mesh = 'stock.obj'");
+    for (mesh, is_sound) in [(cube(0, 0), true), (cube(0, 0) + &cube(8, 8), false)] {
+        let bench = bench(&of_mesh, NC);
+        bench.write("my/stock.obj", &mesh);
+        let before = bench.tree("my");
+        let ended = bench.stead(&["forces", "my/forces.toml", "--out", "my/out.csv"]);
+        if is_sound {
+            assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        } else {
+            assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+            ended.assert_says(&["my/forces.toml:2: stock: the surface of the stock is no closed one", "; allowed: "]);
+            assert_eq!(bench.tree("my"), before);
+        }
+    }
+}
+
+/// A task file has no rapid moves: where it begins in the stock, or turns in place there, is told all the same.
+#[test]
+fn a_task_that_begins_and_turns_in_the_stock_is_warned_of() {
+    let task = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,feed_mm_per_s,scored\n\
+                1,10,0,-3,1,0,0,0,0,1,20,1\n1,50,0,-3,1,0,0,0,0,1,20,1\n1,50,0,-3,1,0,0,0,0.1961161,0.9805807,20,0\n";
+    let of_task = FORCES.replace("part.nc", "part.csv") + "[cut]\nspindle_rpm = 6000\n";
+    let run = |task: &str| {
+        let bench = bench(&of_task, NC);
+        bench.write("my/part.csv", task);
+        bench.stead(&["forces", "my/forces.toml", "--out", "my/out.csv"])
+    };
+    let ended = run(task);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    // Points are counted as in the results, from 0, those that are added among them.
+    let start = "warning: the cutter stands in the stock where a segment begins, which gives no force: at point 0, (10, 0, -3) mm";
+    ended.assert_says(&[start, "warning: the tool turns in place in the stock, without a feed"]);
+    let ended = run(&task.replace(",20,", ",0,"));
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    ended.assert_says(&["my/part.csv:2: feed_mm_per_s: ", "'0'", "; allowed: "]);
 }
 
 #[test]

@@ -22,6 +22,7 @@ mod feed;
 #[cfg(unix)]
 mod files;
 mod forces_from_path;
+mod forces_in_runs;
 mod from_code;
 mod help;
 mod identify;

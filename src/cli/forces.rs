@@ -7,7 +7,7 @@ use super::values::threads;
 use super::{Failure, on_threads, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
-use stead::forces::ForcesRun;
+use stead::forces::{ForcesRun, PathForces};
 use stead_disk::files::new::check_all_new;
 
 #[derive(Debug, Args)]
@@ -57,8 +57,8 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &ForcesOptions) -> Result<(), Failure> {
     let run = ForcesRun::read(&options.config)?;
     // What is there and to be kept is found out before the long work.
-    let out = std::slice::from_ref(&options.out);
-    check_all_new(out, options.force.existing()).map_err(stead::Error::from)?;
+    let files = PathForces::files(&options.out);
+    check_all_new(&files, options.force.existing()).map_err(stead::Error::from)?;
     say_notes(run.notes());
     let shown = Terminal::start(None).show(None);
     let forces = on_threads(options.threads, || run.compute(&shown.monitor))?;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use stead::files::Existing;
+use stead::forces::ForcesRun;
 use stead::program::{ExportOptions, ProgramFormat};
 use stead::{Monitor, Run};
 use stead_judge::Verdict;
@@ -29,6 +30,10 @@ fn run(choice: &Choice, seed: u64, folder: &Path) -> Result<Outcome, String> {
     let mut above = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("configs/robots"));
     let robots = above.find(|folder| folder.exists()).ok_or("there is no configs/robots")?;
     let files = stead_judge::write::write(choice, seed, &robots, folder)?;
+    if let Some([file, task]) = &files.forces {
+        let forces = ForcesRun::read(file).and_then(|run| run.compute(&Monitor::silent())).map_err(told)?;
+        forces.write(task, Existing::Kept).map_err(told)?;
+    }
     let run = Run::read(&files.run).map_err(told)?;
     let placements = match run.place(&Monitor::silent()) {
         Ok(placements) => placements,

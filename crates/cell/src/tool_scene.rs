@@ -26,8 +26,11 @@ pub struct Cylinder {
 /// What turns with the spindle below its nose.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ToolBody {
-    /// Along its flutes, where its diameter is known; its end face alone where their length is not.
+    /// Along its flutes, where its diameter is known; its end face alone where their length is not. Of a tapered cutter
+    /// its lowest part.
     pub cutter: Option<Cylinder>,
+    /// The other parts of a tapered cutter, from below, each as wide as its upper end.
+    pub taper: Vec<Cylinder>,
     /// Shank and holder above it, from below.
     pub holder: Vec<Cylinder>,
 }
@@ -92,9 +95,10 @@ impl Cylinder {
 impl ToolBody {
     /// Its cylinders with their names; the tool centre point alone where nothing is known of it.
     fn pieces(&self) -> Vec<(String, Cylinder)> {
-        let cutter = self.cutter.map(|cutter| ("cutter".to_owned(), cutter));
+        let parts = self.cutter.iter().chain(&self.taper);
+        let cutter = parts.map(|part| ("cutter".to_owned(), *part));
         let holder = self.holder.iter().map(|piece| ("holder".to_owned(), *piece));
-        let mut pieces: Vec<_> = cutter.into_iter().chain(holder).collect();
+        let mut pieces: Vec<_> = cutter.chain(holder).collect();
         if pieces.is_empty() {
             pieces.push(("tool point".to_owned(), Cylinder { radius: 0.0, from: 0.0, to: 0.0 }));
         }

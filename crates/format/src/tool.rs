@@ -118,7 +118,7 @@ impl ToolTable {
     /// The cylinders that cutter, shank and holder fill.
     pub fn body(&self) -> ToolBody {
         let flutes = self.flute_length_mm.map_or(0.0, Quantity::si);
-        let cutter = Cylinder { radius: self.cutter_diameter_mm.si() / 2.0, from: 0.0, to: flutes };
+        let mut cutter = self.cutter_parts(flutes).into_iter();
         let stacked = |from: &mut f64, piece: &Array<Mm<Positive>, 2>| {
             let [height, diameter] = piece.si();
             let cylinder = Cylinder { radius: diameter / 2.0, from: *from, to: *from + height };
@@ -126,9 +126,30 @@ impl ToolTable {
             Some(cylinder)
         };
         let pieces = self.holder_mm.iter().flat_map(|list| &list.0);
-        ToolBody { cutter: Some(cutter), holder: pieces.scan(flutes, stacked).collect() }
+        ToolBody { cutter: cutter.next(), taper: cutter.collect(), holder: pieces.scan(flutes, stacked).collect() }
+    }
+
+    /// The cutter along flutes of a length (m), from below: one cylinder, or as many as a taper widens by steps.
+    fn cutter_parts(&self, flutes: f64) -> Vec<Cylinder> {
+        let radius = self.cutter_diameter_mm.si() / 2.0;
+        let taper = self.taper_deg.map_or(0.0, Quantity::si);
+        let (sine, cosine) = libm::sincos(taper);
+        let corner = self.corner_radius_mm.map_or(0.0, Quantity::si).min(radius);
+        // Where the side would meet the plane of the tip.
+        let foot = radius - corner + corner * (1.0 - sine) / cosine;
+        let side = |height: f64| if taper > 0.0 { foot + height * sine / cosine } else { radius };
+        let count = ((side(flutes) - side(0.0)) / WIDER).ceil().clamp(1.0, PARTS);
+        let part = |k: usize| {
+            let [from, to] = [k, k + 1].map(|end| flutes * end as f64 / count);
+            Cylinder { radius: side(to), from, to }
+        };
+        (0..count as usize).map(part).collect()
     }
 }
+
+/// Parts of a tapered cutter widen by no more, while there are no more than so many. m
+const WIDER: f64 = 0.5e-3;
+const PARTS: f64 = 12.0;
 
 /// Both tables with their places in a file.
 #[derive(Debug, Clone)]

@@ -506,7 +506,7 @@ mod tests {
     fn end_mill() -> ToolBody {
         let [cutter, shank] =
             [(0.01, 0.0, 0.04), (0.008, 0.04, 0.15)].map(|(radius, from, to)| Cylinder { radius, from, to });
-        ToolBody { cutter: Some(cutter), holder: vec![shank] }
+        ToolBody { cutter: Some(cutter), holder: vec![shank], ..ToolBody::default() }
     }
 
     /// The least height of the tool centre point above the top of the part, in the workpiece frame, while it is over
@@ -562,7 +562,7 @@ mod tests {
             Some(names[1].clone())
         };
         let cutter =
-            |radius: f64, to: f64| ToolBody { cutter: Some(Cylinder { radius, from: 0.0, to }), holder: Vec::new() };
+            |radius: f64, to: f64| ToolBody { cutter: Some(Cylinder { radius, from: 0.0, to }), ..ToolBody::default() };
         let block = |name: &str, edges: [f64; 3], at: [f64; 3]| {
             shape(name, Attachment::Workpiece, Solid::Box(edges.into()), at)
         };

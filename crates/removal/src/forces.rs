@@ -136,6 +136,8 @@ struct Run {
     workpiece: Workpiece,
     /// The surface of the stock before the operation, where turns are asked for: of the last run.
     before: Surface,
+    /// Likewise what those before it have removed. m3
+    removed_before: f64,
     path: PathMoves,
     found: Found,
     tool: Tool,
@@ -164,7 +166,10 @@ impl Run {
             let path = PathMoves::new(before, window);
             workpiece.cut(&tool(&before.mill), &path, Asked::Removal, "cutting what is cut before", monitor)?;
         }
-        let before = if asked == Asked::Turns { surface(&workpiece) } else { Surface::default() };
+        let (before, removed_before) = match asked {
+            Asked::Turns => (surface(&workpiece), workpiece.removed(2)),
+            Asked::Removal | Asked::Forces => Default::default(),
+        };
         let (tool, path) = (tool(&problem.operation.mill), PathMoves::new(&problem.operation, window));
         let found = workpiece.cut(&tool, &path, asked, stage, monitor)?;
         let unsound = workpiece.unsound().filter(|(share, _)| *share > UNSOUND);
@@ -174,7 +179,7 @@ impl Run {
         if !found.sums.iter().any(|sums| sums.volume > 0.0) {
             return Err(ForcesError::Untouched);
         }
-        Ok(Self { workpiece, before, path, found, tool })
+        Ok(Self { workpiece, before, removed_before, path, found, tool })
     }
 
     /// The distance of lines with which forces are good: a share of the diameter, and no more than the depth of the
@@ -203,7 +208,7 @@ impl Run {
         let rough: Vec<_> = (0..points).map(|point| coarse.at_point(point)).collect();
         let difference = ForcesDifference::between(&fine, &rough);
         let (path, points) = added_points(&operation.path, fine, &loads)?;
-        let removed = self.workpiece.removed(2);
+        let removed = self.workpiece.removed(2) - self.removed_before;
         let stock = [self.before, surface(&self.workpiece)];
         let cell = self.workpiece.cell();
         let mut all = RemovalForces {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// Nanometres in a metre: ends of intervals are whole numbers, so that comparisons are exact.
 pub const NANO: f64 = 1e9;
-/// Slivers below this are not removed. nm
+/// What is removed and no longer than this is not told, and what is left and no longer is nothing: it is rounding. nm
 const SLIVER: u32 = 10;
 
 /// Ascending intervals of each line, in nanometres from the lower end of the stock.
@@ -51,7 +51,7 @@ impl Tile {
 
     /// Whether something is left of a line within an interval.
     pub fn meets(&self, line: usize, [low, high]: [u32; 2]) -> bool {
-        let is_met = |from: u32, to: u32| to.min(high) > from.max(low).saturating_add(SLIVER);
+        let is_met = |from: u32, to: u32| to.min(high) > from.max(low);
         let [a, b, c, d] = self.lines[line];
         is_met(a, b)
             || is_met(c, d)
@@ -59,7 +59,8 @@ impl Tile {
                 && self.more.get(&line).is_some_and(|more| more.iter().any(|[from, to]| is_met(*from, *to)))
     }
 
-    /// Removes an interval from a line; what it removes is added to a list.
+    /// Removes an interval from a line; what it removes is added to a list, but for slivers. Those are removed all the
+    /// same, so that what is left does not depend on the steps in which it is reached.
     pub fn remove(&mut self, line: usize, [low, high]: [u32; 2], removed: &mut Vec<[u32; 2]>) {
         if !self.meets(line, [low, high]) {
             return;
@@ -77,11 +78,13 @@ impl Tile {
         };
         for [from, to] in self.intervals(line) {
             let (start, end) = (from.max(low), to.min(high));
-            if end <= start.saturating_add(SLIVER) {
+            if end <= start {
                 keep(from, to);
                 continue;
             }
-            removed.push([start, end]);
+            if end > start.saturating_add(SLIVER) {
+                removed.push([start, end]);
+            }
             keep(from, start);
             keep(end, to);
         }

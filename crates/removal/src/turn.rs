@@ -23,6 +23,9 @@ const LAG: f64 = 2.0 * std::f64::consts::PI / 180.0;
 const NOTHING: f64 = 0.02;
 /// Likewise of a slice at all angles.
 const NO_SLICE: f64 = 0.05;
+/// A field whose chip is thinner than this share of the thickest is no part of the angles of the cut: the bottom of a
+/// cutter that leans back by a hundredth of a degree is in the stock all around, with chips of nanometres.
+const LEAST_CHIP: f64 = 0.01;
 
 /// The load in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -209,13 +212,16 @@ impl Slice {
     }
 }
 
-/// The angles between which some slice is in the stock: all but the widest gap. rad
+/// The angles between which some slice cuts a chip: all but the widest gap. rad
 fn angles(slices: &[Slice]) -> [f64; 2] {
     let step = TAU / ANGLES as f64;
+    let thickest = slices.iter().flat_map(|slice| slice.chips).fold(0.0, f64::max);
     let mut covered = [0.0_f64; ANGLES];
     for slice in slices {
-        for (own, other) in covered.iter_mut().zip(&slice.angles) {
-            *own = own.max(*other);
+        for ((own, other), chip) in covered.iter_mut().zip(&slice.angles).zip(&slice.chips) {
+            if *chip >= LEAST_CHIP * thickest {
+                *own = own.max(*other);
+            }
         }
     }
     let is_open = |angle: usize| covered[angle % ANGLES] == 0.0;

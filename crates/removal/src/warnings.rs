@@ -16,6 +16,8 @@ const CELLS: f64 = 8.0;
 pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found, tool: &Tool) {
     let original = &problem.operation.path;
     let least = CELLS * all.cell.powi(3);
+    // Points are told by their numbers in the results, which count those that were added.
+    let numbers: Vec<usize> = (0..all.points.len()).filter(|point| !all.points[*point].is_added).collect();
     let mut warn = |event: Event, kind: &'static str, text: &dyn Fn() -> String| {
         let met: Vec<(u32, f64)> = found
             .events
@@ -25,7 +27,7 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
             .collect();
         let Some((first, _)) = met.first() else { return };
         let volume: f64 = met.iter().map(|(_, volume)| volume).sum();
-        let number = *first as usize + 1;
+        let number = numbers.get(*first as usize).copied().unwrap_or_default();
         let at = place(&original.points()[*first as usize].position);
         let count = met.len();
         let points = if count == 1 {
@@ -71,7 +73,7 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
             in_air.len(),
             scored.len(),
             all.air * 100.0,
-            first + 1
+            first
         );
         all.warnings.push(Warning::new("in-air", text));
     }
@@ -83,7 +85,7 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
             "chips are thinner than {} um at {} scored points, first at point {}, {at}: the teeth may rub",
             THIN * 1e6,
             thin.len(),
-            first + 1
+            first
         );
         all.warnings.push(Warning::new("thin-chip", text));
     }

@@ -23,20 +23,25 @@ use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
 use stead_removal::surface::Surface;
 use stead_runs::ForcesRun;
 
-/// The files of forces from a path, by the endings of their names; the task first, which has none.
+/// The endings of the names of the files of forces from a path; the task first, which has none.
+pub const ENDINGS: [&str; 7] =
+    ["", "-engagement.csv", "-forces.svg", "-forces.html", "-stock-before.stl", "-stock-after.stl", "-forces.json"];
+
+/// The files of forces from a path, by their [`ENDINGS`].
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.
 pub fn forces_files(run: &ForcesRun, forces: &RemovalForces) -> Result<Files, ReportError> {
-    Ok(named([
-        ("", task(forces)?),
-        ("-engagement.csv", engagement(forces)?),
-        ("-forces.svg", picture::charts(&charts(forces)).into_bytes()),
-        ("-forces.html", page::page(run, forces).html()),
-        ("-stock-before.stl", stl(&forces.stock[0])),
-        ("-stock-after.stl", stl(&forces.stock[1])),
-        ("-forces.json", bytes(&forces_json(run, forces))),
-    ]))
+    let files = [
+        task(forces)?,
+        engagement(forces)?,
+        picture::charts(&charts(forces)).into_bytes(),
+        page::page(run, forces).html(),
+        stl(&forces.stock[0]),
+        stl(&forces.stock[1]),
+        bytes(&forces_json(run, forces)),
+    ];
+    Ok(named(ENDINGS.into_iter().zip(files)))
 }
 
 records! {

@@ -140,7 +140,10 @@ impl Cell {
         if let Some(name) = text(cell, "orientation") {
             orientations.retain(|(known, _)| known == name);
         }
-        let points = path::read(&beside("task")?, &run)?;
+        let mut points = path::read(&beside("task")?, &run)?;
+        if run.contains_key("stock") {
+            points = path::with_stock(&points, &folder.join(path::WITH_STOCK), &run)?;
+        }
         let mut all = Self {
             arm,
             sets,

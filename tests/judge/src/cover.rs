@@ -49,7 +49,7 @@ pub const FACTORS: &[Factor] = &[
     factor("path", &["raster", "contour", "tilted", "single"]),
     factor("unscored", &["none", "plunge", "turn in place"]),
     factor("feeds", &["run", "task"]),
-    factor("load", &["task", "moments", "forces", "forces by segment", "conventional", "climb"]),
+    factor("load", &["task", "moments", "forces", "forces by segment", "conventional", "climb", "stock"]),
     factor("scored", &["wall", "axis", "total", "surface", "weights"]),
     factor("aggregate", &["mean", "rms", "max"]),
     factor("force errors", &["0", "0.1"]),
@@ -81,6 +81,7 @@ const IMPOSSIBLE: &[([&str; 4], &str)] = &[
     (["travel weight", "0.05", "aggregate", "max"], "refused: joint travel is weighed beside a mean"),
     (["load", "conventional", "tool", "none"], "the cutter gives the force"),
     (["load", "climb", "tool", "none"], "the cutter gives the force"),
+    (["load", "stock", "tool", "none"], "the cutter gives the force"),
     (["search", "genetic", "postures", "never"], "refused: it searches for a posture of each segment"),
     (["arm", "staubli-tx200", "program", "native"], "no programs are written for this controller"),
 ];

@@ -22,6 +22,34 @@ pub(crate) struct Point {
     pub is_scored: bool,
 }
 
+/// Beside a run with `[stock]`: the task with the forces along it and the points that they add, as `stead forces` writes
+/// it from the same tables. The judge removes no material.
+pub(crate) const WITH_STOCK: &str = "with-stock.csv";
+
+/// The points of such a task: those of the path itself are there in their order, and the others on the straight line
+/// between two of them.
+pub(crate) fn with_stock(own: &[Point], file: &File, run: &Table) -> Answer<Vec<Point>> {
+    let points = read(file, run)?;
+    let mut next = 0;
+    for (number, point) in points.iter().enumerate() {
+        let is_near = |a: &Vector3<f64>, b: &Vector3<f64>| (a - b).amax() < 1e-8;
+        let told = || format!("{}: point {} is none of the task", file.display(), number + 1);
+        let of_task = own.get(next).ok_or_else(told)?;
+        if is_near(&of_task.place, &point.place) && (of_task.axes - point.axes).amax() < 1e-6 {
+            next += 1;
+            continue;
+        }
+        let before = own.get(next.wrapping_sub(1)).ok_or_else(told)?;
+        let way = of_task.place - before.place;
+        let share = (point.place - before.place).dot(&way) / way.norm_squared();
+        let is_between = (0.0..=1.0).contains(&share) && is_near(&(before.place + way * share), &point.place);
+        if !is_between || point.segment != of_task.segment || point.is_scored != of_task.is_scored {
+            return Err(told());
+        }
+    }
+    if next == own.len() { Ok(points) } else { Err(format!("{}: points of the task are missing", file.display())) }
+}
+
 /// Reads the task, with the forces that the run states where the task has none.
 pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
     let told = |error: String| format!("{}: {error}", file.display());
@@ -60,7 +88,7 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
             is_scored: value("scored").is_none_or(|scored| scored != 0.0),
         });
     }
-    if !has_forces {
+    if !has_forces && !run.contains_key("stock") {
         load(&mut points, run)?;
     }
     for point in points.iter_mut().filter(|point| !point.is_scored) {

@@ -16,11 +16,16 @@ pub struct Files {
     pub run: PathBuf,
     /// All TOML files, with what kind of file they are: `run`, `robot`, `surroundings`.
     pub toml: Vec<(&'static str, PathBuf)>,
+    /// A file for `stead forces` with the stock of the run, where it has one, and the task that it is to write.
+    pub forces: Option<[PathBuf; 2]>,
     /// The format of a program, where one is to be exported.
     pub program: Option<&'static str>,
     /// Whether an external axis carries the part, so that a program needs the name of its mechanism.
     pub part_moves: bool,
 }
+
+/// The stock about the path and the speed of the spindle.
+const STOCK: &str = "\n[stock]\nallowance_mm = [6.0, 6.0, 3.0]\ncell_mm = 0.7\n\n[cut]\nspindle_rpm = 8000.0\n";
 
 fn list(numbers: impl IntoIterator<Item = f64>) -> String {
     let words: Vec<String> = numbers.into_iter().map(|number| format!("{number:?}")).collect();
@@ -110,6 +115,16 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
     let run = folder.join("run.toml");
     std::fs::write(&run, &writer.run).map_err(told)?;
     toml.push(("run", run.clone()));
+    let forces = if of("load") == "stock" {
+        let [file, task] = ["forces.toml", crate::path::WITH_STOCK].map(|name| folder.join(name));
+        // The feed of the run: 0.1 mm a tooth of three at 8000 1/min are 40 mm/s.
+        let feed = if of("feeds") == "run" { "feed_per_tooth_mm = 0.1\n" } else { "" };
+        let text = format!("path = \"task.csv\"\n{STOCK}{feed}{}", writer.tool());
+        std::fs::write(&file, text).map_err(told)?;
+        Some([file, task])
+    } else {
+        None
+    };
     let axes = of("axes");
     let part_moves =
         ["table", "tilt", "part rail", "held"].iter().any(|word| axes.contains(word)) && !axes.starts_with("robot");
@@ -125,7 +140,7 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
         "csv" => Some("csv"),
         _ => None,
     };
-    Ok(Files { run, toml, program, part_moves })
+    Ok(Files { run, toml, forces, program, part_moves })
 }
 
 fn sizes(arm: &Table) -> Answer<[f64; 4]> {
@@ -410,6 +425,7 @@ impl Writer<'_> {
                 "\n[forces]\nfeed_n = -150.0\nnormal_n = -90.0\naxis_n = 40.0\n\n\
                  [[forces.segment]]\nnumber = 1\nfeed_n = 60.0\nnormal_n = 200.0\naxis_n = 10.0\n",
             ),
+            "stock" => text.push_str(STOCK),
             load @ ("conventional" | "climb") => {
                 let _ = writeln!(
                     text,
@@ -418,15 +434,32 @@ impl Writer<'_> {
             }
             _ => {}
         }
-        if self.of("tool") != "none" {
-            text.push_str("\n[tool]\ncutter_diameter_mm = 16.0\n");
-            if matches!(self.of("load"), "conventional" | "climb") {
-                text.push_str("teeth = 3\nrotation = \"counterclockwise\"\nkt_mpa = 800.0\nkr = 0.4\nkte_n_per_mm = 20.0\nkre_n_per_mm = 15.0\n");
-            }
-            if self.of("tool") == "holder" {
-                text.push_str("flute_length_mm = 30.0\nholder_mm = [[25.0, 16.0], [40.0, 50.0]]\n");
-            }
-        }
+        text.push_str(&self.tool());
         self.run.push_str(&text);
+    }
+
+    /// The table of the cutter.
+    fn tool(&self) -> String {
+        let mut text = String::new();
+        let (tool, load) = (self.of("tool"), self.of("load"));
+        if tool == "none" {
+            return text;
+        }
+        text.push_str("\n[tool]\ncutter_diameter_mm = 16.0\n");
+        if matches!(load, "conventional" | "climb" | "stock") {
+            text.push_str(
+                "teeth = 3\nrotation = \"counterclockwise\"\nkt_mpa = 800.0\nkr = 0.4\nkte_n_per_mm = 20.0\nkre_n_per_mm = 15.0\n",
+            );
+        }
+        if load == "stock" {
+            text.push_str("ka_mpa = 90.0\ncorner_radius_mm = 2.0\ntaper_deg = 3.0\n");
+        }
+        if load == "stock" || tool == "holder" {
+            text.push_str("flute_length_mm = 30.0\n");
+        }
+        if tool == "holder" {
+            text.push_str("holder_mm = [[25.0, 16.0], [40.0, 50.0]]\n");
+        }
+        text
     }
 }

@@ -222,3 +222,28 @@ radial_depth_mm = 2.5
         }
     }
 }
+
+/// What is kept apart from the part is as wide as the cutter wherever it is cut across.
+#[test]
+fn a_tapered_cutter_widens_and_its_holder_stands_above_it() {
+    let body = |keys: &str| {
+        let text = format!("cutter_diameter_mm = 4\nflute_length_mm = 30\nholder_mm = [[20, 12]]\n{keys}");
+        toml::from_str::<ToolTable>(&text).unwrap().body()
+    };
+    let straight = body("");
+    assert_eq!((straight.taper.len(), straight.cutter.unwrap().radius), (0, 0.002));
+    let tapered = body("corner_radius_mm = 2\ntaper_deg = 10");
+    assert_eq!(tapered.holder, straight.holder);
+    let parts: Vec<_> = tapered.cutter.iter().chain(&tapered.taper).collect();
+    assert!(parts.len() > 5);
+    // A ball of 2 mm with a side that leans by 10 deg: a line at 2 / cos(10 deg) - 2 tan(10 deg) from the axis at the tip.
+    let (sine, cosine) = libm::sincos(10_f64.to_radians());
+    let side = |height: f64| 0.002 / cosine + (height - 0.002) * sine / cosine;
+    for (part, next) in parts.iter().zip(&parts[1..]) {
+        assert!((part.to - next.from).abs() < 1e-12);
+    }
+    for part in &parts {
+        assert!((part.radius - side(part.to)).abs() < 1e-12, "{part:?}");
+    }
+    assert!((parts[parts.len() - 1].to - 0.03).abs() < 1e-12 && parts[0].from == 0.0);
+}

@@ -6,7 +6,7 @@
 //!
 //! **What is left out.** As in Klimchik 2017 a tooth is a point at the radius R in the plane of the tool centre point
 //! (eq. 8): the lag of the helix over the depth of cut, which does not change the mean force, and the lever of the
-//! height of the cut, at most `a_p` times the force. The feed turns into the chip as if the teeth ran on circles.
+//! height of the cut, [`CuttingForce::lever`]. The feed turns into the chip as if the teeth ran on circles.
 //
 
 use super::coefficients::Coefficients;
@@ -75,6 +75,13 @@ impl CuttingForce<'_> {
     /// summed over the teeth.
     pub fn mean_wrench(&self, engagement: &Engagement) -> Wrench {
         self.mean_over(engagement.integrals())
+    }
+
+    /// What the height of a cut that begins at the tip adds to the moment about the tool centre point of a force: half
+    /// the depth of cut along the tool axis, times the force. The other moments here leave it out, as Klimchik 2017
+    /// does; the moments along a path with its stock have it.
+    pub fn lever(&self, force: &Vector3<f64>) -> Vector3<f64> {
+        (Vector3::z() * (self.axial_depth / 2.0)).cross(force)
     }
 
     /// The mean wrench from the integrals over the arcs.

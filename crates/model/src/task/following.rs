@@ -21,6 +21,12 @@ impl ToolPath {
         }
     }
 
+    /// The path without feeds of its own.
+    pub fn without_feeds(mut self) -> Self {
+        self.feeds = None;
+        self
+    }
+
     /// The feed of the move to a point, where the task states it. m/s
     pub fn feed(&self, point: usize) -> Option<f64> {
         self.feeds.as_ref().map(|feeds| feeds[point])

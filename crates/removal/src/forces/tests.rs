@@ -2,7 +2,11 @@
 //! wall and stock as named.
 
 mod events;
+mod five_axes;
 mod oracles;
+mod probing;
+mod twin;
+mod volumes;
 
 use super::*;
 use crate::outcome::PointForces;
@@ -78,34 +82,40 @@ fn a_plunge_that_begins_in_the_stock_has_its_force_from_the_start() {
     assert!(kinds(&found).contains(&"starts-in-stock"), "{:?}", found.warnings);
 }
 
+/// An upright shoulder, and the same with the tool along the other axes of the grid and quarter turns about it.
 #[test]
 fn stock_and_path_turned_by_a_quarter_give_the_same_forces() {
-    let turned = |rotation: Matrix3<f64>| {
-        let pose = Pose { rotation, translation: Vector3::zeros() };
-        let path = line(&along_x(5.0), 2.0);
-        let problem = ForcesProblem {
-            stock: stock([[0.0, 4.0, -20.0], [80.0, 30.0, 0.0]], &pose),
-            operation: operation(&path, &mill(16.0, 0.0, 0.0), &pose),
-            ..shoulder([4.0, 30.0], &along_x(5.0))
-        };
-        (found(&problem), rotation.transpose())
-    };
-    let (plain, _) = turned(Matrix3::identity());
-    for rotation in [
-        Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-        // The tool axis along y.
-        Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0),
-    ] {
-        let (other, back) = turned(rotation);
-        let scale = largest(&plain.points);
-        for (a, b) in plain.points[5..25].iter().zip(&other.points[5..25]) {
-            let off = (a.at_feed(1.0).force - back * b.at_feed(1.0).force).norm() / scale;
-            assert!(off < 0.03, "{off}");
+    let of_depth = |depth: f64, y: [f64; 2], is: Vector3<f64>| {
+        for tool_axis in 0..3 {
+            for quarters in 0..4 {
+                let (s, c) = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][quarters];
+                let about = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
+                // The axes of the grid in turn.
+                let turn = Matrix3::from_fn(|row, column| f64::from((row + 3 - tool_axis) % 3 == (column + 1) % 3));
+                let rotation = turn * about;
+                let pose = Pose { rotation, translation: Vector3::zeros() };
+                let problem = ForcesProblem {
+                    stock: stock([[0.0, y[0], -20.0], [80.0, y[1], 0.0]], &pose),
+                    operation: operation(&line(&along_x(depth), 2.0), &mill(16.0, 0.0, 0.0), &pose),
+                    ..shoulder(y, &along_x(depth))
+                };
+                let found = found(&problem);
+                let (mut squares, mut largest) = (0.0, 0.0_f64);
+                for load in &found.points[5..25] {
+                    let off = (rotation.transpose() * load.at_feed(1.0).force - is).norm() / is.norm();
+                    squares += off * off / 20.0;
+                    largest = largest.max(off);
+                }
+                let rms = squares.sqrt();
+                assert!(rms < 0.015 && largest < 0.04, "{tool_axis} {quarters}: {rms} {largest}");
+            }
         }
-    }
+    };
+    of_depth(5.0, [4.0, 30.0], Vector3::new(-150.3504, -3.3003, 7.9577));
+    of_depth(10.0, [-30.0, -7.0], Vector3::new(71.4029, 99.9017, 3.9789));
 }
 
-/// The lines are the same, so only the rounding of their ends to a nanometre differs.
+/// The lines are the same, and what the moves sweep of them together. The force is a sum over other points of them.
 #[test]
 fn the_same_path_in_other_moves_removes_the_same() {
     let removed = |step: f64| {
@@ -128,7 +138,7 @@ fn the_same_path_in_other_moves_removes_the_same() {
     for step in [5.0, 0.7] {
         let (other, of_other) = removed(step);
         for axis in 0..3 {
-            assert!((other[axis] / lost[axis] - 1.0).abs() < 1e-6, "{step} {axis}: {} {}", other[axis], lost[axis]);
+            assert!((other[axis] / lost[axis] - 1.0).abs() < 1e-9, "{step} {axis}: {} {}", other[axis], lost[axis]);
         }
         assert!((of_other - force).norm() < 2e-3 * force.norm(), "{step}: {of_other} {force}");
     }
@@ -172,6 +182,18 @@ fn angles_and_heights_are_those_of_the_cut() {
             assert!((point.chip_thickness * 1e3 - 0.0433).abs() < 0.002, "{}", point.chip_thickness);
         }
         assert!(found.difference.rms[0] < 0.05 && found.difference.rms[0] > 0.0, "{:?}", found.difference);
+    }
+}
+
+/// Leaning back by so little, the bottom is in the stock all around, and cuts chips of a tenth of a micrometre.
+#[test]
+fn a_bottom_that_hardly_cuts_does_not_widen_the_angles() {
+    let (s, c) = libm::sincos(0.15_f64.to_radians());
+    let back = [-s, 0.0, c];
+    let problem = shoulder([4.0, 30.0], &[([10.0, 0.0, -5.0], back), ([70.0, 0.0, -5.0], back)]);
+    for point in &found(&problem).points[8..22] {
+        let angles = point.angles.unwrap().map(f64::to_degrees);
+        assert!(angles[0].abs() < 3.0 && (angles[1] - 60.0).abs() < 3.0, "{angles:?}");
     }
 }
 

@@ -19,7 +19,7 @@ use stead_format::sources::Sources;
 use stead_format::surroundings::{PartTable, StockTable};
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
-use stead_model::cutting::Coefficients;
+use stead_model::cutting::{Coefficients, Cutter, Rotation};
 use stead_model::task::ToolPath;
 use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, Stock};
 use stead_runs::forces::{ForcesPlaces, ForcesRun};
@@ -122,7 +122,7 @@ impl RemovalTables<'_> {
                     .key("path")
                     .error("is the path of the operation itself", "the path of an earlier operation"));
             }
-            let mill = shape(&table.tool, Coefficients::default(), &at)?;
+            let mill = shape(&table.tool, outline(&table.tool, &at)?, &at)?;
             before.push(Operation {
                 name: named_before.input.name.clone(),
                 path: named_before.path,
@@ -302,11 +302,23 @@ fn end_mill(tool: &ToolTable, material: Option<Word<Material>>, at: &Place<'_>) 
             coefficients
         }
     };
-    shape(tool, coefficients, at)
+    shape(tool, Cutting::new(tool, &CutTable::default(), at).cutter(coefficients, "kt_mpa")?, at)
 }
 
-/// The end mill with these coefficients.
-fn shape(tool: &ToolTable, coefficients: Coefficients, at: &Place<'_>) -> Result<EndMill, InputError> {
+/// A cutter of which its shape alone counts: its teeth need not be stated.
+fn outline(tool: &ToolTable, at: &Place<'_>) -> Result<Cutter, InputError> {
+    if tool.teeth.is_some() || tool.pitch_deg.is_some() || tool.runout_um.is_some() {
+        return Cutting::new(tool, &CutTable::default(), at).cutter(Coefficients::default(), "kt_mpa");
+    }
+    let radius = tool.cutter_diameter_mm.si() / 2.0;
+    Cutter::even(1, radius, 0.0, Rotation::Clockwise, Coefficients::default()).map_err(|error| {
+        let at = at.key("tool").key("cutter_diameter_mm");
+        at.error(format!("makes no cutter: {error}"), "a number above 0")
+    })
+}
+
+/// The end mill of a cutter.
+fn shape(tool: &ToolTable, cutter: Cutter, at: &Place<'_>) -> Result<EndMill, InputError> {
     let tool_at = at.key("tool");
     let flutes = required!(tool_at, tool.flute_length_mm)?;
     let corner_radius = tool.corner_radius_mm.map_or(0.0, Quantity::si);
@@ -319,7 +331,6 @@ fn shape(tool: &ToolTable, coefficients: Coefficients, at: &Place<'_>) -> Result
         let allowed = format!("at least corner_radius_mm = {}", corner_radius * 1e3);
         return Err(tool_at.key("flute_length_mm").out_of_range(allowed));
     }
-    let cutter = Cutting::new(tool, &CutTable::default(), at).cutter(coefficients, "kt_mpa")?;
     Ok(EndMill {
         flute_length: flutes.si(),
         // With runout the mean radius may be the smaller one.

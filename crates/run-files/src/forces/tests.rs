@@ -111,6 +111,9 @@ fn operations_before_are_those_of_other_paths() {
     let tool = "[before.tool]\ncutter_diameter_mm = 20\nflute_length_mm = 40\nteeth = 2\n";
     let run = read(&format!("{TEXT}[[before]]\npath = 'part.nc'\n{tool}")).unwrap();
     assert_eq!((run.problem.before.len(), run.problem.before[0].path.segments().len()), (1, 2));
+    // Its shape alone counts, so that it needs no teeth.
+    let bare = read(&format!("{TEXT}[[before]]\npath = 'part.nc'\n{}", tool.replace("teeth = 2\n", ""))).unwrap();
+    assert_eq!(bare.problem.before[0].mill.profile(), run.problem.before[0].mill.profile());
     let error = read(&format!("{TEXT}[[before]]\npath = 'part.csv'\n{tool}")).unwrap_err().to_string();
     assert!(error.contains("before[1].path: is the path of the operation itself"), "{error}");
 }

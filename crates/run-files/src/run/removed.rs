@@ -13,6 +13,9 @@ use stead_removal::forces::forces;
 use stead_removal::outcome::RemovalForces;
 use stead_runs::ReadError;
 
+/// Sections of a cut that are no farther apart are one. Relative
+const SAME_SECTION: f64 = 0.2;
+
 /// What a run gets of its stock.
 pub(super) struct Removed {
     /// The task with the points that were added, and the force at each.
@@ -47,9 +50,11 @@ pub(super) fn removed(
         let problem = "forces come from one place only, and there is a table [stock]";
         return Err(at.key("forces").error(problem, alone).found_if(None).into());
     }
+    // With the feed of the run its task still states none.
+    let is_fed = imported.path.feed(0).is_none() && tables.cut.is_none_or(|cut| cut.feed_per_tooth_mm.is_none());
     let path = NamedPath {
         file: file.file.clone(),
-        path: fed(imported.path, feed, tables, at)?,
+        path: if is_fed { fed(imported.path, feed, at)? } else { imported.path },
         rapids: Vec::new(),
         spindle_speed: None,
         tool: None,
@@ -57,11 +62,15 @@ pub(super) fn removed(
         input: input_file("task", &file.name, &file.bytes),
     };
     let run = tables.run(path, source, at)?;
-    let key = format!("{tables:?} {:?} {feed:?}", run.inputs);
-    let make = || forces(&run.problem, monitor).map_err(|error| run.located(&error));
-    let outcome = source.sources.made(key, make)?;
+    // Of the cut nothing else counts, such as depths for the stability.
+    let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
+    let others = RemovalTables { cut: None, is_for_stability: false, ..*tables };
+    let key = format!("{others:?} {cut:?} {:?} {feed:?}", run.inputs);
+    let made = source.sources.made(key, || forces(&run.problem, monitor));
+    let outcome = made.map_err(|error| run.located(&error))?;
     let edges = outcome.points.iter().map(|point| point.edge).collect();
-    let task = Task::new(outcome.path.clone(), outcome.wrenches())
+    let cut = outcome.path.clone();
+    let task = Task::new(if is_fed { cut.without_feeds() } else { cut }, outcome.wrenches())
         .and_then(|task| task.with_edge_parts(edges))
         .map_err(|e| at.key("stock").error(format!("gives no usable forces: {e}"), "values whose forces are finite"))?;
     let mut notes = run.notes;
@@ -69,16 +78,31 @@ pub(super) fn removed(
         "the forces are those of what the path removes of [stock], and the task has the points that they add"
             .to_owned(),
     );
+    notes.extend(section_note(tables, &outcome));
     notes.extend(outcome.notes.iter().cloned());
     Ok(Removed { task, inputs: run.inputs.into_iter().skip(1).collect(), notes, forces: outcome })
 }
 
-/// The path with the feed of the run, where it states none and no feed per tooth is given.
-fn fed(path: ToolPath, feed: f64, tables: &RemovalTables<'_>, at: &Place<'_>) -> Result<ToolPath, InputError> {
-    if path.feed(0).is_some() || tables.cut.is_some_and(|cut| cut.feed_per_tooth_mm.is_some()) {
-        return Ok(path);
-    }
+/// The path with the feed of the run (m/s).
+fn fed(path: ToolPath, feed: f64, at: &Place<'_>) -> Result<ToolPath, InputError> {
     let count = path.points().len();
     let at = at.key("redundancy").key("feed_mm_per_s");
     path.with_feeds(vec![feed; count]).map_err(|error| at.error(error.to_string(), "a feed above 0"))
+}
+
+/// That the cut which `[cut]` describes for the stability is another than that of the stock, where its section is off
+/// by more than a fifth.
+fn section_note(tables: &RemovalTables<'_>, outcome: &RemovalForces) -> Option<String> {
+    let cut = tables.cut.filter(|_| tables.is_for_stability)?;
+    let stated = cut.radial_depth_mm?.si() * cut.axial_depth_mm?.si();
+    let largest = outcome.points.iter().map(|point| point.removed).fold(0.0, f64::max);
+    let is_like = (largest / stated - 1.0).abs() <= SAME_SECTION;
+    (!is_like).then(|| {
+        format!(
+            "[cut] describes a cut of {:.2} mm2 for [stability], and the path removes up to {:.2} mm2 of [stock]: critical depths are \
+             those of the first, deflections those of the second",
+            stated * 1e6,
+            largest * 1e6
+        )
+    })
 }
