@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -117,3 +118,39 @@ def test_ctrl_c_leaves_the_best_found_so_far() -> None:
         assert process.wait(120) == 0, rest
     last = rest.splitlines()[-1]
     assert last.startswith("found ") or last == "nothing", rest
+
+
+STOCK = """
+[stock]
+box_mm = [400, 440, 10]
+xyz_mm = [0, 200, 0]
+[tool]
+cutter_diameter_mm = 16
+teeth = 4
+flute_length_mm = 4
+kt_mpa = 800
+kr = 0.4
+kte_n_per_mm = 20
+kre_n_per_mm = 20
+[cut]
+spindle_rpm = 20000
+"""
+
+
+def test_forces_of_a_stock_are_a_job_of_reading_the_run(tmp_path: Path) -> None:
+    text = Path(CARO).read_text()
+    for name, file in (("robot", "configs/robots/kuka-kr270-2.toml"), ("task", "tasks/five-segments-path.csv")):
+        (tmp_path / Path(file).name).write_bytes(Path(file).read_bytes())
+        text = re.sub(rf"(?m)^{name} = .*$", f'{name} = "{Path(file).name}"', text)
+    run = tmp_path / "run.toml"
+    run.write_text(text + STOCK)
+    told: list[tuple[str, int, int]] = []
+    read = stead.Run.read(run, progress=lambda *step: told.append(step), threads=1)
+    assert [warning.kind for warning in read.warnings] == ["starts-in-stock", "above-flutes", "in-air"]
+    assert told and all(0 <= done <= total for _, done, total in told)
+    with pytest.raises(stead.Error, match="deadline"):
+        stead.Run.read(run, time_limit_s=0.0)
+    score = read.score(stead.Placement(0.0, -1640.0, -214.0, 8.6))
+    assert score.warnings[:3] == read.warnings
+    held = score.best.at_held_feed
+    assert held is not None and held.mean_mm <= score.best.mean_mm * (1.0 + 1e-9)

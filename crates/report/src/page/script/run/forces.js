@@ -127,7 +127,8 @@ export function forcesCard() {
     onChange,
   );
   const out = card('Forces of the cut', '', chart.host, legend);
-  out.classList.add('alone');
+  out.style.marginTop = '14px';
+  parts.style.flexWrap = 'wrap';
   /** @type {HTMLElement} */ (out.firstChild).append(parts);
   const words = /** @type {HTMLElement} */ (out.querySelector('.sub'));
   onChange(() => {

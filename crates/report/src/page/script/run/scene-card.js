@@ -19,7 +19,8 @@ export const viewPicture = () => picture();
 /** What the path is coloured by, where there is something to choose from. */
 function colouringChoice() {
   if (COLOURINGS.length < 2) return null;
-  const ramp = el('div.legend');
+  const ramp = el('div.legend.chip');
+  Object.assign(ramp.style, { padding: '4px 9px', cursor: 'default' });
   const show = () => {
     const { ends } = COLOURINGS[state.colouring];
     ramp.replaceChildren(rampOf(ends[0], ends[1]));
@@ -32,7 +33,9 @@ function colouringChoice() {
     onChange,
   );
   onChange(show);
-  return el('div.colouring', {}, pick, ramp);
+  const out = el('div.tags.colouring', {}, pick, ramp);
+  out.style.marginBottom = '6px';
+  return out;
 }
 
 /** The card with the view, its switches and its words. */
