@@ -231,10 +231,11 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
         "on \"table\" of the surroundings, 500 mm",
         "\ncutter_diameter_mm = 16.0 ",
         "\ncorner_radius_mm = 2.0 ",
-        "\n# spindle_rpm = 9000.0 ",
+        "\nspindle_rpm = 9000.0 ",
         "feed_mm_per_s = 30.0 ",
         "whose own feeds count: 5.0 to 30.0 mm/s",
-        "\n[forces] ",
+        "\n[stock] ",
+        "\nallowance_mm = [8.0, 8.0, 2.0]",
     ] {
         assert!(text.contains(part), "{part} in {text}");
     }

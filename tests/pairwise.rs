@@ -20,17 +20,13 @@ const LEFT_OUT: &[(&str, &str)] = &[
     ("run:search.memory_gb", "changes no result"),
     ("run:cut.engagement", "of assessments"),
     ("run:cut.open_width_mm", "of assessments"),
-    ("run:cut.spindle_rpm", "of simulation and stability"),
     ("run:tool.entering_angle_deg", "of assessments"),
     ("run:tool.rake_deg", "of assessments"),
     ("run:tool.kn_mpa", "of assessments"),
     ("run:tool.friction", "of assessments"),
     ("run:tool.helix_deg", "of simulation and stability"),
-    ("run:tool.ka_mpa", "of simulation and stability"),
     ("run:tool.kr_mpa", "the other word for kr"),
     ("run:material", "of forces from the path, held against closed forms"),
-    ("run:tool.corner_radius_mm", "of forces from the path, held against closed forms"),
-    ("run:tool.taper_deg", "of forces from the path, held against closed forms"),
     ("run:tool.centre_cutting", "of forces from the path, a warning"),
     ("run:tool.pitch_deg", "of simulation and stability"),
     ("run:tool.runout_um", "of simulation and stability"),
@@ -135,7 +131,8 @@ fn every_key_of_the_input_files_is_stated_by_some_run_or_left_out_with_a_reason(
         let of_run = key.strip_prefix("run:").filter(|key| SHARED.iter().any(|table| key.starts_with(table)));
         of_run.is_some_and(|key| stated.contains(&format!("surroundings:{key}")))
     };
-    // The judge removes no material: forces of what a path removes are held against closed forms beside their code.
+    // The judge removes no material: it takes the forces of a stock about the path from `stead forces`. Other stock is
+    // held against closed forms beside its code.
     let of_stock = ["run:stock.", "run:finished_part.", "run:before."];
     let is_removal = |key: &str| of_stock.iter().any(|table| key.starts_with(table));
     let left_out: BTreeSet<&str> = LEFT_OUT.iter().map(|(key, _)| *key).collect();

@@ -120,8 +120,8 @@ fn once<K: Hash + Eq, T: Clone, E>(
     Ok(locked(map).entry(key).or_insert(made).clone())
 }
 
-/// Does something on as many threads as the pool has, but on others. A thread of the pool that waits for its part of the
-/// work takes up other work meanwhile, which may be what waits for this.
+/// Does something on as many threads as the pool has, but on others. A thread of the pool that waits for its part of
+/// the work takes up other work meanwhile, which may be what waits for this.
 fn apart<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(rayon::current_num_threads()).build() else {
         return work();

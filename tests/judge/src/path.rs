@@ -22,8 +22,8 @@ pub(crate) struct Point {
     pub is_scored: bool,
 }
 
-/// Beside a run with `[stock]`: the task with the forces along it and the points that they add, as `stead forces` writes
-/// it from the same tables. The judge removes no material.
+/// Beside a run with `[stock]`: the task with the forces along it and the points that they add, as `stead forces`
+/// writes it from the same tables. The judge removes no material.
 pub(crate) const WITH_STOCK: &str = "with-stock.csv";
 
 /// The points of such a task: those of the path itself are there in their order, and the others on the straight line

@@ -1,10 +1,12 @@
 //! The files of a run for a choice of options.
 
+mod cutter;
 mod shapes;
 mod task;
 
 use crate::cover::{Choice, Random, value_of};
 use crate::values::{Answer, number, placed};
+use cutter::STOCK;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -23,9 +25,6 @@ pub struct Files {
     /// Whether an external axis carries the part, so that a program needs the name of its mechanism.
     pub part_moves: bool,
 }
-
-/// The stock about the path and the speed of the spindle.
-const STOCK: &str = "\n[stock]\nallowance_mm = [6.0, 6.0, 3.0]\ncell_mm = 0.7\n\n[cut]\nspindle_rpm = 8000.0\n";
 
 fn list(numbers: impl IntoIterator<Item = f64>) -> String {
     let words: Vec<String> = numbers.into_iter().map(|number| format!("{number:?}")).collect();
@@ -436,30 +435,5 @@ impl Writer<'_> {
         }
         text.push_str(&self.tool());
         self.run.push_str(&text);
-    }
-
-    /// The table of the cutter.
-    fn tool(&self) -> String {
-        let mut text = String::new();
-        let (tool, load) = (self.of("tool"), self.of("load"));
-        if tool == "none" {
-            return text;
-        }
-        text.push_str("\n[tool]\ncutter_diameter_mm = 16.0\n");
-        if matches!(load, "conventional" | "climb" | "stock") {
-            text.push_str(
-                "teeth = 3\nrotation = \"counterclockwise\"\nkt_mpa = 800.0\nkr = 0.4\nkte_n_per_mm = 20.0\nkre_n_per_mm = 15.0\n",
-            );
-        }
-        if load == "stock" {
-            text.push_str("ka_mpa = 90.0\ncorner_radius_mm = 2.0\ntaper_deg = 3.0\n");
-        }
-        if load == "stock" || tool == "holder" {
-            text.push_str("flute_length_mm = 30.0\n");
-        }
-        if tool == "holder" {
-            text.push_str("holder_mm = [[25.0, 16.0], [40.0, 50.0]]\n");
-        }
-        text
     }
 }

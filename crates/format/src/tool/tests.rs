@@ -236,7 +236,7 @@ fn a_tapered_cutter_widens_and_its_holder_stands_above_it() {
     assert_eq!(tapered.holder, straight.holder);
     let parts: Vec<_> = tapered.cutter.iter().chain(&tapered.taper).collect();
     assert!(parts.len() > 5);
-    // A ball of 2 mm with a side that leans by 10 deg: a line at 2 / cos(10 deg) - 2 tan(10 deg) from the axis at the tip.
+    // A ball of 2 mm with a side that leans by 10 deg: at the tip that is 2 / cos(10 deg) - 2 tan(10 deg) off the axis.
     let (sine, cosine) = libm::sincos(10_f64.to_radians());
     let side = |height: f64| 0.002 / cosine + (height - 0.002) * sine / cosine;
     for (part, next) in parts.iter().zip(&parts[1..]) {

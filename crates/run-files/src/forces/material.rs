@@ -12,6 +12,8 @@ pub enum Material {
     Aluminium6082,
     /// Aluminium 7075-T6.
     Aluminium7075,
+    /// Aluminium 7075, cut with high-speed steel.
+    Aluminium7075Hss,
     /// Structural steel St 52-3.
     SteelSt52,
 }
@@ -20,11 +22,14 @@ words!(Material:
     "aluminium-6060" => Material::Aluminium6060,
     "aluminium-6082" => Material::Aluminium6082,
     "aluminium-7075" => Material::Aluminium7075,
+    "aluminium-7075-hss" => Material::Aluminium7075Hss,
     "steel-st52" => Material::SteelSt52,
 );
 
 const REVIEW: &str = "Milling Force Model for Aviation Aluminum Alloy, Chinese Journal of Mechanical Engineering 34 (2021), doi \
      10.1186/s10033-021-00536-9, table 5, cemented carbide, dry";
+const REVIEW_HSS: &str = "Milling Force Model for Aviation Aluminum Alloy, Chinese Journal of Mechanical Engineering 34 (2021), doi \
+     10.1186/s10033-021-00536-9, table 5, high-speed steel, dry";
 const UMONS: &str = "the UMONS work on robotic milling, which states neither edge nor axial coefficients";
 
 impl Material {
@@ -35,6 +40,8 @@ impl Material {
             // The axial edge coefficients of the review, 0.7 and 2.8 N/mm, have no place in the force law.
             Self::Aluminium6082 => ([631.0, 99.0, 273.0], [13.0, 10.0], REVIEW),
             Self::Aluminium7075 => ([767.01, 168.8, 222.0], [27.7, 26.6], REVIEW),
+            // The axial edge coefficient, 1.105 N/mm, has no place either.
+            Self::Aluminium7075Hss => ([951.365, 262.597, 323.33], [11.115, 11.314], REVIEW_HSS),
             Self::SteelSt52 => ([3333.0, 2289.0, 0.0], [0.0, 0.0], UMONS),
         }
     }

@@ -103,7 +103,11 @@ fn published_coefficients_take_the_place_of_those_of_the_tool() {
     let bare = TEXT.replace("kt_mpa = 800\nkr = 0.4\nkte_n_per_mm = 20\nkre_n_per_mm = 20\n", "");
     let run = read(&format!("material = 'aluminium-7075'\n{bare}")).unwrap();
     assert_eq!(run.problem.operation.mill.cutter.coefficients().tangential, 767.01e6);
-    assert!(run.notes.iter().any(|note| note.contains("published ones for aluminium-7075")), "{:?}", run.notes);
+    assert!(run.notes.iter().any(|note| note.contains("published ones for aluminium-7075 with")), "{:?}", run.notes);
+    let run = read(&format!("material = 'aluminium-7075-hss'\n{bare}")).unwrap();
+    let coefficients = run.problem.operation.mill.cutter.coefficients();
+    assert_eq!((coefficients.axial, coefficients.radial_edge), (323.33e6, 11.314e3));
+    assert!(run.notes.iter().any(|note| note.contains("high-speed steel")), "{:?}", run.notes);
 }
 
 #[test]
