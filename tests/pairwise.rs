@@ -26,6 +26,7 @@ const LEFT_OUT: &[(&str, &str)] = &[
     ("run:tool.friction", "of assessments"),
     ("run:tool.helix_deg", "of simulation and stability"),
     ("run:tool.kr_mpa", "the other word for kr"),
+    ("run:criterion.force_uncertainty_from", "a size of force errors, as force_uncertainty states one"),
     ("run:material", "of forces from the path, held against closed forms"),
     ("run:tool.centre_cutting", "of forces from the path, a warning"),
     ("run:tool.pitch_deg", "of simulation and stability"),

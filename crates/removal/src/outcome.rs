@@ -86,6 +86,27 @@ pub struct RemovalForces {
 }
 
 impl RemovalForces {
+    /// The error of the forces by their own estimate, as a share of them: root mean square over the points of the path
+    /// of how far cells twice as large are off, over that of the forces.
+    pub fn own_error(&self) -> f64 {
+        let norms = || self.points.iter().map(|point| point.at_feed(1.0).force.norm());
+        let largest = norms().fold(0.0, f64::max);
+        let squares: f64 = norms().map(|norm| norm * norm).sum();
+        if squares > 0.0 { self.difference.rms[0] * largest / (squares / self.points.len() as f64).sqrt() } else { 0.0 }
+    }
+
+    /// How far the force exceeds its mean within a turn, as a share of the mean: over the scored points that cut, the
+    /// sum of the largest norms less that of the norms of the means, over the latter.
+    pub fn spread_over_a_turn(&self) -> f64 {
+        let (mut over, mut means) = (0.0, 0.0);
+        for (_, point) in self.points.iter().enumerate().filter(|(number, _)| self.path.is_scored(*number)) {
+            let mean = point.at_feed(1.0).force.norm();
+            over += (point.largest - mean).max(0.0);
+            means += mean;
+        }
+        if means > 0.0 { over / means } else { 0.0 }
+    }
+
     /// The wrench at every point at the programmed feed.
     pub fn wrenches(&self) -> Vec<Wrench> {
         self.points.iter().map(|point| point.at_feed(1.0)).collect()

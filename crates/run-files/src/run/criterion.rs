@@ -13,6 +13,7 @@ use stead_format::units::{MmPerRad, Number, ZeroToTen, ranges};
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::Task;
 use stead_planning::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
+use stead_removal::outcome::RemovalForces;
 
 ranges! {
     /// From 0 to 1000.
@@ -21,6 +22,18 @@ ranges! {
     PositiveWeight: Excluded(0.0), Included(1000.0);
 }
 
+/// What is taken for the errors of forces from the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForceErrors {
+    /// How far cells twice as large are off.
+    Cells,
+    /// How far the force exceeds its mean within a turn.
+    Turn,
+    /// The sum of the two.
+    Both,
+}
+
+words!(ForceErrors: "cells" => ForceErrors::Cells, "turn" => ForceErrors::Turn, "both" => ForceErrors::Both);
 words!(Direction: "wall" => Direction::Wall, "surface" => Direction::Surface, "axis" => Direction::Axis,
     "total" => Direction::Total);
 words!(Over: "mean" => Over::Mean, "worst" => Over::Worst, "regret" => Over::Regret);
@@ -41,6 +54,9 @@ pub struct CriterionTable {
     pub aggregate: Option<Word<Aggregate>>,
     /// Size of an unknown error of the force, as a share of it, added in the worst direction; 0 where left out.
     pub force_uncertainty: Option<Number<ZeroToTen>>,
+    /// In its place, beside `[stock]`: the error that the forces state of themselves, `cells`, how far the force exceeds
+    /// its mean within a `turn`, or the sum of `both`.
+    pub force_uncertainty_from: Option<Word<ForceErrors>>,
     /// How many standard deviations of the compliances are added to the deflection; 0 where left out. Above 0 the robot
     /// file needs a table `[covariance]`.
     pub confidence: Option<Number<ZeroToTen>>,
@@ -80,6 +96,39 @@ pub struct SegmentTable {
 }
 
 impl CriterionTable {
+    /// The size of force errors to be covered, as a share of the force, and what is to be said of it.
+    ///
+    /// # Errors
+    /// [`InputError`]: it is stated twice, or taken from forces that do not come from a stock.
+    pub(super) fn force_errors(
+        &self,
+        removal: Option<&RemovalForces>,
+        at: &Place<'_>,
+    ) -> Result<(f64, Option<String>), InputError> {
+        let Some(from) = self.force_uncertainty_from.map(|word| word.0) else {
+            return Ok((self.force_uncertainty.map_or(0.0, Quantity::si), None));
+        };
+        let at = at.key("force_uncertainty_from");
+        if self.force_uncertainty.is_some() {
+            return Err(at.error("is there beside criterion.force_uncertainty", "one of the two"));
+        }
+        let Some(forces) = removal else {
+            let allowed = "a table [stock], or criterion.force_uncertainty";
+            return Err(at.error("takes the errors of forces from the path, but there is no stock", allowed));
+        };
+        let (cells, turn) = (forces.own_error(), forces.spread_over_a_turn());
+        let percent = |share: f64| format!("{:.2} %", share * 100.0);
+        let (size, parts) = match from {
+            ForceErrors::Cells => (cells, "how far the forces are off with cells twice as large".to_owned()),
+            ForceErrors::Turn => (turn, "how far the force exceeds its mean within a turn".to_owned()),
+            ForceErrors::Both => (
+                cells + turn,
+                format!("{} of cells twice as large and {} within a turn", percent(cells), percent(turn)),
+            ),
+        };
+        Ok((size, Some(format!("the scores cover force errors of {}: {parts}", percent(size)))))
+    }
+
     /// # Errors
     /// [`InputError`] for stiffness sets of another geometry or without a word on what is scored, a direction beside
     /// weights, weights that are all zero, a surface that the task does not state, joint travel weighed beside another
@@ -89,6 +138,7 @@ impl CriterionTable {
         segments: &[SegmentTable],
         robot: &Robot,
         task: &Task,
+        force_uncertainty: f64,
         sets: Vec<Robot>,
         root: &Place<'_>,
     ) -> Result<Criterion, InputError> {
@@ -105,8 +155,7 @@ impl CriterionTable {
             let allowed = "a task with the columns normal_x,normal_y,normal_z, or another direction";
             return Err(at.error("asks for the normal of the surface, which the task does not state", allowed));
         }
-        let [force_uncertainty, confidence] =
-            [self.force_uncertainty, self.confidence].map(|value| value.map_or(0.0, Quantity::si));
+        let confidence = self.confidence.map_or(0.0, Quantity::si);
         let stiffness = match (self.over, sets.is_empty()) {
             (Some(over), false) => Some(StiffnessSets { robots: sets, over: over.0 }),
             (None, true) => None,

@@ -197,6 +197,33 @@ mod tests {
     }
 
     #[test]
+    fn scores_may_cover_the_errors_that_forces_from_the_path_state() {
+        let with = |table: &str| read(&format!("[criterion]\n{table}\n{STOCK}"), false);
+        let size = |word: &str| {
+            let run = with(&format!("force_uncertainty_from = '{word}'")).unwrap();
+            let note = run.notes.iter().find(|note| note.starts_with("the scores cover force errors of ")).unwrap();
+            let size = run.problem.criterion.force_uncertainty;
+            assert!(note.contains(&format!("of {:.2} %: ", size * 100.0)), "{note}");
+            size
+        };
+        let [cells, turn, both] = ["cells", "turn", "both"].map(size);
+        // Teeth that come and go: the largest force of a turn is far above the mean, and cells hardly matter.
+        assert!(cells > 0.0 && cells < 0.05 && turn > 0.1 && turn < 3.0, "{cells} {turn}");
+        assert_eq!(both, cells + turn);
+        for (result, part) in [
+            (
+                with("force_uncertainty_from = 'cells'\nforce_uncertainty = 0.1"),
+                "is there beside criterion.force_uncertainty",
+            ),
+            (with("force_uncertainty_from = 'all'"), "\"cells\" or \"turn\" or \"both\""),
+            (read(&format!("[criterion]\nforce_uncertainty_from = 'turn'\n{TOOLS}"), false), "there is no stock"),
+        ] {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains("criterion.force_uncertainty_from: ") && message.contains(part), "{message}");
+        }
+    }
+
+    #[test]
     fn forces_come_from_one_place_and_every_place_is_named() {
         let ways = ["force columns in the task", "[tool] and [cut]", "[forces] with feed_n, normal_n and axis_n"];
         let both = format!("{FORCES}{TOOLS}");

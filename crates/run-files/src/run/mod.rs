@@ -258,7 +258,9 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let (sets, files) = criterion.sets(&robot, narrowed, &at)?;
     inputs.extend(files);
     inputs.extend(lender);
-    let criterion = criterion.criterion(&segments, &robot, &task, sets, &at)?;
+    let (force_uncertainty, about) = criterion.force_errors(removal.as_deref(), &at.key("criterion"))?;
+    notes.extend(about);
+    let criterion = criterion.criterion(&segments, &robot, &task, force_uncertainty, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
