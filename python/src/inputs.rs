@@ -27,11 +27,7 @@ fn done<T>(
 }
 
 /// What was read, and whether Ctrl-C stopped what had to be computed for it.
-pub fn read_or_stopped<T>(
-    py: Python<'_>,
-    result: Result<T, Error>,
-    was_stopped: bool,
-) -> PyResult<(Option<T>, bool)> {
+pub fn read_or_stopped<T>(py: Python<'_>, result: Result<T, Error>, was_stopped: bool) -> PyResult<(Option<T>, bool)> {
     match result {
         Ok(read) => Ok((Some(read), was_stopped)),
         Err(_) if was_stopped => Ok((None, true)),
