@@ -104,7 +104,11 @@ impl ToolPath {
 impl Task {
     /// The task thinned to some of its points, ascending and at least one of every segment.
     pub fn thinned(&self, kept: &[KeptPoint]) -> Self {
-        Self { path: self.path.thinned(kept), wrenches: kept.iter().map(|kept| self.wrenches[kept.point]).collect() }
+        Self {
+            path: self.path.thinned(kept),
+            wrenches: kept.iter().map(|kept| self.wrenches[kept.point]).collect(),
+            part: self.part.as_ref().map(|part| kept.iter().map(|kept| part[kept.point]).collect()),
+        }
     }
 }
 

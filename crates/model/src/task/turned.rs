@@ -8,7 +8,14 @@ impl Task {
     /// directions of the frame in which the rotation is given.
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         let turned = |wrench: &Wrench| Wrench { force: rotation * wrench.force, moment: rotation * wrench.moment };
-        Self { path: self.path.turned(rotation), wrenches: self.wrenches.iter().map(turned).collect() }
+        let part = |matrices: &Vec<Matrix3<f64>>| {
+            matrices.iter().map(|matrix| rotation * matrix * rotation.transpose()).collect()
+        };
+        Self {
+            path: self.path.turned(rotation),
+            wrenches: self.wrenches.iter().map(turned).collect(),
+            part: self.part.as_ref().map(part),
+        }
     }
 }
 
