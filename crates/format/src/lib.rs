@@ -15,6 +15,7 @@
 pub mod cam;
 pub mod catalogue;
 mod deserialize;
+pub mod compliance_matrix;
 pub mod document;
 pub mod field;
 pub mod file_kind;
