@@ -163,7 +163,7 @@ impl Robot {
 
     /// The base compliance as the arm is mounted: pose of the frame of its matrix in the frame in which the arm is
     /// given, its origin where the base yields.
-    pub(crate) fn yielding_base(&self) -> Option<(Pose<f64>, &Matrix6<f64>)> {
+    pub fn yielding_base(&self) -> Option<(Pose<f64>, &Matrix6<f64>)> {
         let base = self.springs.base.as_ref()?;
         let at_point = Pose { translation: base.point, ..Pose::identity() };
         Some((self.cell_from_base().then(&at_point), &base.matrix))
