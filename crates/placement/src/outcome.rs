@@ -8,6 +8,8 @@ use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
+use crate::sensitivity::SpringSlope;
+use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::collision::PlanClearance;
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::feasibility::{DeflectionMap, deflection_map};
@@ -112,6 +114,9 @@ pub struct Plan {
     /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err
     /// together, so that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,
+    /// What each thing that yields adds to the scored part, in the mean, where more does than the joints about their
+    /// axes.
+    pub by_origin: Option<ScoredByOrigin>,
     /// The point with the least room, and its pair; `None` without a scene, and where nothing is near.
     pub clearance: Option<PlanClearance>,
 }
@@ -136,11 +141,11 @@ pub struct Case {
     /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima; none where
     /// they are not known.
     pub active_bounds: Option<Vec<ActiveBound>>,
-    /// How the objective answers to the stiffness of each joint ([`objective_by_stiffness`]): derivative by its
-    /// logarithm, in m; none where it was not requested.
+    /// How the objective answers to the stiffness of each spring ([`objective_by_stiffness`]); none where it was not
+    /// requested.
     ///
     /// [`objective_by_stiffness`]: super::sensitivity::objective_by_stiffness
-    pub objective_by_stiffness: Option<[f64; 6]>,
+    pub objective_by_stiffness: Option<Vec<SpringSlope>>,
 }
 
 impl Case {

@@ -57,6 +57,9 @@ pub enum Unsupported {
         /// The joint, from 1.
         joint: usize,
     },
+    /// Joint 5 yields normal to its axis elsewhere than in the wrist centre, so that the flips of the wrist differ.
+    #[error("joint 5 yields normal to its axis off the wrist centre (joints[5].bearing_mm)")]
+    UnlikeFlips,
     /// More yields than the joints about their axes, and bounds have no terms for it.
     #[error(
         "{what} yield beside the joints about their axes, which bounds do not cover yet: a bound without them would be none"
@@ -230,6 +233,14 @@ pub fn require_axial_springs(problem: &Problem) -> Result<(), Unsupported> {
 pub fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
     let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
     if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
+}
+
+/// Requires that the two flips of the wrist yield alike.
+///
+/// # Errors
+/// [`Unsupported::UnlikeFlips`] where they do not.
+pub fn require_alike_flips(problem: &Problem) -> Result<(), Unsupported> {
+    if problem.robot.flips_yield_alike() { Ok(()) } else { Err(Unsupported::UnlikeFlips) }
 }
 
 /// Whether turning workpiece and joint 1 together about axis 1 changes nothing but the angle of joint 1.

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 use stead_numerics::scalar::Scalar;
 
 /// What yields, by where it is; the same things of each.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ByOrigin<V> {
     /// Springs of the joints about their axes.
     pub axes: V,
@@ -94,8 +94,8 @@ impl<'a, T: Scalar> WholeArm<'a, T> {
         ByOrigin {
             axes: displacement(self.frames, &self.point, &self.compliances, force, moment),
             normal: self.of_normal_springs(force, moment),
-            base: base.map_or(none, |(frame, matrix)| self.at_frame(&frame.cast(), matrix, force, moment)),
-            mount: mount.map_or(none, |(frame, matrix)| self.at_frame(&frame, matrix, force, moment)),
+            base: base.map_or(none, |(frame, matrix)| of_matrix(matrix, &frame.cast(), &self.point, [force, moment])),
+            mount: mount.map_or(none, |(frame, matrix)| of_matrix(matrix, &frame, &self.point, [force, moment])),
             tip: Displacement { linear: self.of_tip(force), ..none },
         }
     }
@@ -113,32 +113,32 @@ impl<'a, T: Scalar> WholeArm<'a, T> {
         moved
     }
 
-    /// What a matrix in a frame, about its origin, adds.
-    fn at_frame(
-        &self,
-        frame: &Pose<T>,
-        matrix: &Matrix6<f64>,
-        force: &Vector3<T>,
-        moment: &Vector3<T>,
-    ) -> Displacement<T> {
-        let reach = self.point - frame.translation;
-        let turning = moment + reach.cross(force);
-        let [force, turning] = [force, &turning].map(|vector| frame.rotation.tr_mul(vector));
-        let row = |row: usize| {
-            (0..3).fold(T::zero(), |sum, k| {
-                sum + force[k].scale(matrix[(row, k)]) + turning[k].scale(matrix[(row, 3 + k)])
-            })
-        };
-        let shift = frame.rotation * Vector3::new(row(0), row(1), row(2));
-        let turn = frame.rotation * Vector3::new(row(3), row(4), row(5));
-        Displacement { linear: shift + turn.cross(&reach), angular: turn }
-    }
-
     fn of_tip(&self, force: &Vector3<T>) -> Vector3<T> {
         let Some(tip) = &self.spindle.tip else { return Vector3::zeros() };
         let base_from_tool = self.frames.base_from_flange.rotation * self.spindle.flange_from_tool.rotation.map(T::constant);
         base_from_tool * (tip.map(T::constant) * base_from_tool.tr_mul(force))
     }
+}
+
+/// The displacement at a point (m) by a matrix in a frame, which holds at its origin, under a force (N) and a moment
+/// (N m) at the point.
+pub fn of_matrix<T: Scalar>(
+    matrix: &Matrix6<f64>,
+    frame: &Pose<T>,
+    point: &Vector3<T>,
+    [force, moment]: [&Vector3<T>; 2],
+) -> Displacement<T> {
+    let reach = point - frame.translation;
+    let turning = moment + reach.cross(force);
+    let [force, turning] = [force, &turning].map(|vector| frame.rotation.tr_mul(vector));
+    let row = |row: usize| {
+        (0..3).fold(T::zero(), |sum, k| {
+            sum + force[k].scale(matrix[(row, k)]) + turning[k].scale(matrix[(row, 3 + k)])
+        })
+    };
+    let shift = frame.rotation * Vector3::new(row(0), row(1), row(2));
+    let turn = frame.rotation * Vector3::new(row(3), row(4), row(5));
+    Displacement { linear: shift + turn.cross(&reach), angular: turn }
 }
 
 /// The displacement of the tool against a part that yields, beside that of the tool: the part moves against the force

@@ -272,12 +272,33 @@ pub fn scored_part_by_parameters<T: Scalar>(
 }
 
 /// What each thing that yields adds to the scored part of the deflection, its absolute value taken: the sum is c_i. m
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ScoredByOrigin {
     /// What yields of robot and spindle.
     pub arm: ByOrigin<f64>,
     /// The part.
     pub part: f64,
+}
+
+impl ScoredByOrigin {
+    /// Adds what each does at another point. m
+    pub fn add(&mut self, other: &Self) {
+        let others = other.arm.into_array();
+        let mut others = others.into_iter();
+        self.arm = self.arm.map(|own| own + others.next().unwrap_or_default());
+        self.part += other.part;
+    }
+
+    /// All of it by a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { arm: self.arm.map(|own| own * factor), part: self.part * factor }
+    }
+
+    /// The sum. m
+    pub fn total(&self) -> f64 {
+        self.arm.into_array().iter().sum::<f64>() + self.part
+    }
 }
 
 /// The scored part of the deflection under the robot's own compliances by what yields, at joint angles that
