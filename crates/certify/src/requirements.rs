@@ -7,8 +7,8 @@ use super::compliance_table::ComplianceTable;
 use super::model::{LEVELS, STEPS};
 use stead_planning::problem::Problem;
 use stead_planning::symmetry::{
-    Unsupported, Upright, require_axial_springs, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
-    require_no_moment,
+    Unsupported, Upright, require_axial_springs, require_certain_compliances, require_constant, require_free_beta,
+    require_mean_wall, require_no_moment,
 };
 
 /// Whether a problem can be certified with tables of at most `memory` bytes when they are empty, found without work.

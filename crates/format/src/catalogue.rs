@@ -43,9 +43,9 @@ fn shipped_arm(name: &'static str) -> Result<ShippedArm, InputError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_model::robot::Robot;
     use nalgebra::{Matrix3, Vector3};
     use std::collections::BTreeSet;
+    use stead_model::robot::Robot;
     use stead_model::robot::{ControllerKind, Pose};
     use stead_numerics::rotation::rotation_from_vector;
 

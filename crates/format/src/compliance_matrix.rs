@@ -92,8 +92,7 @@ fn located(at: &Place<'_>, error: &MatrixError) -> InputError {
         }
         MatrixError::NotSymmetric { row, column, .. } => {
             let mirror = entry(column, row);
-            let problem =
-                format!("makes the matrix unsymmetric, against {} = {}", mirror.path, mirror.written());
+            let problem = format!("makes the matrix unsymmetric, against {} = {}", mirror.path, mirror.written());
             entry(row, column).error(problem, "the same number on both sides of the diagonal, up to 1e-9 of the trace")
         }
         MatrixError::Negative { eigenvalue } => {

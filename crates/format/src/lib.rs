@@ -14,8 +14,8 @@
 
 pub mod cam;
 pub mod catalogue;
-mod deserialize;
 pub mod compliance_matrix;
+mod deserialize;
 pub mod document;
 pub mod field;
 pub mod file_kind;

@@ -1,7 +1,7 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
-use crate::file_kind::FileKind;
 use crate::compliance_matrix::SEMIDEFINITE;
+use crate::file_kind::FileKind;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 use stead_disk::files;
@@ -170,7 +170,8 @@ fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
 fn part_compliance(row: &Row<'_>, columns: [usize; 6]) -> Result<Matrix3<f64>, InputError> {
     let [xx, yy, zz, xy, xz, yz] = try_each(columns, |column| Ok(row.number(column)? * 1e-6))?;
     let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    checked(matrix).map_err(|_| row.fail(columns[0], "the compliance of the part has a negative eigenvalue", SEMIDEFINITE))
+    checked(matrix)
+        .map_err(|_| row.fail(columns[0], "the compliance of the part has a negative eigenvalue", SEMIDEFINITE))
 }
 
 fn flag(row: &Row<'_>, column: usize) -> Result<bool, InputError> {
@@ -287,7 +288,10 @@ mod tests {
         assert_eq!(read(&format!("{HEADER}1,10,20,30,1,0,0,0,0,1,5,6,7\n")).unwrap().part, None);
         for (text, parts) in [
             (header.replace("part_yy_um_per_n,", ""), [":1:", "part_yy_um_per_n", "missing column", "go together"]),
-            (format!("{header}{}", row(10, "0.5,0.25,2,0.4,0,0")), [":2:", "part_xx_um_per_n", "negative", "no eigenvalue"]),
+            (
+                format!("{header}{}", row(10, "0.5,0.25,2,0.4,0,0")),
+                [":2:", "part_xx_um_per_n", "negative", "no eigenvalue"],
+            ),
             (format!("{header}{}", row(10, "0.5,0.25,inf,0,0,0")), [":2:", "part_zz_um_per_n", "'inf'", "finite"]),
         ] {
             let message = read(&text).map(|_| ()).unwrap_err().to_string();

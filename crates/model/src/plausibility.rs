@@ -103,8 +103,7 @@ pub fn matrices(robot: &Robot, spindle: &Spindle, task: &Task) -> Vec<String> {
     let mount = spindle.mount.and_then(|m| soft_matrix("spindle.mount_matrix", 6, |row, column| m[(row, column)]));
     let tip = spindle.tip.and_then(|m| soft_matrix("spindle.tip_um_per_n", 3, |row, column| m[(row, column)]));
     let mut of_points = (0..task.points().len()).filter_map(|point| task.part_compliance(point));
-    let part = of_points
-        .find_map(|m| soft_matrix("the compliance of the part", 3, |row, column| m[(row, column)]));
+    let part = of_points.find_map(|m| soft_matrix("the compliance of the part", 3, |row, column| m[(row, column)]));
     [base, mount, tip, part].into_iter().flatten().collect()
 }
 

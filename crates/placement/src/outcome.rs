@@ -1,6 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
 use super::lookup::{Accuracy, Shape};
+use crate::sensitivity::SpringSlope;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_cell::Clearance;
@@ -8,10 +9,9 @@ use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
-use crate::sensitivity::SpringSlope;
-use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::collision::PlanClearance;
 use stead_planning::criterion::CANCELLATION;
+use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::feasibility::{DeflectionMap, deflection_map};
 use stead_planning::joint_travel::JointTravel;
 use stead_planning::limit::ActiveBound;

@@ -76,7 +76,9 @@ fn springs_of(robot: &Robot) -> Vec<Vec<Spring>> {
                 continue;
             }
             match groups.get_mut(joint + 1) {
-                Some(next) if about == About::Y && (3..5).contains(&joint) && springs.bearing == 0.0 => next.push(spring),
+                Some(next) if about == About::Y && (3..5).contains(&joint) && springs.bearing == 0.0 => {
+                    next.push(spring)
+                }
                 _ => groups.push(vec![spring]),
             }
         }
@@ -297,7 +299,10 @@ mod tests {
     #[test]
     fn springs_that_turn_about_one_line_are_named_together() {
         let names = |robot: &Robot| -> Vec<String> {
-            springs_of(robot).iter().map(|group| group.iter().map(Spring::to_string).collect::<Vec<_>>().join(" with ")).collect()
+            springs_of(robot)
+                .iter()
+                .map(|group| group.iter().map(Spring::to_string).collect::<Vec<_>>().join(" with "))
+                .collect()
         };
         let alike = names(&with_beside(five_segments(), Beside::Alike).robot);
         assert_eq!(alike[4], "joint 5 about z with joint 4 about y");

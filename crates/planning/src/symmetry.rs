@@ -213,7 +213,10 @@ pub fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
 pub fn require_axial_springs(problem: &Problem) -> Result<(), Unsupported> {
     let robots = || problem.scored_robots().iter();
     for (what, does_yield) in [
-        ("springs normal to the axes (stiffness_model = \"full\")", robots().any(|robot| robot.normal_springs().is_some())),
+        (
+            "springs normal to the axes (stiffness_model = \"full\")",
+            robots().any(|robot| robot.normal_springs().is_some()),
+        ),
         ("base and pedestal ([base_compliance])", robots().any(|robot| robot.base_compliance().is_some())),
         ("the bolts of the spindle (spindle.mount_matrix)", problem.spindle.mount.is_some()),
         ("holder and tool (spindle.tip_um_per_n)", problem.spindle.tip.is_some()),

@@ -258,7 +258,8 @@ pub fn with_beside(mut problem: Problem, beside: Beside) -> Problem {
     if matches!(beside, Beside::Matrices | Beside::Everything) {
         let base = BaseCompliance::new(Vector3::new(0.1, -0.05, -0.2), some_matrix(3, 1e-8)).unwrap();
         problem.robot = problem.robot.clone().with_base_compliance(Some(base));
-        problem.spindle = problem.spindle.with_mount(some_matrix(17, 2e-8)).unwrap().with_tip(some_matrix(29, 1e-7)).unwrap();
+        problem.spindle =
+            problem.spindle.with_mount(some_matrix(17, 2e-8)).unwrap().with_tip(some_matrix(29, 1e-7)).unwrap();
         let part = (0..problem.task.points().len() as u32).map(|point| some_matrix(point, 1e-7)).collect();
         problem.task = problem.task.clone().with_part_compliances(part).unwrap();
     }

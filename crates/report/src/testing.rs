@@ -208,7 +208,9 @@ impl Grid {
             plan,
             cycle,
             active_bounds: Some(Vec::new()),
-            objective_by_stiffness: Some((0..6).map(|joint| slope(joint, if joint == 0 { -mean } else { 0.0 })).collect()),
+            objective_by_stiffness: Some(
+                (0..6).map(|joint| slope(joint, if joint == 0 { -mean } else { 0.0 })).collect(),
+            ),
         }
     }
 

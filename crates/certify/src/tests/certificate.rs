@@ -95,7 +95,9 @@ fn external_axes_are_refused() {
 
 #[test]
 fn whatever_yields_beside_the_joints_is_refused() {
-    for (beside, word) in [(Beside::Alike, "springs normal"), (Beside::Pairs, "springs normal"), (Beside::Matrices, "base")] {
+    for (beside, word) in
+        [(Beside::Alike, "springs normal"), (Beside::Pairs, "springs normal"), (Beside::Matrices, "base")]
+    {
         let problem = with_beside(five_segments(), beside);
         let error = certifiable(&problem, u64::MAX).unwrap_err();
         assert!(matches!(error, Unsupported::YieldsBeside { what } if what.starts_with(word)), "{error}");

@@ -141,7 +141,8 @@ mod tests {
             1 => "orthogonal_compliance_urad_per_nm = [0, 0.3]".to_owned(),
             _ => "orthogonal_compliance_urad_per_nm = 0.2".to_owned(),
         };
-        let robot = robot_from(&source(&text("stiffness_model = 'full'\nstiffness_measured_from = 'base'", row))).unwrap();
+        let robot =
+            robot_from(&source(&text("stiffness_model = 'full'\nstiffness_measured_from = 'base'", row))).unwrap();
         let springs = robot.normal_springs().unwrap();
         assert_eq!(springs[0], NormalSprings { compliance: [1e-6 / 4.0, 1e-6 / 2.0], bearing: -0.75 });
         assert_eq!(springs[1].compliance, [0.0, 0.3 / 1e6]);
@@ -157,9 +158,15 @@ mod tests {
         let some = |j: usize| if j == 2 { "" } else { "orthogonal_stiffness_mnm_per_rad = 4" }.to_owned();
         refused(&text("", some), &["joints[3].orthogonal_stiffness_mnm_per_rad: is missing", "in every [[joints]]"]);
         let both = |_| "orthogonal_stiffness_mnm_per_rad = 4\northogonal_compliance_urad_per_nm = 0.2".to_owned();
-        refused(&text("", both), &["joints[1].orthogonal_compliance_urad_per_nm: is given beside", "only one of the two"]);
+        refused(
+            &text("", both),
+            &["joints[1].orthogonal_compliance_urad_per_nm: is given beside", "only one of the two"],
+        );
         let none = |_| String::new();
-        refused(&text("stiffness_model = 'full'", none), &["arm.toml:1: stiffness_model: has no springs normal", "\"axes\""]);
+        refused(
+            &text("stiffness_model = 'full'", none),
+            &["arm.toml:1: stiffness_model: has no springs normal", "\"axes\""],
+        );
         refused(&text("stiffness_model = 'all'", none), &["stiffness_model: ", "found 'all'", "\"axial_part\""]);
         let negative = |_| "orthogonal_compliance_urad_per_nm = [0.1, -0.2]".to_owned();
         refused(&text("", negative), &["orthogonal_compliance_urad_per_nm[2]: ", "found -0.2", "not below 0"]);
@@ -187,7 +194,8 @@ mod tests {
 
     #[test]
     fn a_full_arm_lends_all_of_its_springs() {
-        let covariance = "[covariance]\nparameters = ['joints[3].orthogonal_compliance_urad_per_nm[2]']\nmatrix = [[0.04]]\n";
+        let covariance =
+            "[covariance]\nparameters = ['joints[3].orthogonal_compliance_urad_per_nm[2]']\nmatrix = [[0.04]]\n";
         let row = |_| "orthogonal_compliance_urad_per_nm = [0.1, 0.2]".to_owned();
         let with = text("stiffness_model = 'full'", row) + covariance;
         let known = robot_from(&source(&with)).unwrap();

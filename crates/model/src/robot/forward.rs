@@ -51,13 +51,7 @@ impl<T: Scalar> Frames<T> {
 
     /// The same of a turn about a direction normal to the axis of joint `j`, x (0) or y (1) of the frame of its row, at
     /// a place on the axis, `bearing` (m) from the origin of that frame.
-    pub fn twist_normal(
-        &self,
-        j: usize,
-        about: usize,
-        bearing: f64,
-        point: &Vector3<T>,
-    ) -> (Vector3<T>, Vector3<T>) {
+    pub fn twist_normal(&self, j: usize, about: usize, bearing: f64, point: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
         let axis = self.rotations[j].column(about).into_owned();
         let place = self.origins[j] + self.axes[j].map(|entry| entry.scale(bearing));
         (axis.cross(&(point - place)), axis)

@@ -115,7 +115,8 @@ impl<'a, T: Scalar> WholeArm<'a, T> {
 
     fn of_tip(&self, force: &Vector3<T>) -> Vector3<T> {
         let Some(tip) = &self.spindle.tip else { return Vector3::zeros() };
-        let base_from_tool = self.frames.base_from_flange.rotation * self.spindle.flange_from_tool.rotation.map(T::constant);
+        let base_from_tool =
+            self.frames.base_from_flange.rotation * self.spindle.flange_from_tool.rotation.map(T::constant);
         base_from_tool * (tip.map(T::constant) * base_from_tool.tr_mul(force))
     }
 }
@@ -132,9 +133,7 @@ pub fn of_matrix<T: Scalar>(
     let turning = moment + reach.cross(force);
     let [force, turning] = [force, &turning].map(|vector| frame.rotation.tr_mul(vector));
     let row = |row: usize| {
-        (0..3).fold(T::zero(), |sum, k| {
-            sum + force[k].scale(matrix[(row, k)]) + turning[k].scale(matrix[(row, 3 + k)])
-        })
+        (0..3).fold(T::zero(), |sum, k| sum + force[k].scale(matrix[(row, k)]) + turning[k].scale(matrix[(row, 3 + k)]))
     };
     let shift = frame.rotation * Vector3::new(row(0), row(1), row(2));
     let turn = frame.rotation * Vector3::new(row(3), row(4), row(5));
@@ -144,11 +143,7 @@ pub fn of_matrix<T: Scalar>(
 /// The displacement of the tool against a part that yields, beside that of the tool: the part moves against the force
 /// on the tool. In the frame in which force (N) and workpiece rotation are given, for a matrix in the workpiece frame.
 /// m
-pub fn of_part<T: Scalar>(
-    matrix: &Matrix3<f64>,
-    rotation: &Matrix3<T>,
-    force: &Vector3<T>,
-) -> Vector3<T> {
+pub fn of_part<T: Scalar>(matrix: &Matrix3<f64>, rotation: &Matrix3<T>, force: &Vector3<T>) -> Vector3<T> {
     rotation * (matrix.map(T::constant) * rotation.tr_mul(force))
 }
 

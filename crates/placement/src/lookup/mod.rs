@@ -45,8 +45,8 @@ use stead_planning::constraints::{ConstraintKind, relaxed};
 use stead_planning::problem::{Problem, Redundancy};
 use stead_planning::redundancy::{BetaChange, Planner, StateSet, saved_changes};
 use stead_planning::symmetry::{
-    Unsupported, Upright, require_alike_flips, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
-    require_no_moment,
+    Unsupported, Upright, require_alike_flips, require_certain_compliances, require_constant, require_free_beta,
+    require_mean_wall, require_no_moment,
 };
 
 /// Largest size of a table. Bytes

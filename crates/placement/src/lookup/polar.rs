@@ -37,7 +37,8 @@ pub(super) fn points(problem: &Problem) -> Vec<WorkpiecePoint> {
         .enumerate()
         .map(|(number, (point, wrench))| {
             let axes = point.workpiece_from_point();
-            let part_response = problem.task.part_compliance(number).map_or_else(Vector3::zeros, |part| part * axes.column(1));
+            let part_response =
+                problem.task.part_compliance(number).map_or_else(Vector3::zeros, |part| part * axes.column(1));
             WorkpiecePoint {
                 position: point.position,
                 feed: axes.column(0).into_owned(),
@@ -113,7 +114,8 @@ impl LookupTable<'_> {
         if let Some((frame, matrix)) = &self.base {
             let in_root = |v: &Vector3<f64>| placed.rotation * v;
             let normal = in_root(&point.normal);
-            let moved = |force: &Vector3<f64>, moment: &Vector3<f64>| of_matrix(matrix, frame, &tip, [force, moment]).linear;
+            let moved =
+                |force: &Vector3<f64>, moment: &Vector3<f64>| of_matrix(matrix, frame, &tip, [force, moment]).linear;
             beside += moved(&in_root(&point.force), &in_root(&point.moment)).dot(&normal);
             let response = moved(&normal, &Vector3::zeros());
             let (along, aside) = (response.x * cosine + response.y * sine, response.y * cosine - response.x * sine);

@@ -21,7 +21,8 @@ use stead_planning::problem::{Interval, Placement, Redundancy};
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
 use stead_planning::testing::{
-    Beside, compensated, corners, five_segments, hanging, slanted, with_laws, with_beside, with_turn_limits, with_uncertainty,
+    Beside, compensated, corners, five_segments, hanging, slanted, with_beside, with_laws, with_turn_limits,
+    with_uncertainty,
 };
 
 /// Errors in all directions counted.

@@ -19,6 +19,7 @@ mod choice;
 mod following;
 mod long_path;
 mod setup;
+mod whole_arm;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }

@@ -140,7 +140,11 @@ pub(super) fn by_origin(plan: &Plan) -> Option<String> {
     ];
     let parts = all.into_iter().filter(|(_, part)| *part != 0.0);
     let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {}", fixed(part * 1e3, 4))).collect();
-    Some(format!("of the scored deflection of {} mm in the mean: {}", fixed(origins.total() * 1e3, 4), parts.join(", ")))
+    Some(format!(
+        "of the scored deflection of {} mm in the mean: {}",
+        fixed(origins.total() * 1e3, 4),
+        parts.join(", ")
+    ))
 }
 
 /// The joint whose stiffness matters most to the best placement.

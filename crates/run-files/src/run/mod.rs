@@ -14,9 +14,9 @@ mod stability;
 #[cfg(test)]
 mod surroundings_tests;
 mod tables;
-mod yielding;
 #[cfg(test)]
 mod tests;
+mod yielding;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
@@ -48,7 +48,9 @@ use stead_format::field::FieldOverrides;
 use stead_format::file_kind::FileKind;
 use stead_format::mount::MountTable;
 use stead_format::place::Place;
-use stead_format::robot::{checked_to_move, checked_to_score, moving_robot_from, robot_from, robot_like, with_stiffness_like};
+use stead_format::robot::{
+    checked_to_move, checked_to_score, moving_robot_from, robot_from, robot_like, with_stiffness_like,
+};
 use stead_format::sources::Sources;
 use stead_format::spindle::SpindleTable;
 use stead_format::surroundings::{

@@ -1,12 +1,12 @@
 //! What yields beside the robot of a run: what carries it, and the part.
 
+use nalgebra::Matrix3;
 use stead_disk::input::InputError;
 use stead_format::compliance_matrix::{BaseComplianceTable, PartComplianceTable};
 use stead_format::place::Place;
 use stead_format::task::{Imported, PART};
 use stead_model::robot::{MeasuredFrom, Robot};
 use stead_model::task::Task;
-use nalgebra::Matrix3;
 
 /// The robot on what carries it.
 ///
@@ -66,7 +66,8 @@ pub(super) fn part_compliances(
             Err(table_at.error(problem, "the compliance of the part in one place only").found_if(None))
         }
         (None, Some(_)) if adds_points => {
-            let problem = format!("adds points to the task, whose columns {} .. do not say how the part yields there", PART[0]);
+            let problem =
+                format!("adds points to the task, whose columns {} .. do not say how the part yields there", PART[0]);
             let allowed = "[part_compliance] in place of the columns";
             Err(at.key("stock").error(problem, allowed).found_if(None))
         }
@@ -87,7 +88,8 @@ impl PartCompliances {
             Self::Same(matrix) => vec![matrix; task.points().len()],
             Self::PerPoint(matrices) => matrices,
         };
-        let refused = |error: stead_model::task::TaskError| at.key("task").error(error.to_string(), "a compliance of the part");
+        let refused =
+            |error: stead_model::task::TaskError| at.key("task").error(error.to_string(), "a compliance of the part");
         task.with_part_compliances(matrices).map_err(refused)
     }
 }
@@ -96,6 +98,7 @@ impl PartCompliances {
 mod tests {
     use crate::testing::{RUN, folder};
     use stead_disk::input::InputError;
+    use stead_model::robot::SpringModel;
     use stead_runs::Run;
 
     const BASE: &str = "[base_compliance]\npoint_mm = [0, 0, -500]\nmatrix = [[0.02, 0, 0, 0, 0.01, 0], [0, 0.02, 0, -0.01, 0, 0], \
@@ -103,7 +106,11 @@ mod tests {
     const PART_TABLE: &str = "[part_compliance]\num_per_n = [[0.5, 0.1, 0], [0.1, 0.25, 0], [0, 0, 2]]\n";
 
     /// A run with tables added, of a robot file and a task that are changed.
-    fn read(tables: &str, robot: &dyn Fn(String) -> String, task: &dyn Fn(String) -> String) -> Result<Run, InputError> {
+    fn read(
+        tables: &str,
+        robot: &dyn Fn(String) -> String,
+        task: &dyn Fn(String) -> String,
+    ) -> Result<Run, InputError> {
         let folder = folder();
         for (name, change) in [("arm.toml", robot), ("task.csv", task)] {
             let file = folder.path().join(name);
@@ -135,7 +142,11 @@ mod tests {
         let parts = ["run.toml:", "base_compliance: counts the base twice", "stiffness_measured_from = \"base\""];
         refused(read(BASE, &measured("floor"), &same), &parts);
         let run = read(BASE, &same, &same).unwrap();
-        assert!(run.notes.iter().any(|note| note.contains("(stiffness_measured_from): if from the floor")), "{:?}", run.notes);
+        assert!(
+            run.notes.iter().any(|note| note.contains("(stiffness_measured_from): if from the floor")),
+            "{:?}",
+            run.notes
+        );
         let soft = BASE.replace("[0, 0, 0.01, 0", "[0, 0, 0.01, 0.1");
         refused(read(&soft, &same, &same), &["base_compliance.matrix[4][3]: makes the matrix unsymmetric", "= 0.1"]);
     }
@@ -153,7 +164,10 @@ mod tests {
         };
         let run = read("", &same, &columns).unwrap();
         assert_eq!(run.problem.task.part_compliance(1).unwrap()[(2, 2)], 2.0 * 1e-6);
-        refused(read(PART_TABLE, &same, &columns), &["part_compliance: stands beside the columns part_xx_um_per_n", "one place"]);
+        refused(
+            read(PART_TABLE, &same, &columns),
+            &["part_compliance: stands beside the columns part_xx_um_per_n", "one place"],
+        );
         let negative = PART_TABLE.replace("0.25", "-0.25");
         refused(read(&negative, &same, &same), &["part_compliance.um_per_n: has an eigenvalue of -", "semidefinite"]);
     }
@@ -171,10 +185,57 @@ mod tests {
         let run = with("tip_um_per_n = [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.02]]").unwrap();
         assert_eq!(run.problem.spindle.tip.unwrap()[(2, 2)], 0.02 * 1e-6);
         assert!(run.problem.yields_beside());
-        refused(with("tip_um_per_n = [[0.1, 0.2, 0], [0.2, 0.1, 0], [0, 0, 0.02]]"), &["spindle.tip_um_per_n: has an eigenvalue"]);
+        refused(
+            with("tip_um_per_n = [[0.1, 0.2, 0], [0.2, 0.1, 0], [0, 0, 0.02]]"),
+            &["spindle.tip_um_per_n: has an eigenvalue"],
+        );
         refused(with("mount_matrix = [[1, 0, 0, 0, 0, 0]]"), &["spindle.mount_matrix: ", "has 1 elements and not 6"]);
         let run = with("tip_um_per_n = [[1000, 0, 0], [0, 0.1, 0], [0, 0, 0.02]]").unwrap();
-        assert!(run.notes.iter().any(|note| note.contains("spindle.tip_um_per_n") && note.contains("1000 um/N")), "{:?}", run.notes);
+        assert!(
+            run.notes.iter().any(|note| note.contains("spindle.tip_um_per_n") && note.contains("1000 um/N")),
+            "{:?}",
+            run.notes
+        );
+    }
+
+    #[test]
+    fn a_full_arm_lends_pairs_bearings_and_model() {
+        let without = |text: String| {
+            let rows =
+                text.lines().filter(|line| !line.starts_with("stiffness_mnm") && !line.starts_with("compliance_urad"));
+            rows.collect::<Vec<_>>().join("\n")
+        };
+        let folder = folder();
+        let arm = folder.path().join("arm.toml");
+        let text = without(std::fs::read_to_string(&arm).unwrap());
+        std::fs::write(&arm, text).unwrap();
+        let file = folder.path().join("run.toml");
+        std::fs::write(&file, format!("stiffness_like = 'name:staubli-tx200-huynh'\n{RUN}")).unwrap();
+        let run = crate::read_run(&file).unwrap();
+        let normal = run.problem.robot.normal_springs().unwrap();
+        assert_eq!((normal[3].bearing, normal[3].compliance), (-0.621, [1e-6 / 2.3, 1e-6 / 3.1]));
+        assert_eq!(run.problem.robot.spring_model(), Some(SpringModel::Full));
+    }
+
+    #[test]
+    fn sets_that_state_their_model_stand_beside_none_that_does_not() {
+        let folder = folder();
+        let arm = std::fs::read_to_string(folder.path().join("arm.toml")).unwrap();
+        let full = arm.replace("[[joints]]\n", "[[joints]]\northogonal_stiffness_mnm_per_rad = 4\n");
+        std::fs::write(folder.path().join("full.toml"), format!("stiffness_model = 'full'\n{full}")).unwrap();
+        std::fs::write(folder.path().join("axes.toml"), format!("stiffness_model = 'axes'\n{arm}")).unwrap();
+        let read = |sets: &str| {
+            let file = folder.path().join("run.toml");
+            std::fs::write(&file, format!("{RUN}[criterion]\nrobots = {sets}\nover = 'mean'\n")).unwrap();
+            crate::read_run(&file)
+        };
+        refused(
+            read("['full.toml', 'arm.toml']"),
+            &["criterion.robots[2]: does not say what its stiffness stands for", "\"axes\""],
+        );
+        let run = read("['axes.toml', 'full.toml']").unwrap();
+        let sets = &run.problem.scored_robots();
+        assert!(sets[0].normal_springs().is_none() && sets[1].normal_springs().is_some());
     }
 
     #[test]
@@ -187,7 +248,10 @@ mod tests {
         };
         let run = read("", &with("stiffness_model = 'full'"), &same).unwrap();
         assert!(run.problem.yields_beside());
-        refused(read("", &with("stiffness_model = 'axes'"), &same), &["arm.toml:1: stiffness_model: is \"axes\", beside springs"]);
+        refused(
+            read("", &with("stiffness_model = 'axes'"), &same),
+            &["arm.toml:1: stiffness_model: is \"axes\", beside springs"],
+        );
         let run = read("", &with(""), &same).unwrap();
         assert!(!run.problem.yields_beside());
         assert!(run.notes.iter().any(|note| note.contains("scores leave them out")), "{:?}", run.notes);

@@ -104,7 +104,9 @@ impl Tasks {
         }
         let label = listed.iter().map(|task| task.label.as_str()).collect::<Vec<_>>().join(" + ");
         let joined = joined(parts).map_err(|problem| {
-            at.key("task").error(problem, "tasks that all have forces, normals, or compliances of the part, or none of them").found(&*label)
+            at.key("task")
+                .error(problem, "tasks that all have forces, normals, or compliances of the part, or none of them")
+                .found(&*label)
         })?;
         sources.offer(&folder.join(&label), bytes, joined);
         let value = |path: FieldPath, value: String| {

@@ -88,7 +88,8 @@ fn agrees_over_sets_of_which_some_are_full() {
         for over in [Over::Mean, Over::Worst] {
             let mut problem = with_beside(loaded(five_segments()), Beside::Matrices);
             let plain = problem.robot.clone();
-            let robots = vec![plain.clone(), with_normal_springs(plain.clone(), false), with_normal_springs(plain, true)];
+            let robots =
+                vec![plain.clone(), with_normal_springs(plain.clone(), false), with_normal_springs(plain, true)];
             let stiffness = Some(StiffnessSets { robots, over });
             problem.criterion = Criterion { weights, force_uncertainty, stiffness, ..Criterion::default() };
             let points = (0..105).step_by(9);
@@ -184,7 +185,8 @@ fn every_processor_gives_the_same_bits_of_a_whole_arm() {
     let mut robust = with_all_uncertain(with_beside(slanted(), Beside::Everything));
     robust.criterion.force_uncertainty = 0.1;
     robust.criterion.confidence = 2.0;
-    for mut problem in [with_beside(five_segments(), Beside::Alike), with_beside(slanted(), Beside::Everything), robust] {
+    for mut problem in [with_beside(five_segments(), Beside::Alike), with_beside(slanted(), Beside::Everything), robust]
+    {
         for weights in [Weights::WALL, Weights::TOTAL] {
             problem.criterion.weights = weights;
             problem.redundancy.beta_count = 37;

@@ -3,7 +3,7 @@
 
 use super::arm::{Arm, Elbow};
 use super::pose::{Directions, Load, Pose, Vector, turned};
-use super::whole::{Beside, Planar};
+use super::whole::{Beside, Planar, WholeState};
 use super::{BatchEvaluator, Flips, PointGeometry, Set, Turning};
 use nalgebra::Vector3;
 use pulp::Simd;
@@ -184,18 +184,8 @@ impl BatchEvaluator<'_> {
             let [_, s5, s6] = self.problem.robot.geometry().twist;
             let side = if self.flips == Flips::Flipped { s5 * s6 } else { -s5 * s6 };
             let (load, beside) = (&demand.load, &demand.beside);
-            let springs = (normal, fixed);
-            let (score, parts) = pose.score_whole::<PLAIN, N>(
-                simd,
-                springs,
-                planar,
-                lateral,
-                side,
-                &compliances,
-                load,
-                beside,
-                uncertainty,
-            );
+            let whole = WholeState { normal, fixed, planar, lateral, side, load, beside };
+            let (score, parts) = pose.score_whole::<PLAIN, N>(simd, &whole, &compliances, uncertainty);
             return match deviation {
                 Some(known) if !PLAIN => score + known.margin(simd, &self.limits, &parts, directions, &compliances),
                 _ => score,
