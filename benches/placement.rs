@@ -12,11 +12,12 @@ mod published;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
+use nalgebra::{Matrix3, Matrix6, Vector3};
 use published::{poses, problem};
-use stead_model::robot::PostureClass;
+use stead_model::robot::{BaseCompliance, NormalSprings, PostureClass, SpringModel};
 use stead_numerics::simd::Instructions;
 use stead_planning::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use stead_planning::problem::Placement;
+use stead_planning::problem::{Placement, Problem, ProblemParts};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::transition::{self, Step};
 use stead_planning::sense::Sense;
@@ -27,8 +28,45 @@ fn main() {
 
 #[divan::bench(args = instructions())]
 fn evaluator(bencher: Bencher, instructions: usize) {
-    let problem = problem();
-    let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::Both)
+    evaluate(bencher, instructions, &problem());
+}
+
+/// With springs normal to the axes, alike about x and y, those of the wrist in its centre.
+#[divan::bench(args = instructions())]
+fn evaluator_of_full_arm(bencher: Bencher, instructions: usize) {
+    evaluate(bencher, instructions, &full(problem(), false));
+}
+
+/// With springs that differ about x and y, joint 4 off the wrist centre, and base, mount, tip and part.
+#[divan::bench(args = instructions())]
+fn evaluator_of_everything(bencher: Bencher, instructions: usize) {
+    let problem = full(problem(), true);
+    let part = vec![Matrix3::from_diagonal_element(1e-7); problem.task.points().len()];
+    let base = BaseCompliance::new(Vector3::new(0.0, 0.0, -0.5), Matrix6::from_diagonal_element(1e-8));
+    let everything = problem.changed(|parts| {
+        parts.robot = parts.robot.clone().with_base_compliance(base.ok());
+        parts.spindle.mount = Some(Matrix6::from_diagonal_element(1e-8));
+        parts.spindle.tip = Some(Matrix3::from_diagonal_element(1e-7));
+        parts.task = parts.task.clone().with_part_compliances(part).expect("a compliance");
+    });
+    evaluate(bencher, instructions, &everything.expect("parts that agree"));
+}
+
+/// The problem with springs about three directions of every joint.
+fn full(problem: Problem, are_pairs: bool) -> Problem {
+    let springs = std::array::from_fn(|joint| match are_pairs {
+        true => NormalSprings { compliance: [3e-7, 5e-7], bearing: [-0.3, 0.2, 0.3, -0.6, 0.0, 0.0][joint] },
+        false => NormalSprings { compliance: [4e-7; 2], bearing: 0.0 },
+    });
+    let change = |parts: &mut ProblemParts| {
+        let robot = parts.robot.clone().with_normal_springs(Some(springs)).expect("springs");
+        parts.robot = robot.with_spring_model(Some(SpringModel::Full));
+    };
+    problem.changed(change).expect("parts that agree")
+}
+
+fn evaluate(bencher: Bencher, instructions: usize, problem: &Problem) {
+    let evaluator = BatchEvaluator::new(problem, &problem.redundancy, Flips::Both)
         .with_instructions(Instructions::all()[instructions]);
     let mut states = StateGrid::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();

@@ -16,6 +16,7 @@
 //! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
 //! | How good is a robot for machining? | [`assess`] |
 //! | How stiff are the joints of my robot? | [`identify`] |
+//! | What of links, base, spindle, tool and part? | [`whole_arm`] |
 //! | What must be commanded so that the deflected tool follows the path? | [`compensate`] |
 //! | How do I get the plan onto the robot? | [`export`] |
 //! | Will the cut chatter? | [`stability`] |
@@ -109,5 +110,7 @@ pub mod tables {}
 pub mod troubleshooting {}
 #[doc = include_str!("validation.md")]
 pub mod validation {}
+#[doc = include_str!("whole_arm.md")]
+pub mod whole_arm {}
 #[doc = include_str!("your_cell.md")]
 pub mod your_cell {}

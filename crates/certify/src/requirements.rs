@@ -7,8 +7,8 @@ use super::compliance_table::ComplianceTable;
 use super::model::{LEVELS, STEPS};
 use stead_planning::problem::Problem;
 use stead_planning::symmetry::{
-    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
-    require_no_moment,
+    Unsupported, Upright, require_axial_springs, require_certain_compliances, require_constant, require_free_beta,
+    require_mean_wall, require_no_moment,
 };
 
 /// Whether a problem can be certified with tables of at most `memory` bytes when they are empty, found without work.
@@ -34,6 +34,7 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
         return Err(Unsupported::UncertainForce);
     }
     require_certain_compliances(problem)?;
+    require_axial_springs(problem)?;
     let extent = extent(problem);
     if let Some(needed) = needed_condition(problem, extent.radius.0) {
         return Err(Unsupported::Conditioning { needed });

@@ -14,6 +14,7 @@
 
 pub mod cam;
 pub mod catalogue;
+pub mod compliance_matrix;
 mod deserialize;
 pub mod document;
 pub mod field;

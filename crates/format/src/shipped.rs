@@ -36,6 +36,7 @@ pub(crate) const ARMS: &[(&str, &str)] = &[
     arm!("kuka-kr120-r2700-2"),
     arm!("kuka-kr120-r3900"),
     arm!("kuka-kr210-2"),
+    arm!("kuka-kr210-2-full"),
     arm!("kuka-kr210-r2700"),
     arm!("kuka-kr210-r2700-2"),
     arm!("kuka-kr210-r3100"),
@@ -59,6 +60,7 @@ pub(crate) const ARMS: &[(&str, &str)] = &[
     arm!("motoman-ms210"),
     arm!("staubli-rx160l"),
     arm!("staubli-tx200"),
+    arm!("staubli-tx200-huynh"),
     arm!("staubli-tx200l"),
     arm!("staubli-tx90"),
 ];

@@ -1,5 +1,6 @@
 //! The table `[spindle]`: the tool frame in the flange frame, and what the flange carries.
 
+use crate::compliance_matrix::{WrenchMatrix, force_matrix, wrench_matrix};
 use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from};
 use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
@@ -35,6 +36,12 @@ pub struct SpindleTable {
     pub centre_of_mass_mm: Option<Vector<Mm>>,
     /// Inertia tensor of all that the flange carries about its centre of mass, in the directions of the flange frame.
     pub inertia_kg_m2: Option<InertiaTable>,
+    /// How the spindle is fixed to the flange, where that yields: displacement and turn per force and moment at the
+    /// origin of the flange frame, in its directions, translations first: um/N, urad/N; urad/N, urad/(N m).
+    pub mount_matrix: Option<WrenchMatrix>,
+    /// How holder and tool yield at the tool centre point: displacement per force, in the directions of the tool frame,
+    /// in um/N.
+    pub tip_um_per_n: Option<Matrix>,
 }
 
 /// Reads the table `[spindle]` of a file, as of a run file, whatever else is in it; with the bytes of the file.
@@ -60,7 +67,11 @@ impl SpindleTable {
     pub fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
         let flange_from_tool =
             Pose { rotation: orientation_keys!(self).rotation(at)?, translation: self.xyz_mm.vector() };
-        let mut spindle = Spindle { flange_from_tool, payload: None };
+        let mut spindle = Spindle::rigid(flange_from_tool);
+        let matrix = |rows| wrench_matrix(rows, &at.key("mount_matrix"));
+        spindle.mount = self.mount_matrix.as_ref().map(matrix).transpose()?;
+        let matrix = |rows| force_matrix(rows, &at.key("tip_um_per_n"));
+        spindle.tip = self.tip_um_per_n.as_ref().map(matrix).transpose()?;
         if self.mass_kg.is_some() || self.centre_of_mass_mm.is_some() || self.inertia_kg_m2.is_some() {
             spindle.payload = Some(inertial_from(self.mass_kg, self.centre_of_mass_mm, self.inertia_kg_m2, at)?);
         }

@@ -1,13 +1,15 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
+use crate::compliance_matrix::SEMIDEFINITE;
 use crate::file_kind::FileKind;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 use stead_disk::files;
 use stead_disk::input::InputError;
 use stead_disk::input::csv_table::{CsvTable, Row, try_each};
 use stead_disk::manifest::{self, Unlisted};
 use stead_disk::quote::shorten;
+use stead_model::stiffness::matrix::checked;
 use stead_model::task::{PathPoint, TaskError, ToolPath, UNIT_TOLERANCE, Wrench};
 
 /// What a task file holds.
@@ -17,6 +19,8 @@ pub struct Imported {
     pub path: ToolPath,
     /// The wrenches, where the file has force columns.
     pub wrenches: Option<Vec<Wrench>>,
+    /// How the part yields at every point, where the file has columns for it. m/N
+    pub part: Option<Vec<Matrix3<f64>>>,
     /// Line of each point in the file, from 1.
     pub lines: Vec<usize>,
 }
@@ -28,12 +32,21 @@ const NORMAL: [&str; 3] = ["normal_x", "normal_y", "normal_z"];
 /// Feed of the move to the point, and whether it is scored.
 const FOLLOWING: [&str; 2] = ["feed_mm_per_s", "scored"];
 const MOMENT: [&str; 3] = ["moment_x_nm", "moment_y_nm", "moment_z_nm"];
+/// How the part yields: the entries of a symmetric matrix.
+pub const PART: [&str; 6] = [
+    "part_xx_um_per_n",
+    "part_yy_um_per_n",
+    "part_zz_um_per_n",
+    "part_xy_um_per_n",
+    "part_xz_um_per_n",
+    "part_yz_um_per_n",
+];
 
 /// Reads a tool path: columns `segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z`, optionally
 /// `force_x_n,force_y_n,force_z_n` (what the workpiece does to the tool) and with them
 /// `moment_x_nm,moment_y_nm,moment_z_nm`, `normal_x,normal_y,normal_z`, the normal of the surface that is cut,
-/// `feed_mm_per_s`, the feed of the move to the point, and `scored`, 0 for a point that only has to be reached and else
-/// 1; in any order, all in the workpiece frame.
+/// `feed_mm_per_s`, the feed of the move to the point, `scored`, 0 for a point that only has to be reached and else 1, and
+/// `part_xx_um_per_n` .. `part_yz_um_per_n`, how the part yields at the point; in any order, all in the workpiece frame.
 ///
 /// # Errors
 /// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value
@@ -57,6 +70,7 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let mut wrenches = columns.force.map(|_| Vec::new());
     let mut normals = columns.normal.map(|_| Vec::new());
     let mut feeds = columns.feed.map(|_| Vec::new());
+    let mut part = columns.part.map(|_| Vec::new());
     let mut lines = Vec::new();
     while let Some(row) = table.next_row()? {
         let segment = segment(&row, columns.required[0])?;
@@ -73,6 +87,9 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
         if let (Some(normals), Some(normal)) = (normals.as_mut(), columns.normal) {
             normals.push(row.vector(normal)?);
         }
+        if let (Some(part), Some(entries)) = (part.as_mut(), columns.part) {
+            part.push(part_compliance(&row, entries)?);
+        }
         lines.push(row.line());
     }
     let with_normals = |path: ToolPath| match normals {
@@ -85,7 +102,7 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     };
     let path = ToolPath::partly_scored(points).and_then(with_normals).and_then(with_feeds);
     let path = path.map_err(|e| locate(file, &lines, &e))?;
-    Ok(Imported { path, wrenches, lines })
+    Ok(Imported { path, wrenches, part, lines })
 }
 
 /// Where each column of the contract stands in this file.
@@ -96,11 +113,12 @@ struct Columns {
     normal: Option<[usize; 3]>,
     feed: Option<usize>,
     scored: Option<usize>,
+    part: Option<[usize; 6]>,
 }
 
 impl Columns {
     fn find(table: &CsvTable<'_>) -> Result<Self, InputError> {
-        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL).chain(&FOLLOWING);
+        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL).chain(&FOLLOWING).chain(&PART);
         let allowed = all().copied().collect::<Vec<_>>().join(",");
         let fail = |column: &str, problem: &str| table.fail(column, problem, &allowed);
         for name in table.header() {
@@ -131,12 +149,29 @@ impl Columns {
             return Err(fail(FORCE[0], "missing column: moments need forces beside them"));
         }
         let [feed, scored] = FOLLOWING.map(place);
-        Ok(Self { required, force, moment, normal, feed, scored })
+        let part = PART.map(place);
+        let part = match part.iter().position(Option::is_none) {
+            Some(missing) if part.iter().any(Option::is_some) => {
+                let problem = "missing column: the six entries of the compliance of the part go together";
+                return Err(fail(PART[missing], problem));
+            }
+            Some(_) => None,
+            None => Some(part.map(Option::unwrap_or_default)),
+        };
+        Ok(Self { required, force, moment, normal, feed, scored, part })
     }
 }
 
 fn segment(row: &Row<'_>, column: usize) -> Result<u32, InputError> {
     row.text(column).parse().map_err(|_| row.fail(column, "not a segment number", "whole numbers from 1"))
+}
+
+/// The compliance of the part at a point. m/N
+fn part_compliance(row: &Row<'_>, columns: [usize; 6]) -> Result<Matrix3<f64>, InputError> {
+    let [xx, yy, zz, xy, xz, yz] = try_each(columns, |column| Ok(row.number(column)? * 1e-6))?;
+    let matrix = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    checked(matrix)
+        .map_err(|_| row.fail(columns[0], "the compliance of the part has a negative eigenvalue", SEMIDEFINITE))
 }
 
 fn flag(row: &Row<'_>, column: usize) -> Result<bool, InputError> {
@@ -161,9 +196,14 @@ fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
         TaskError::Feed { point, feed } => {
             (*point, "feed_mm_per_s", Some(format!("{}", feed * 1e3)), "a feed above 0 mm/s".to_owned())
         }
-        TaskError::Empty | TaskError::Wrenches { .. } | TaskError::Normals { .. } | TaskError::Feeds { .. } => {
+        TaskError::Empty
+        | TaskError::Wrenches { .. }
+        | TaskError::Normals { .. }
+        | TaskError::PartCompliances { .. }
+        | TaskError::Feeds { .. } => {
             return InputError::new(file, error.to_string()).allowed("at least one row under the header");
         }
+        TaskError::PartCompliance { point, .. } => (*point, PART[0], None, SEMIDEFINITE.to_owned()),
         TaskError::NotFinite { point, field } => (*point, *field, None, "finite numbers".to_owned()),
         TaskError::NotUnit { point, field, length } => {
             (*point, *field, Some(format!("length {length:.6}")), format!("length 1 within {UNIT_TOLERANCE}"))
@@ -234,6 +274,28 @@ mod tests {
             for part in parts {
                 assert!(message.contains(part), "{part} in {message}");
             }
+        }
+    }
+
+    #[test]
+    fn the_part_yields_at_each_point_as_its_columns_say() {
+        let header = HEADER.trim_end().to_owned() + "," + &PART.join(",") + "\n";
+        let row = |x: u32, part: &str| format!("1,{x},20,30,1,0,0,0,0,1,5,6,7,{part}\n");
+        let task = read(&[header.clone(), row(10, "0.5,0.25,2,0.1,0,-0.1"), row(11, "1,1,1,0,0,0")].concat()).unwrap();
+        let part = task.part.unwrap();
+        let expected = Matrix3::new(0.5, 0.1, 0.0, 0.1, 0.25, -0.1, 0.0, -0.1, 2.0) * 1e-6;
+        assert!((part[0] - expected).norm() < 1e-18 && (part[1] - Matrix3::identity() * 1e-6).norm() < 1e-18);
+        assert_eq!(read(&format!("{HEADER}1,10,20,30,1,0,0,0,0,1,5,6,7\n")).unwrap().part, None);
+        for (text, parts) in [
+            (header.replace("part_yy_um_per_n,", ""), [":1:", "part_yy_um_per_n", "missing column", "go together"]),
+            (
+                format!("{header}{}", row(10, "0.5,0.25,2,0.4,0,0")),
+                [":2:", "part_xx_um_per_n", "negative", "no eigenvalue"],
+            ),
+            (format!("{header}{}", row(10, "0.5,0.25,inf,0,0,0")), [":2:", "part_zz_um_per_n", "'inf'", "finite"]),
+        ] {
+            let message = read(&text).map(|_| ()).unwrap_err().to_string();
+            parts.iter().for_each(|part| assert!(message.contains(part), "{part} in {message}"));
         }
     }
 

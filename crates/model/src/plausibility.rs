@@ -1,7 +1,7 @@
 //! What is possible but looks like a wrong unit or sign, in sentences: said beside a result, never refused.
 
-use crate::robot::{Robot, Spindle};
-use crate::task::ToolPath;
+use crate::robot::{Robot, Spindle, SpringModel};
+use crate::task::{Task, ToolPath};
 use nalgebra::Vector3;
 use stead_numerics::digits::figures;
 
@@ -40,7 +40,71 @@ pub fn arm(robot: &Robot) -> Vec<String> {
         )
     });
     let unverified = robot.unverified().iter().map(|what| format!("{}: not verified: {what}", robot.name()));
-    odd_stiffness(robot).into_iter().chain(joint_ranges(robot)).chain(borrowed).chain(unverified).collect()
+    odd_stiffness(robot)
+        .into_iter()
+        .chain(joint_ranges(robot))
+        .chain(borrowed)
+        .chain(axial_part(robot))
+        .chain(unverified)
+        .collect()
+}
+
+/// That an arm has but the part about the axes of a full set.
+fn axial_part(robot: &Robot) -> Option<String> {
+    (robot.spring_model() == Some(SpringModel::AxialPart)).then(|| {
+        format!(
+            "{}: its stiffness is the part about the axes of a full identification (stiffness_model = \"axial_part\"): the springs \
+             normal to the axes are missing, so that deflections are too small, and plans balance what is not all",
+            robot.name()
+        )
+    })
+}
+
+/// That scores leave out springs which the file of an arm states.
+pub fn springs_left_out(robot: &Robot) -> Option<String> {
+    let is_left_out = robot.stated_normal_springs().is_some() && robot.normal_springs().is_none();
+    is_left_out.then(|| {
+        format!(
+            "{}: its file states springs normal to the axes, but not that they are of one set with the others (stiffness_model = \
+             \"full\"): scores leave them out",
+            robot.name()
+        )
+    })
+}
+
+/// Softer than this (m/N; rad/N, rad/(N m)) a matrix looks wrong.
+const SOFTEST_MATRIX: [f64; 2] = [100e-6, 1000e-6];
+
+/// A matrix of this key with an entry that hardly anything has; of displacement per force in rows and columns below
+/// three, else of turns.
+fn soft_matrix(key: &str, count: usize, entry: impl Fn(usize, usize) -> f64) -> Option<String> {
+    let size = |row: usize, column: usize| entry(row, column).abs();
+    let places = || (0..count).flat_map(|row| (0..count).map(move |column| (row, column)));
+    let is_shift = |(row, column): &(usize, usize)| *row < 3 && *column < 3;
+    let largest = |wanted: bool| {
+        let sizes = places().filter(|place| is_shift(place) == wanted).map(|(row, column)| size(row, column));
+        sizes.fold(0.0, f64::max)
+    };
+    let [shift, turn] = [largest(true), largest(false)];
+    let what = match (shift > SOFTEST_MATRIX[0], turn > SOFTEST_MATRIX[1]) {
+        (true, _) => format!("{} um/N", figures(shift * 1e6)),
+        (false, true) => format!("{} urad/N or urad/(N m)", figures(turn * 1e6)),
+        (false, false) => return None,
+    };
+    Some(format!("{key} goes up to {what}: is it in um/N, urad/N and urad/(N m)?"))
+}
+
+/// Matrices of robot, spindle and part that hardly anything has.
+pub fn matrices(robot: &Robot, spindle: &Spindle, task: &Task) -> Vec<String> {
+    let base = robot.base_compliance().and_then(|base| {
+        let matrix = base.matrix();
+        soft_matrix("base_compliance.matrix", 6, |row, column| matrix[(row, column)])
+    });
+    let mount = spindle.mount.and_then(|m| soft_matrix("spindle.mount_matrix", 6, |row, column| m[(row, column)]));
+    let tip = spindle.tip.and_then(|m| soft_matrix("spindle.tip_um_per_n", 3, |row, column| m[(row, column)]));
+    let mut of_points = (0..task.points().len()).filter_map(|point| task.part_compliance(point));
+    let part = of_points.find_map(|m| soft_matrix("the compliance of the part", 3, |row, column| m[(row, column)]));
+    [base, mount, tip, part].into_iter().flatten().collect()
 }
 
 /// Joints a hundred times stiffer or softer than any known one, taken in the middle of their range without a

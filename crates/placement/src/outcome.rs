@@ -1,6 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
 use super::lookup::{Accuracy, Shape};
+use crate::sensitivity::SpringSlope;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_cell::Clearance;
@@ -10,6 +11,7 @@ use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::collision::PlanClearance;
 use stead_planning::criterion::CANCELLATION;
+use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::feasibility::{DeflectionMap, deflection_map};
 use stead_planning::joint_travel::JointTravel;
 use stead_planning::limit::ActiveBound;
@@ -128,6 +130,9 @@ pub struct Plan {
     /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known: the points err
     /// together, so that it does not shrink with their number. m
     pub mean_deviation: Option<f64>,
+    /// What each thing that yields adds to the scored part, in the mean, where more does than the joints about their
+    /// axes.
+    pub by_origin: Option<ScoredByOrigin>,
     /// The point with the least room, and its pair; `None` without a scene, and where nothing is near.
     pub clearance: Option<PlanClearance>,
 }
@@ -152,11 +157,11 @@ pub struct Case {
     /// The bounds that hold the placement, the largest gain first; of cases 1 and 3, which are optima; none where
     /// they are not known.
     pub active_bounds: Option<Vec<ActiveBound>>,
-    /// How the objective answers to the stiffness of each joint ([`objective_by_stiffness`]): derivative by its
-    /// logarithm, in m; none where it was not requested.
+    /// How the objective answers to the stiffness of each spring ([`objective_by_stiffness`]); none where it was not
+    /// requested.
     ///
     /// [`objective_by_stiffness`]: super::sensitivity::objective_by_stiffness
-    pub objective_by_stiffness: Option<[f64; 6]>,
+    pub objective_by_stiffness: Option<Vec<SpringSlope>>,
 }
 
 impl Case {

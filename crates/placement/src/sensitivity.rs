@@ -2,6 +2,7 @@
 
 use super::outcome::{Plan, PlanPoint};
 use rayon::prelude::*;
+use std::fmt;
 use stead_model::robot::{Compliance, Robot};
 use stead_planning::problem::{Placement, Problem, ProblemParts};
 use stead_planning::redundancy::off_grid::Spacing;
@@ -16,7 +17,76 @@ const FOLLOWING: Spacing = Spacing { first: 4e-3, last: 6e-5 };
 /// A sensitivity is not left uncertain by more than this share of the largest.
 const UNCERTAIN: f64 = 0.01;
 
-/// How the objective of a plan answers to the stiffness of each joint and its drive: central differences over one per
+/// The axis of the frame of a row about which a spring of the joint turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum About {
+    /// The axis of the joint.
+    Z,
+    /// Normal to it.
+    X,
+    /// Normal to it.
+    Y,
+}
+
+impl About {
+    /// As the frame names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Z => "z",
+            Self::X => "x",
+            Self::Y => "y",
+        }
+    }
+}
+
+/// A spring of the arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Spring {
+    /// Its joint, from 0.
+    pub joint: usize,
+    /// The axis about which it turns.
+    pub about: About,
+}
+
+impl fmt::Display for Spring {
+    /// `joint 3 about x`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "joint {} about {}", self.joint + 1, self.about.name())
+    }
+}
+
+/// How an objective answers to the stiffness of a spring, or of several that turn the tool about one line in every
+/// configuration, so that no deflection tells them apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpringSlope {
+    /// The spring, and those that cannot be told from it.
+    pub springs: Vec<Spring>,
+    /// Derivative of the objective by the logarithm of the stiffness. m
+    pub slope: f64,
+}
+
+/// The springs of an arm, axes first, those together that no deflection tells apart: springs about z of joints 5 and 6
+/// turn the tool about the lines of springs about y of joints 4 and 5, where these sit in the wrist centre.
+fn springs_of(robot: &Robot) -> Vec<Vec<Spring>> {
+    let mut groups: Vec<Vec<Spring>> = (0..6).map(|joint| vec![Spring { joint, about: About::Z }]).collect();
+    for (joint, springs) in robot.normal_springs().into_iter().flatten().enumerate() {
+        for (about, compliance) in [About::X, About::Y].into_iter().zip(springs.compliance) {
+            let spring = Spring { joint, about };
+            if compliance == 0.0 {
+                continue;
+            }
+            match groups.get_mut(joint + 1) {
+                Some(next) if about == About::Y && (3..5).contains(&joint) && springs.bearing == 0.0 => {
+                    next.push(spring)
+                }
+                _ => groups.push(vec![spring]),
+            }
+        }
+    }
+    groups
+}
+
+/// How the objective of a plan answers to the stiffness of each spring of the arm, of joint and drive about the axis first: central differences over one per
 /// cent, in m for a stiffness e times as large, so that one per cent more changes the objective by a hundredth of it.
 ///
 /// A best plan is made anew around the present one, since it holds deflections at zero where it can: there the plan as
@@ -27,9 +97,10 @@ pub fn objective_by_stiffness(
     placement: &Placement,
     plans: &[SegmentPlan],
     plan_sense: Sense,
-) -> [f64; 6] {
-    let of = |joint: usize| [1.0 + STEP, 1.0 - STEP].map(|factor| stiffened(problem, joint, factor));
-    let changed: [_; 6] = std::array::from_fn(of);
+) -> Vec<SpringSlope> {
+    let springs = springs_of(&problem.robot);
+    let of = |group: &Vec<Spring>| [1.0 + STEP, 1.0 - STEP].map(|factor| stiffened(problem, group, factor));
+    let changed: Vec<[Option<Problem>; 2]> = springs.iter().map(of).collect();
     let here = held_objective(problem, placement, plans);
     let held: Vec<Option<[f64; 2]>> = changed
         .par_iter()
@@ -52,7 +123,9 @@ pub fn objective_by_stiffness(
         Some([stiffer??, softer??])
     });
     let differences: Vec<Option<[f64; 2]>> = differences.collect();
-    std::array::from_fn(|joint| differences[joint].map_or(0.0, |[stiffer, softer]| (stiffer - softer) / (2.0 * STEP)))
+    let slope = |found: Option<[f64; 2]>| found.map_or(0.0, |[stiffer, softer]| (stiffer - softer) / (2.0 * STEP));
+    let slopes = springs.into_iter().zip(differences);
+    slopes.map(|(springs, found)| SpringSlope { springs, slope: slope(found) }).collect()
 }
 
 /// The same plans as another problem scores them, with its costs; `None` where that finds a state that is not allowed.
@@ -89,10 +162,10 @@ fn followed_objective(problem: &Problem, placement: &Placement, plans: &[Segment
     Some(problem.objective(plans.iter().map(followed)))
 }
 
-/// The problem with the stiffness of one joint (from 0) and its drive multiplied, in all sets of compliances.
-fn stiffened(problem: &Problem, joint: usize, factor: f64) -> Option<Problem> {
-    let robot = stiffened_robot(&problem.robot, joint, factor)?;
-    let of_set = |set: &Robot| stiffened_robot(set, joint, factor);
+/// The problem with the stiffness of some springs multiplied, in all sets of compliances.
+fn stiffened(problem: &Problem, springs: &[Spring], factor: f64) -> Option<Problem> {
+    let robot = stiffened_robot(&problem.robot, springs, factor)?;
+    let of_set = |set: &Robot| stiffened_robot(set, springs, factor);
     let sets =
         problem.criterion.stiffness.iter().flat_map(|sets| &sets.robots).map(of_set).collect::<Option<Vec<_>>>()?;
     let change = |parts: &mut ProblemParts| {
@@ -104,20 +177,38 @@ fn stiffened(problem: &Problem, joint: usize, factor: f64) -> Option<Problem> {
     problem.changed(change).ok()
 }
 
-/// The arm with the stiffness of one joint (from 0) and its drive multiplied; its compensator stays as it is.
-fn stiffened_robot(robot: &Robot, joint: usize, factor: f64) -> Option<Robot> {
+/// The arm with the stiffness of some springs multiplied; compensators stay as they are.
+fn stiffened_robot(robot: &Robot, springs: &[Spring], factor: f64) -> Option<Robot> {
     let mut laws = robot.joints().clone().map(|joint| joint.compliance);
-    laws[joint] = match laws[joint] {
+    let mut normal = robot.stated_normal_springs().copied();
+    for Spring { joint, about } in springs {
+        let place = match about {
+            About::Z => {
+                laws[*joint] = stiffened_law(laws[*joint], factor);
+                continue;
+            }
+            About::X => 0,
+            About::Y => 1,
+        };
+        if let Some(normal) = &mut normal {
+            normal[*joint].compliance[place] /= factor;
+        }
+    }
+    let changed = robot.with_compliances(laws).ok()?.with_normal_springs(normal).ok()?;
+    match robot.uncertainty() {
+        Some(known) => changed.with_uncertainty(known.clone()).ok(),
+        None => Some(changed),
+    }
+}
+
+/// The law of a joint and its drive with its stiffness multiplied.
+fn stiffened_law(law: Compliance, factor: f64) -> Compliance {
+    match law {
         Compliance::Constant(value) => Compliance::Constant(value / factor),
         Compliance::Range { at_min, at_max } => Compliance::Range { at_min: at_min / factor, at_max: at_max / factor },
         Compliance::Compensated { alone, compensator } => {
             Compliance::Compensated { alone: alone / factor, compensator }
         }
-    };
-    let changed = robot.with_compliances(laws).ok()?;
-    match robot.uncertainty() {
-        Some(known) => changed.with_uncertainty(known.clone()).ok(),
-        None => Some(changed),
     }
 }
 
@@ -146,7 +237,7 @@ mod tests {
     use stead_numerics::monitor::Monitor;
     use stead_planning::criterion::{Aggregate, Weights};
     use stead_planning::redundancy::Planner;
-    use stead_planning::testing::{compensated, five_segments, with_laws};
+    use stead_planning::testing::{Beside, compensated, five_segments, with_beside, with_laws};
     use stead_planning::transfer::TransferSettings;
 
     /// The objective of the best plan at a placement.
@@ -181,14 +272,13 @@ mod tests {
         for (name, problem) in criteria {
             let (objective, plans) = planned_objective(&problem, &placement);
             let slopes = objective_by_stiffness(&problem, &placement, &plans, Sense::Min);
-            for (joint, slope) in slopes.into_iter().enumerate() {
+            for SpringSlope { springs, slope } in slopes {
                 let [stiffer, softer] = [1.01, 0.99]
-                    .map(|factor| planned_objective(&stiffened(&problem, joint, factor).unwrap(), &placement).0);
+                    .map(|factor| planned_objective(&stiffened(&problem, &springs, factor).unwrap(), &placement).0);
                 let measured = (stiffer - softer) / 0.02;
                 assert!(
                     (slope - measured).abs() < 0.02 * objective,
-                    "{name}, joint {}: {slope} {measured} of {objective}",
-                    joint + 1
+                    "{name}, {springs:?}: {slope} {measured} of {objective}"
                 );
             }
         }
@@ -197,10 +287,28 @@ mod tests {
     #[test]
     fn all_joints_stiffer_by_a_share_make_the_objective_smaller_by_that_share() {
         let placement = Placement::from([0.1, -1.7, -0.4, 1.0]);
-        let problem = five_segments();
-        let (objective, plans) = planned_objective(&problem, &placement);
-        let all: f64 = objective_by_stiffness(&problem, &placement, &plans, Sense::Min).iter().sum();
-        assert!((all / objective + 1.0).abs() < 0.02, "{all} {objective}");
+        for (problem, count) in [(five_segments(), 6), (with_beside(five_segments(), Beside::Alike), 16)] {
+            let (objective, plans) = planned_objective(&problem, &placement);
+            let slopes = objective_by_stiffness(&problem, &placement, &plans, Sense::Min);
+            assert_eq!(slopes.len(), count);
+            let all: f64 = slopes.iter().map(|slope| slope.slope).sum();
+            assert!((all / objective + 1.0).abs() < 0.02, "{all} {objective}");
+        }
+    }
+
+    #[test]
+    fn springs_that_turn_about_one_line_are_named_together() {
+        let names = |robot: &Robot| -> Vec<String> {
+            springs_of(robot)
+                .iter()
+                .map(|group| group.iter().map(Spring::to_string).collect::<Vec<_>>().join(" with "))
+                .collect()
+        };
+        let alike = names(&with_beside(five_segments(), Beside::Alike).robot);
+        assert_eq!(alike[4], "joint 5 about z with joint 4 about y");
+        assert_eq!(alike[5], "joint 6 about z with joint 5 about y");
+        assert_eq!((alike.len(), alike[6].as_str()), (16, "joint 1 about x"));
+        assert_eq!(names(&with_beside(five_segments(), Beside::Pairs).robot).len(), 18);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::criterion::{Aggregate, Over, ScoredDirections};
 use super::problem::Problem;
 use nalgebra::Matrix3;
 use stead_model::robot::Robot;
+use stead_model::stiffness::whole::yields_elsewhere;
 use stead_numerics::scalar::Scalar;
 
 impl Problem {
@@ -19,6 +20,11 @@ impl Problem {
     /// Whether a score is the largest over the sets of compliances.
     pub fn is_over_worst(&self) -> bool {
         self.criterion.stiffness.as_ref().is_some_and(|sets| sets.over == Over::Worst)
+    }
+
+    /// Whether anything but the joints about their axes yields: springs normal to them, base, mount, tip, part.
+    pub fn yields_beside(&self) -> bool {
+        self.task.part_yields() || self.scored_robots().iter().any(|robot| yields_elsewhere(robot, &self.spindle))
     }
 
     /// The directions that are scored at a path point, in the frame in which its axes (feed, left of the feed, tool

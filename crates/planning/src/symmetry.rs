@@ -57,6 +57,17 @@ pub enum Unsupported {
         /// The joint, from 1.
         joint: usize,
     },
+    /// Joint 5 yields normal to its axis elsewhere than in the wrist centre, so that the flips of the wrist differ.
+    #[error("joint 5 yields normal to its axis off the wrist centre (joints[5].bearing_mm)")]
+    UnlikeFlips,
+    /// More yields than the joints about their axes, and bounds have no terms for it.
+    #[error(
+        "{what} yield beside the joints about their axes, which bounds do not cover yet: a bound without them would be none"
+    )]
+    YieldsBeside {
+        /// What.
+        what: &'static str,
+    },
     /// Scores cover errors of the force.
     #[error("scores cover errors of the force (criterion.force_uncertainty)")]
     UncertainForce,
@@ -195,6 +206,29 @@ pub fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
     }
 }
 
+/// Requires that nothing but the joints about their axes yields.
+///
+/// # Errors
+/// [`Unsupported::YieldsBeside`] at the first thing that does.
+pub fn require_axial_springs(problem: &Problem) -> Result<(), Unsupported> {
+    let robots = || problem.scored_robots().iter();
+    for (what, does_yield) in [
+        (
+            "springs normal to the axes (stiffness_model = \"full\")",
+            robots().any(|robot| robot.normal_springs().is_some()),
+        ),
+        ("base and pedestal ([base_compliance])", robots().any(|robot| robot.base_compliance().is_some())),
+        ("the bolts of the spindle (spindle.mount_matrix)", problem.spindle.mount.is_some()),
+        ("holder and tool (spindle.tip_um_per_n)", problem.spindle.tip.is_some()),
+        ("part and fixture ([part_compliance], part_*_um_per_n)", problem.task.part_yields()),
+    ] {
+        if does_yield {
+            return Err(Unsupported::YieldsBeside { what });
+        }
+    }
+    Ok(())
+}
+
 /// Requires scores to leave out the uncertainty of the compliances.
 ///
 /// # Errors
@@ -202,6 +236,14 @@ pub fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
 pub fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
     let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
     if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
+}
+
+/// Requires that the two flips of the wrist yield alike.
+///
+/// # Errors
+/// [`Unsupported::UnlikeFlips`] where they do not.
+pub fn require_alike_flips(problem: &Problem) -> Result<(), Unsupported> {
+    if problem.robot.flips_yield_alike() { Ok(()) } else { Err(Unsupported::UnlikeFlips) }
 }
 
 /// Whether turning workpiece and joint 1 together about axis 1 changes nothing but the angle of joint 1.

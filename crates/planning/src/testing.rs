@@ -6,11 +6,12 @@ use crate::postures::PostureRules;
 use crate::problem::*;
 use crate::redundancy::SegmentPlan;
 use crate::setup::Setup;
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, SMatrix, Vector3};
 use std::f64::consts::PI;
 use stead_cell::tool_scene::SegmentMoves;
 use stead_model::robot::angles::wrap;
 use stead_model::robot::testing::{kr270, spindle};
+use stead_model::robot::{BaseCompliance, NormalSprings, SpringModel};
 use stead_model::robot::{Compensator, Compliance, Joint, Parameter, Robot, Uncertainty};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 
@@ -210,4 +211,57 @@ pub fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPl
         }
         assert!((sum - plan.cost).abs() < 1e-12 * sum, "{sum} {}", plan.cost);
     }
+}
+
+/// A symmetric positive definite matrix of some numbers, of about this size.
+fn some_matrix<const N: usize>(seed: u32, size: f64) -> SMatrix<f64, N, N> {
+    let entry = |row: usize, column: usize| libm::sin(1.7 * (f64::from(seed) + (N * row + column) as f64));
+    let root = SMatrix::<f64, N, N>::from_fn(|row, column| entry(row, column) + if row == column { 1.5 } else { 0.0 });
+    root * root.transpose() * size
+}
+
+/// What yields beside the joints about their axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beside {
+    /// Springs normal to the axes, alike about x and y, those of the wrist in its centre.
+    Alike,
+    /// Springs normal to the axes that differ about x and y, and sit anywhere on them.
+    Pairs,
+    /// The base, the mount of the spindle, holder and tool, and the part.
+    Matrices,
+    /// All of it.
+    Everything,
+}
+
+impl Beside {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Alike, Self::Pairs, Self::Matrices, Self::Everything];
+}
+
+/// The arm with springs normal to its axes.
+pub fn with_normal_springs(robot: Robot, are_pairs: bool) -> Robot {
+    let springs = std::array::from_fn(|j| {
+        let k = j as f64;
+        match are_pairs {
+            true => NormalSprings { compliance: [3e-7 + 1e-7 * k, 9e-7 - 1e-7 * k], bearing: 0.05 * k - 0.13 },
+            false => NormalSprings { compliance: [4e-7 + 1e-7 * k; 2], bearing: if j < 3 { -0.3 } else { 0.0 } },
+        }
+    });
+    robot.with_normal_springs(Some(springs)).unwrap().with_spring_model(Some(SpringModel::Full))
+}
+
+/// The same problem with more than the joints about their axes that yields.
+pub fn with_beside(mut problem: Problem, beside: Beside) -> Problem {
+    if beside != Beside::Matrices {
+        problem.robot = with_normal_springs(problem.robot.clone(), beside != Beside::Alike);
+    }
+    if matches!(beside, Beside::Matrices | Beside::Everything) {
+        let base = BaseCompliance::new(Vector3::new(0.1, -0.05, -0.2), some_matrix(3, 1e-8)).unwrap();
+        problem.robot = problem.robot.clone().with_base_compliance(Some(base));
+        problem.spindle =
+            problem.spindle.with_mount(some_matrix(17, 2e-8)).unwrap().with_tip(some_matrix(29, 1e-7)).unwrap();
+        let part = (0..problem.task.points().len() as u32).map(|point| some_matrix(point, 1e-7)).collect();
+        problem.task = problem.task.clone().with_part_compliances(part).unwrap();
+    }
+    problem
 }

@@ -8,6 +8,7 @@ use stead_model::cutting::{Cutter, CuttingForce, Engagement, ForceHistory, RakeF
 use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::outcome::*;
+use stead_placement::sensitivity::{About, Spring, SpringSlope};
 use stead_placement::settings::SearchSettings;
 use stead_planning::constraints::{ConstraintKind, on_joints, on_state};
 use stead_planning::evaluate::reference::State;
@@ -175,6 +176,7 @@ impl Grid {
             deflection: DeflectionFigures::of(points.iter()),
             held: None,
             mean_deviation: None,
+            by_origin: None,
             clearance: None,
             axes: Vec::new(),
             points,
@@ -208,7 +210,9 @@ impl Grid {
             plan,
             cycle,
             active_bounds: Some(Vec::new()),
-            objective_by_stiffness: Some([-mean, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            objective_by_stiffness: Some(
+                (0..6).map(|joint| slope(joint, if joint == 0 { -mean } else { 0.0 })).collect(),
+            ),
         }
     }
 
@@ -300,4 +304,8 @@ pub fn force_history() -> ForceHistory {
     let cutter = Cutter::even(3, 0.005, helix, Rotation::Clockwise, face.coefficients(helix)).unwrap();
     let force = CuttingForce { cutter: &cutter, axial_depth: 5e-3, feed_per_tooth: 8e-5 };
     ForceHistory::new(&force, &Engagement::open_slot(0.005, 0.01).unwrap())
+}
+
+fn slope(joint: usize, slope: f64) -> SpringSlope {
+    SpringSlope { springs: vec![Spring { joint, about: About::Z }], slope }
 }

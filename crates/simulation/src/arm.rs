@@ -135,7 +135,7 @@ impl Arm<18> {
     /// [`Missing`] for a robot without masses, or without stiffness normal to its joints.
     pub fn eighteen(robot: &Robot, spindle: &Spindle, variant: Variant, theta: &[f64; 6]) -> Result<Self, Missing> {
         let parts = Parts::new(robot, spindle, theta)?;
-        let mut normal = [Orthogonal { stiffness: 0.0, damping: 0.0 }; 6];
+        let mut normal = [Orthogonal { stiffness: [0.0; 2], damping: [0.0; 2] }; 6];
         for (j, slot) in normal.iter_mut().enumerate() {
             *slot = parts.dynamics[j].orthogonal.ok_or(Missing::Orthogonal { joint: j + 1 })?;
         }
@@ -156,17 +156,18 @@ impl Arm<18> {
                 _ => Link::new(Pose::identity(), Axis::Y, Some(parts.bodies[j].placed(&from_bearing(j)))),
             }
         });
-        let each = |motor: &dyn Fn(usize) -> f64, other: &dyn Fn(usize) -> f64| {
-            SVector::from_fn(|k, _| if k % 3 == 0 { motor(k / 3) } else { other(k / 3) })
+        // About z first, then about x (0) and y (1).
+        let each = |motor: &dyn Fn(usize) -> f64, other: &dyn Fn(usize, usize) -> f64| {
+            SVector::from_fn(|k, _| if k % 3 == 0 { motor(k / 3) } else { other(k / 3, k % 3 - 1) })
         };
         let gravity = f64::from(u8::from(variant != Variant::Springs));
         Ok(Self {
             chain: Chain::new(links, from_bearing(5).then(&spindle.flange_from_tool)),
             drive: Drive {
-                stiffness: each(&|j| parts.stiffness[j], &|j| normal[j].stiffness),
-                damping: each(&|j| parts.dynamics[j].damping, &|j| normal[j].damping),
-                backlash: each(&|j| parts.backlash(j, variant), &|_| 0.0),
-                felt_gravity: each(&|j| parts.felt_gravity(j, variant), &|_| gravity),
+                stiffness: each(&|j| parts.stiffness[j], &|j, about| normal[j].stiffness[about]),
+                damping: each(&|j| parts.dynamics[j].damping, &|j, about| normal[j].damping[about]),
+                backlash: each(&|j| parts.backlash(j, variant), &|_, _| 0.0),
+                felt_gravity: each(&|j| parts.felt_gravity(j, variant), &|_, _| gravity),
             },
         })
     }

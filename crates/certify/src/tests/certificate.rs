@@ -12,6 +12,7 @@ use stead_planning::problem::Placement;
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
 use stead_planning::symmetry::Unsupported;
+use stead_planning::testing::{Beside, with_beside};
 
 const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
 
@@ -90,4 +91,28 @@ fn external_axes_are_refused() {
     }];
     problem.setup = Setup::at_rest(&problem.external_axes);
     assert_eq!(certifiable(&problem, u64::MAX), Err(Unsupported::ExternalAxes));
+}
+
+#[test]
+fn whatever_yields_beside_the_joints_is_refused() {
+    for (beside, word) in
+        [(Beside::Alike, "springs normal"), (Beside::Pairs, "springs normal"), (Beside::Matrices, "base")]
+    {
+        let problem = with_beside(five_segments(), beside);
+        let error = certifiable(&problem, u64::MAX).unwrap_err();
+        assert!(matches!(error, Unsupported::YieldsBeside { what } if what.starts_with(word)), "{error}");
+        assert!(error.to_string().contains("a bound without them would be none"));
+        let settings = CertificateSettings::new(0.05);
+        let certificate = certify(&problem, &PLACEMENT, 1e-4, None, settings, &Monitor::silent());
+        assert_eq!(certificate.best.unwrap_err(), NoProof::Unsupported(error));
+    }
+    let whole = with_beside(five_segments(), Beside::Matrices);
+    let with = |change: &dyn Fn(&mut Problem)| {
+        let mut problem = five_segments();
+        change(&mut problem);
+        certifiable(&problem, u64::MAX).unwrap_err().to_string()
+    };
+    assert!(with(&|problem| problem.spindle.mount = whole.spindle.mount).contains("spindle.mount_matrix"));
+    assert!(with(&|problem| problem.spindle.tip = whole.spindle.tip).contains("spindle.tip_um_per_n"));
+    assert!(with(&|problem| problem.task = whole.task.clone()).contains("part_compliance"));
 }

@@ -3,10 +3,12 @@
 //! A parameter is named like its field, joints and elements counted from 1. The compliance of a joint is
 //! `joints[1].compliance_urad_per_nm`, in urad/(N m), even where its row gives the stiffness; the ends of a range are
 //! `joints[3].compliance_urad_per_nm[1]`, at `min_deg`, and `[2]`, at `max_deg`; a compensator has
-//! `joints[2].compensator.spring_stiffness_n_per_mm` and `joints[2].compensator.free_length_mm`.
+//! `joints[2].compensator.spring_stiffness_n_per_mm` and `joints[2].compensator.free_length_mm`. Springs normal to an axis
+//! are `joints[3].orthogonal_compliance_urad_per_nm[1]`, about x, and `[2]`, about y, in urad/(N m).
 
 use super::compliance::{COMPENSATOR, COMPLIANCE};
 use super::file::CovarianceTable;
+use super::springs::ORTHOGONAL_COMPLIANCE;
 use crate::place::Place;
 use nalgebra::DMatrix;
 use stead_disk::input::InputError;
@@ -25,6 +27,8 @@ pub fn parameter_name(parameter: Parameter) -> String {
         Parameter::ComplianceAtMax(_) => format!("joints[{joint}].{COMPLIANCE}[2]"),
         Parameter::SpringStiffness(_) => format!("joints[{joint}].{COMPENSATOR}.spring_stiffness_n_per_mm"),
         Parameter::FreeLength(_) => format!("joints[{joint}].{COMPENSATOR}.free_length_mm"),
+        Parameter::AboutX(_) => format!("joints[{joint}].{ORTHOGONAL_COMPLIANCE}[1]"),
+        Parameter::AboutY(_) => format!("joints[{joint}].{ORTHOGONAL_COMPLIANCE}[2]"),
     }
 }
 
@@ -32,6 +36,7 @@ pub fn parameter_name(parameter: Parameter) -> String {
 pub fn parameter_unit(parameter: Parameter) -> f64 {
     match parameter {
         Parameter::Compliance(_) | Parameter::ComplianceAtMin(_) | Parameter::ComplianceAtMax(_) => 1e-6,
+        Parameter::AboutX(_) | Parameter::AboutY(_) => 1e-6,
         Parameter::SpringStiffness(_) => 1e3,
         Parameter::FreeLength(_) => 1e-3,
     }
@@ -83,6 +88,9 @@ fn parameter_from(text: &str, name: &Place<'_>, robot: &Robot, known: &str) -> R
         }
         Parameter::SpringStiffness(_) | Parameter::FreeLength(_) => {
             format!("is of a compensator, but joint {joint} has none")
+        }
+        Parameter::AboutX(_) | Parameter::AboutY(_) => {
+            format!("is of a spring normal to the axis, but joint {joint} has none")
         }
     };
     Err(name.error(problem, known))

@@ -2,6 +2,7 @@
 
 use super::file::JointRow;
 use super::robot_from;
+use super::springs::{ORTHOGONAL_COMPLIANCE, ORTHOGONAL_STIFFNESS};
 use crate::inertial::{CENTRE, INERTIA, MASS, inertial_from};
 use crate::place::{Place, required};
 use crate::quantity::Quantity;
@@ -10,7 +11,6 @@ use stead_disk::input::InputError;
 use stead_model::robot::{JointDynamics, Orthogonal, Robot};
 
 const DAMPING: &str = "damping_nms_per_rad";
-const ORTHOGONAL_STIFFNESS: &str = "orthogonal_stiffness_mnm_per_rad";
 const ORTHOGONAL_DAMPING: &str = "orthogonal_damping_nms_per_rad";
 
 /// What the rows say of motion: nothing where none has any of the keys for it, else all of them must say enough.
@@ -26,7 +26,7 @@ pub(super) fn dynamics_from(rows: &[JointRow; 6], at: &Place<'_>) -> Result<Opti
 }
 
 impl JointRow {
-    /// Whether the row has any of the keys that have to do with motion.
+    /// Whether the row has any of the keys that have to do with motion; springs normal to the axis do without.
     fn says_motion(&self) -> bool {
         self.mass_kg.is_some()
             || self.centre_of_mass_mm.is_some()
@@ -34,14 +34,12 @@ impl JointRow {
             || self.damping_nms_per_rad.is_some()
             || self.half_backlash_arcsec.is_some()
             || self.gravity_compensated.is_some()
-            || self.orthogonal_stiffness_mnm_per_rad.is_some()
             || self.orthogonal_damping_nms_per_rad.is_some()
-            || self.bearing_mm.is_some()
     }
 }
 
 fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<JointDynamics, InputError> {
-    let is_orthogonal = row.orthogonal_stiffness_mnm_per_rad.is_some() || row.orthogonal_damping_nms_per_rad.is_some();
+    let is_orthogonal = row.has_normal_springs() || row.orthogonal_damping_nms_per_rad.is_some();
     Ok(JointDynamics {
         link: inertial_from(row.mass_kg, row.centre_of_mass_mm, row.inertia_kg_m2, at)?,
         damping: required!(at, row.damping_nms_per_rad)?.si(),
@@ -49,8 +47,11 @@ fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<JointDynamics, InputErro
         gravity_compensated: row.gravity_compensated.unwrap_or_default(),
         orthogonal: if is_orthogonal {
             Some(Orthogonal {
-                stiffness: required!(at, row.orthogonal_stiffness_mnm_per_rad)?.si(),
-                damping: required!(at, row.orthogonal_damping_nms_per_rad)?.si(),
+                stiffness: match row.orthogonal_compliance_urad_per_nm {
+                    Some(compliance) => compliance.both().map(|compliance| 1.0 / compliance.si()),
+                    None => required!(at, row.orthogonal_stiffness_mnm_per_rad)?.both().map(Quantity::si),
+                },
+                damping: required!(at, row.orthogonal_damping_nms_per_rad)?.both().map(Quantity::si),
             })
         } else {
             None
@@ -89,7 +90,20 @@ pub fn checked_to_move(robot: Robot, source: &TomlFile, orthogonal: bool) -> Res
                 let what = "the variant takes into account how joints yield normal to their axes";
                 Err(lacking(joint, &[ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING], what))
             }
-            None => Ok(robot),
+            None => {
+                let is_rigid = |joint: &JointDynamics| {
+                    let springs = joint.orthogonal.filter(|_| orthogonal);
+                    springs.is_some_and(|springs| springs.stiffness.iter().any(|stiffness| !stiffness.is_finite()))
+                };
+                match dynamics.iter().position(is_rigid) {
+                    Some(joint) => {
+                        let at = document.root().key("joints").element(joint + 1).key(ORTHOGONAL_COMPLIANCE);
+                        let problem = "is rigid, but the variant asks how the joint moves normal to its axis";
+                        Err(at.error(problem, "numbers above 0 where the variant is orthogonal or backlash"))
+                    }
+                    None => Ok(robot),
+                }
+            }
         },
     }
 }

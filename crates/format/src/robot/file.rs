@@ -1,5 +1,6 @@
 //! What a robot file declares.
 
+use super::one_or_pair::OneOrPair;
 use super::one_or_range::OneOrRange;
 use crate::inertial::InertiaTable;
 use crate::orientation::Quaternion;
@@ -8,7 +9,7 @@ use crate::shapes::{Array, List, Matrix, Vector};
 use crate::units::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_model::robot::ControllerKind;
+use stead_model::robot::{ControllerKind, MeasuredFrom, SpringModel};
 
 /// A six-axis robot: geometry, joint limits and stiffness, where known speeds, masses and damping. Lengths are in mm
 /// and angles in deg, as the keys say; every number needs a source.
@@ -20,6 +21,13 @@ pub struct RobotFile {
     pub source: String,
     /// The arm whose joint stiffness the rows state, where it is not their own; every result says so.
     pub stiffness_like: Option<String>,
+    /// What the stiffness stands for: `axes` for a fit of springs about the joint axes alone, `full` for springs about
+    /// three directions of every joint, of one identification, `axial_part` for the springs about the axes of such a
+    /// set without the others. Not stated where left out: springs normal to the axes are left out of scores then.
+    pub stiffness_model: Option<Word<SpringModel>>,
+    /// What the instrument stood on when the stiffness was identified: `base` for the base of the robot, `floor` for the
+    /// floor, so that the stiffness has what yields under the base in it.
+    pub stiffness_measured_from: Option<Word<MeasuredFrom>>,
     /// Which numbers nobody has checked against their source, and what is known of them, a sentence each; said by every
     /// run.
     pub unverified: Option<List<String>>,
@@ -109,10 +117,13 @@ pub struct JointRow {
     pub half_backlash_arcsec: Option<Arcsec<NotNegative>>,
     /// Whether a compensator carries the gravity load of this joint; false where left out.
     pub gravity_compensated: Option<bool>,
-    /// Stiffness against rotation about each of the two directions normal to the joint axis.
-    pub orthogonal_stiffness_mnm_per_rad: Option<MnmPerRad<Positive>>,
-    /// Viscous damping against rotation about each of the two directions normal to the joint axis.
-    pub orthogonal_damping_nms_per_rad: Option<NmsPerRad<NotNegative>>,
+    /// Stiffness against rotation about the two directions normal to the joint axis: one number for both, or `[about x,
+    /// about y]` of the frame of the row, which turns with the joint. Scores count it where `stiffness_model` is `full`.
+    pub orthogonal_stiffness_mnm_per_rad: Option<OneOrPair<MnmPerRad<Positive>>>,
+    /// Compliance in these directions, in place of the stiffness; 0 is rigid.
+    pub orthogonal_compliance_urad_per_nm: Option<OneOrPair<UradPerNm<NotNegative>>>,
+    /// Viscous damping in these directions, one number or a pair; needed only beside masses.
+    pub orthogonal_damping_nms_per_rad: Option<OneOrPair<NmsPerRad<NotNegative>>>,
     /// Where on the joint axis it yields in these directions: along z from the origin of the row's frame; 0 where left
     /// out.
     pub bearing_mm: Option<Mm>,
@@ -137,7 +148,8 @@ pub struct CompensatorTable {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CovarianceTable {
     /// Names of the parameters, as their keys are named: `joints[1].compliance_urad_per_nm`, with `[1]` or `[2]` behind
-    /// for the ends of a range, `joints[2].compensator.spring_stiffness_n_per_mm` and `.free_length_mm`.
+    /// for the ends of a range, `joints[2].compensator.spring_stiffness_n_per_mm` and `.free_length_mm`,
+    /// `joints[3].orthogonal_compliance_urad_per_nm[1]` about x and `[2]` about y.
     pub parameters: List<String>,
     /// Their covariance matrix, in products of the units of the keys; symmetric, positive semidefinite.
     pub matrix: List<List<Number>>,

@@ -6,11 +6,15 @@ pub mod covariance;
 mod dynamics;
 mod file;
 mod lender;
+mod one_or_pair;
 mod one_or_range;
+mod springs;
 
 pub use file::{CompensatorTable, ControllerTable, CovarianceTable, JointRow, RobotFile, RootTable};
 pub(crate) use lender::{NoLender, lender, lent_urad_per_nm};
+pub use one_or_pair::OneOrPair;
 pub use one_or_range::OneOrRange;
+pub use springs::checked_to_score;
 
 use crate::place::Place;
 use crate::quantity::Quantity;
@@ -20,10 +24,11 @@ use controller::with_controller;
 use covariance::{COVARIANCE, with_covariance};
 use dynamics::dynamics_from;
 pub use dynamics::{checked_to_move, moving_robot_from};
+use springs::with_springs;
 use std::path::Path;
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::quote::garbles;
-use stead_model::robot::{Compliance, DataSheet, Joint, Robot, RobotError};
+use stead_model::robot::{Compliance, DataSheet, Joint, Robot, RobotError, SpringModel};
 
 /// Reads a robot file: the keys of [`RobotFile`].
 ///
@@ -111,6 +116,12 @@ pub fn robot_like(source: &TomlFile, other: &str, at: &Place<'_>) -> Result<Opti
     };
     let (other, input) = lender(other).map_err(refused)?;
     file.stiffness_like = Some(other.name);
+    (file.stiffness_model, file.stiffness_measured_from) = (other.stiffness_model, other.stiffness_measured_from);
+    if other.stiffness_model.is_some_and(|model| model.0 == SpringModel::Full) {
+        for (row, lender) in file.joints.iter_mut().zip(&other.joints) {
+            row.lent_normal_springs(lender);
+        }
+    }
     let mut lent = other.joints.iter().map(|row| lent_urad_per_nm(row).unwrap_or_default() * 1e-6);
     made(&file, &document.root(), |_, _| Ok(lent.next().unwrap_or_default().into())).map(|robot| Some((robot, input)))
 }
@@ -146,6 +157,7 @@ fn made(
     let robot = with_stiffness_like(robot, file.stiffness_like.as_deref(), at)?;
     let robot = robot.with_unverified(file.unverified.as_ref().map_or_else(Vec::new, |list| list.0.clone()));
     let robot = with_controller(robot, file, at)?;
+    let robot = with_springs(robot, file, at)?;
     let robot = match dynamics_from(joints, &rows)? {
         Some(dynamics) => robot.with_dynamics(dynamics),
         None => robot,
@@ -201,6 +213,9 @@ fn locate(root: &Place<'_>, error: &RobotError) -> InputError {
         }
         RobotError::NotPositive { joint, field, value } => {
             (*joint, *field, format!("is {value} in SI units"), "a number above 0 in SI units")
+        }
+        RobotError::Negative { joint, field, value } => {
+            (*joint, *field, format!("is {value} in SI units"), "a number not below 0 in SI units")
         }
         RobotError::Limits { joint, .. } => {
             let max = row(*joint).key("max_deg").written();

@@ -3,6 +3,7 @@
 use crate::robot::{JointRow, OneOrRange, lender, lent_urad_per_nm};
 use std::path::Path;
 use stead_disk::input::InputError;
+use stead_model::robot::SpringModel;
 
 /// The stiffness of another arm.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +12,9 @@ pub(super) struct Borrowed {
     pub arm: String,
     /// Where its numbers come from, as its file states it.
     pub source: String,
-    /// The line of each joint: key and value, and what is to be said of it.
+    /// What the springs stand for, where the file states it.
+    pub model: Option<SpringModel>,
+    /// The lines of each joint: key and value, and what is to be said of it.
     pub lines: [String; 6],
 }
 
@@ -25,9 +28,31 @@ impl Borrowed {
             let error = InputError::new(Path::new("--stiffness-like"), no.problem).found(super::xml::quoted(name));
             error.allowed(no.allowed)
         })?;
-        let lines = std::array::from_fn(|k| file.joints.get(k).map(line).unwrap_or_default());
-        Ok(Self { arm: file.name, source: file.source, lines })
+        let model = file.stiffness_model.map(|word| word.0);
+        let is_full = model == Some(SpringModel::Full);
+        let lines = |row: &JointRow| match is_full {
+            true => [line(row), normal_lines(row)].concat(),
+            false => line(row),
+        };
+        let lines = std::array::from_fn(|k| file.joints.get(k).map(lines).unwrap_or_default());
+        Ok(Self { arm: file.name, source: file.source, model, lines })
     }
+}
+
+/// The springs of a row normal to its axis, a line each behind that of the axis.
+fn normal_lines(row: &JointRow) -> String {
+    let pair = |[x, y]: [f64; 2]| if x == y { format!("{x:?}") } else { format!("[{x:?}, {y:?}]") };
+    let mut lines = String::new();
+    if let Some(stiffness) = row.orthogonal_stiffness_mnm_per_rad {
+        lines += &format!("\northogonal_stiffness_mnm_per_rad = {}", pair(stiffness.both().map(|one| one.written())));
+    }
+    if let Some(compliance) = row.orthogonal_compliance_urad_per_nm {
+        lines += &format!("\northogonal_compliance_urad_per_nm = {}", pair(compliance.both().map(|one| one.written())));
+    }
+    if let Some(bearing) = row.bearing_mm {
+        lines += &format!("\nbearing_mm = {:?}", bearing.written());
+    }
+    lines
 }
 
 /// The key that a row states its stiffness by. Of a range, which belongs to the limits of its own arm, the middle.
@@ -59,6 +84,10 @@ mod tests {
             assert!(!borrowed.source.is_empty());
         }
         assert_eq!(Borrowed::of("kuka-kr270-2").unwrap().lines[1], "stiffness_mnm_per_rad = 3.32");
+        let full = Borrowed::of("staubli-tx200-huynh").unwrap();
+        assert_eq!(full.model, Some(SpringModel::Full));
+        let normal = "stiffness_mnm_per_rad = 3.0\northogonal_stiffness_mnm_per_rad = [2.3, 3.1]\nbearing_mm = -621.0";
+        assert_eq!(full.lines[3], normal);
         assert!(Borrowed::of("name:kuka-kr270-r2700").unwrap().lines[1].starts_with("compliance_urad_per_nm = 0.29 "));
     }
 

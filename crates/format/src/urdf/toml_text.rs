@@ -30,6 +30,9 @@ pub(super) fn text(robot: &ImportedRobot, urdf: &Urdf, digest: &str, borrowed: O
     lines.line(format_args!("source = {}", Value::from(source(&file, borrowed))));
     if let Some(borrowed) = borrowed {
         lines.line(format_args!("stiffness_like = {}", Value::from(one_line(&borrowed.arm))));
+        if let Some(model) = borrowed.model {
+            lines.line(format_args!("stiffness_model = {}", Value::from(model.word())));
+        }
     }
     for k in 0..6 {
         joint(&mut lines, robot, k, borrowed);

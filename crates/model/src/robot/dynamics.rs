@@ -5,10 +5,10 @@ use super::{Inertial, Robot};
 /// Stiffness and damping of a joint about the two directions normal to its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Orthogonal {
-    /// Stiffness about each of the two. N m/rad
-    pub stiffness: f64,
-    /// Damping about each of the two. N m s/rad
-    pub damping: f64,
+    /// Stiffness about x and y of the frame of the row. N m/rad
+    pub stiffness: [f64; 2],
+    /// Damping about x and y of the frame of the row. N m s/rad
+    pub damping: [f64; 2],
 }
 
 /// A joint and the link behind it, as far as motion is concerned.

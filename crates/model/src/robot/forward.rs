@@ -13,6 +13,8 @@ pub struct Frames<T: Scalar> {
     pub axes: [Vector3<T>; 6],
     /// A point on each joint axis: the origin of the frame fixed to the joint. m
     pub origins: [Vector3<T>; 6],
+    /// The frames of the rows, which turn with their joints: rotations to base coordinates.
+    pub rotations: [Matrix3<T>; 6],
     /// Frame 6 in the base frame.
     pub base_from_flange: Pose<T>,
 }
@@ -23,6 +25,7 @@ impl<T: Scalar> Frames<T> {
         let mut pose = robot.cell_from_base::<T>();
         let mut axes = [Vector3::zeros(); 6];
         let mut origins = [Vector3::zeros(); 6];
+        let mut rotations = [Matrix3::zeros(); 6];
         for (j, row) in robot.rows().iter().enumerate() {
             // Rx(alpha) Rz(theta), with the translation of the row.
             let (sa, ca) = (T::constant(row.rotation[(2, 1)]), T::constant(row.rotation[(1, 1)]));
@@ -31,8 +34,9 @@ impl<T: Scalar> Frames<T> {
             pose = pose.then(&Pose { rotation, translation: cast(&row.translation) });
             axes[j] = pose.rotation.column(2).into_owned();
             origins[j] = pose.translation;
+            rotations[j] = pose.rotation;
         }
-        Self { axes, origins, base_from_flange: pose }
+        Self { axes, origins, rotations, base_from_flange: pose }
     }
 
     /// Where axes 4, 5 and 6 meet. m
@@ -43,6 +47,14 @@ impl<T: Scalar> Frames<T> {
     /// Linear and angular velocity of a body point at `point` (m, base frame) per unit speed of joint `j` (from 0).
     pub fn twist(&self, j: usize, point: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
         (self.axes[j].cross(&(point - self.origins[j])), self.axes[j])
+    }
+
+    /// The same of a turn about a direction normal to the axis of joint `j`, x (0) or y (1) of the frame of its row, at
+    /// a place on the axis, `bearing` (m) from the origin of that frame.
+    pub fn twist_normal(&self, j: usize, about: usize, bearing: f64, point: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+        let axis = self.rotations[j].column(about).into_owned();
+        let place = self.origins[j] + self.axes[j].map(|entry| entry.scale(bearing));
+        (axis.cross(&(point - place)), axis)
     }
 
     /// The geometric Jacobian at `point` (m, base frame): rows are linear velocity (m/s) and angular velocity (rad/s),

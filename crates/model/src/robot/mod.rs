@@ -42,6 +42,7 @@ mod pose;
 pub mod posture;
 mod shipped;
 mod spindle;
+mod springs;
 pub mod turns;
 mod uncertainty;
 
@@ -57,6 +58,7 @@ pub use pose::{Pose, cast};
 pub use posture::{Posture, PostureClass};
 pub use shipped::ShippedArm;
 pub use spindle::{Spindle, point_from_tool};
+pub use springs::{BaseCompliance, MeasuredFrom, NormalSprings, SpringModel};
 pub use uncertainty::{Parameter, Uncertainty, UncertaintyError};
 
 use chain::{Axis, Chain, Link};
@@ -105,6 +107,8 @@ pub struct Robot {
     mount: Option<Pose<f64>>,
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
+    /// Springs beside those about the axes.
+    springs: Box<springs::Springs>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
     controller: Option<Box<Controller>>,
     unverified: Vec<String>,
@@ -136,6 +140,16 @@ pub enum RobotError {
     /// A compliance, speed, acceleration or jerk that is not above zero.
     #[error("joint {joint}: {field} is {value}, but must be above zero")]
     NotPositive {
+        /// Number of the joint, from 1.
+        joint: usize,
+        /// Which number of the row.
+        field: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// A compliance normal to the axis that is below zero.
+    #[error("joint {joint}: {field} is {value}, but must not be below zero")]
+    Negative {
         /// Number of the joint, from 1.
         joint: usize,
         /// Which number of the row.
@@ -214,6 +228,7 @@ impl Robot {
             mount: None,
             data_sheet: DataSheet::default(),
             uncertainty: None,
+            springs: Box::default(),
             dynamics: None,
             controller: None,
             unverified: Vec::new(),

@@ -1,7 +1,8 @@
 //! The spindle on the flange.
 
 use super::{Inertial, Pose};
-use nalgebra::{Matrix3, Vector3};
+use crate::stiffness::matrix::{MatrixError, checked};
+use nalgebra::{Matrix3, Matrix6, Vector3};
 use stead_numerics::rotation::orthonormal;
 use stead_numerics::scalar::Scalar;
 
@@ -22,6 +23,11 @@ pub struct Spindle {
     pub flange_from_tool: Pose<f64>,
     /// Mass of spindle, holder and tool in the flange frame, where known.
     pub payload: Option<Inertial>,
+    /// How the spindle is fixed to the flange, where that yields: displacement and turn (m, rad) per force and moment
+    /// (N, N m) at the origin of the flange frame, in that frame.
+    pub mount: Option<Matrix6<f64>>,
+    /// How holder and tool yield at the tool centre point: displacement (m) per force (N), in the tool frame.
+    pub tip: Option<Matrix3<f64>>,
 }
 
 impl Spindle {
@@ -34,6 +40,28 @@ impl Spindle {
             return Err("must be made of finite numbers".to_owned());
         }
         let rotation = orthonormal(&rotation)?;
-        Ok(Self { flange_from_tool: Pose { rotation, translation }, payload: None })
+        Ok(Self::rigid(Pose { rotation, translation }))
+    }
+
+    /// A spindle of which nothing but the place of the tool is known; it does not yield.
+    pub fn rigid(flange_from_tool: Pose<f64>) -> Self {
+        Self { flange_from_tool, payload: None, mount: None, tip: None }
+    }
+
+    /// The same fixed to the flange so that it yields by a matrix in the flange frame at its origin: displacement and
+    /// turn (m, rad) per force and moment (N, N m).
+    ///
+    /// # Errors
+    /// [`MatrixError`] for a matrix that is no compliance.
+    pub fn with_mount(self, matrix: Matrix6<f64>) -> Result<Self, MatrixError> {
+        Ok(Self { mount: Some(checked(matrix)?), ..self })
+    }
+
+    /// The same with a holder and a tool that yield by a matrix in the tool frame: displacement (m) per force (N).
+    ///
+    /// # Errors
+    /// [`MatrixError`] for a matrix that is no compliance.
+    pub fn with_tip(self, matrix: Matrix3<f64>) -> Result<Self, MatrixError> {
+        Ok(Self { tip: Some(checked(matrix)?), ..self })
     }
 }

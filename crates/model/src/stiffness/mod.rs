@@ -3,11 +3,13 @@
 //! With rigid links and compliant joints the Cartesian compliance is `J K_theta^-1 J^T` (Caro 2013, eq. 12 as
 //! corrected: no complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
 //! `K^-1 w = sum_j J_j (J_j . w) / k_j`. Loads so high that they change the configuration are for [`loaded`] (the
-//! tangent, Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest). Rotations are vectors
-//! here: [`stead_numerics::rotation`].
+//! tangent, Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest); what yields beside the
+//! joints about their axes is for [`whole`]. Rotations are vectors here: [`stead_numerics::rotation`].
 
 pub mod equilibrium;
 pub mod loaded;
+pub mod matrix;
+pub mod whole;
 
 use crate::robot::Frames;
 use nalgebra::Vector3;

@@ -9,6 +9,7 @@ mod turned;
 
 pub use thinned::KeptPoint;
 
+use crate::stiffness::matrix::{MatrixError, checked};
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 use std::ops::Range;
@@ -80,6 +81,8 @@ pub struct Task {
     wrenches: Vec<Wrench>,
     /// The part of each wrench that does not grow with the feed, where that is known.
     edges: Option<Vec<Wrench>>,
+    /// How the part yields at every point, where it does: displacement against force, in the workpiece frame. m/N
+    part: Option<Vec<Matrix3<f64>>>,
 }
 
 /// Why points do not make a task. Points are counted from 0, in the order given.
@@ -159,6 +162,22 @@ pub enum TaskError {
         feeds: usize,
         /// Number of points.
         points: usize,
+    },
+    /// There are not as many compliances of the part as points.
+    #[error("{matrices} compliances of the part for {points} points")]
+    PartCompliances {
+        /// Number of compliances.
+        matrices: usize,
+        /// Number of points.
+        points: usize,
+    },
+    /// A compliance of the part that is none.
+    #[error("point {point}: the compliance of the part: {error}")]
+    PartCompliance {
+        /// The point.
+        point: usize,
+        /// Why it is none.
+        error: MatrixError,
     },
     /// Not as many wrenches as points.
     #[error("{wrenches} wrenches for {points} points")]
@@ -311,7 +330,32 @@ impl Task {
         }
         let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
         unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
-        Ok(Self { path, wrenches, edges: None })
+        Ok(Self { path, wrenches, edges: None, part: None })
+    }
+
+    /// The same task on a part that yields at every point by a matrix in the workpiece frame: displacement (m) of the
+    /// part per force (N) on it. The tool moves against the part as far as both do.
+    ///
+    /// # Errors
+    /// [`TaskError`] where their number is not that of the points, or at the first that is no compliance.
+    pub fn with_part_compliances(mut self, matrices: Vec<Matrix3<f64>>) -> Result<Self, TaskError> {
+        let points = self.path.points.len();
+        if matrices.len() != points {
+            return Err(TaskError::PartCompliances { matrices: matrices.len(), points });
+        }
+        let made = |(point, matrix)| checked(matrix).map_err(|error| TaskError::PartCompliance { point, error });
+        self.part = Some(matrices.into_iter().enumerate().map(made).collect::<Result<_, _>>()?);
+        Ok(self)
+    }
+
+    /// How the part yields at a point, where it does: displacement (m) per force (N), in the workpiece frame.
+    pub fn part_compliance(&self, point: usize) -> Option<&Matrix3<f64>> {
+        self.part.as_ref()?.get(point)
+    }
+
+    /// Whether the part yields.
+    pub fn part_yields(&self) -> bool {
+        self.part.is_some()
     }
 
     /// The geometry.

@@ -105,7 +105,12 @@ impl Task {
     /// The task thinned to some of its points, ascending and at least one of every segment.
     pub fn thinned(&self, kept: &[KeptPoint]) -> Self {
         let those = |wrenches: &Vec<Wrench>| kept.iter().map(|kept| wrenches[kept.point]).collect();
-        Self { path: self.path.thinned(kept), wrenches: those(&self.wrenches), edges: self.edges.as_ref().map(those) }
+        Self {
+            path: self.path.thinned(kept),
+            wrenches: those(&self.wrenches),
+            edges: self.edges.as_ref().map(those),
+            part: self.part.as_ref().map(|part| kept.iter().map(|kept| part[kept.point]).collect()),
+        }
     }
 }
 

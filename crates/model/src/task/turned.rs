@@ -9,7 +9,15 @@ impl Task {
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         let turned = |wrench: &Wrench| Wrench { force: rotation * wrench.force, moment: rotation * wrench.moment };
         let all = |wrenches: &Vec<Wrench>| wrenches.iter().map(turned).collect();
-        Self { path: self.path.turned(rotation), wrenches: all(&self.wrenches), edges: self.edges.as_ref().map(all) }
+        let part = |matrices: &Vec<Matrix3<f64>>| {
+            matrices.iter().map(|matrix| rotation * matrix * rotation.transpose()).collect()
+        };
+        Self {
+            path: self.path.turned(rotation),
+            wrenches: all(&self.wrenches),
+            edges: self.edges.as_ref().map(all),
+            part: self.part.as_ref().map(part),
+        }
     }
 }
 

@@ -184,7 +184,7 @@ impl LookupTable<'_> {
         let t = &point.moment;
         let moment = shape.parts.moment.then(|| [n.x * t.x, n.x * t.y, n.x * t.z, n.y * t.x, n.y * t.y, n.y * t.z]);
         let deflection = Combination {
-            constant: joint1 * n.y * f.y + point.first_moment_compliance * n.y * t.z,
+            constant: joint1 * n.y * f.y + point.first_moment_compliance * n.y * t.z + point.beside,
             in_plane: [n.x * f.x + n.y * f.y, n.x * f.x - n.y * f.y, n.x * f.y + n.y * f.x],
             vertical: [f.z * n.x, f.z * n.y],
             moment,
@@ -192,10 +192,16 @@ impl LookupTable<'_> {
         self.combine(&radii, &deflection, &mut rows.normal_part);
         self.field(&radii, field::ROOM, &mut rows.room);
         if point.uncertainty > 0.0 {
+            let beside = &point.beside_response;
             let response = [
-                Combination { constant: 0.0, in_plane: [n.x, n.x, n.y], vertical: [0.0; 2], moment: None },
-                Combination { constant: joint1 * n.y, in_plane: [n.y, -n.y, n.x], vertical: [0.0; 2], moment: None },
-                Combination { constant: 0.0, in_plane: [0.0; 3], vertical: [n.x, n.y], moment: None },
+                Combination { constant: beside.x, in_plane: [n.x, n.x, n.y], vertical: [0.0; 2], moment: None },
+                Combination {
+                    constant: joint1 * n.y + beside.y,
+                    in_plane: [n.y, -n.y, n.x],
+                    vertical: [0.0; 2],
+                    moment: None,
+                },
+                Combination { constant: beside.z, in_plane: [0.0; 3], vertical: [n.x, n.y], moment: None },
             ];
             response
                 .iter()

@@ -14,7 +14,10 @@
 //!            + f_z (c_rz n_r + c_tz n_t)                                and out of it
 //!            + sum over i = r, t and j = r, t, z of g_ij n_i t_j        under the moment
 //!            + r k_1 n_t (r f_t + t_z)                                  joint 1, of compliance k_1: not in the table
+//!            + what base and part do                                    neither is in the table
 //! ```
+//!
+//! Springs normal to the axes turn with the arm, and mount and tip with the spindle: they are in the same fields.
 //!
 //! Force and moment enter point by point, so that they may differ at every point at no cost.
 //!
@@ -32,18 +35,18 @@ pub use accuracy::Accuracy;
 pub use objective::{CollisionEffort, Workspace};
 pub use shape::{Axis, Parts, Shape};
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Matrix6};
 use polar::WorkpiecePoint;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use stead_model::robot::turns::Range;
+use stead_model::robot::{Pose, turns::Range};
 use stead_numerics::monitor::Monitor;
 use stead_planning::constraints::{ConstraintKind, relaxed};
 use stead_planning::problem::{Problem, Redundancy};
 use stead_planning::redundancy::{BetaChange, Planner, StateSet, saved_changes};
 use stead_planning::symmetry::{
-    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_mean_wall,
-    require_no_moment,
+    Unsupported, Upright, require_alike_flips, require_certain_compliances, require_constant, require_free_beta,
+    require_mean_wall, require_no_moment,
 };
 
 /// Largest size of a table. Bytes
@@ -64,6 +67,8 @@ pub struct LookupTable<'a> {
     rotation_sign: f64,
     /// Compliance of joint 1. rad/(N m)
     first_compliance: f64,
+    /// How what carries the robot yields, where it does: pose of the frame of the matrix in the root frame.
+    base: Option<(Pose<f64>, Matrix6<f64>)>,
     /// So many points are near enough to each other for one of them to be looked at for collisions first.
     pub(crate) stride: usize,
 }
@@ -126,6 +131,7 @@ impl<'a> LookupTable<'a> {
         require_free_beta(problem)?;
         require_constant(problem, &[0, 3, 4, 5])?;
         require_certain_compliances(problem)?;
+        require_alike_flips(problem)?;
         let is_flat = problem.criterion.force_uncertainty == 0.0
             && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
         let parts = Parts {
@@ -166,6 +172,13 @@ impl<'a> LookupTable<'a> {
             root_from_base,
             rotation_sign,
             first_compliance: problem.robot.compliances_at(&[0.0; 6])[0],
+            base: problem.robot.yielding_base().map(|(frame, matrix)| {
+                let root = Pose {
+                    rotation: root_from_base * frame.rotation,
+                    translation: root_from_base * (frame.translation - problem.robot.geometry().root_in_base),
+                };
+                (root, *matrix)
+            }),
             stride: stride(problem),
         })
     }

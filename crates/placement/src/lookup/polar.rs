@@ -2,6 +2,7 @@
 
 use super::LookupTable;
 use nalgebra::{Matrix3, Vector3};
+use stead_model::stiffness::whole::of_matrix;
 use stead_planning::problem::{Placement, Problem};
 
 /// A path point in the workpiece frame.
@@ -15,14 +16,29 @@ pub(super) struct WorkpiecePoint {
     moment: Vector3<f64>,
     /// What the score counts of |K^-1 n|. N
     uncertainty: f64,
+    /// How far the part yields along the normal. m
+    part: f64,
+    /// How the part answers a unit force along the normal. m/N
+    part_response: Vector3<f64>,
+}
+
+#[cfg(test)]
+impl WorkpiecePoint {
+    /// Forgets the part.
+    pub fn without_part(&mut self) {
+        (self.part, self.part_response) = (0.0, Vector3::zeros());
+    }
 }
 
 /// The path points of a problem.
 pub(super) fn points(problem: &Problem) -> Vec<WorkpiecePoint> {
     let points = problem.task.points().iter().zip(problem.task.wrenches());
     points
-        .map(|(point, wrench)| {
+        .enumerate()
+        .map(|(number, (point, wrench))| {
             let axes = point.workpiece_from_point();
+            let part_response =
+                problem.task.part_compliance(number).map_or_else(Vector3::zeros, |part| part * axes.column(1));
             WorkpiecePoint {
                 position: point.position,
                 feed: axes.column(0).into_owned(),
@@ -30,6 +46,8 @@ pub(super) fn points(problem: &Problem) -> Vec<WorkpiecePoint> {
                 force: wrench.force,
                 moment: wrench.moment,
                 uncertainty: problem.criterion.force_uncertainty * wrench.force.norm(),
+                part: part_response.dot(&wrench.force),
+                part_response,
             }
         })
         .collect()
@@ -61,6 +79,10 @@ pub(super) struct PolarPoint {
     pub moment: Vector3<f64>,
     /// What the score counts of |K^-1 n|. N
     pub uncertainty: f64,
+    /// How far base and part yield along the normal. m
+    pub beside: f64,
+    /// How they answer a unit force along the normal: radial, tangential, up. m/N
+    pub beside_response: Vector3<f64>,
 }
 
 impl LookupTable<'_> {
@@ -88,6 +110,17 @@ impl LookupTable<'_> {
             Vector3::new(v.x * cosine + v.y * sine, v.y * cosine - v.x * sine, v.z)
         };
         let feed = polar(&point.feed);
+        let (mut beside, mut beside_response) = (point.part, polar(&point.part_response));
+        if let Some((frame, matrix)) = &self.base {
+            let in_root = |v: &Vector3<f64>| placed.rotation * v;
+            let normal = in_root(&point.normal);
+            let moved =
+                |force: &Vector3<f64>, moment: &Vector3<f64>| of_matrix(matrix, frame, &tip, [force, moment]).linear;
+            beside += moved(&in_root(&point.force), &in_root(&point.moment)).dot(&normal);
+            let response = moved(&normal, &Vector3::zeros());
+            let (along, aside) = (response.x * cosine + response.y * sine, response.y * cosine - response.x * sine);
+            beside_response += Vector3::new(along, aside, response.z);
+        }
         Some(PolarPoint {
             radius: self.shape.radius.stencil(radius)?,
             height: tip.z,
@@ -99,6 +132,8 @@ impl LookupTable<'_> {
             force: polar(&point.force),
             moment: polar(&point.moment),
             uncertainty: point.uncertainty,
+            beside,
+            beside_response,
         })
     }
 }

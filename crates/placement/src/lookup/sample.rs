@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use stead_model::robot::{Frames, Pose, PostureClass, Robot, conditioning::inverse_condition, turns::Range};
+use stead_model::stiffness::whole::{ByOrigin, WholeArm};
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::Problem;
 
@@ -114,7 +115,25 @@ fn state(
     let (mut rr, mut tt, mut rt, mut rz, mut tz) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut radial, mut tangential) = (Vector3::zeros(), Vector3::zeros());
     let root_from_base = g.base_from_root.transpose();
-    for j in 1..6 {
+    if problem.yields_beside() {
+        // All but axis 1 and base: with the load in the base frame, radial and tangential.
+        let behind_first = std::array::from_fn(|j| if j == 0 { 0.0 } else { compliances[j] });
+        let arm = WholeArm::new(robot, &problem.spindle, &frames, behind_first, tip);
+        let answer = |force: Vector3<f64>| {
+            let ByOrigin { axes, normal, mount, tip, .. } = arm.by_origin(&force, &Vector3::zeros());
+            let parts = [axes, normal, mount, tip];
+            let linear: Vector3<f64> = parts.iter().map(|part| part.linear).sum();
+            let angular: Vector3<f64> = parts.iter().map(|part| part.angular).sum();
+            (root_from_base * linear, root_from_base * angular)
+        };
+        let [(by_radial, about_radial), (by_tangential, about_tangential)] =
+            [0, 1].map(|k| answer(g.base_from_root.column(k).into_owned()));
+        (rr, rt, rz) = (by_radial.x, by_radial.y, by_radial.z);
+        (tt, tz) = (by_tangential.y, by_tangential.z);
+        (radial, tangential) = (about_radial, about_tangential);
+    }
+    let axial_alone = if problem.yields_beside() { 6..6 } else { 1..6 };
+    for j in axial_alone {
         let (velocity, axis) = frames.twist(j, &tip);
         let v = root_from_base * velocity;
         let k = compliances[j];

@@ -21,7 +21,8 @@ use stead_planning::problem::{Interval, Placement, Redundancy};
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
 use stead_planning::testing::{
-    compensated, corners, five_segments, hanging, slanted, with_laws, with_turn_limits, with_uncertainty,
+    Beside, compensated, corners, five_segments, hanging, slanted, with_beside, with_laws, with_turn_limits,
+    with_uncertainty,
 };
 
 /// Errors in all directions counted.
@@ -123,6 +124,53 @@ fn errs_no_more_than_it_says() {
             assert!(found.disputed < 0.02, "{name} {count}: {found:?}");
         }
     }
+}
+
+/// Pairs of springs everywhere on their axes, but for joint 5, off whose place the two flips of the wrist differ.
+fn whole() -> Problem {
+    let mut problem = with_beside(slanted(), Beside::Everything);
+    let mut normal = *problem.robot.normal_springs().unwrap();
+    normal[4].bearing = 0.0;
+    problem.robot = problem.robot.clone().with_normal_springs(Some(normal)).unwrap();
+    problem
+}
+
+#[test]
+fn whatever_yields_is_in_the_table_or_added() {
+    let with_errors = |mut problem: Problem| {
+        problem.criterion.force_uncertainty = 0.1;
+        problem
+    };
+    // A part that yields goes with the task: after its forces and moments.
+    let twisted_whole = || {
+        let mut problem = whole();
+        let part = problem.task.clone();
+        problem.task = twisted(slanted()).task.clone();
+        let matrices = (0..105).map(|point| *part.part_compliance(point).unwrap()).collect();
+        problem.task = problem.task.clone().with_part_compliances(matrices).unwrap();
+        problem
+    };
+    for (name, problem) in [
+        ("alike", with_beside(five_segments(), Beside::Alike)),
+        ("matrices", with_beside(five_segments(), Beside::Matrices)),
+        ("whole", whole()),
+        ("twisted", twisted_whole()),
+        ("robust", with_errors(twisted_whole())),
+    ] {
+        let table = LookupTable::new(&problem).unwrap();
+        let stated = table.accuracy();
+        assert!(stated.states > 200 && stated.rms < 5e-4 && stated.disputed < 0.02, "{name}: {stated:?}");
+        let found = compared(&table, 120, 1500);
+        assert!(found.rms < 4.0 * stated.rms + 2e-6 && found.disputed < 0.02, "{name}: {found:?} {stated:?}");
+        let mut broken = table.clone();
+        broken.base = None;
+        broken.points.iter_mut().for_each(polar::WorkpiecePoint::without_part);
+        if name != "alike" {
+            assert!(broken.accuracy().rms > 10.0 * stated.rms, "{name}: base and part are not seen");
+        }
+    }
+    let pairs = with_beside(five_segments(), Beside::Pairs);
+    assert_eq!(LookupTable::shape_for(&pairs).unwrap_err(), Unsupported::UnlikeFlips);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
 use stead_planning::collision::PlanClearance;
-use stead_planning::evaluate::reference::scored_part_by_parameters;
+use stead_planning::evaluate::reference::{ScoredByOrigin, scored_by_origin, scored_part_by_parameters};
 use stead_planning::feed::CutFeed;
 use stead_planning::joint_travel::JointTravel;
 use stead_planning::problem::{Placement, Problem};
@@ -92,11 +92,17 @@ fn at_held_feed(
 pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Plan {
     let mut points = Vec::with_capacity(problem.task.points().len());
     let known = problem.robot.uncertainty();
+    let mut origins = problem.yields_beside().then(ScoredByOrigin::default);
     let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
     for (segment, plan) in plans.iter().enumerate() {
         for (place, point) in plan.points.clone().enumerate() {
             let Ok(s) = problem.at(placement).state(point, plan.betas[place], plan.posture) else { continue };
             let placed = problem.placed(point, placement);
+            if let Some(origins) = &mut origins
+                && problem.task.path().is_scored(point)
+            {
+                origins.add(&scored_by_origin(problem, point, placement, &s.joints));
+            }
             let sign = if s.own.scored < 0.0 { -1.0 } else { 1.0 };
             for (sum, slope) in slopes.iter_mut().zip(scored_part_by_parameters(problem, point, placement, &s.joints)) {
                 *sum += sign * slope;
@@ -135,6 +141,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         percentiles: [0.5, 0.95].map(|share| percentile(scored.clone().map(|p| p.score), share)),
         deflection: DeflectionFigures::of(scored),
         held: None,
+        by_origin: origins.map(|origins| origins.scaled(1.0 / count)),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         clearance: plan_clearance(problem, &points),
         travel,

@@ -2,7 +2,7 @@
 
 use crate::criterion::ScoredDirections;
 use crate::problem::{PlacedPoint, PlacedTask, Problem};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::Pose;
 use stead_numerics::scalar::Scalar;
 
@@ -15,13 +15,20 @@ pub struct PointEvaluator<'a, T: Scalar = f64> {
     pub(super) directions: ScoredDirections<T>,
     /// In the base frame.
     pub(super) surface_normal: Option<Vector3<T>>,
+    /// How the part yields, where it does, in the base frame. m/N
+    pub(super) part: Option<Matrix3<T>>,
 }
 
 impl<'a, T: Scalar> PointEvaluator<'a, T> {
     pub(crate) fn of(task: PlacedTask<'a, T>, point: usize) -> Self {
         let (problem, placed) = (task.problem, task.point(point));
         let directions = problem.scored_directions(point, &placed.axes);
-        Self { problem, point, placed, directions, surface_normal: problem.surface_normal(point, task.placement) }
+        let part = problem.task.part_compliance(point).map(|matrix| {
+            let rotation = problem.base_from_workpiece(point, task.placement).rotation;
+            rotation * matrix.map(T::constant) * rotation.transpose()
+        });
+        let surface_normal = problem.surface_normal(point, task.placement);
+        Self { problem, point, placed, directions, surface_normal, part }
     }
 
     /// The problem of the point.

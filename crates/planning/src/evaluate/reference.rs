@@ -7,8 +7,8 @@ use super::point_evaluator::PointEvaluator;
 use crate::criterion::{Over, ScoredDirections, worst_force_error};
 use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
-use stead_model::robot::{Frames, Posture, Robot, Unreachable, conditioning::inverse_condition};
-use stead_model::stiffness::displacement;
+use stead_model::robot::{Frames, Parameter, Posture, Robot, Unreachable, conditioning::inverse_condition};
+use stead_model::stiffness::whole::{ByOrigin, WholeArm};
 use stead_numerics::scalar::Scalar;
 
 /// A state of the arm at a path point and what the cutting force does to it.
@@ -123,8 +123,12 @@ impl<'a, T: Scalar> PlacedArm<'a, T> {
     fn under(&self, robot: &'a Robot) -> DeflectedArm<'_, T> {
         let PlacedPoint { tip, force, moment, .. } = &self.at.placed;
         let compliances = robot.compliances_at(self.joints);
-        let deflection = displacement(&self.frames, tip, &compliances, force, moment).linear;
-        DeflectedArm { arm: self, robot, compliances, deflection }
+        let whole = WholeArm::new(robot, &self.at.problem.spindle, &self.frames, compliances, *tip);
+        let mut deflection = whole.displacement(force, moment).linear;
+        if let Some(part) = &self.at.part {
+            deflection += part * force;
+        }
+        DeflectedArm { arm: self, robot, whole, deflection }
     }
 
     /// What each joint adds to the part of the deflection along a direction per compliance: `(J_j . n) (J_j . w)`, in m
@@ -136,14 +140,21 @@ impl<'a, T: Scalar> PlacedArm<'a, T> {
             velocity.dot(direction) * (velocity.dot(force) + axis.dot(moment))
         })
     }
+
+    /// The same of a spring normal to the axis of joint `j`, about x (0) or y (1) of the frame of its row, that sits at
+    /// a place on the axis (m).
+    fn part_of_normal_spring(&self, j: usize, about: usize, bearing: f64, direction: &Vector3<T>) -> T {
+        let PlacedPoint { tip, force, moment, .. } = &self.at.placed;
+        let (velocity, axis) = self.frames.twist_normal(j, about, bearing, tip);
+        velocity.dot(direction) * (velocity.dot(force) + axis.dot(moment))
+    }
 }
 
 /// The arm at a path point under its load, with one set of compliances.
 struct DeflectedArm<'a, T: Scalar> {
     arm: &'a PlacedArm<'a, T>,
     robot: &'a Robot,
-    /// rad/(N m)
-    compliances: [T; 6],
+    whole: WholeArm<'a, T>,
     /// Displacement of the tool centre point. m
     deflection: Vector3<T>,
 }
@@ -164,14 +175,16 @@ impl<T: Scalar> DeflectedArm<'_, T> {
 
     /// What force errors can add to the scored part. m
     fn force_margin(&self, scored_part: T) -> T {
-        let PlacedArm { at, frames, .. } = self.arm;
-        let PointEvaluator { problem, point, placed, directions, .. } = at;
+        let PlacedArm { at, .. } = self.arm;
+        let PointEvaluator { problem, point, part, directions, .. } = at;
         if problem.criterion.force_uncertainty == 0.0 {
             return T::zero();
         }
         let size = problem.criterion.force_uncertainty * problem.task.wrenches()[*point].force.norm();
-        let moved_by =
-            |force: &Vector3<T>| displacement(frames, &placed.tip, &self.compliances, force, &Vector3::zeros()).linear;
+        let moved_by = |force: &Vector3<T>| {
+            let moved = self.whole.displacement(force, &Vector3::zeros()).linear;
+            part.as_ref().map_or(moved, |part| moved + part * force)
+        };
         if let Some(direction) = directions.single() {
             let response = moved_by(direction);
             return response.dot(&response).sqrt().scale(size);
@@ -195,7 +208,16 @@ impl<T: Scalar> DeflectedArm<'_, T> {
         let Some(known) = self.robot.uncertainty() else { return Vec::new() };
         let parts = self.arm.parts_per_compliance(direction);
         let slopes = self.robot.compliance_gradient_at(self.arm.joints);
-        known.parameters().iter().zip(slopes).map(|(parameter, slope)| parts[parameter.joint()] * slope).collect()
+        let normal = self.robot.normal_springs();
+        let part = |parameter: &Parameter| match (parameter.about(), normal) {
+            (None, _) => parts[parameter.joint()],
+            (Some(_), None) => T::zero(),
+            (Some(about), Some(normal)) => {
+                let j = parameter.joint();
+                self.arm.part_of_normal_spring(j, about, normal[j].bearing, direction)
+            }
+        };
+        known.parameters().iter().zip(slopes).map(|(parameter, slope)| part(parameter) * slope).collect()
     }
 }
 
@@ -247,6 +269,52 @@ pub fn scored_part_by_parameters<T: Scalar>(
     joints: &[T; 6],
 ) -> Vec<T> {
     PlacedArm::new(&problem.at(placement).evaluator(point), joints).under(&problem.robot).scored_slopes()
+}
+
+/// What each thing that yields adds to the scored part of the deflection, its absolute value taken: the sum is c_i. m
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ScoredByOrigin {
+    /// What yields of robot and spindle.
+    pub arm: ByOrigin<f64>,
+    /// The part.
+    pub part: f64,
+}
+
+impl ScoredByOrigin {
+    /// Adds what each does at another point. m
+    pub fn add(&mut self, other: &Self) {
+        let others = other.arm.into_array();
+        let mut others = others.into_iter();
+        self.arm = self.arm.map(|own| own + others.next().unwrap_or_default());
+        self.part += other.part;
+    }
+
+    /// All of it by a factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { arm: self.arm.map(|own| own * factor), part: self.part * factor }
+    }
+
+    /// The sum. m
+    pub fn total(&self) -> f64 {
+        self.arm.into_array().iter().sum::<f64>() + self.part
+    }
+}
+
+/// The scored part of the deflection under the robot's own compliances by what yields, at joint angles that
+/// [`PlacedTask::state`](crate::problem::PlacedTask::state) found for path point `point` and a workpiece at `placement`.
+pub fn scored_by_origin(problem: &Problem, point: usize, placement: &Placement, joints: &[f64; 6]) -> ScoredByOrigin {
+    let at = problem.at(placement).evaluator(point);
+    let arm = PlacedArm::new(&at, joints);
+    let deflected = arm.under(&problem.robot);
+    let Scored { part, direction } = Scored::new(&at.directions, &deflected.deflection);
+    let direction = if part < 0.0 { -direction } else { direction };
+    let along = |moved: Vector3<f64>| moved.dot(&direction);
+    let PlacedPoint { force, moment, .. } = &at.placed;
+    ScoredByOrigin {
+        arm: deflected.whole.by_origin(force, moment).map(|moved| along(moved.linear)),
+        part: at.part.map_or(0.0, |matrix| along(matrix * force)),
+    }
 }
 
 /// The scored part of a deflection, and the direction along which it grows fastest, as long as it grows.

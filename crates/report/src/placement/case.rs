@@ -1,15 +1,19 @@
 //! A case as documents state it: a placement with its plan, feeds and moves.
 
 use super::setup::SetupFigures;
+use super::text::spring_name;
 use crate::document::{DeflectionByDirection, FeedFigures, JointTravelFigures, PlacementExact, PlacementFigures};
 use crate::figure::{AngleDeg, DeflectionMm, Gain, MmPerPercent, PlaceMm, Plain, TimeS, each, some};
 use crate::names;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stead_model::robot::Posture;
+use stead_model::stiffness::whole::ByOrigin;
 use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
+use stead_placement::sensitivity::SpringSlope;
 use stead_planning::collision;
 use stead_planning::criterion::CANCELLATION;
+use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::limit::ActiveBound;
 use stead_planning::transfer::Transfer;
 use stead_planning::transfer_path;
@@ -17,7 +21,7 @@ use stead_planning::transfer_path;
 records! {
     /// A case: where the workpiece is, and how it is milled there.
     pub struct CaseFigures of (case: &Case, with_points: bool) {
-        let slope = |(slope, joint): (f64, usize)| StiffnessSlope::of(slope, joint, case);
+        let slope = |slope: &SpringSlope| StiffnessSlope::of(slope, case);
     } with {
         /// 1 to 4: best or worst placement under its best or worst plan.
         case: u8 = case.number(),
@@ -28,9 +32,9 @@ records! {
         #[serde(flatten)]
         setup: SetupFigures = SetupFigures::of(case.orientation.as_ref(), &case.setup, &case.plan.axes),
         #[serde(flatten)] plan: PlanFigures = PlanFigures::of(&case.plan, &case.cycle),
-        /// What one per cent more stiffness of each joint does to the objective.
+        /// What one per cent more stiffness of each joint does to the objective; of a full set of springs, of each spring.
         objective_by_stiffness: Option<Vec<StiffnessSlope>> =
-            case.objective_by_stiffness.map(|of| of.into_iter().zip(1..).map(slope).collect()),
+            case.objective_by_stiffness.as_ref().map(|of| of.iter().map(slope).collect()),
         /// The bounds that hold the placement; null where they were not looked for.
         active_bounds: Option<Vec<ActiveBoundFigures>> =
             case.active_bounds.as_ref().map(|bounds| bounds.iter().map(Into::into).collect()),
@@ -57,6 +61,10 @@ records! {
         p50_mm: DeflectionMm = p50_mm,
         /// The score that 95 % of the points are below.
         p95_mm: DeflectionMm = p95_mm,
+        /// What each thing that yields adds to the scored part, in the mean of the points, where more does than the joints
+        /// about their axes.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        by_origin_mm: Option<OriginFigures> = plan.by_origin.as_ref().map(Into::into),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
         #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
         /// Deflections by direction.
@@ -118,16 +126,40 @@ records! {
         pair: [String; 2] = (*of.names).clone(),
     }
 
-    /// What one per cent more stiffness of a joint does to the objective.
-    pub struct StiffnessSlope of (slope: f64, joint: usize, case: &Case) {
+    /// What one per cent more stiffness of a joint, or of one of its springs, does to the objective.
+    pub struct StiffnessSlope of (found: &SpringSlope, case: &Case) {
         let objective = case.plan.objective;
+        let slope = found.slope;
+        let is_full = case.objective_by_stiffness.as_ref().is_some_and(|all| all.len() > 6);
     } with {
         /// The joint, from 1.
-        joint: usize = joint,
+        joint: usize = found.springs.first().map_or(0, |spring| spring.joint + 1),
+        /// Of a full set of springs: the spring, with those that no deflection tells from it, as in `joint 5 about z with
+        /// joint 4 about y`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        spring: Option<String> = is_full.then(|| spring_name(found)),
         /// Change of the objective.
         mm_per_percent: MmPerPercent = MmPerPercent(slope / 100.0),
         /// The same in per cent of it; null where the objective is nothing.
         percent_per_percent: Option<Plain> = (objective > CANCELLATION).then(|| Plain(slope / objective)),
+    }
+
+    /// What each thing that yields adds to the scored part.
+    pub struct OriginFigures from origins: &ScoredByOrigin {
+        let ByOrigin { axes, normal, base, mount, tip } = origins.arm;
+    } with {
+        /// The joints about their axes.
+        axes_mm: DeflectionMm = axes.into(),
+        /// The joints normal to their axes.
+        normal_mm: DeflectionMm = normal.into(),
+        /// What carries the robot.
+        base_mm: DeflectionMm = base.into(),
+        /// The bolts of the spindle.
+        mount_mm: DeflectionMm = mount.into(),
+        /// Holder and tool.
+        tip_mm: DeflectionMm = tip.into(),
+        /// The part.
+        part_mm: DeflectionMm = origins.part.into(),
     }
 
     /// A bound that holds an optimum.

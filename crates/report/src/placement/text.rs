@@ -5,7 +5,9 @@ use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
+use stead_model::stiffness::whole::ByOrigin;
 use stead_placement::outcome::{Case, DeflectionFigures, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
+use stead_placement::sensitivity::SpringSlope;
 use stead_planning::collision::PlanClearance;
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::criterion::Over;
@@ -37,6 +39,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     for case in outcome.cases.optima() {
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
+    by_origin(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, row));
     stiffest(&outcome.cases.best).iter().for_each(|row| line(&mut text, row));
     least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
     highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
@@ -119,13 +122,44 @@ fn held_by(case: &Case) -> Vec<String> {
     lines
 }
 
+/// The springs of a slope in words: `joint 5 about z with joint 4 about y`.
+pub(super) fn spring_name(slope: &SpringSlope) -> String {
+    slope.springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(" with ")
+}
+
+/// What each thing that yields adds to the mean of a plan, where more does than the joints about their axes.
+pub(super) fn by_origin(plan: &Plan) -> Option<String> {
+    let origins = plan.by_origin?;
+    let ByOrigin { axes, normal, base, mount, tip } = origins.arm;
+    let all = [
+        ("joints about their axes", axes),
+        ("normal to them", normal),
+        ("base", base),
+        ("mount of the spindle", mount),
+        ("holder and tool", tip),
+        ("part", origins.part),
+    ];
+    let parts = all.into_iter().filter(|(_, part)| *part != 0.0);
+    let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {}", fixed(part * 1e3, 4))).collect();
+    Some(format!(
+        "of the scored deflection of {} mm in the mean: {}",
+        fixed(origins.total() * 1e3, 4),
+        parts.join(", ")
+    ))
+}
+
 /// The joint whose stiffness matters most to the best placement.
 fn stiffest(case: &Case) -> Option<String> {
-    let slopes = case.objective_by_stiffness?;
-    let (slope, joint) = slopes.into_iter().zip(1..).max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
+    let slopes = case.objective_by_stiffness.as_ref()?;
+    let first = slopes.iter().max_by(|a, b| a.slope.abs().total_cmp(&b.slope.abs()))?;
+    let slope = first.slope;
+    let name = match slopes.len() {
+        6 => format!("joint {}", first.springs.first().map_or(0, |spring| spring.joint + 1)),
+        _ => spring_name(first),
+    };
     let share = if case.plan.objective > CANCELLATION { slope / case.plan.objective } else { 0.0 };
     Some(format!(
-        "joint {joint} matters most to the best placement: 1 % more stiffness changes what is minimised by {} %",
+        "{name} matters most to the best placement: 1 % more stiffness changes what is minimised by {} %",
         figures(share)
     ))
 }

@@ -7,10 +7,10 @@ use std::ops::Bound::{Excluded, Included};
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::place::Place;
 use stead_format::quantity::Quantity;
-use stead_format::robot::robot_from;
+use stead_format::robot::{checked_to_score, robot_from};
 use stead_format::scalars::{Whole, words};
 use stead_format::units::{MmPerRad, Number, ZeroToTen, ranges};
-use stead_model::robot::{Joint, Robot};
+use stead_model::robot::{Joint, MeasuredFrom, Robot};
 use stead_model::task::Task;
 use stead_planning::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
 use stead_removal::outcome::RemovalForces;
@@ -214,19 +214,35 @@ impl CriterionTable {
             let file = at.named_file()?;
             let source = file.toml()?;
             let set = narrowed(robot_from(&source)?)?;
+            checked_to_score(&set, &source)?;
             if let Some(joint) = differs(robot, &set) {
                 let problem = format!("is an arm of another geometry or other limits at joint {joint}");
                 return Err(at.error(problem, "robot files with the rows and joint limits of the run's robot"));
             }
             inputs.push(input_file("stiffness", file.name, source.bytes()));
             let laws = set.joints().clone().map(|joint| joint.compliance);
+            if robot.base_compliance().is_some() && set.stiffness_measured_from() == Some(MeasuredFrom::Floor) {
+                let problem = "has stiffness measured from the floor: [base_compliance] would count the base twice";
+                return Err(at.error(problem, "robot files with stiffness_measured_from = \"base\""));
+            }
             let with = robot.with_compliances(laws).map_err(|e| at.error(e.to_string(), "another robot file"))?;
+            let with = with
+                .with_normal_springs(set.stated_normal_springs().copied())
+                .map_err(|e| at.error(e.to_string(), "another robot file"))?
+                .with_spring_model(set.spring_model())
+                .with_stiffness_measured_from(set.stiffness_measured_from());
             robots.push(match set.uncertainty() {
                 Some(known) => {
                     with.with_uncertainty(known.clone()).map_err(|e| at.error(e.to_string(), "another robot file"))?
                 }
                 None => with,
             });
+        }
+        let models = || robots.iter().map(Robot::spring_model);
+        if let Some(unstated) = models().position(|model| model.is_none()).filter(|_| models().any(|m| m.is_some())) {
+            let problem = "does not say what its stiffness stands for, beside robot files that do (stiffness_model)";
+            let allowed = "stiffness_model = \"axes\", \"axial_part\" or \"full\" in each of them, or in none";
+            return Err(at.element(unstated + 1).error(problem, allowed));
         }
         Ok((robots, inputs))
     }

@@ -16,6 +16,7 @@ mod surroundings_tests;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod yielding;
 
 pub use certificate::{CertificateTable, GAPS_ALLOWED, Gap};
 pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
@@ -41,12 +42,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use stead_disk::input::{InputError, input_file};
+use stead_format::compliance_matrix::{BaseComplianceTable, PartComplianceTable};
 use stead_format::document::Document;
 use stead_format::field::FieldOverrides;
 use stead_format::file_kind::FileKind;
 use stead_format::mount::MountTable;
 use stead_format::place::Place;
-use stead_format::robot::{checked_to_move, moving_robot_from, robot_from, robot_like, with_stiffness_like};
+use stead_format::robot::{
+    checked_to_move, checked_to_score, moving_robot_from, robot_from, robot_like, with_stiffness_like,
+};
 use stead_format::sources::Sources;
 use stead_format::spindle::SpindleTable;
 use stead_format::surroundings::{
@@ -61,6 +65,7 @@ use stead_runs::{ReadError, Run};
 use stead_simulation::arm::Variant;
 use stead_simulation::stability_analysis::runout_note;
 use tables::{check_path_points, check_tables};
+use yielding::{base_note, on_its_base, part_compliances};
 
 /// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which
 /// its workpiece may stand.
@@ -75,6 +80,10 @@ pub struct RunFile {
     pub spindle: SpindleTable,
     /// Where the robot stands in its cell; with it, all that is stated in the base frame is in the cell frame.
     pub mount: Option<MountTable>,
+    /// How what carries the robot yields, where that counts.
+    pub base_compliance: Option<BaseComplianceTable>,
+    /// How the part yields, the same at every point; the task may state it point by point instead (`part_xx_um_per_n`).
+    pub part_compliance: Option<PartComplianceTable>,
     /// Where the workpiece may stand.
     pub cell: CellTable,
     /// Rails and turntables that carry the robot or the workpiece, those that carry the same thing on each other in
@@ -203,13 +212,17 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
             (with_stiffness_like(robot, run.stiffness_like.as_deref(), &at)?, None)
         }
     };
+    if moving != Some(true) {
+        checked_to_score(&robot, &robot_source)?;
+    }
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
     let robot = match &run.mount {
         Some(table) => robot.mounted(&table.cell_from_base(&at.key("mount"))?),
         None => robot,
     };
+    let robot = on_its_base(robot, run.base_compliance.as_ref(), &at.key("base_compliance"))?;
     let task_file = task_field.named_file()?;
-    let imported = source.sources.task(&task_file.file, &task_file.bytes)?;
+    let mut imported = source.sources.task(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> = source.overrides().iter().map(|(field, _)| override_note(field)).collect();
     notes.extend([tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten());
     let mut inputs = vec![
@@ -217,6 +230,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         input_file("robot", robot_file.name, robot_source.bytes()),
         input_file("task", &task_file.name, &task_file.bytes),
     ];
+    let part = part_compliances(&mut imported, run.part_compliance.as_ref(), run.stock.is_some(), &at)?;
     let is_for_stability = run.stability.is_some();
     let tables = ForceTables { forces: run.forces.as_ref(), cutting: cutting.as_ref(), is_for_stability };
     let mut removal = None;
@@ -252,6 +266,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
             tables.task(imported, &task_file, &task_field, &at.key("forces"))?
         }
     };
+    let task = part.of(task, &at)?;
     let segments = run.segment.unwrap_or_default();
     let criterion = run.criterion.unwrap_or_default();
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
@@ -295,6 +310,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     check_path_points(&search, &problem, &at.key("search"))?;
     search_table.check_memory(&problem, &at.key("search"))?;
     inputs.extend(around.inputs);
+    notes.extend(base_note(&problem.robot));
     notes.extend(problem.notes());
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));

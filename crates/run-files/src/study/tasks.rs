@@ -104,7 +104,9 @@ impl Tasks {
         }
         let label = listed.iter().map(|task| task.label.as_str()).collect::<Vec<_>>().join(" + ");
         let joined = joined(parts).map_err(|problem| {
-            at.key("task").error(problem, "tasks that all have forces, or all normals, or none of them").found(&*label)
+            at.key("task")
+                .error(problem, "tasks that all have forces, normals, or compliances of the part, or none of them")
+                .found(&*label)
         })?;
         sources.offer(&folder.join(&label), bytes, joined);
         let value = |path: FieldPath, value: String| {
@@ -142,18 +144,24 @@ fn joined(parts: Vec<Imported>) -> Result<Imported, String> {
     if !all(|part| part.path.surface_normals().is_some()) {
         return Err("have normals of the surface in some files and none in others".to_owned());
     }
+    if !all(|part| part.part.is_some()) {
+        return Err("have compliances of the part in some files and none in others".to_owned());
+    }
     let (mut points, mut wrenches, mut normals, mut lines) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut compliances = Vec::new();
     let mut segments = 0;
     for part in &parts {
         let numbered = |index: usize| part.path.segment_of(index) as u32 + 1 + segments;
         points.extend(part.path.points().iter().enumerate().map(|(index, point)| (numbered(index), *point)));
         wrenches.extend(part.wrenches.iter().flatten().copied());
         normals.extend(part.path.surface_normals().into_iter().flatten().copied());
+        compliances.extend(part.part.iter().flatten().copied());
         lines.extend(&part.lines);
         segments += part.path.segments().len() as u32;
     }
     let path = ToolPath::new(points).map_err(|error| error.to_string())?;
     let path = if normals.is_empty() { Ok(path) } else { path.with_surface_normals(normals) };
     let path = path.map_err(|error| error.to_string())?;
-    Ok(Imported { path, wrenches: (!wrenches.is_empty()).then_some(wrenches), lines })
+    let part = (!compliances.is_empty()).then_some(compliances);
+    Ok(Imported { path, wrenches: (!wrenches.is_empty()).then_some(wrenches), part, lines })
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 use stead_calibration::compensation::PathPoint;
 use stead_disk::input::InputError;
 use stead_model::robot::{Frames, Pose, angles::wrap, point_from_tool};
-use stead_model::stiffness::displacement;
+use stead_model::stiffness::whole::{WholeArm, of_part};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::{AxisPositions, Setup};
 
@@ -93,7 +93,7 @@ fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan
         let station = station(problem, &placement, point, row);
         check_force(&station, row).map_err(|misfit| located(row, misfit))?;
         check_posture(problem, &station, row).map_err(|misfit| located(row, misfit))?;
-        note = note.or_else(|| deflection_note(problem, &station, row));
+        note = note.or_else(|| deflection_note(problem, &placement, point, &station, row));
         stations.push(station);
     }
     let setup = problem.setup.clone();
@@ -225,11 +225,21 @@ fn check_posture(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Resul
 }
 
 /// Whether the deflection of a row is that of the run's robot.
-fn deflection_note(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Option<String> {
+fn deflection_note(
+    problem: &Problem,
+    placement: &Placement,
+    point: usize,
+    station: &PathPoint,
+    row: &PlanRow,
+) -> Option<String> {
     let frames = Frames::new(&problem.robot, &row.joints);
     let compliances = problem.robot.compliances_at(&row.joints);
     let tip = &station.base_from_tool.translation;
-    let ours = displacement(&frames, tip, &compliances, &station.force, &station.moment).linear;
+    let whole = WholeArm::new(&problem.robot, &problem.spindle, &frames, compliances, *tip);
+    let mut ours = whole.displacement(&station.force, &station.moment).linear;
+    if let Some(part) = problem.task.part_compliance(point) {
+        ours += of_part(part, &problem.base_from_workpiece(point, placement).rotation, &station.force);
+    }
     let off = (ours - row.deflection?).norm();
     let tolerance = DEFLECTION_TOLERANCE.0.max(DEFLECTION_TOLERANCE.1 * ours.norm());
     (off > tolerance).then(|| {

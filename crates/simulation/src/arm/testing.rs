@@ -36,7 +36,7 @@ pub fn tx200() -> Robot {
         damping: damping[j],
         backlash: (15.0_f64 / 3600.0).to_radians(),
         gravity_compensated: [1, 2, 4].contains(&j),
-        orthogonal: Some(Orthogonal { stiffness: 5e6, damping: 1000.0 }),
+        orthogonal: Some(Orthogonal { stiffness: [5e6; 2], damping: [1000.0; 2] }),
         bearing: bearing[j],
     }))
 }

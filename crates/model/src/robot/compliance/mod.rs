@@ -8,7 +8,7 @@
 
 mod slope;
 
-use super::{Joint, Robot, RobotError, turns::Range};
+use super::{Joint, NormalSprings, Robot, RobotError, turns::Range};
 use std::f64::consts::PI;
 use stead_numerics::scalar::Scalar;
 
@@ -205,13 +205,17 @@ impl Robot {
     }
 
     /// Whether the two wrist flips of a posture class yield alike under every load: no compliance of joints 4 to 6
-    /// changes with the joint angle.
+    /// changes with the joint angle, and springs normal to axis 5, which points the other way, sit in the wrist centre.
     pub fn flips_yield_alike(&self) -> bool {
-        self.joints()[3..].iter().all(|joint| matches!(joint.compliance, Compliance::Constant(_)))
+        let are_constant = self.joints()[3..].iter().all(|joint| matches!(joint.compliance, Compliance::Constant(_)));
+        let is_fifth_central =
+            |normal: &[NormalSprings; 6]| normal[4].bearing == 0.0 || normal[4].compliance == [0.0; 2];
+        are_constant && self.normal_springs().is_none_or(is_fifth_central)
     }
 
     /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification. How well
-    /// the old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out.
+    /// the old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out. What
+    /// yields beside the joints about their axes stays.
     ///
     /// # Errors
     /// [`RobotError`] for a compliance that [`Robot::new`] refuses.
@@ -221,7 +225,7 @@ impl Robot {
             joint.compliance = compliance.into();
         }
         let robot = Self::new(&self.name, joints)?.with_data_sheet(*self.data_sheet())?;
-        let robot = robot.mounted(&self.cell_from_base());
+        let robot = Self { springs: self.springs.clone(), ..robot.mounted(&self.cell_from_base()) };
         Ok(match self.dynamics() {
             Some(dynamics) => robot.with_dynamics(*dynamics),
             None => robot,

@@ -23,6 +23,10 @@ pub enum Parameter {
     SpringStiffness(usize),
     /// The free length s_0 of the compensator's spring. m
     FreeLength(usize),
+    /// The compliance about the x axis of the row's frame, normal to the axis of the joint. rad/(N m)
+    AboutX(usize),
+    /// The compliance about the y axis of the row's frame, normal to the axis of the joint. rad/(N m)
+    AboutY(usize),
 }
 
 impl Parameter {
@@ -33,18 +37,31 @@ impl Parameter {
             | Self::ComplianceAtMin(joint)
             | Self::ComplianceAtMax(joint)
             | Self::SpringStiffness(joint)
-            | Self::FreeLength(joint) => joint,
+            | Self::FreeLength(joint)
+            | Self::AboutX(joint)
+            | Self::AboutY(joint) => joint,
         }
     }
 
-    /// Every parameter that any law of a joint (from 0) may have.
-    pub fn of_joint(joint: usize) -> [Self; 5] {
+    /// Of a spring normal to the axis of its joint, about which axis of the row's frame: x (0) or y (1).
+    pub fn about(self) -> Option<usize> {
+        match self {
+            Self::AboutX(_) => Some(0),
+            Self::AboutY(_) => Some(1),
+            _ => None,
+        }
+    }
+
+    /// Every parameter that the springs of any joint (from 0) may have.
+    pub fn of_joint(joint: usize) -> [Self; 7] {
         [
             Self::Compliance(joint),
             Self::ComplianceAtMin(joint),
             Self::ComplianceAtMax(joint),
             Self::SpringStiffness(joint),
             Self::FreeLength(joint),
+            Self::AboutX(joint),
+            Self::AboutY(joint),
         ]
     }
 }
@@ -139,8 +156,8 @@ pub enum UncertaintyError {
 const ROUNDING: f64 = 1e-9;
 
 impl Uncertainty {
-    /// The most parameters that the laws of six joints can have: three at each.
-    pub const MAX_PARAMETERS: usize = 18;
+    /// The most parameters that the springs of six joints can have: three of the law about each axis, two normal to it.
+    pub const MAX_PARAMETERS: usize = 30;
 
     /// Takes parameters and their covariance, in SI units, row and column k for parameter k.
     ///
@@ -269,31 +286,42 @@ impl Robot {
         Ok(self)
     }
 
-    /// Whether a joint of the arm has a law with this parameter.
+    /// Whether a joint of the arm has a law, or a spring, with this parameter.
     pub fn has_parameter(&self, parameter: Parameter) -> bool {
+        if parameter.about().is_some() {
+            return self.stated_normal_springs().is_some() && parameter.joint() < 6;
+        }
         self.joints().get(parameter.joint()).is_some_and(|joint| joint.compliance.has(parameter))
     }
 
     /// Derivatives of the compliances by the uncertain parameters at joint angles `theta` (rad), wrapped or not: one
-    /// entry for each parameter, by which it moves the compliance of its own joint, in rad/(N m) per SI unit (it moves
-    /// no other: the entries are the nonzero ones of the 6 x m matrix G). Empty for an arm without uncertainty.
+    /// entry for each parameter, by which it moves the compliance of its own spring, in rad/(N m) per SI unit (it moves
+    /// no other: the entries are the nonzero ones of the matrix G of springs by parameters); zero for a spring that
+    /// deflections do not count. Empty for an arm without uncertainty.
     pub fn compliance_gradient_at<T: Scalar>(&self, theta: &[T; 6]) -> Vec<T> {
         let parameters = self.uncertainty.as_ref().map(Uncertainty::parameters).unwrap_or_default();
+        let counts_normal = self.normal_springs().is_some();
         let slope = |parameter: &Parameter| {
             let joint = parameter.joint();
+            if parameter.about().is_some() {
+                return if counts_normal { T::one() } else { T::zero() };
+            }
             self.joints()[joint].compliance_slope_at(*parameter, theta[joint])
         };
         parameters.iter().map(slope).collect()
     }
 
-    /// Covariance `G Sigma G^T` of the six compliances at joint angles `theta` (rad), in (rad/(N m))^2; zero for an arm
-    /// without uncertainty.
+    /// Covariance `G Sigma G^T` of the six compliances about the axes at joint angles `theta` (rad), in (rad/(N m))^2;
+    /// zero for an arm without uncertainty.
     pub fn compliance_covariance_at(&self, theta: &[f64; 6]) -> Matrix6<f64> {
         let mut covariance = Matrix6::zeros();
         let Some(uncertainty) = &self.uncertainty else { return covariance };
         let slopes = self.compliance_gradient_at(theta);
         for (k, a) in uncertainty.parameters.iter().enumerate() {
             for (l, b) in uncertainty.parameters.iter().enumerate() {
+                if a.about().is_some() || b.about().is_some() {
+                    continue;
+                }
                 covariance[(a.joint(), b.joint())] += slopes[k] * uncertainty.covariance[(k, l)] * slopes[l];
             }
         }

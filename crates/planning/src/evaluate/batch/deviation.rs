@@ -10,7 +10,8 @@ use stead_numerics::simd::Lanes;
 #[derive(Debug, Clone)]
 pub(super) struct Deviation {
     confidence: f64,
-    /// For each parameter its joint, and how the compliance of that joint answers to it.
+    /// For each parameter its spring ([`Parts`](super::whole::Parts)), beyond them where deflections do not count it, and
+    /// how the compliance of that spring answers to it.
     slopes: Vec<(usize, Slope)>,
     /// See [`Uncertainty::directions`].
     directions: Vec<Vec<f64>>,
@@ -89,7 +90,12 @@ impl Deviation {
     /// Nothing where the score does not ask for it, or where nothing is known.
     pub fn new(robot: &Robot, confidence: f64) -> Option<Self> {
         let known = robot.uncertainty().filter(|_| confidence > 0.0)?;
-        let slope = |parameter: &Parameter| (parameter.joint(), Slope::new(robot, *parameter));
+        let counts_normal = robot.normal_springs().is_some();
+        let slope = |parameter: &Parameter| match parameter.about() {
+            Some(about) if counts_normal => (6 + 2 * parameter.joint() + about, Slope::One),
+            Some(_) => (usize::MAX, Slope::One),
+            None => (parameter.joint(), Slope::new(robot, *parameter)),
+        };
         let slopes = known.parameters().iter().map(slope).collect();
         Some(Self { confidence, slopes, directions: known.directions().to_vec() })
     }
@@ -101,13 +107,17 @@ impl Deviation {
         &self,
         simd: S,
         limits: &[Limit; 6],
-        parts: &[Lanes<S>; 6],
+        parts: &[Lanes<S>],
         directions: &[[Lanes<S>; 2]; 6],
         compliances: &[Lanes<S>; 6],
     ) -> Lanes<S> {
         let mut gradient = [Lanes::splat(simd, 0.0); Uncertainty::MAX_PARAMETERS];
-        for (entry, (j, slope)) in gradient.iter_mut().zip(&self.slopes) {
-            *entry = parts[*j] * slope.at(&limits[*j], directions[*j], compliances[*j]);
+        for (entry, (spring, slope)) in gradient.iter_mut().zip(&self.slopes) {
+            let j = *spring % 6;
+            if let Some(part) = parts.get(*spring) {
+                // The slope of a spring normal to an axis does not look at the joint.
+                *entry = *part * slope.at(&limits[j], directions[j], compliances[j]);
+            }
         }
         let mut variance = Lanes::splat(simd, 0.0);
         for direction in &self.directions {

@@ -17,6 +17,7 @@ mod laws;
 mod limit;
 mod pose;
 mod states;
+mod whole;
 mod wrist;
 
 pub use states::StateGrid;
@@ -32,7 +33,16 @@ use pulp::{Simd, WithSimd};
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
 use stead_model::task::PathPoint;
 use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
+use whole::{Fixed, FixedParts, Normal, PlacedLoad};
 use wrist::Demand;
+
+/// A set of compliances.
+#[derive(Debug, Clone)]
+struct Set {
+    laws: Laws,
+    deviation: Option<Deviation>,
+    normal: Normal,
+}
 
 /// What does not change from one placement to the next.
 #[derive(Debug, Clone)]
@@ -42,8 +52,10 @@ pub struct BatchEvaluator<'a> {
     cosine: Vec<f64>,
     sine: Vec<f64>,
     limits: [Limit; 6],
-    /// For each set of compliances its laws, and what is known of them.
-    sets: Vec<(Laws, Option<Deviation>)>,
+    /// For each set of compliances its laws, what is known of them, and its springs normal to the axes.
+    sets: Vec<Set>,
+    /// What yields beside the joints, where it does.
+    fixed: Option<Fixed>,
     /// Whether the largest score over the sets counts, and not their mean.
     is_over_worst: bool,
     flips: Flips,
@@ -124,6 +136,8 @@ struct PointGeometry {
     /// Size of the force error that scores cover. N
     uncertainty: f64,
     weight: f64,
+    /// What base, part and all that is fixed to the tool add, where anything does.
+    fixed: FixedParts,
 }
 
 impl<'a> BatchEvaluator<'a> {
@@ -145,8 +159,13 @@ impl<'a> BatchEvaluator<'a> {
             sets: problem
                 .scored_robots()
                 .iter()
-                .map(|robot| (Laws::new(robot), Deviation::new(robot, problem.criterion.confidence)))
+                .map(|robot| Set {
+                    laws: Laws::new(robot),
+                    deviation: Deviation::new(robot, problem.criterion.confidence),
+                    normal: Normal::new(robot),
+                })
                 .collect(),
+            fixed: problem.yields_beside().then(|| Fixed::new(problem, &Normal::new(&problem.scored_robots()[0]))),
             is_over_worst: problem.is_over_worst(),
             flips,
             forearm_sin_cos: libm::sincos(problem.robot.geometry().forearm_angle),
@@ -208,18 +227,39 @@ impl<'a> BatchEvaluator<'a> {
         let rotation = root_from_base * workpiece.rotation;
         let axes = rotation * self.workpiece_from_point[point];
         let flange_axis = |k: usize| Turning::new(&axes, &self.tool_from_flange[k]);
+        let tip = root_from_base * (workpiece.point(&path_point.position) - g.root_in_base);
+        let directions = *self.problem.scored_directions(point, &axes).padded();
+        let (force, moment) = (rotation * wrench.force, rotation * wrench.moment);
+        let fixed = self.fixed.as_ref().map_or_else(FixedParts::default, |fixed| {
+            let load = PlacedLoad {
+                axes: &axes,
+                workpiece: &rotation,
+                tip: &tip,
+                force: &force,
+                moment: &moment,
+                directions: &directions,
+            };
+            fixed.parts(self.is_plain(point), self.problem.task.part_compliance(point), &load)
+        });
         PointGeometry {
-            tip: root_from_base * (workpiece.point(&path_point.position) - g.root_in_base),
+            tip,
             x6: flange_axis(0),
             y6: flange_axis(1),
             z6: flange_axis(2),
             lever: Turning::new(&axes, &self.lever),
-            directions: *self.problem.scored_directions(point, &axes).padded(),
-            force: rotation * wrench.force,
-            moment: rotation * wrench.moment,
+            directions,
+            force,
+            moment,
             uncertainty: self.problem.criterion.force_uncertainty * wrench.force.norm(),
             weight: self.problem.point_weight(point),
+            fixed,
         }
+    }
+
+    /// Whether there is one set of compliances, and the score of a point covers no errors.
+    fn is_plain(&self, point: usize) -> bool {
+        let uncertainty = self.problem.criterion.force_uncertainty * self.problem.task.wrenches()[point].force.norm();
+        uncertainty == 0.0 && matches!(self.sets[..], [Set { deviation: None, .. }])
     }
 }
 
@@ -236,21 +276,27 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let is_plain = self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [(_, None)]);
-        match (self.evaluator.problem.criterion.weights.is_single(), is_plain) {
-            (true, true) => self.batches::<S, true, 1>(simd),
-            (true, false) => self.batches::<S, false, 1>(simd),
-            (false, true) => self.batches::<S, true, 3>(simd),
-            (false, false) => self.batches::<S, false, 3>(simd),
+        let is_plain =
+            self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [Set { deviation: None, .. }]);
+        let is_single = self.evaluator.problem.criterion.weights.is_single();
+        match (is_single, is_plain, self.evaluator.fixed.is_some()) {
+            (true, true, false) => self.batches::<S, true, false, 1>(simd),
+            (true, false, false) => self.batches::<S, false, false, 1>(simd),
+            (false, true, false) => self.batches::<S, true, false, 3>(simd),
+            (false, false, false) => self.batches::<S, false, false, 3>(simd),
+            (true, true, true) => self.batches::<S, true, true, 1>(simd),
+            (true, false, true) => self.batches::<S, false, true, 1>(simd),
+            (false, true, true) => self.batches::<S, true, true, 3>(simd),
+            (false, false, true) => self.batches::<S, false, true, 3>(simd),
         }
     }
 }
 
 impl Evaluation<'_> {
     /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of compliances,
-    /// and scores cover no errors.
+    /// and scores cover no errors; `WHOLE` where more than the joints about their axes yields.
     #[inline(always)]
-    fn batches<S: Simd, const PLAIN: bool, const N: usize>(self, simd: S) {
+    fn batches<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
         let Self { evaluator, geometry, classes, states } = self;
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
@@ -263,13 +309,13 @@ impl Evaluation<'_> {
                 if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
                     continue;
                 }
-                let demand = Demand::<S, N>::new(simd, geometry, &arm, cosine, sine);
+                let demand = Demand::<S, N>::new::<WHOLE>(simd, geometry, &arm, cosine, sine);
                 for (negative, elbow) in arm.elbows.iter().enumerate() {
                     let class = PostureClass::ALL[2 * usize::from(back) + negative];
                     if !classes[class.index()] || !elbow.allowed.any() {
                         continue;
                     }
-                    let found = evaluator.wrist::<S, PLAIN, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    let found = evaluator.wrist::<S, PLAIN, WHOLE, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
                     if let Some((score, directions)) = found {
                         let cost = if is_squared { score * score } else { score };
                         // A point of no weight has forbidden states too.
@@ -284,3 +330,5 @@ impl Evaluation<'_> {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod whole_tests;

@@ -104,7 +104,7 @@ pub(super) struct Pose<S: Simd> {
 impl<S: Simd> Pose<S> {
     /// Tool centre point from axis 1, from the shoulder and from the elbow: x and z in the plane of the arm. m
     #[inline(always)]
-    fn reaches(&self) -> [(Lanes<S>, Lanes<S>); 2] {
+    pub fn reaches(&self) -> [(Lanes<S>, Lanes<S>); 2] {
         let (tx, tz) = (self.lever.x, self.lever.z);
         [(self.u + tx, self.height + tz), (self.u3 + tx, self.height3 + tz)]
     }
@@ -178,7 +178,7 @@ impl<S: Simd> Pose<S> {
 
     /// Velocity of the tool centre point per speed of each joint. m
     #[inline(always)]
-    fn velocities(&self, simd: S, [px, py]: [Lanes<S>; 2]) -> [Vector<S>; 6] {
+    pub fn velocities(&self, simd: S, [px, py]: [Lanes<S>; 2]) -> [Vector<S>; 6] {
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let (zero, t) = (Lanes::splat(simd, 0.0), self.lever);
         [
@@ -188,6 +188,22 @@ impl<S: Simd> Pose<S> {
             self.z4.cross(t),
             self.z5.cross(t),
             self.z6.cross(t),
+        ]
+    }
+
+    /// Torque of the load on each joint.
+    #[inline(always)]
+    pub fn axial_torques<const N: usize>(&self, load: &Load<S, N>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
+        let Load { force, moment, .. } = *load;
+        let [(r2x, r2z), (r3x, r3z)] = self.reaches();
+        let turn = self.lever.cross(force).plus(moment);
+        [
+            px * force.y - py * force.x + moment.z,
+            r2x * force.z - r2z * force.x - moment.y,
+            r3x * force.z - r3z * force.x - moment.y,
+            self.z4.dot(turn),
+            self.z5.dot(turn),
+            self.z6.dot(turn),
         ]
     }
 
@@ -204,18 +220,9 @@ impl<S: Simd> Pose<S> {
     ) -> (Lanes<S>, [Lanes<S>; 6]) {
         let t = self.lever;
         let (px, py) = (self.forward + t.x, t.y + lateral);
-        let [(r2x, r2z), (r3x, r3z)] = self.reaches();
-        let Load { directions, force, moment } = *load;
+        let directions = load.directions;
         // Torque on each joint: of a unit force along each direction, and of the wrench.
-        let turn_f = t.cross(force).plus(moment);
-        let torque_f = [
-            px * force.y - py * force.x + moment.z,
-            r2x * force.z - r2z * force.x - moment.y,
-            r3x * force.z - r3z * force.x - moment.y,
-            self.z4.dot(turn_f),
-            self.z5.dot(turn_f),
-            self.z6.dot(turn_f),
-        ];
+        let torque_f = self.axial_torques(load, [px, py]);
         let zero = Lanes::splat(simd, 0.0);
         // What each joint adds to the part along each direction per compliance.
         let mut torque_n = [torque_f; N];
@@ -284,7 +291,7 @@ fn response<S: Simd>(
 /// The norm of the parts of a deflection under the worst error of the force of this size (N), from how the parts grow
 /// with the force.
 #[inline(always)]
-fn worst<S: Simd, const N: usize>(
+pub(super) fn worst<S: Simd, const N: usize>(
     simd: S,
     gains: &[Vector<S>; N],
     parts: &[Lanes<S>; N],

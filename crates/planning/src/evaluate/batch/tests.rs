@@ -9,7 +9,7 @@ use stead_model::robot::{Compensator, Compliance, Posture, Robot};
 use stead_model::task::{Task, Wrench};
 
 /// Holds every state of some points against [`state`]; returns how many were allowed.
-fn compare(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize> + Clone) -> usize {
+pub(super) fn compare(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize> + Clone) -> usize {
     Flips::of(problem).iter().map(|flips| compare_flips(problem, placement, points.clone(), *flips)).sum()
 }
 
@@ -286,7 +286,7 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
 }
 
 /// Every bit of the scores, and of the joint angles of allowed states, for some points.
-fn bits(problem: &Problem, instructions: Instructions, poses: &[Placement]) -> Vec<u64> {
+pub(super) fn bits(problem: &Problem, instructions: Instructions, poses: &[Placement]) -> Vec<u64> {
     let mut bits = Vec::new();
     for flips in Flips::of(problem) {
         let evaluator = BatchEvaluator::new(problem, &problem.redundancy, *flips).with_instructions(instructions);

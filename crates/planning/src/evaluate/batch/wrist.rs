@@ -3,10 +3,19 @@
 
 use super::arm::{Arm, Elbow};
 use super::pose::{Directions, Load, Pose, Vector, turned};
-use super::{BatchEvaluator, Deviation, Flips, Laws, PointGeometry, Turning};
+use super::whole::{Beside, Planar, WholeState};
+use super::{BatchEvaluator, Flips, PointGeometry, Set, Turning};
 use nalgebra::Vector3;
 use pulp::Simd;
 use stead_numerics::simd::Lanes;
+
+/// A state that is scored: the same for every set of compliances.
+struct ScoredState<'a, S: Simd, const N: usize> {
+    pose: &'a Pose<S>,
+    demand: &'a Demand<S, N>,
+    directions: &'a Directions<S>,
+    planar: Planar<S>,
+}
 
 /// What the tool is to do, in the frame of joint 1: the same for both elbows.
 pub(super) struct Demand<S: Simd, const N: usize> {
@@ -15,23 +24,42 @@ pub(super) struct Demand<S: Simd, const N: usize> {
     z6: Vector<S>,
     lever: Vector<S>,
     load: Load<S, N>,
+    beside: Beside<S, N>,
 }
 
 impl<S: Simd, const N: usize> Demand<S, N> {
     #[inline(always)]
-    pub fn new(simd: S, geometry: &PointGeometry, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Self {
+    pub fn new<const WHOLE: bool>(
+        simd: S,
+        geometry: &PointGeometry,
+        arm: &Arm<S>,
+        cosine: Lanes<S>,
+        sine: Lanes<S>,
+    ) -> Self {
         let force = Self::constant(simd, &geometry.force, arm);
         // A loop and not a closure, which would be compiled without the processor's wide instructions.
         let mut directions = [force; N];
         for (turned, direction) in directions.iter_mut().zip(&geometry.directions) {
             *turned = Self::constant(simd, direction, arm);
         }
+        let x6 = Self::turning(&geometry.x6, arm, cosine, sine);
+        let y6 = Self::turning(&geometry.y6, arm, cosine, sine);
+        let z6 = Self::turning(&geometry.z6, arm, cosine, sine);
+        let zero = Lanes::splat(simd, 0.0);
+        let mut beside = Beside { parts: [zero; N], responses: [force; N], flange: [x6, y6, z6] };
+        if WHOLE {
+            beside.parts = geometry.fixed.at(simd, cosine, sine);
+            for (turned, response) in beside.responses.iter_mut().zip(&geometry.fixed.responses) {
+                *turned = Self::constant(simd, response, arm);
+            }
+        }
         Self {
-            x6: Self::turning(&geometry.x6, arm, cosine, sine),
-            y6: Self::turning(&geometry.y6, arm, cosine, sine),
-            z6: Self::turning(&geometry.z6, arm, cosine, sine),
+            x6,
+            y6,
+            z6,
             lever: Self::turning(&geometry.lever, arm, cosine, sine),
             load: Load { directions, force, moment: Self::constant(simd, &geometry.moment, arm) },
+            beside,
         }
     }
 
@@ -51,7 +79,7 @@ impl BatchEvaluator<'_> {
     /// (theta_5 not negative); nothing where none is allowed. `PLAIN` where there is one set of compliances, and scores
     /// cover no errors.
     #[inline(always)]
-    pub(super) fn wrist<S: Simd, const PLAIN: bool, const N: usize>(
+    pub(super) fn wrist<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
         &self,
         simd: S,
         uncertainty: f64,
@@ -118,11 +146,12 @@ impl BatchEvaluator<'_> {
             turned[4] = [-fifth[0], fifth[1]];
             turned[5] = [-sixth[0], -sixth[1]];
         }
-        let mut score =
-            self.score_of_set::<S, PLAIN, N>(simd, &self.sets[0], &pose, &demand.load, &turned, uncertainty);
+        let planar = Planar { second: [c2, s2 * g.lift], third: [cos_psi, sin_psi * g.lift] };
+        let state = ScoredState { pose: &pose, demand, directions: &turned, planar };
+        let mut score = self.score_of_set::<S, PLAIN, WHOLE, N>(simd, &self.sets[0], &state, uncertainty);
         if !PLAIN {
             for set in &self.sets[1..] {
-                let other = self.score_of_set::<S, PLAIN, N>(simd, set, &pose, &demand.load, &turned, uncertainty);
+                let other = self.score_of_set::<S, PLAIN, WHOLE, N>(simd, set, &state, uncertainty);
                 score = if self.is_over_worst { score.max(other) } else { score + other };
             }
             if !self.is_over_worst {
@@ -140,18 +169,29 @@ impl BatchEvaluator<'_> {
 
     /// Scores with one set of compliances.
     #[inline(always)]
-    fn score_of_set<S: Simd, const PLAIN: bool, const N: usize>(
+    fn score_of_set<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
         &self,
         simd: S,
-        (laws, deviation): &(Laws, Option<Deviation>),
-        pose: &Pose<S>,
-        load: &Load<S, N>,
-        directions: &Directions<S>,
+        Set { laws, deviation, normal }: &Set,
+        state: &ScoredState<'_, S, N>,
         uncertainty: f64,
     ) -> Lanes<S> {
+        let ScoredState { pose, demand, directions, planar } = state;
         let compliances = laws.at(simd, &self.limits, directions);
         let lateral = self.problem.robot.geometry().lateral;
-        let (score, parts) = pose.score::<PLAIN, N>(simd, lateral, &compliances, load, uncertainty);
+        if let Some(fixed) = self.fixed.as_ref().filter(|_| WHOLE) {
+            // Axis 5 against the one that the pose has, z4 x z6.
+            let [_, s5, s6] = self.problem.robot.geometry().twist;
+            let side = if self.flips == Flips::Flipped { s5 * s6 } else { -s5 * s6 };
+            let (load, beside) = (&demand.load, &demand.beside);
+            let whole = WholeState { normal, fixed, planar, lateral, side, load, beside };
+            let (score, parts) = pose.score_whole::<PLAIN, N>(simd, &whole, &compliances, uncertainty);
+            return match deviation {
+                Some(known) if !PLAIN => score + known.margin(simd, &self.limits, &parts, directions, &compliances),
+                _ => score,
+            };
+        }
+        let (score, parts) = pose.score::<PLAIN, N>(simd, lateral, &compliances, &demand.load, uncertainty);
         match deviation {
             Some(deviation) if !PLAIN => score + deviation.margin(simd, &self.limits, &parts, directions, &compliances),
             _ => score,

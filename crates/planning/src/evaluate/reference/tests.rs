@@ -1,5 +1,6 @@
 use super::*;
-use crate::testing::{five_segments, five_segments_compensated};
+use crate::criterion::Weights;
+use crate::testing::{Beside, five_segments, five_segments_compensated, with_beside};
 use nalgebra::{Matrix6, Vector6};
 use proptest::prelude::*;
 use stead_model::robot::angles::yaw_from_q4;
@@ -27,6 +28,47 @@ fn parts_of_the_deflection_make_up_the_whole() {
     let s = problem.at(&published_optimum()).state(41, 0.4, Posture::ALL[3]).unwrap();
     let parts = Vector3::new(s.feed_part, s.normal_part, s.axial_part);
     assert!((parts.norm() - s.deflection.norm()).abs() < 1e-15);
+}
+
+#[test]
+fn what_each_thing_adds_is_the_scored_part() {
+    for weights in [Weights::WALL, Weights::TOTAL] {
+        let mut problem = with_beside(five_segments(), Beside::Everything);
+        problem.criterion.weights = weights;
+        let placement = published_optimum();
+        for point in [0, 30, 70] {
+            let state = problem.at(&placement).state(point, 0.4, Posture::ALL[3]).unwrap();
+            let origins = scored_by_origin(&problem, point, &placement, &state.joints);
+            assert!((origins.total() - state.score()).abs() < 1e-15);
+            assert!(origins.part != 0.0 && origins.arm.into_array().iter().all(|part| *part != 0.0), "{origins:?}");
+        }
+        // A part that yields moves the size of a deflection as its own displacement says.
+        let mut softer = problem.clone();
+        let twice = (0..105).map(|point| problem.task.part_compliance(point).unwrap() * 2.0).collect();
+        softer.task = problem.task.clone().with_part_compliances(twice).unwrap();
+        let [a, b] = [&problem, &softer].map(|p| p.at(&placement).state(30, 0.4, Posture::ALL[3]).unwrap());
+        let turned = placement.base_from_workpiece().rotation;
+        let moved = turned * (problem.task.part_compliance(30).unwrap() * problem.task.wrenches()[30].force);
+        assert!((b.deflection - a.deflection - moved).norm() < 1e-15);
+    }
+}
+
+/// A part that is rigid normal to the wall under the force moves no plan and no score of it.
+#[test]
+fn a_part_that_does_not_answer_along_the_wall_changes_no_score_of_it() {
+    let rigid = five_segments();
+    let mut problem = rigid.clone();
+    // Yielding along the cross product of wall and force alone: the force meets nothing.
+    let matrices = problem.task.points().iter().zip(problem.task.wrenches()).map(|(point, wrench)| {
+        let across = point.normal().cross(&wrench.force).normalize();
+        across * across.transpose() * 1e-6
+    });
+    problem.task = rigid.task.clone().with_part_compliances(matrices.collect()).unwrap();
+    let placement = published_optimum();
+    for point in (0..105).step_by(10) {
+        let [a, b] = [&rigid, &problem].map(|p| p.at(&placement).state(point, 0.4, Posture::ALL[3]).unwrap().score());
+        assert!((a - b).abs() < 1e-15);
+    }
 }
 
 #[test]
@@ -79,10 +121,13 @@ proptest! {
 
     #[test]
     fn derivatives_agree_with_central_differences(
-        beta in -3.0..3.0_f64, point in 0..105_usize, is_compensated in any::<bool>()
+        beta in -3.0..3.0_f64, point in 0..105_usize, is_compensated in any::<bool>(), is_whole in any::<bool>()
     ) {
         let mut problem = if is_compensated { five_segments_compensated() } else { five_segments() };
         problem.criterion.force_uncertainty = 0.2;
+        if is_whole {
+            problem = with_beside(problem, Beside::Everything);
+        }
         let placement = published_optimum();
         let at = |shift: [f64; 5]| {
             let moved = Placement::from(std::array::from_fn(|k| placement[k] + shift[k]));

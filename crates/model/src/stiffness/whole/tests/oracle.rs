@@ -1,0 +1,102 @@
+//! Figures that another program computed: see `data/README.md`.
+
+use super::*;
+use crate::robot::Joint;
+
+fn numbers(value: &toml::Value) -> Vec<f64> {
+    match value {
+        toml::Value::Float(number) => vec![*number],
+        toml::Value::Integer(number) => vec![*number as f64],
+        toml::Value::Array(rows) => rows.iter().flat_map(numbers).collect(),
+        other => panic!("{other}"),
+    }
+}
+
+struct Oracle {
+    robot: Robot,
+    spindle: Spindle,
+    base: BaseCompliance,
+    mount: Matrix6<f64>,
+    tip: Matrix3<f64>,
+    part: Matrix3<f64>,
+    normal: [NormalSprings; 6],
+}
+
+impl Oracle {
+    fn read(arm: &toml::Value) -> Self {
+        let list = |key: &str| numbers(&arm[key]);
+        let (rows, springs, bearings) =
+            (list("rows_alpha_deg_a_mm_d_mm"), list("compliance_xyz_urad_per_nm"), list("bearing_mm"));
+        let joints = std::array::from_fn(|j| Joint {
+            alpha: rows[3 * j].to_radians(),
+            a: rows[3 * j + 1] * 1e-3,
+            d: rows[3 * j + 2] * 1e-3,
+            min: -6.0,
+            max: 6.0,
+            max_speed: None,
+            max_acceleration: None,
+            max_jerk: None,
+            compliance: (springs[3 * j + 2] * 1e-6).into(),
+        });
+        let normal = std::array::from_fn(|j| NormalSprings {
+            compliance: [springs[3 * j] * 1e-6, springs[3 * j + 1] * 1e-6],
+            bearing: bearings[j] * 1e-3,
+        });
+        let vector = |key: &str| Vector3::from_vec(list(key)) * 1e-3;
+        let six = |key: &str| Matrix6::from_row_slice(&list(key)) * 1e-6;
+        let three = |key: &str| Matrix3::from_row_slice(&list(key)) * 1e-6;
+        Self {
+            robot: Robot::new("oracle", joints).unwrap(),
+            spindle: Spindle::new(Matrix3::from_row_slice(&list("tool_rotation")), vector("tool_xyz_mm")).unwrap(),
+            base: BaseCompliance::new(vector("base_point_mm"), six("base")).unwrap(),
+            mount: six("flange"),
+            tip: three("tip"),
+            part: three("part"),
+            normal,
+        }
+    }
+
+    /// Displacement (um) and turn (urad) of the tool against the part.
+    fn moved(&self, springs: &str, theta: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector6<f64> {
+        let (mut robot, mut spindle) = (self.robot.clone(), self.spindle);
+        if springs != "axes" {
+            robot = robot.with_normal_springs(Some(self.normal)).unwrap().with_spring_model(Some(SpringModel::Full));
+        }
+        if springs == "all" {
+            robot = robot.with_base_compliance(Some(self.base.clone()));
+            spindle = spindle.with_mount(self.mount).unwrap().with_tip(self.tip).unwrap();
+        }
+        let frames = Frames::new(&robot, theta);
+        let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
+        let mut moved =
+            WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(theta), tip).displacement(force, moment);
+        if springs == "all" {
+            moved.linear += of_part(&self.part, &rotation_from_zyx([30_f64.to_radians(), 0.0, 0.0]), force);
+        }
+        Vector6::from_iterator(moved.linear.iter().chain(moved.angular.iter()).map(|value| value * 1e6))
+    }
+}
+
+#[test]
+fn figures_of_another_program_come_out() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data");
+    let arms: toml::Table = std::fs::read_to_string(format!("{folder}/arm-oracle.toml")).unwrap().parse().unwrap();
+    let arms = arms["arm"].as_array().unwrap();
+    let table = std::fs::read_to_string(format!("{folder}/arm-oracle.csv")).unwrap();
+    let mut rows = 0;
+    for line in table.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let arm = arms.iter().find(|arm| arm["name"].as_str() == Some(cells[0])).unwrap();
+        let number = |k: usize| cells[k].parse::<f64>().unwrap();
+        let theta = std::array::from_fn(|j| number(4 + j).to_radians());
+        let vector = |k: usize| Vector3::new(number(k), number(k + 1), number(k + 2));
+        let found = Oracle::read(arm).moved(cells[3], &theta, &vector(10), &vector(13));
+        for k in 0..6 {
+            // Ten digits are printed of each.
+            let (found, expected) = (found[k], number(16 + k));
+            assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{line}: {found}");
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, 54);
+}

@@ -1,0 +1,59 @@
+//! The published path and cell for a KUKA KR 210-2 with springs about three directions of every joint, against figures of
+//! another program: the guide's page `whole_arm`.
+
+use super::*;
+use stead_model::robot::{Joint, NormalSprings, Robot, Spindle, SpringModel};
+
+/// `configs/whole-arm.toml`, with the part of the deflection that is scored.
+fn full_arm(weights: Weights) -> Problem {
+    let row = |alpha: f64, a, d, [min, max]: [f64; 2], speed: f64, stiffness: f64| Joint {
+        alpha: alpha.to_radians(),
+        a,
+        d,
+        min: min.to_radians(),
+        max: max.to_radians(),
+        max_speed: Some(speed.to_radians()),
+        max_acceleration: None,
+        max_jerk: None,
+        compliance: (1e-6 / stiffness).into(),
+    };
+    let joints = [
+        row(0.0, 0.0, 0.75, [-185.0, 185.0], 86.0, 5.6),
+        row(90.0, 0.35, 0.0, [0.0, 146.0], 84.0, 8.0397),
+        row(0.0, 1.25, 0.0, [-245.0, 29.0], 84.0, 3.1205),
+        row(-90.0, 0.055, 1.1, [-350.0, 350.0], 100.0, 0.71959),
+        row(90.0, 0.0, 0.0, [-125.0, 125.0], 110.0, 0.65862),
+        row(-90.0, 0.0, 0.23, [-350.0, 350.0], 184.0, 0.31403),
+    ];
+    let normal = [13.3, 26.1, 1.54, 1.93, 0.6584, 1.899];
+    let springs = std::array::from_fn(|joint| NormalSprings {
+        compliance: [1e-6 / normal[joint]; 2],
+        bearing: if joint == 0 { -0.75 } else { 0.0 },
+    });
+    let robot = Robot::new("full", joints).unwrap().with_normal_springs(Some(springs)).unwrap();
+    five_segments().with(|parts| {
+        parts.robot = robot.with_spring_model(Some(SpringModel::Full));
+        let mut tool = parts.spindle.flange_from_tool;
+        tool.translation.z = 0.454;
+        parts.spindle = Spindle::rigid(tool);
+        parts.cell.position[2] = Interval { min: 0.148, max: 0.536 };
+        parts.criterion.weights = weights;
+    })
+}
+
+/// Mean deflections of best and worst placement, each under its best plan, in mm, within half a per cent.
+#[test]
+fn a_full_arm_is_placed_as_another_program_places_it() {
+    for (weights, expected) in [(Weights::TOTAL, [0.1690, 0.2228]), (Weights::WALL, [0.0144, 0.0871])] {
+        let problem = full_arm(weights);
+        let transfer = TransferSettings::default();
+        let outcome = place(&problem, &SearchSettings::default(), &transfer, &Monitor::silent()).unwrap();
+        let plans = outcome.cases.optima();
+        for (case, expected) in plans.into_iter().zip(expected) {
+            let mean = case.plan.mean * 1e3;
+            let origins = case.plan.by_origin.unwrap();
+            assert!((origins.total() - case.plan.mean).abs() < 1e-12, "{origins:?}");
+            assert!((mean / expected - 1.0).abs() < 0.005, "{weights:?}: {mean} {expected}, {origins:?}");
+        }
+    }
+}
