@@ -1,8 +1,8 @@
 //! Compliance matrices as files state them: of what carries the robot, of the mount of the spindle, of holder and tool,
 //! of the part.
 //!
-//! A 6x6 answers force and moment (N, N m) by displacement and turn, translations first: its blocks are in um/N, urad/N,
-//! urad/N and urad/(N m). A 3x3 answers a force by displacement, in um/N.
+//! A 6x6 answers force and moment (N, N m) by displacement and turn, translations first: its blocks are in um/N,
+//! urad/N, urad/N and urad/(N m). A 3x3 answers a force by displacement, in um/N.
 
 use crate::place::Place;
 use crate::shapes::{Array, Matrix, Vector};

@@ -45,8 +45,9 @@ pub const PART: [&str; 6] = [
 /// Reads a tool path: columns `segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z`, optionally
 /// `force_x_n,force_y_n,force_z_n` (what the workpiece does to the tool) and with them
 /// `moment_x_nm,moment_y_nm,moment_z_nm`, `normal_x,normal_y,normal_z`, the normal of the surface that is cut,
-/// `feed_mm_per_s`, the feed of the move to the point, `scored`, 0 for a point that only has to be reached and else 1, and
-/// `part_xx_um_per_n` .. `part_yz_um_per_n`, how the part yields at the point; in any order, all in the workpiece frame.
+/// `feed_mm_per_s`, the feed of the move to the point, `scored`, 0 for a point that only has to be reached and else 1,
+/// and `part_xx_um_per_n` .. `part_yz_um_per_n`, how the part yields at the point; in any order, all in the workpiece
+/// frame.
 ///
 /// # Errors
 /// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value

@@ -86,8 +86,9 @@ fn springs_of(robot: &Robot) -> Vec<Vec<Spring>> {
     groups
 }
 
-/// How the objective of a plan answers to the stiffness of each spring of the arm, of joint and drive about the axis first: central differences over one per
-/// cent, in m for a stiffness e times as large, so that one per cent more changes the objective by a hundredth of it.
+/// How the objective of a plan answers to the stiffness of each spring of the arm, of joint and drive about the axis
+/// first: central differences over one per cent, in m for a stiffness e times as large, so that one per cent more
+/// changes the objective by a hundredth of it.
 ///
 /// A best plan is made anew around the present one, since it holds deflections at zero where it can: there the plan as
 /// it is would become worse both ways. Where it has nothing to gain from that, as a worst plan, the plan as it is gives

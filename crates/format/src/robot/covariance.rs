@@ -3,8 +3,8 @@
 //! A parameter is named like its field, joints and elements counted from 1. The compliance of a joint is
 //! `joints[1].compliance_urad_per_nm`, in urad/(N m), even where its row gives the stiffness; the ends of a range are
 //! `joints[3].compliance_urad_per_nm[1]`, at `min_deg`, and `[2]`, at `max_deg`; a compensator has
-//! `joints[2].compensator.spring_stiffness_n_per_mm` and `joints[2].compensator.free_length_mm`. Springs normal to an axis
-//! are `joints[3].orthogonal_compliance_urad_per_nm[1]`, about x, and `[2]`, about y, in urad/(N m).
+//! `joints[2].compensator.spring_stiffness_n_per_mm` and `joints[2].compensator.free_length_mm`. Springs normal to an
+//! axis are `joints[3].orthogonal_compliance_urad_per_nm[1]`, about x, and `[2]`, about y, in urad/(N m).
 
 use super::compliance::{COMPENSATOR, COMPLIANCE};
 use super::file::CovarianceTable;

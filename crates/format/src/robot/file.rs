@@ -25,8 +25,8 @@ pub struct RobotFile {
     /// three directions of every joint, of one identification, `axial_part` for the springs about the axes of such a
     /// set without the others. Not stated where left out: springs normal to the axes are left out of scores then.
     pub stiffness_model: Option<Word<SpringModel>>,
-    /// What the instrument stood on when the stiffness was identified: `base` for the base of the robot, `floor` for the
-    /// floor, so that the stiffness has what yields under the base in it.
+    /// What the instrument stood on when the stiffness was identified: `base` for the base of the robot, `floor` for
+    /// the floor, so that the stiffness has what yields under the base in it.
     pub stiffness_measured_from: Option<Word<MeasuredFrom>>,
     /// Which numbers nobody has checked against their source, and what is known of them, a sentence each; said by every
     /// run.
@@ -118,7 +118,8 @@ pub struct JointRow {
     /// Whether a compensator carries the gravity load of this joint; false where left out.
     pub gravity_compensated: Option<bool>,
     /// Stiffness against rotation about the two directions normal to the joint axis: one number for both, or `[about x,
-    /// about y]` of the frame of the row, which turns with the joint. Scores count it where `stiffness_model` is `full`.
+    /// about y]` of the frame of the row, which turns with the joint. Scores count it where `stiffness_model` is
+    /// `full`.
     pub orthogonal_stiffness_mnm_per_rad: Option<OneOrPair<MnmPerRad<Positive>>>,
     /// Compliance in these directions, in place of the stiffness; 0 is rigid.
     pub orthogonal_compliance_urad_per_nm: Option<OneOrPair<UradPerNm<NotNegative>>>,

@@ -302,7 +302,8 @@ impl ScoredByOrigin {
 }
 
 /// The scored part of the deflection under the robot's own compliances by what yields, at joint angles that
-/// [`PlacedTask::state`](crate::problem::PlacedTask::state) found for path point `point` and a workpiece at `placement`.
+/// [`PlacedTask::state`](crate::problem::PlacedTask::state) found for path point `point` and a workpiece at
+/// `placement`.
 pub fn scored_by_origin(problem: &Problem, point: usize, placement: &Placement, joints: &[f64; 6]) -> ScoredByOrigin {
     let at = problem.at(placement).evaluator(point);
     let arm = PlacedArm::new(&at, joints);

@@ -32,7 +32,8 @@ records! {
         #[serde(flatten)]
         setup: SetupFigures = SetupFigures::of(case.orientation.as_ref(), &case.setup, &case.plan.axes),
         #[serde(flatten)] plan: PlanFigures = PlanFigures::of(&case.plan, &case.cycle),
-        /// What one per cent more stiffness of each joint does to the objective; of a full set of springs, of each spring.
+        /// What one per cent more stiffness of each joint does to the objective; of a full set of springs, of each
+        /// spring.
         objective_by_stiffness: Option<Vec<StiffnessSlope>> =
             case.objective_by_stiffness.as_ref().map(|of| of.iter().map(slope).collect()),
         /// The bounds that hold the placement; null where they were not looked for.
@@ -61,8 +62,8 @@ records! {
         p50_mm: DeflectionMm = p50_mm,
         /// The score that 95 % of the points are below.
         p95_mm: DeflectionMm = p95_mm,
-        /// What each thing that yields adds to the scored part, in the mean of the points, where more does than the joints
-        /// about their axes.
+        /// What each thing that yields adds to the scored part, in the mean of the points, where more does than the
+        /// joints about their axes.
         #[serde(skip_serializing_if = "Option::is_none")]
         by_origin_mm: Option<OriginFigures> = plan.by_origin.as_ref().map(Into::into),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
@@ -134,8 +135,8 @@ records! {
     } with {
         /// The joint, from 1.
         joint: usize = found.springs.first().map_or(0, |spring| spring.joint + 1),
-        /// Of a full set of springs: the spring, with those that no deflection tells from it, as in `joint 5 about z with
-        /// joint 4 about y`.
+        /// Of a full set of springs: the spring, with those that no deflection tells from it, as in `joint 5 about z
+        /// with joint 4 about y`.
         #[serde(skip_serializing_if = "Option::is_none")]
         spring: Option<String> = is_full.then(|| spring_name(found)),
         /// Change of the objective.

@@ -54,8 +54,8 @@ pub struct CriterionTable {
     pub aggregate: Option<Word<Aggregate>>,
     /// Size of an unknown error of the force, as a share of it, added in the worst direction; 0 where left out.
     pub force_uncertainty: Option<Number<ZeroToTen>>,
-    /// In its place, beside `[stock]`: the error that the forces state of themselves, `cells`, how far the force exceeds
-    /// its mean within a `turn`, or the sum of `both`.
+    /// In its place, beside `[stock]`: the error that the forces state of themselves, `cells`, how far the force
+    /// exceeds its mean within a `turn`, or the sum of `both`.
     pub force_uncertainty_from: Option<Word<ForceErrors>>,
     /// How many standard deviations of the compliances are added to the deflection; 0 where left out. Above 0 the robot
     /// file needs a table `[covariance]`.

@@ -214,8 +214,8 @@ impl Robot {
     }
 
     /// The same arm with other joint compliances (laws, or constants in rad/(N m)), as from an identification. How well
-    /// the old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out. What
-    /// yields beside the joints about their axes stays.
+    /// the old ones were known ([`Robot::uncertainty`]), and whose they were, says nothing of them, and is left out.
+    /// What yields beside the joints about their axes stays.
     ///
     /// # Errors
     /// [`RobotError`] for a compliance that [`Robot::new`] refuses.

@@ -76,8 +76,8 @@ proptest! {
         prop_assert!((sum - arm.displacement(&force, &moment).linear).norm() < 1e-15);
     }
 
-    /// With the springs of the wrist in its centre, y4 and z5 turn about one line, y5 and z6 too, and x4, y4, z4 against
-    /// x5, y5, z5 about one point.
+    /// With the springs of the wrist in its centre, y4 and z5 turn about one line, y5 and z6 too, and x4, y4, z4
+    /// against x5, y5, z5 about one point.
     #[test]
     fn springs_of_the_wrist_that_turn_about_one_line_can_be_exchanged(
         theta in prop::array::uniform6(-3.0..3.0_f64), arm in 0..32_usize,

@@ -1,5 +1,5 @@
-//! The published path and cell for a KUKA KR 210-2 with springs about three directions of every joint, against figures of
-//! another program: the guide's page `whole_arm`.
+//! The published path and cell for a KUKA KR 210-2 with springs about three directions of every joint, against figures
+//! of another program: the guide's page `whole_arm`.
 
 use super::*;
 use stead_model::robot::{Joint, NormalSprings, Robot, Spindle, SpringModel};

@@ -10,8 +10,8 @@ use stead_numerics::simd::Lanes;
 #[derive(Debug, Clone)]
 pub(super) struct Deviation {
     confidence: f64,
-    /// For each parameter its spring ([`Parts`](super::whole::Parts)), beyond them where deflections do not count it, and
-    /// how the compliance of that spring answers to it.
+    /// For each parameter its spring ([`Parts`](super::whole::Parts)), beyond them where deflections do not count it,
+    /// and how the compliance of that spring answers to it.
     slopes: Vec<(usize, Slope)>,
     /// See [`Uncertainty::directions`].
     directions: Vec<Vec<f64>>,

@@ -8,13 +8,13 @@
 //! - joint 6, mount and tip are fixed to the tool, so that what they add is a polynomial of second degree in cos(beta)
 //!   and sin(beta), the same in all postures;
 //! - with their springs in W, joints 4 and 5 turn the tool by `C T`; since y4 = -+z5 and y5 = -+z6, and a triad of unit
-//!   vectors makes up the whole of T, that is `(cx4 + cx5) T` beside multiples of z4, z5 and z6, the axes that the score
-//!   without these springs has already;
+//!   vectors makes up the whole of T, that is `(cx4 + cx5) T` beside multiples of z4, z5 and z6, the axes that the
+//!   score without these springs has already;
 //! - x and y of joints 2 and 3 are in the plane of the arm.
 //!
-//! What turns the tool is summed as vectors and projected once for each scored direction. [`springs`](WholeState::springs)
-//! goes through the springs one by one instead: where derivatives by each are asked for, or responses to errors of the
-//! force.
+//! What turns the tool is summed as vectors and projected once for each scored direction.
+//! [`springs`](WholeState::springs) goes through the springs one by one instead: where derivatives by each are asked
+//! for, or responses to errors of the force.
 
 mod fixed;
 
@@ -152,8 +152,8 @@ pub(super) struct WholeState<'a, S: Simd, const N: usize> {
 
 impl<S: Simd, const N: usize> WholeState<'_, S, N> {
     /// The displacement of the tool centre point by the springs of all joints, with compliances about the axes at the
-    /// pose; without what is constant or fixed to the flange: joint 1 normal to its axis where it is alike, and joint 6.
-    /// T is the torque about the wrist centre. m
+    /// pose; without what is constant or fixed to the flange: joint 1 normal to its axis where it is alike, and joint
+    /// 6. T is the torque about the wrist centre. m
     #[inline(always)]
     fn displacement(&self, pose: &Pose<S>, compliances: &[Lanes<S>; 6]) -> Vector<S> {
         let Self { normal, planar, lateral, side, .. } = *self;
@@ -165,7 +165,7 @@ impl<S: Simd, const N: usize> WholeState<'_, S, N> {
 
         // Joint 1.
         let first = (px * f.y - py * f.x + m.z) * compliances[0];
-        let mut moved = Vector { x: -(first * py), y: first * px, z: first - first };
+        let mut moved = Vector { x: -(first * py), y: first * px, z: first.all(0.0) };
         if !normal.is_first_alike() {
             let [cx, cy] = normal.compliance[0];
             let pz = r2z - normal.bearing[0];

@@ -21,9 +21,9 @@ pub(in crate::evaluate::batch) struct Fixed {
     first_height: f64,
 }
 
-/// What a point at a placement adds to the parts of the deflection along the scored directions:
-/// `a + b cos(beta) + c sin(beta) + d cos(2 beta) + e sin(2 beta)`, and, where errors of the force are covered, how base
-/// and part answer a unit force along each, in the root frame.
+/// What a point at a placement adds to the parts of the deflection along the scored directions: `a + b cos(beta) + c
+/// sin(beta) + d cos(2 beta) + e sin(2 beta)`, and, where errors of the force are covered, how base and part answer a
+/// unit force along each, in the root frame.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::evaluate::batch) struct FixedParts {
     terms: [[f64; 5]; 3],
