@@ -101,6 +101,7 @@ class UnfollowedMove(Record):
 class PlanEntries(Record):
     """A plan with its feeds and times."""
 
+    by_origin_mm: Record | None
     clearance: Clearance | None
     cutting_s: float
     cycle_s: float | None
@@ -158,11 +159,12 @@ class ActiveBound(Record):
 
 
 class StiffnessGain(Record):
-    """What one per cent more stiffness of a joint does to the objective."""
+    """What one per cent more stiffness of a joint, or of one of its springs, does to the objective."""
 
     joint: int
     mm_per_percent: float
     percent_per_percent: float | None
+    spring: str | None
 
 
 class ExternalAxes(Record):
@@ -177,6 +179,7 @@ class CaseEntries(Record):
     """A case: where the workpiece is, and how it is milled there."""
 
     active_bounds: list[ActiveBound] | None
+    by_origin_mm: Record | None
     case: int
     clearance: Clearance | None
     cutting_s: float

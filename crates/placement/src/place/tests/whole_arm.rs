@@ -1,5 +1,5 @@
 //! The published path and cell for a KUKA KR 210-2 with springs about three directions of every joint, against figures of
-//! another program: the guide's page `whole_arm`.
+//! a trial that was written apart: the guide's page `whole_arm`.
 
 use super::*;
 use stead_model::robot::{Joint, NormalSprings, Robot, Spindle, SpringModel};
@@ -43,7 +43,7 @@ fn full_arm(weights: Weights) -> Problem {
 
 /// Mean deflections of best and worst placement, each under its best plan, in mm, within half a per cent.
 #[test]
-fn a_full_arm_is_placed_as_another_program_places_it() {
+fn a_full_arm_is_placed_as_a_trial_written_apart_placed_it() {
     for (weights, expected) in [(Weights::TOTAL, [0.1690, 0.2228]), (Weights::WALL, [0.0144, 0.0871])] {
         let problem = full_arm(weights);
         let transfer = TransferSettings::default();
