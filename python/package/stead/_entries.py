@@ -113,7 +113,7 @@ class HeldFeed(Record):
 class PlanEntries(Record):
     """A plan with its feeds and times."""
 
-    at_held_feed: HeldFeed | None
+    by_origin_mm: Record | None
     clearance: Clearance | None
     cutting_s: float
     cycle_s: float | None
@@ -172,11 +172,12 @@ class ActiveBound(Record):
 
 
 class StiffnessGain(Record):
-    """What one per cent more stiffness of a joint does to the objective."""
+    """What one per cent more stiffness of a joint, or of one of its springs, does to the objective."""
 
     joint: int
     mm_per_percent: float
     percent_per_percent: float | None
+    spring: str | None
 
 
 class ExternalAxes(Record):
@@ -191,7 +192,7 @@ class CaseEntries(Record):
     """A case: where the workpiece is, and how it is milled there."""
 
     active_bounds: list[ActiveBound] | None
-    at_held_feed: HeldFeed | None
+    by_origin_mm: Record | None
     case: int
     clearance: Clearance | None
     cutting_s: float

@@ -215,7 +215,11 @@ impl<'a> BatchEvaluator<'a> {
         if min_distance > 0.0 && libm::hypot(geometry.tip.x, geometry.tip.y) < min_distance {
             return;
         }
-        self.instructions.run(Evaluation { evaluator: self, geometry: &geometry, classes, states });
+        let evaluation = Evaluation { evaluator: self, geometry: &geometry, classes, states };
+        match self.fixed {
+            None => self.instructions.run(evaluation),
+            Some(_) => self.instructions.run(WholeEvaluation(evaluation)),
+        }
     }
 
     fn point_geometry(&self, point: usize, placement: &Placement) -> PointGeometry {
@@ -276,23 +280,38 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let is_plain =
-            self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [Set { deviation: None, .. }]);
-        let is_single = self.evaluator.problem.criterion.weights.is_single();
-        match (is_single, is_plain, self.evaluator.fixed.is_some()) {
-            (true, true, false) => self.batches::<S, true, false, 1>(simd),
-            (true, false, false) => self.batches::<S, false, false, 1>(simd),
-            (false, true, false) => self.batches::<S, true, false, 3>(simd),
-            (false, false, false) => self.batches::<S, false, false, 3>(simd),
-            (true, true, true) => self.batches::<S, true, true, 1>(simd),
-            (true, false, true) => self.batches::<S, false, true, 1>(simd),
-            (false, true, true) => self.batches::<S, true, true, 3>(simd),
-            (false, false, true) => self.batches::<S, false, true, 3>(simd),
-        }
+        self.of_criterion::<S, false>(simd);
+    }
+}
+
+/// The same where more than the joints about their axes yields: a function of its own, so that the one above stays as
+/// it is without.
+struct WholeEvaluation<'k>(Evaluation<'k>);
+
+impl WithSimd for WholeEvaluation<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.0.of_criterion::<S, true>(simd);
     }
 }
 
 impl Evaluation<'_> {
+    /// By what is scored.
+    #[inline(always)]
+    fn of_criterion<S: Simd, const WHOLE: bool>(self, simd: S) {
+        let is_plain =
+            self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [Set { deviation: None, .. }]);
+        let is_single = self.evaluator.problem.criterion.weights.is_single();
+        match (is_single, is_plain) {
+            (true, true) => self.batches::<S, true, WHOLE, 1>(simd),
+            (true, false) => self.batches::<S, false, WHOLE, 1>(simd),
+            (false, true) => self.batches::<S, true, WHOLE, 3>(simd),
+            (false, false) => self.batches::<S, false, WHOLE, 3>(simd),
+        }
+    }
+
     /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of compliances,
     /// and scores cover no errors; `WHOLE` where more than the joints about their axes yields.
     #[inline(always)]
