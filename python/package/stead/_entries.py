@@ -113,6 +113,7 @@ class HeldFeed(Record):
 class PlanEntries(Record):
     """A plan with its feeds and times."""
 
+    at_held_feed: HeldFeed | None
     by_origin_mm: Record | None
     clearance: Clearance | None
     cutting_s: float
@@ -192,6 +193,7 @@ class CaseEntries(Record):
     """A case: where the workpiece is, and how it is milled there."""
 
     active_bounds: list[ActiveBound] | None
+    at_held_feed: HeldFeed | None
     by_origin_mm: Record | None
     case: int
     clearance: Clearance | None
