@@ -60,6 +60,18 @@ pub fn read_spindle(file: &Path) -> Result<(Spindle, Vec<u8>), InputError> {
 }
 
 impl SpindleTable {
+    /// Refuses what yields on the flange, for jobs that do not count it.
+    ///
+    /// # Errors
+    /// [`InputError`] at `mount_matrix` or `tip_um_per_n`.
+    pub fn refuse_matrices(&self, at: &Place<'_>) -> Result<(), InputError> {
+        let stated = ["mount_matrix", "tip_um_per_n"].map(|key| at.key(key)).into_iter().find(Place::is_given);
+        stated.map_or(Ok(()), |key| {
+            let problem = "is counted in the scores of placements alone, and would have no effect here";
+            Err(key.error(problem, "this key in the run file of a placement only").found_if(None))
+        })
+    }
+
     /// The spindle that the table describes.
     ///
     /// # Errors

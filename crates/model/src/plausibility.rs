@@ -72,6 +72,18 @@ pub fn springs_left_out(robot: &Robot) -> Option<String> {
     })
 }
 
+/// That a job counts the springs about the axes alone of an arm that has others too.
+pub fn axes_alone(robot: &Robot) -> Option<String> {
+    let is_more = robot.normal_springs().is_some() || robot.base_compliance().is_some();
+    is_more.then(|| {
+        format!(
+            "{}: only its springs about the joint axes are counted here; those normal to the axes and the base, which scores \
+             count, are left out, so that deflections are too small",
+            robot.name()
+        )
+    })
+}
+
 /// Softer than this (m/N; rad/N, rad/(N m)) a matrix looks wrong.
 const SOFTEST_MATRIX: [f64; 2] = [100e-6, 1000e-6];
 

@@ -34,6 +34,8 @@ mod stated;
 pub mod study;
 #[cfg(test)]
 mod testing;
+#[cfg(test)]
+mod whole_arm_tests;
 
 pub use assess::read_assessment;
 pub use compensate::read_compensation;

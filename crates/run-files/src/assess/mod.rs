@@ -39,6 +39,9 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let at = document.root();
     let file: AssessmentFile = document.read()?;
     let plane = file.plane.map(|table| plane_from(&table, &at.key("plane"))).transpose()?.unwrap_or(Plane::XOZ);
+    if let Some(table) = &file.spindle {
+        table.refuse_matrices(&at.key("spindle"))?;
+    }
     let spindle = file.spindle.map(|table| table.spindle(&at.key("spindle"))).transpose()?;
     let flange_from_tool = spindle.as_ref().map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
@@ -71,7 +74,12 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let requested = !selection.forces.is_empty();
     // A benchmark of the arm alone has its tool at the flange.
     let spindle_note = spindle.filter(|spindle| spindle.flange_from_tool.translation != Vector3::zeros());
-    let odd = robots.iter().flat_map(plausibility::arm).chain(spindle_note.as_ref().and_then(plausibility::spindle));
+    let alone = robots.iter().filter_map(plausibility::axes_alone);
+    let odd = robots
+        .iter()
+        .flat_map(plausibility::arm)
+        .chain(alone)
+        .chain(spindle_note.as_ref().and_then(plausibility::spindle));
     let known = range_note(&robots).into_iter().chain(requested.then(|| payload_note(&robots)).flatten());
     let borrowed = robots.len() > 1 && robots.iter().any(|robot| robot.stiffness_like().is_some());
     let ranked = borrowed.then(|| {

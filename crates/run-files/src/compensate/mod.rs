@@ -14,6 +14,7 @@ use stead_format::field::FieldOverrides;
 use stead_format::quantity::Quantity;
 use stead_format::robot::robot_from;
 use stead_format::toml_file::TomlFile;
+use stead_model::plausibility;
 use stead_model::robot::Robot;
 use stead_numerics::monitor::Monitor;
 use stead_runs::CompensateRun;
@@ -60,7 +61,7 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>, monitor: &Monitor)
         (None, None) => None,
     };
     let has_reality = real.is_some();
-    let notes = run.problem.notes().into_iter().chain(plan.notes).collect();
+    let mut notes: Vec<String> = run.problem.notes().into_iter().chain(plan.notes).collect();
     // The margin is one of the plan: a correction may use it up.
     let robot = run.problem.robot_to_its_limits();
     let reality = match real {
@@ -70,6 +71,13 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>, monitor: &Monitor)
             reality_from(&source, &robot)?
         }
     };
+    let arms = [Some(&robot), Some(&reality).filter(|_| has_reality)];
+    notes.extend(arms.into_iter().flatten().filter_map(plausibility::axes_alone));
+    let spindle = &run.problem.spindle;
+    if spindle.mount.is_some() || spindle.tip.is_some() || run.problem.task.part_yields() {
+        let note = "what spindle mount, tool and part yield, which scores count, is left out of the corrections";
+        notes.push(note.to_owned());
+    }
     let job = CompensationProblem { robot, reality, spindle: run.problem.spindle, points: plan.points, settings };
     Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes, warnings: run.warnings })
 }

@@ -23,7 +23,7 @@ use stead_format::scalars::{Whole, joint_set};
 use stead_format::shapes::List;
 use stead_format::toml_file::TomlFile;
 use stead_model::plausibility;
-use stead_model::robot::{Compliance, Robot};
+use stead_model::robot::{Compliance, Robot, SpringModel};
 use stead_runs::IdentifyRun;
 
 /// Reads an identification file with the robot file and the measurement sheet that it names.
@@ -91,6 +91,11 @@ impl Shared {
     fn new(file: &IdentificationFile, at: &Place<'_>) -> Result<Self, InputError> {
         let (robot_source, robot_input) = at.key("robot").named_toml("robot")?;
         let robot = robot_from(&robot_source)?;
+        if robot.spring_model() == Some(SpringModel::Full) {
+            let problem = "states springs normal to the axes (stiffness_model = \"full\"), and readings are fitted by those about the axes alone";
+            let allowed = "a robot file without stiffness_model = \"full\" and without springs normal to the axes";
+            return Err(at.key("robot").error(problem, allowed));
+        }
         let given =
             file.compensator.map(|table| compensator_from(&table, &at.key("compensator"), &robot)).transpose()?;
         let start = file.base.map(|table| orientation_keys!(table).rotation(&at.key("base"))).transpose()?;
