@@ -241,7 +241,8 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     }
     assert!(!text.contains("max_beta_rate"), "{text}");
     let small = ["--set", "search.population=12", "--set", "search.generations=1", "--set", "search.basins=1"];
-    run(&[&["place", "my/run.toml", "--out", "out"][..], &small].concat());
+    let place = [&["place", "my/run.toml", "--out", "out"][..], &small].concat();
+    run(&place);
     assert!(bench.path("out/best.csv").is_file());
     // Nothing is written over without --force.
     let kept = bench.tree("my");
@@ -257,6 +258,8 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     assert!(bench.read("my/run.toml").contains("\ncutter_diameter_mm = 12.0 "));
     run(&[&robot[..], &["--force"]].concat());
     assert!(!bench.read("my/arm-cell.toml").contains("name = \"table\""));
+    // Another cutter has other forces, and other points where they are not straight between two.
+    run(&place);
     let export = ["export", "my/run.toml", "out/best.csv", "--format", "csv", "--approach-mm", "0", "--out", "my/PART"];
     run(&export);
     let again = bench.stead(&export);

@@ -38,7 +38,7 @@ fn warnings_of_forces_inside_a_run_are_those_of_the_run() {
         let text = all.iter().filter_map(Value::as_str).find(|text| text.contains("above the flutes (4 mm)"));
         let text = text.unwrap_or_else(|| panic!("{warning}: {all:?}"));
         // How many, and where the first is.
-        assert!(text.contains(" points, first at point 2, (-192, 390.4, 0) mm: "), "{text}");
+        assert!(text.contains(" points, first at point 1, (-192, 390.4, 0) mm: "), "{text}");
     };
     found(&serde_json::from_str(&bench.read("out/summary.json")).unwrap(), "place");
     assert!(bench.read("out/report.html").contains("material is cut above the flutes (4 mm)"));
