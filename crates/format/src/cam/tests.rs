@@ -143,7 +143,7 @@ fn the_cutter_of_a_program_is_written_with_its_speed_and_feed() {
         let text = cutter(&format!("{tool}{cut}")).unwrap();
         let has = |part: &str| assert!(text.contains(part), "{part} in {text}");
         has(&format!("\ncutter_diameter_mm = {diameter} "));
-        has(&format!("\n# spindle_rpm = {speed} "));
+        has(&format!("\n[cut]\nspindle_rpm = {speed} "));
         // The feed of the longest way: 1200 mm/min at 6000 rpm.
         has("\n# feed_per_tooth_mm = 0.1 ");
         assert_eq!(text.contains("corner_radius_mm"), corner.is_some());
@@ -178,7 +178,7 @@ M30
     assert!(note.contains("D 6 mm, corner radius 3 mm, 12000 rpm") && note.contains("D 20 mm"), "{note}");
     let written = cutter(text).unwrap();
     for part in
-        ["\ncutter_diameter_mm = 6.0 ", "# spindle_rpm = 12000.0", "= 0.1 ", "Another tool", "D 20 mm, 3000 rpm"]
+        ["\ncutter_diameter_mm = 6.0 ", "\nspindle_rpm = 12000.0", "= 0.1 ", "Another tool", "D 20 mm, 3000 rpm"]
     {
         assert!(written.contains(part), "{part} in {written}");
     }
