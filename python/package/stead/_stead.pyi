@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict, final
 
-__all__ = ["__version__", "MAX_THREADS", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema"]
+__all__ = ["__version__", "MAX_THREADS", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema", "run_command"]
 
 __version__: str
 MAX_THREADS: int
@@ -160,3 +160,4 @@ class Study:
 
 def init(kind: str, folder: Path, force: bool) -> list[Path]: ...
 def schema(kind: str) -> str: ...
+def run_command(arguments: Sequence[str]) -> int: ...
