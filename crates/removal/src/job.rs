@@ -2,7 +2,7 @@
 
 use crate::cutting::{Moving, Tool};
 use crate::lattice::{TILE, TileKey, others, place};
-use crate::moves::{Kind, Move};
+use crate::moves::{Move, MoveKind};
 use crate::piece::Piece;
 use crate::quadrature::Quadrature;
 use crate::removal::{Asked, Event, GOUGE, Sums, tile_of};
@@ -198,11 +198,11 @@ impl Job<'_> {
             let Some(bit) = moving.bit(&point, axis, cell * cell * (high - low) * weight) else { continue };
             let mut event = |event: Event| *of_tile.events.entry((event, one.point)).or_default() += bit.volume;
             match one.kind {
-                Kind::Rapid => event(Event::Rapid),
-                Kind::InPlace => event(Event::InPlace),
-                Kind::Start => event(Event::Before),
-                Kind::Feed if bit.when < 0.0 => event(Event::Before),
-                Kind::Feed => {
+                MoveKind::Rapid => event(Event::Rapid),
+                MoveKind::InPlace => event(Event::InPlace),
+                MoveKind::Start => event(Event::Before),
+                MoveKind::Feed if bit.when < 0.0 => event(Event::Before),
+                MoveKind::Feed => {
                     if bit.height > self.tool.flute_length {
                         event(Event::AboveFlutes);
                     }

@@ -1,7 +1,9 @@
 //! `report.html` of a study.
 
 use super::{cases, number, percent};
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series, Style, Table, Text, Tile, Tiles};
+use crate::page::cards::{
+    Axis, Card, Chart, Column, HeatMap, Page, Series, Style, Table, TableCell, Text, Tile, Tiles,
+};
 use crate::units::figures;
 use std::collections::BTreeMap;
 use stead_disk::input::InputFile;
@@ -90,11 +92,11 @@ fn path<'a>(layout: &Layout, pages: &'a CasePages) -> Option<&'a String> {
 }
 
 /// The numbers of the cases of a layout, leading to their page.
-fn cases_cell(layout: &Layout, pages: &CasePages) -> Cell {
+fn cases_cell(layout: &Layout, pages: &CasePages) -> TableCell {
     let text = cases(layout);
     match path(layout, pages) {
-        Some(path) => Cell::Link { text, path: path.clone() },
-        None => Cell::Number(text),
+        Some(path) => TableCell::Link { text, path: path.clone() },
+        None => TableCell::Number(text),
     }
 }
 
@@ -112,17 +114,22 @@ fn ranking(analysis: &Analysis, pages: &CasePages) -> Card {
     );
     columns.extend([Column::number(&ranking.measure.name), Column::number("behind best %")]);
     columns.extend(["status", "reason"].map(Column::text));
-    let row = |index: usize, rank: Cell, figures: [Cell; 2]| {
+    let row = |index: usize, rank: TableCell, figures: [TableCell; 2]| {
         let layout = &layouts.all[index];
-        let values = axes.iter().map(|axis| Cell::Text(layout.row[*axis].written()));
-        let status = layouts.status(layout).map(Cell::Text);
+        let values = axes.iter().map(|axis| TableCell::Text(layout.row[*axis].written()));
+        let status = layouts.status(layout).map(TableCell::Text);
         [rank, cases_cell(layout, pages)].into_iter().chain(values).chain(figures).chain(status).collect()
     };
     let ranked = ranking.ranked.iter().map(|ranked| {
-        let behind = Cell::optional(ranked.behind.map(|behind| percent(behind).to_string()));
-        row(ranked.layout, Cell::Number(ranked.rank.to_string()), [Cell::Number(ranked.value.to_string()), behind])
+        let behind = TableCell::optional(ranked.behind.map(|behind| percent(behind).to_string()));
+        row(
+            ranked.layout,
+            TableCell::Number(ranked.rank.to_string()),
+            [TableCell::Number(ranked.value.to_string()), behind],
+        )
     });
-    let without = ranking.without.iter().map(|layout| row(*layout, Cell::Empty, [Cell::Empty, Cell::Empty]));
+    let without =
+        ranking.without.iter().map(|layout| row(*layout, TableCell::Empty, [TableCell::Empty, TableCell::Empty]));
     Card::Table(Table {
         title: "Ranking".to_owned(),
         detail: if pages.is_empty() { String::new() } else { "a case leads to its own page".to_owned() },
