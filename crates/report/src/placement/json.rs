@@ -163,7 +163,7 @@ pub enum TableFigures {
 
 records! {
     /// The nodes of an axis of a lookup table.
-    pub struct TableAxis from axis: &TableAxis {
+    pub struct TableAxis from axis: &stead_placement::lookup::TableAxis {
         /// The first node.
         first_mm: PlaceMm = axis.first.into(),
         /// From one to the next.

@@ -1,9 +1,7 @@
 //! `report.html` of a study.
 
 use super::{cases, number, percent};
-use crate::page::cards::{
-    Axis, Card, Chart, Column, HeatMap, Page, Series, Style, Table, TableCell, Text, Tile, Tiles,
-};
+use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series, Style, Table, Text, Tile, Tiles};
 use crate::units::figures;
 use std::collections::BTreeMap;
 use stead_disk::input::InputFile;
@@ -92,11 +90,11 @@ fn path<'a>(layout: &Layout, pages: &'a CasePages) -> Option<&'a String> {
 }
 
 /// The numbers of the cases of a layout, leading to their page.
-fn cases_cell(layout: &Layout, pages: &CasePages) -> TableCell {
+fn cases_cell(layout: &Layout, pages: &CasePages) -> Cell {
     let text = cases(layout);
     match path(layout, pages) {
-        Some(path) => TableCell::Link { text, path: path.clone() },
-        None => TableCell::Number(text),
+        Some(path) => Cell::Link { text, path: path.clone() },
+        None => Cell::Number(text),
     }
 }
 
@@ -114,22 +112,17 @@ fn ranking(analysis: &Analysis, pages: &CasePages) -> Card {
     );
     columns.extend([Column::number(&ranking.measure.name), Column::number("behind best %")]);
     columns.extend(["status", "reason"].map(Column::text));
-    let row = |index: usize, rank: TableCell, figures: [TableCell; 2]| {
+    let row = |index: usize, rank: Cell, figures: [Cell; 2]| {
         let layout = &layouts.all[index];
-        let values = axes.iter().map(|axis| TableCell::Text(layout.row[*axis].written()));
-        let status = layouts.status(layout).map(TableCell::Text);
+        let values = axes.iter().map(|axis| Cell::Text(layout.row[*axis].written()));
+        let status = layouts.status(layout).map(Cell::Text);
         [rank, cases_cell(layout, pages)].into_iter().chain(values).chain(figures).chain(status).collect()
     };
     let ranked = ranking.ranked.iter().map(|ranked| {
-        let behind = TableCell::optional(ranked.behind.map(|behind| percent(behind).to_string()));
-        row(
-            ranked.layout,
-            TableCell::Number(ranked.rank.to_string()),
-            [TableCell::Number(ranked.value.to_string()), behind],
-        )
+        let behind = Cell::optional(ranked.behind.map(|behind| percent(behind).to_string()));
+        row(ranked.layout, Cell::Number(ranked.rank.to_string()), [Cell::Number(ranked.value.to_string()), behind])
     });
-    let without =
-        ranking.without.iter().map(|layout| row(*layout, TableCell::Empty, [TableCell::Empty, TableCell::Empty]));
+    let without = ranking.without.iter().map(|layout| row(*layout, Cell::Empty, [Cell::Empty, Cell::Empty]));
     Card::Table(Table {
         title: "Ranking".to_owned(),
         detail: if pages.is_empty() { String::new() } else { "a case leads to its own page".to_owned() },
