@@ -129,6 +129,9 @@ impl Gauge {
     /// least sum of squares has some set of values at their lowest, and all sets are tried.
     pub fn split(&self, fixed: &[f64; FULL], lowest: &[f64; FULL]) -> Option<[f64; FULL]> {
         let unknowns = self.replaced.len();
+        if unknowns == 0 {
+            return Some(*fixed);
+        }
         // c = fixed + slopes x.
         let mut slopes = DMatrix::<f64>::zeros(FULL, unknowns);
         for (unknown, Replaced { spring, by }) in self.replaced.iter().enumerate() {

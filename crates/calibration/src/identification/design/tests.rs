@@ -5,7 +5,7 @@ use super::super::sheet::LoadCase;
 use super::super::synthetic::sheet;
 use super::super::tests::identify;
 use super::super::tests::{GEOMETRY, NOISE, arm, cell, gauss, problem};
-use super::super::{Estimate, Problem};
+use super::super::{Estimate, FitModel, Problem};
 use super::candidates::draw_candidates;
 use super::expected::{normal_of, sheet_of};
 use super::fedorov::{IOptimality, exchange, random_set, values};
@@ -40,7 +40,9 @@ fn request(seed: u64) -> Request {
         points: cell(3).points,
         noise: NOISE,
         varying: Some((1, Law::Spring(GEOMETRY))),
+        model: FitModel::Axes,
         hold: [false; 6],
+        hold_normal: [[false; 2]; 6],
         angle_tolerance: 1e-4,
         level_joint: 1,
         levels: [0.2, 0.75, 1.3, 1.9, 2.5].to_vec(),
@@ -103,7 +105,7 @@ fn the_criterion_is_the_trace_of_the_product_with_the_inverse() {
 fn information_is_that_of_the_normal_equations_of_fit() {
     let request = Request { varying: None, levels: vec![], candidates: 30, ..request(2) };
     let (informations, ..) = prepared(&request);
-    let (_, normal) = normal_of(&request, &sheet_of(&request, &draw_candidates(&request).load_cases));
+    let (_, normal) = normal_of::<6>(&request, &sheet_of(&request, &draw_candidates(&request).load_cases));
     let sum = informations.iter().fold(InformationMatrix::zeros(), |sum, part| sum + part);
     for i in 0..6 {
         for j in 0..6 {
@@ -171,7 +173,8 @@ fn plans_are_better_than_the_best_of_a_thousand_random_sets() {
         let informations: Vec<_> =
             draw_candidates(&others).load_cases.iter().map(|s| parameters.information(&others, s)).collect();
         let weighting = parameters.weighting(&others, &plan.tests);
-        let free = std::array::from_fn(|number| number < 6 || matches!(others.varying, Some((_, Law::Spring(_)))));
+        let free: [bool; MAX_PARAMETERS] =
+            std::array::from_fn(|number| number < 6 || matches!(others.varying, Some((_, Law::Spring(_)))));
         let criterion = IOptimality::new(&weighting, &free, &informations, others.configurations);
         let sets: Vec<_> =
             (0..1000).map(|k| random_set(others.seed + 77, k, others.configurations, informations.len())).collect();
@@ -256,7 +259,7 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         change(&mut request);
         planned(&request)
     };
-    let reasons = |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0, b.reason)).collect::<Vec<_>>();
+    let reasons = |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0.joint, b.reason)).collect::<Vec<_>>();
     let vertical = small(|request| request.loads = LoadDirections::Vertical);
     assert_eq!(reasons(&vertical), [(0, UnobservableReason::LoadsAlongAxis)]);
     assert!(
@@ -271,7 +274,7 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         reasons(&straight).iter().map(|(_, reason)| *reason).collect::<Vec<_>>(),
         [UnobservableReason::Dependent]
     );
-    let pair: Vec<usize> = straight.unobservable[0].compliances.iter().map(|(joint, _)| *joint).collect();
+    let pair: Vec<usize> = straight.unobservable[0].compliances.iter().map(|(spring, _)| spring.joint).collect();
     assert!(pair == [3, 5] || pair == [5, 3], "{pair:?}");
 
     let near = small(|request| request.load_point = Vector3::new(0.002, 0.0, 0.2));
