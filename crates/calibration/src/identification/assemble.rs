@@ -13,7 +13,7 @@ use super::outliers::{ROUNDING, RobustEstimate};
 use super::problem::Problem;
 use super::setup::{Setup, SetupFit};
 use super::sheet::Reading;
-use super::springs::FitModel;
+use super::springs::{FitModel, stated_normal};
 use nalgebra::Vector6;
 use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
 
@@ -119,6 +119,10 @@ impl<const N: usize> Assembly<'_, N> {
         let (robot, at_lowest) = match self.problem.model {
             FitModel::Axes => (self.robot(&arm)?, vec![]),
             FitModel::Full => made(self.problem, &self.gauge, &arm, variance)?,
+        };
+        let estimates = match self.problem.model {
+            FitModel::Axes => estimates,
+            FitModel::Full => estimates.into_iter().map(|estimate| as_in(&robot, estimate)).collect(),
         };
         Ok(FittedArm { law, arm, estimates, robot, at_lowest })
     }
@@ -248,6 +252,18 @@ impl<const N: usize> Assembly<'_, N> {
         let floor = if self.problem.noise.is_some() { 1.0 } else { ROUNDING * ROUNDING };
         Some(tail(cost / more as f64 / self.robust.variance.max(floor), more, degrees.max(1)))
     }
+}
+
+/// The estimate of a parameter where an arm has it: a sum less what others have of it, as if those were exact.
+fn as_in(robot: &Robot, estimate: Estimate<ArmParameter>) -> Estimate<ArmParameter> {
+    let joint = estimate.parameter.joint;
+    let value = match (estimate.parameter.quantity, robot.joints()[joint].compliance) {
+        (Quantity::Compliance, Compliance::Constant(value)) => value,
+        (Quantity::AboutX | Quantity::AboutY, _) => stated_normal(robot, estimate.parameter.spring()),
+        _ => return estimate,
+    };
+    let moved = value - estimate.value;
+    Estimate { value, interval: estimate.interval.map(|end| end + moved), ..estimate }
 }
 
 fn interval<P>(parameter: P, angle: Option<f64>, value: f64, deviation: f64, width: f64) -> Estimate<P> {

@@ -79,7 +79,8 @@ pub struct Identified {
     pub compliances: Vec<Estimate<Parameter>>,
     /// The joint (from 0) to which [`Parameter::Group`] refers.
     pub varying: Option<usize>,
-    /// The parameters of the arm, in the units of [`Quantity`](super::law::Quantity); sums likewise.
+    /// The parameters of the arm, in the units of [`Quantity`](super::law::Quantity), as `robot` has them; of a spring
+    /// that is told only together with others its deviation is that of the sum, as if those were exact.
     pub arm: Vec<Estimate<ArmParameter>>,
     /// Covariance of those, in their order; serialised row by row.
     #[serde(serialize_with = "rows_of")]

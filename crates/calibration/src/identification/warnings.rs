@@ -42,7 +42,13 @@ pub(super) fn warnings(problem: &Problem, result: &Identified) -> Vec<Warning> {
     warnings.extend(held(problem, result));
     warnings.extend(setup(problem, result));
     warnings.extend(scale(problem, result));
-    warnings.extend(result.arm.iter().filter(|e| e.value < WEAK * e.deviation).map(|e| weak(result, e)));
+    match result.model {
+        FitModel::Axes => {
+            let weak_ones = result.arm.iter().filter(|e| e.value < WEAK * e.deviation);
+            warnings.extend(weak_ones.map(|e| weak(e.parameter.to_string(), e.parameter)));
+        }
+        FitModel::Full => warnings.extend(weak_sums(result)),
+    }
     warnings.extend(at_lowest(result));
     let ratio = libm::sqrt(result.variance_ratio);
     if !result.is_noise_estimated && !NOISE_RATIO.contains(&ratio) {
@@ -287,17 +293,25 @@ fn scale(problem: &Problem, result: &Identified) -> Option<Warning> {
     })
 }
 
-fn weak(result: &Identified, estimate: &Estimate<ArmParameter>) -> Warning {
-    let ArmParameter { joint, quantity } = estimate.parameter;
-    let name = match result.model {
-        FitModel::Axes => estimate.parameter.to_string(),
-        FitModel::Full => result.gauge.sum_name(estimate.parameter.spring(), estimate.parameter.to_string()),
-    };
+/// Springs, or sums of them, of a full set that are hardly known; all in one sentence.
+fn weak_sums(result: &Identified) -> Option<Warning> {
+    let is_weak = |e: &&Estimate<Parameter>| e.value.abs() < WEAK * e.deviation;
+    let names: Vec<String> =
+        result.compliances.iter().filter(is_weak).map(|e| result.name(e.parameter, e.angle)).collect();
+    (!names.is_empty()).then(|| {
+        let message = format!(
+            "weakly identified, by less than {WEAK} standard deviations: {}; take more configurations, with larger loads on \
+             longer levers in all directions",
+            names.join("; ")
+        );
+        Warning::new("weakly-identified", message)
+    })
+}
+
+fn weak(name: String, parameter: ArmParameter) -> Warning {
+    let ArmParameter { joint, quantity } = parameter;
     let advice = match quantity {
         Quantity::Compliance => "load the arm so that this joint turns".to_owned(),
-        Quantity::AboutX | Quantity::AboutY => {
-            "take more configurations, with larger loads on longer levers in all directions".to_owned()
-        }
         _ => format!("take more angles of joint {}, wider apart", joint + 1),
     };
     let message =

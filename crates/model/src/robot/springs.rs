@@ -93,6 +93,19 @@ pub enum MeasuredFrom {
     Floor,
 }
 
+impl MeasuredFrom {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Base, Self::Floor];
+
+    /// As files state it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Floor => "floor",
+        }
+    }
+}
+
 /// How what carries the robot yields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BaseCompliance {

@@ -2,6 +2,8 @@
 
 mod directions;
 mod file;
+#[cfg(test)]
+mod full_tests;
 mod held;
 mod plan;
 
