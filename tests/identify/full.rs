@@ -14,14 +14,8 @@ const SHEET: &str = "tasks/identify-example.csv";
 
 /// The arm behind the sheet: the shipped KUKA KR270-2 with springs of its own about three directions. Compliances about
 /// z, x, y; urad/(N m)
-const TRUTH: [[f64; 3]; 6] = [
-    [0.54, 0.12, 0.12],
-    [0.3, 0.2, 0.1],
-    [0.42, 0.6, 0.4],
-    [2.79, 0.8, 1.0],
-    [3.48, 1.2, 0.7],
-    [2.07, 1.5, 1.9],
-];
+const TRUTH: [[f64; 3]; 6] =
+    [[0.54, 0.12, 0.12], [0.3, 0.2, 0.1], [0.42, 0.6, 0.4], [2.79, 0.8, 1.0], [3.48, 1.2, 0.7], [2.07, 1.5, 1.9]];
 
 fn truth() -> Robot {
     let robot = stead_format::read_robot(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(ROBOT)).unwrap();
@@ -73,7 +67,8 @@ fn a_robot_file_with_all_springs_is_made_and_parts_are_placed_with_it() {
     assert_eq!((document["model"].as_str(), document["compliances"].as_array().unwrap().len()), (Some("full"), 15));
     // What is told, with what it is told together with, covers the truth within five standard deviations.
     let of = |spring: &str| {
-        let Spring { joint, about } = (0..18).map(stead_calibration::identification::springs::spring)
+        let Spring { joint, about } = (0..18)
+            .map(stead_calibration::identification::springs::spring)
             .find(|known| stead_calibration::identification::springs::key_name(*known) == spring)
             .unwrap();
         TRUTH[joint][[About::Z, About::X, About::Y].iter().position(|one| *one == about).unwrap()]
@@ -87,7 +82,11 @@ fn a_robot_file_with_all_springs_is_made_and_parts_are_placed_with_it() {
         assert!((value - expected).abs() < 5.0 * std && std < 0.3 * expected.abs().max(0.3), "{entry} {expected}");
     }
     let made = bench.read("out/robot-identified.toml");
-    for part in ["stiffness_model = \"full\"", "stiffness_measured_from = \"base\"", "#     joint 5 about z with joint 4 about y"] {
+    for part in [
+        "stiffness_model = \"full\"",
+        "stiffness_measured_from = \"base\"",
+        "#     joint 5 about z with joint 4 about y",
+    ] {
         assert!(made.contains(part), "{part} in {made}");
     }
     let robot = stead_format::read_robot(&bench.path("out/robot-identified.toml")).unwrap();
@@ -108,7 +107,19 @@ fn a_robot_file_with_all_springs_is_made_and_parts_are_placed_with_it() {
     let robot = run.lines().find(|line| line.starts_with("robot")).unwrap().to_owned();
     bench.replace("configs/caro-2013.toml", &robot, "robot = \"../out/robot-identified.toml\"");
     let score = |more: &[&str]| {
-        let placed = ["score", "configs/caro-2013.toml", "--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.4", "--q4", "0.9258", "--json"];
+        let placed = [
+            "score",
+            "configs/caro-2013.toml",
+            "--x-mm",
+            "2.2",
+            "--y-mm",
+            "-1643.5",
+            "--z-mm",
+            "-556.4",
+            "--q4",
+            "0.9258",
+            "--json",
+        ];
         let ended = bench.stead(&[&placed[..], more].concat());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         ended.json()
@@ -121,7 +132,10 @@ fn a_robot_file_with_all_springs_is_made_and_parts_are_placed_with_it() {
 #[test]
 fn a_fit_of_all_springs_needs_to_know_what_the_tracker_stood_on() {
     refused(&full_bench("model = \"full\""), &["fit.stiffness_measured_from: is missing"]);
-    refused(&full_bench("model = \"axes\"\nhold = [\"joints[3].y\"]"), &["fit.hold[1]: is a spring normal to its axis"]);
+    refused(
+        &full_bench("model = \"axes\"\nhold = [\"joints[3].y\"]"),
+        &["fit.hold[1]: is a spring normal to its axis"],
+    );
 }
 
 #[test]

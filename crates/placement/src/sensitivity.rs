@@ -2,8 +2,8 @@
 
 use super::outcome::{Plan, PlanPoint};
 use rayon::prelude::*;
-use stead_model::robot::{Compliance, Robot};
 pub use stead_model::robot::{About, Spring};
+use stead_model::robot::{Compliance, Robot};
 use stead_planning::problem::{Placement, Problem, ProblemParts};
 use stead_planning::redundancy::off_grid::Spacing;
 use stead_planning::redundancy::{Kept, SegmentPlan, settled_among_free};

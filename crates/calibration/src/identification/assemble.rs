@@ -4,8 +4,8 @@ use super::cross_validation::{compliances, leave_one_out};
 use super::distribution::{half_width, tail};
 use super::error::IdentifyError;
 use super::gauge::Gauge;
-use super::made::made;
 use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
+use super::made::made;
 use super::model::{Layout, Noise, Observation, Parameter};
 use super::normal_equations::FreeParameters;
 use super::outcome::{Estimate, Held, HeldReason, Identified, RowResult};
@@ -20,8 +20,7 @@ use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
 /// A compliance so many standard deviations below zero is not negative by chance.
 pub(super) const NEGATIVE: f64 = 6.0;
 /// What to try where springs about the axes alone do not fit.
-pub(super) const FULL_HINT: &str =
-    "; springs normal to the axes may explain the readings: fit.model = \"full\"";
+pub(super) const FULL_HINT: &str = "; springs normal to the axes may explain the readings: fit.model = \"full\"";
 
 /// The estimates that the result is assembled from.
 pub(super) struct Assembly<'a, const N: usize> {
@@ -71,12 +70,13 @@ impl<const N: usize> Assembly<'_, N> {
         let width = half_width(is_noise_estimated.then_some(robust.degrees));
         let compliances = self.compliances(variance, width);
         self.refuse_negative(&compliances)?;
-        let (FittedArm { law, arm, estimates, robot, at_lowest }, spring_fault) = match self.fitted(law, variance, width) {
-            Err(error) if error.is_of_the_spring() => {
-                (self.fitted(Law::Constant, variance, width)?, Some(error.to_string()))
-            }
-            fitted => (fitted?, None),
-        };
+        let (FittedArm { law, arm, estimates, robot, at_lowest }, spring_fault) =
+            match self.fitted(law, variance, width) {
+                Err(error) if error.is_of_the_spring() => {
+                    (self.fitted(Law::Constant, variance, width)?, Some(error.to_string()))
+                }
+                fitted => (fitted?, None),
+            };
         let rows = self.rows(&arm);
         let mut prediction = leave_one_out(sheet, layout, self.equations, &robust.kept, &arm);
         let difference = libm::sqrt(2.0) * self.noise.position;

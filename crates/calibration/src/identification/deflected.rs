@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use stead_model::robot::Robot;
 use stead_model::stiffness::Displacement;
 use stead_model::stiffness::equilibrium::{Load, NoEquilibrium};
+use stead_model::stiffness::whole::of_matrix;
 use stead_numerics::rotation::rotation_vector;
 
 /// An arm in a configuration under load. Springs are in the order of [`super::springs`].
@@ -24,6 +25,8 @@ pub struct Deflected<'a, const N: usize> {
     /// The compliances. rad/(N m)
     compliances: SVector<f64, N>,
     before: Elastic<N>,
+    /// What carries the arm, moved by the load as a small displacement at the load point, where it yields.
+    base: Option<Displacement<f64>>,
     /// At rest under the load; nothing where the deflection is taken to be linear in it.
     rest: Option<Rest<N>>,
 }
@@ -38,7 +41,8 @@ impl<'a, const N: usize> Deflected<'a, N> {
         load_point: &'a Vector3<f64>,
     ) -> Self {
         let before = Elastic::unloaded(robot, &configuration.theta);
-        Self { configuration, load_point, compliances, before, rest: None }
+        let base = of_base(robot, &before, configuration, load_point);
+        Self { configuration, load_point, compliances, before, base, rest: None }
     }
 
     /// The same in its exact static equilibrium. Among springs about the axes alone a negative compliance is taken for
@@ -57,7 +61,8 @@ impl<'a, const N: usize> Deflected<'a, N> {
         let load = Load { point: *load_point, force: *force, moment: *moment };
         let rest = Some(Rest::new(robot, &compliances, theta, &load)?);
         let before = Elastic::unloaded(robot, theta);
-        Ok(Self { configuration, load_point, compliances, before, rest })
+        let base = of_base(robot, &before, configuration, load_point);
+        Ok(Self { configuration, load_point, compliances, before, base, rest })
     }
 
     /// The compliances with which it deflects so. rad/(N m)
@@ -72,6 +77,15 @@ impl<'a, const N: usize> Deflected<'a, N> {
 
     /// How far the load moves a point of the flange frame (m) and turns the flange, in the base frame.
     pub fn displacement(&self, point: &Vector3<f64>) -> Displacement<f64> {
+        let moved = self.by_springs(point);
+        let Some(base) = &self.base else { return moved };
+        let lever = self.unloaded(point) - self.unloaded(self.load_point);
+        let linear = moved.linear + base.linear + base.angular.cross(&lever);
+        Displacement { linear, angular: moved.angular + base.angular }
+    }
+
+    /// The same by the springs of the arm alone.
+    fn by_springs(&self, point: &Vector3<f64>) -> Displacement<f64> {
         match &self.rest {
             None => {
                 let Response { linear, angular } = self.response(point);
@@ -95,11 +109,23 @@ impl<'a, const N: usize> Deflected<'a, N> {
             return Response::new(&self.before, &read, &load, force, moment);
         };
         let jacobian = arm.jacobian(&arm.base_from_flange.point(point)) * turns;
-        let turned = self.displacement(point).angular.cross_matrix();
+        let turned = self.by_springs(point).angular.cross_matrix();
         // From an angular velocity to the derivative of a rotation vector: 1 - [r]/2 + [r]^2/12 - ...
         let slope = Matrix3::identity() - turned / 2.0 + turned * turned / 12.0;
         Response { linear: jacobian.fixed_rows::<3>(0).into_owned(), angular: slope * jacobian.fixed_rows::<3>(3) }
     }
+}
+
+/// The displacement of what carries the arm at the load point, where it yields; small, and linear in the load.
+fn of_base<const N: usize>(
+    robot: &Robot,
+    arm: &Elastic<N>,
+    configuration: &Configuration,
+    load_point: &Vector3<f64>,
+) -> Option<Displacement<f64>> {
+    let (frame, matrix) = robot.yielding_base()?;
+    let place = arm.base_from_flange.point(load_point);
+    Some(of_matrix(matrix, &frame, &place, [&configuration.force, &configuration.moment]))
 }
 
 #[cfg(test)]

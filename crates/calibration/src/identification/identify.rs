@@ -3,6 +3,7 @@
 use super::assemble::Assembly;
 use super::equilibria::Equilibria;
 use super::error::IdentifyError;
+use super::gauge::Gauge;
 use super::load_point::{LoadPointTest, doubted, tested};
 use super::model::{Layout, Noise, Observation, ObservationModel, Parameter};
 use super::normal_equations::{FreeParameters, NormalEquations};
@@ -11,7 +12,6 @@ use super::problem::Problem;
 use super::response::Response;
 use super::setup::{Setup, check, estimate};
 use super::springs::{AXES, FULL, FitModel, column, compliances_of, held, spring};
-use super::gauge::Gauge;
 use super::warnings::warnings;
 use nalgebra::SVector;
 use stead_model::robot::Pose;

@@ -52,5 +52,5 @@ pub use error::{IdentifyError, SheetFault};
 pub use identify::identify;
 pub use outcome::{Estimate, Held, HeldReason, Identified, RowResult};
 pub use problem::Problem;
-pub use springs::FitModel;
 pub use sheet::{Configuration, LoadCase, Reading, Sheet};
+pub use springs::FitModel;

@@ -5,9 +5,9 @@
 //! which configurations share one.
 
 use super::deflected::Deflected;
-use super::springs::{FitModel, column, compliances_of, spring};
 use super::setup::Setup;
 use super::sheet::{Configuration, Reading, Sheet};
+use super::springs::{FitModel, column, compliances_of, spring};
 use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 use serde::Serialize;
 use stead_model::robot::{About, Robot, Spring};
@@ -222,8 +222,7 @@ impl<const N: usize> ObservationModel<'_, N> {
         let observation = |reading: &Reading| {
             let place = &self.setup.points[reading.point];
             let (response, moved) = (deflected.response(place), deflected.displacement(place));
-            let (mut design, mut read, mut known) =
-                (SMatrix::<f64, 6, N>::zeros(), Vector6::zeros(), Vector6::zeros());
+            let (mut design, mut read, mut known) = (SMatrix::<f64, 6, N>::zeros(), Vector6::zeros(), Vector6::zeros());
             let mut set = |rows: usize, response: SMatrix<f64, 3, N>, found: Vector3<f64>, predicted: Vector3<f64>| {
                 design.fixed_rows_mut::<3>(rows).copy_from(&response);
                 read.fixed_rows_mut::<3>(rows).copy_from(&found);

@@ -173,8 +173,11 @@ impl<const N: usize> NormalEquations<N> {
         let eigen = SymmetricEigen::new(scaled);
         let dependent = (0..size).filter(|k| eigen.eigenvalues[*k] <= DEPENDENT);
         let name = |k: usize| {
-            let mut shares: Vec<(Parameter, f64)> =
-                joints.iter().enumerate().map(|(a, j)| (Parameter::of_column(*j), eigen.eigenvectors[(a, k)])).collect();
+            let mut shares: Vec<(Parameter, f64)> = joints
+                .iter()
+                .enumerate()
+                .map(|(a, j)| (Parameter::of_column(*j), eigen.eigenvectors[(a, k)]))
+                .collect();
             let along = joints.iter().enumerate().fold(SVector::zeros(), |mut along: SVector<f64, N>, (a, j)| {
                 along[*j] = eigen.eigenvectors[(a, k)] * scale[a];
                 along

@@ -9,7 +9,8 @@ use stead_model::robot::{MeasuredFrom, Robot};
 /// Inputs of an identification: the starting arm, the measurements and what is known beside them. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// The arm to start from: geometry, limits, and compliances of about the right size.
+    /// The arm to start from: geometry, limits, and compliances of about the right size; on a base that yields
+    /// ([`Robot::base_compliance`]) where that is known and in the readings, which then do not tell it.
     pub robot: Robot,
     /// Which springs are sought.
     pub model: FitModel,

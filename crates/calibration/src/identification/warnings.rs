@@ -314,7 +314,6 @@ fn weak(name: String, parameter: ArmParameter) -> Warning {
         Quantity::Compliance => "load the arm so that this joint turns".to_owned(),
         _ => format!("take more angles of joint {}, wider apart", joint + 1),
     };
-    let message =
-        format!("{name} is weakly identified, by less than {WEAK} standard deviations: {advice}");
+    let message = format!("{name} is weakly identified, by less than {WEAK} standard deviations: {advice}");
     Warning::new("weakly-identified", message)
 }

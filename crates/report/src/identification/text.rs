@@ -89,7 +89,9 @@ pub(super) fn spring_rows(found: &Identified) -> Vec<Vec<String>> {
             _ => "by its law".to_owned(),
         };
         let normal = found.robot.stated_normal_springs().map_or([0.0; 2], |all| all[joint].compliance);
-        rows.push([vec![(joint + 1).to_string(), about_z], normal.map(|value| fixed(value * URAD, 4)).to_vec()].concat());
+        rows.push(
+            [vec![(joint + 1).to_string(), about_z], normal.map(|value| fixed(value * URAD, 4)).to_vec()].concat(),
+        );
     }
     rows
 }

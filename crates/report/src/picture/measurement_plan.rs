@@ -5,9 +5,9 @@ use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::{figures, fixed};
 use nalgebra::{Vector2, Vector3};
-use stead_calibration::identification::{FitModel, LoadCase};
 use stead_calibration::identification::design::expected::ExpectedCompliance;
 use stead_calibration::identification::design::{Design, Request};
+use stead_calibration::identification::{FitModel, LoadCase};
 use stead_model::robot::Frames;
 
 const LEFT: i32 = 85;

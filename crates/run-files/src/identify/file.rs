@@ -7,6 +7,7 @@ use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::Included;
+use stead_format::compliance_matrix::BaseComplianceTable;
 use stead_format::orientation::Quaternion;
 use stead_format::scalars::Whole;
 use stead_format::shapes::{List, Matrix, Vector};
@@ -38,6 +39,9 @@ pub struct IdentificationFile {
     pub compensator: Option<CompensatorGeometryTable>,
     /// Where the tracker stands.
     pub base: Option<BaseTable>,
+    /// How what carries the robot yields, where the readings have it (`fit.stiffness_measured_from` is `floor`): it is
+    /// taken as stated, and the springs are found without it.
+    pub base_compliance: Option<BaseComplianceTable>,
     /// What is identified.
     pub fit: Option<FitTable>,
     /// Which measurements to choose. Needed by `plan` alone.

@@ -178,7 +178,9 @@ fn a_file_asks_for_all_springs_and_names_those_that_are_held() {
     let (_folder, floor) = file("name:kuka-kr210-2", &FROM_BASE.replace("base", "floor"), "");
     let run = read_identification(&floor).unwrap();
     let note = run.notes.iter().find(|note| note.contains("cannot be told apart")).unwrap();
-    for part in ["does not say where the springs normal to the axes sit", "what yields under the base is in the springs of"] {
+    for part in
+        ["does not say where the springs normal to the axes sit", "what yields under the base is in the springs of"]
+    {
         assert!(note.contains(part), "{part} in {note}");
     }
     let (_folder, alone) = file("name:kuka-kr210-2", "model = \"axes\"\nhold = [\"joints[6].z\", 4]", "");
@@ -193,7 +195,11 @@ fn a_plan_for_all_springs_has_sixty_configurations_and_says_why() {
     let (_folder, plan) = file(KUKA, FROM_BASE, "");
     let run = read_plan(&plan, None).unwrap();
     assert_eq!((run.request.configurations, run.request.model), (60, FitModel::Full));
-    assert!(run.notes.iter().any(|note| note.contains("60 are planned and not 20, since springs normal")), "{:?}", run.notes);
+    assert!(
+        run.notes.iter().any(|note| note.contains("60 are planned and not 20, since springs normal")),
+        "{:?}",
+        run.notes
+    );
     let (_folder, few) = file(KUKA, FROM_BASE, "configurations = 25");
     let notes = read_plan(&few, None).unwrap().notes;
     assert!(notes.iter().any(|note| note.contains("plan.configurations = 25 is few")), "{notes:?}");
@@ -213,7 +219,11 @@ fn files_that_ask_for_what_cannot_be_are_refused_at_the_key() {
         (KUKA, &FROM_BASE.replace("base", "wall"), &["fit.stiffness_measured_from: ", "wall", "floor"]),
         (KUKA, &format!("{FROM_BASE}\nhold = [\"joints[7].x\"]"), &["fit.hold[1]: ", "joints[7].x", "\"joints[1].x\""]),
         (KUKA, &format!("{FROM_BASE}\nhold = [0]"), &["fit.hold[1]: ", "found 0", "from 1 to 6"]),
-        (KUKA, &format!("{FROM_BASE}\nhold = [3, \"joints[3].y\"]"), &["fit.hold[2]: is there twice", "each spring once"]),
+        (
+            KUKA,
+            &format!("{FROM_BASE}\nhold = [3, \"joints[3].y\"]"),
+            &["fit.hold[2]: is there twice", "each spring once"],
+        ),
         (KUKA, &format!("{FROM_BASE}\nhold = [{every}]"), &["fit.hold: holds every joint", "not all"]),
         (
             "name:kuka-kr210-2",

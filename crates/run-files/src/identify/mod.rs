@@ -55,6 +55,17 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
         let problem = "is missing, but fit.model is \"full\": what yields under the base is in the springs or is not";
         return Err(at.key("fit").key("stiffness_measured_from").error(problem, allowed));
     }
+    let robot = match &file.base_compliance {
+        Some(_) if measured_from != Some(MeasuredFrom::Floor) => {
+            let problem = "is given, but fit.stiffness_measured_from is not \"floor\": readings taken from the base have none of it";
+            let allowed = "fit.stiffness_measured_from = \"floor\", or no table [base_compliance]";
+            return Err(at.key("base_compliance").error(problem, allowed));
+        }
+        Some(table) => robot.with_base_compliance(Some(table.base_compliance(&at.key("base_compliance"))?)),
+        None => robot,
+    };
+    // What yields under the base is not in the springs where it is taken as stated.
+    let measured_from = if file.base_compliance.is_some() { Some(MeasuredFrom::Base) } else { measured_from };
     let robot = stated(robot, model, fit.model.is_some(), measured_from);
     notes.extend(told_apart(&robot, model, measured_from));
     let sheet_file = at.key("sheet").named_file()?;
@@ -160,11 +171,14 @@ fn stated(robot: Robot, model: FitModel, is_stated: bool, measured_from: Option<
     robot
 }
 
-/// What a full fit takes as given, and what it cannot tell apart on any sheet.
+/// What a fit takes as given, and what it cannot tell apart on any sheet.
 fn told_apart(robot: &Robot, model: FitModel, measured_from: Option<MeasuredFrom>) -> Vec<String> {
+    let is_stated = robot.base_compliance().is_some();
+    let of_base = "what yields under the base is taken as [base_compliance] states it and is not in the springs";
     if model == FitModel::Axes {
-        return vec![];
+        return is_stated.then(|| of_base.to_owned()).into_iter().collect();
     }
+    let stated_base = if is_stated { format!("; {of_base}") } else { String::new() };
     let bearings = match robot.stated_normal_springs() {
         Some(_) => "where the springs normal to the axes sit (bearing_mm) is taken from the robot file",
         None => {
@@ -181,7 +195,7 @@ fn told_apart(robot: &Robot, model: FitModel, measured_from: Option<MeasuredFrom
     };
     vec![format!(
         "{bearings}; how the body with the reference points is fixed to the flange is in the springs of joint 6, from which it \
-         cannot be told apart{base}"
+         cannot be told apart{base}{stated_base}"
     )]
 }
 

@@ -161,7 +161,8 @@ pub fn values<const P: usize>(
     informations: &[InformationMatrix<P>],
     sets: &[Vec<usize>],
 ) -> Vec<f64> {
-    let sum = |set: &Vec<usize>| set.iter().fold(InformationMatrix::<P>::zeros(), |sum, index| sum + informations[*index]);
+    let sum =
+        |set: &Vec<usize>| set.iter().fold(InformationMatrix::<P>::zeros(), |sum, index| sum + informations[*index]);
     sets.iter().map(|set| criterion.value(&sum(set))).collect()
 }
 

@@ -1,9 +1,9 @@
 //! The choice of measurements as a whole.
 
+use super::super::gauge::Gauge;
 use super::super::law::{Law, LawError};
 use super::super::model::{Layout, Parameter};
 use super::super::setup::{SetupError, estimate};
-use super::super::gauge::Gauge;
 use super::super::sheet::{LoadCase, Sheet};
 use super::super::springs::{AXES, FULL, FitModel, spring};
 use super::candidates::{Candidates, draw_candidates, test_cases};

@@ -5,10 +5,10 @@
 //! with compliance c and row r(q) of that equation, `dc = -c^2 r(q) d(K_theta, K_GC, s_0 K_GC)`: so the compliance at
 //! any angle, a level of the plan or not, follows from the law that `fit` uses.
 
+use super::super::elastic::Elastic;
 use super::super::law::Law;
 use super::super::model::Noise;
 use super::super::normal_equations::FreeParameters;
-use super::super::elastic::Elastic;
 use super::super::response::Response;
 use super::super::sheet::LoadCase;
 use super::super::springs::{AXES, FULL, FitModel, compliances_of};

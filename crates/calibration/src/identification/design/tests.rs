@@ -259,7 +259,8 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         change(&mut request);
         planned(&request)
     };
-    let reasons = |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0.joint, b.reason)).collect::<Vec<_>>();
+    let reasons =
+        |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0.joint, b.reason)).collect::<Vec<_>>();
     let vertical = small(|request| request.loads = LoadDirections::Vertical);
     assert_eq!(reasons(&vertical), [(0, UnobservableReason::LoadsAlongAxis)]);
     assert!(

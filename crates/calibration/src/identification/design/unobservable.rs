@@ -1,8 +1,8 @@
 //! Compliances that a set of configurations and loads leaves unobservable, and why.
 
+use super::super::elastic::Elastic;
 use super::super::model::{Layout, Parameter};
 use super::super::normal_equations::Unidentifiable;
-use super::super::elastic::Elastic;
 use super::super::sheet::LoadCase;
 use super::super::springs::{FULL, column};
 use super::expected::ExpectedCompliance;

@@ -16,7 +16,9 @@ pub(super) fn warnings(
     weak: &[WeaklyObserved],
 ) -> Vec<Warning> {
     let unobservable = unobservable.iter().map(|entry| Warning::new("unobservable", unobservable_text(request, entry)));
-    unobservable.chain(weak.iter().map(|entry| Warning::new("weakly-observed", weak_text(request, gauge, entry)))).collect()
+    unobservable
+        .chain(weak.iter().map(|entry| Warning::new("weakly-observed", weak_text(request, gauge, entry))))
+        .collect()
 }
 
 /// A note on the angles of the varying joint at which the set has no configuration, though it may.

@@ -4,7 +4,7 @@ use super::gauge::Gauge;
 use super::springs::{AXES, FULL, column, compliances_of, spring};
 use super::*;
 use nalgebra::{Matrix3, Matrix6, Vector6};
-use stead_model::robot::{Frames, MeasuredFrom, NormalSprings, Spindle, SpringModel};
+use stead_model::robot::{BaseCompliance, Frames, MeasuredFrom, NormalSprings, Spindle, SpringModel};
 use stead_model::stiffness::whole::WholeArm;
 
 /// Compliances of about the size of a public set (KUKA series 2000), about z, then x and y, in urad/(N m).
@@ -252,13 +252,32 @@ fn what_is_held_stays_and_the_others_are_told_apart_by_it() {
 }
 
 #[test]
+fn what_yields_under_the_base_is_taken_as_stated() {
+    let matrix = Matrix6::from_diagonal(&Vector6::new(2e-8, 3e-8, 1e-8, 4e-8, 5e-8, 6e-8));
+    let base = BaseCompliance::new(Vector3::new(0.1, 0.0, -0.4), matrix).unwrap();
+    let truth = full_arm(FOREARM).with_base_compliance(Some(base.clone()));
+    let problem = problem_of(&truth, 20, 1, 0.0, 2700.0);
+    let known = Problem { robot: problem.robot.clone().with_base_compliance(Some(base)), ..problem.clone() };
+    let unknown = Problem { robot: problem.robot.clone().with_base_compliance(None), ..problem };
+    let off = |problem: &Problem| {
+        let found = identify(problem).unwrap();
+        let off = found.compliances.iter().map(|e| e.value / sum_of(&found, &truth, e.parameter) - 1.0);
+        off.fold(0.0, |most: f64, off| most.max(off.abs()))
+    };
+    assert!(off(&known) < 1e-7, "{}", off(&known));
+    assert!(off(&unknown) > 1e-2, "{}", off(&unknown));
+}
+
+#[test]
 fn a_fit_of_the_axes_alone_absorbs_what_it_can_and_says_that_more_is_left() {
     let truth = full_arm(WRIST_CENTRE);
     let full = problem_of(&truth, 60, 3, NOISE, 2700.0);
     let axes = Problem { robot: kr270(), model: FitModel::Axes, ..full.clone() };
     // With the load near axis 6, what springs normal to it do makes the one about it negative.
     let error = identify(&axes).unwrap_err().to_string();
-    for part in ["the compliance of joint 6 comes out as -", "turns against its load; springs normal", "fit.model = \"full\""] {
+    for part in
+        ["the compliance of joint 6 comes out as -", "turns against its load; springs normal", "fit.model = \"full\""]
+    {
         assert!(error.contains(part), "{part} in {error}");
     }
     let axes = Problem { hold: [false, false, false, false, false, true], ..axes };

@@ -6,9 +6,9 @@ use crate::document::Document;
 use crate::figure::{AngleDeg, ForceN, PlaceMm, each};
 use serde_json::Value;
 use stead_calibration::identification::FitModel;
-use stead_calibration::identification::design::{Design, Request};
 use stead_calibration::identification::design::expected::{ExpectedCompliance, ExpectedParameter};
 use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason, WeaklyObserved};
+use stead_calibration::identification::design::{Design, Request};
 use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::sheet::Configuration;
 use stead_model::robot::Spring;
@@ -80,7 +80,7 @@ records! {
     pub struct ExpectedFigures of (request: &Request, plan: &Design, bar: &ExpectedCompliance) {
         let urad = |value: Option<f64>| value.and_then(|value| digits(value * URAD));
     } with {
-        #[serde(flatten)] compliance: ComplianceName = 
+        #[serde(flatten)] compliance: ComplianceName =
             ComplianceName::of(request, Some(&plan.gauge), bar.spring(), bar.angle),
         /// Compliance assumed for the plan. urad/(N m)
         urad_per_nm: Option<f64> = urad(Some(bar.value)),
@@ -160,7 +160,7 @@ records! {
     pub struct HardlySeenFigures of (request: &Request, plan: &Design, hardly: &WeaklyObserved) {
         let spring = Spring { joint: hardly.joint, about: hardly.about };
     } with {
-        #[serde(flatten)] compliance: ComplianceName = 
+        #[serde(flatten)] compliance: ComplianceName =
             ComplianceName::of(request, Some(&plan.gauge), spring, hardly.angle),
         /// Expected standard deviation in per cent of the compliance. %
         std_percent: Option<f64> = digits(hardly.share * 100.0),

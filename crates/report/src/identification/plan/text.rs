@@ -92,8 +92,7 @@ fn bar_rows(model: FitModel, plan: &Design) -> Vec<Vec<String>> {
             FitModel::Axes => (bar.joint + 1).to_string(),
             FitModel::Full => plan.gauge.sum_name(bar.spring(), bar.spring().to_string()),
         };
-        let mut row =
-            vec![name, angle, fixed(bar.value * URAD, 4), deviation, percent(bar.deviation)];
+        let mut row = vec![name, angle, fixed(bar.value * URAD, 4), deviation, percent(bar.deviation)];
         row.extend(has_law.then(|| percent(Some(bar.by_law))));
         row.extend([percent(bar.best_random), percent(bar.median_random)]);
         rows.push(row);
