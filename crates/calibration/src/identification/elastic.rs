@@ -1,8 +1,8 @@
 //! The arm with its elastic turns, finite as they are: where it comes to rest under a load, and how that changes with
 //! the compliances.
 //!
-//! Behind the drive's turn of a joint come the elastic turns about z, x and y of the frame of its row, in this order and
-//! all at the bearing; or the one about z alone. Each is proportional to the torque of the load about its own axis as
+//! Behind the drive's turn of a joint come the elastic turns about z, x and y of the frame of its row, in this order
+//! and all at the bearing; or the one about z alone. Each is proportional to the torque of the load about its own axis as
 //! it lies under the load. Turns of the springs about the axes alone are those of the joints, for which
 //! [`equilibrium_with`] has the equilibrium; for all springs it is sought by iterating `q = C tau(q)`, which converges
 //! by a factor of about deflection over arm length a step.

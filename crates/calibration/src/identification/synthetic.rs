@@ -21,11 +21,10 @@ pub struct MeasuringCell {
     pub is_full_pose: bool,
 }
 
-/// What the tracker would read of the arm in its exact static equilibrium (where it gives way, deflected linearly), with
-/// all springs that deflections of it count ([`Robot::normal_springs`]),
-/// with `position_error` (m) added to every coordinate and `orientation_error` (rad) to every component of a turn.
-/// Configurations are called c1, c2, ... and points p1, p2, ...; line numbers are those of a file with one line of
-/// header.
+/// What the tracker would read of the arm in its exact static equilibrium (where it gives way, deflected linearly),
+/// with all springs that deflections of it count ([`Robot::normal_springs`]), and with `position_error` (m) added to
+/// every coordinate and `orientation_error` (rad) to every component of a turn. Configurations are called c1, c2, ...
+/// and points p1, p2, ...; line numbers are those of a file with one line of header.
 pub fn sheet(
     robot: &Robot,
     cell: &MeasuringCell,

@@ -34,7 +34,7 @@ pub fn measurement_plan(request: &Request, plan: &Design) -> String {
 
 /// The three standard deviations of a compliance in per cent of it: plan, best and median of the random sets.
 fn percents(bar: &ExpectedCompliance) -> [Option<f64>; 3] {
-    [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| 100.0 * d / bar.value))
+    [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| (100.0 * d / bar.value).abs()))
 }
 
 const COLOURS: [Colour; 3] = [GREEN, BLUE, PALE];

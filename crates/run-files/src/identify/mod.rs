@@ -2,8 +2,6 @@
 
 mod directions;
 mod file;
-#[cfg(test)]
-mod full_tests;
 mod held;
 mod plan;
 

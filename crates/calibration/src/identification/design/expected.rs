@@ -39,7 +39,7 @@ pub struct ExpectedCompliance {
 impl ExpectedCompliance {
     /// The smallest standard deviation that the plan gives, as a share of the compliance.
     pub fn share(&self) -> f64 {
-        self.by_law / self.value
+        (self.by_law / self.value).abs()
     }
 
     /// The spring.

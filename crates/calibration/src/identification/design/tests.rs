@@ -362,3 +362,52 @@ fn counts_that_cannot_do_are_refused() {
     };
     assert!(matches!(refused(one), DesignError::TooFew { equations: 3, unknowns: 6 }));
 }
+
+#[test]
+fn a_plan_for_all_springs_expects_what_a_full_fit_reports() {
+    use super::super::gauge::Gauge;
+    use super::super::tests::full::{WRIST_CENTRE, full_arm};
+    let robot = full_arm(WRIST_CENTRE);
+    let request = Request {
+        model: FitModel::Full,
+        varying: None,
+        levels: vec![],
+        configurations: 30,
+        candidates: 150,
+        starts: 2,
+        random_sets: 100,
+        robot: robot.clone(),
+        ..request(1)
+    };
+    let plan = planned(&request);
+    assert_eq!((plan.compliances.len(), plan.gauge.replaced.len()), (15, 3));
+    assert!(plan.errors.planned < plan.errors.best_random && plan.unobservable.is_empty(), "{:?}", plan.errors);
+    let readings = sheet(&robot, &cell(3), &plan.load_cases, || 0.0, || 0.0);
+    let start = Some(cell(3).tracker_from_base.rotation);
+    let varying = None;
+    let fit =
+        Problem { robot, noise: Some(NOISE), start, varying, model: FitModel::Full, ..problem(readings, &cell(3)) };
+    let found = identify(&fit).unwrap();
+    for (bar, estimate) in plan.compliances.iter().zip(&found.compliances) {
+        assert_eq!(bar.spring(), found.spring(estimate.parameter));
+        // The plan takes the arm as it is without the load.
+        assert!((estimate.deviation / bar.deviation.unwrap() - 1.0).abs() < 0.02, "{bar:?} {estimate:?}");
+        assert!((bar.by_law / bar.deviation.unwrap() - 1.0).abs() < 1e-6, "{bar:?}");
+        assert!((estimate.value / bar.value - 1.0).abs() < 1e-3, "{bar:?} {estimate:?}");
+    }
+    // With all of joint 5 held there is nothing that cannot be told apart but by joint 4 and 6 alone.
+    let held =
+        Request { hold_normal: [[false; 2], [false; 2], [false; 2], [false, true], [true; 2], [false; 2]], ..request };
+    let plan = planned(&held);
+    assert_eq!((plan.compliances.len(), &plan.gauge), (15, &Gauge::default()));
+    // Loads along the axis of joint 1 do not turn it about that, but about x and y.
+    let vertical = planned(&Request { loads: LoadDirections::Vertical, ..held });
+    let unseen: Vec<String> = vertical.unobservable.iter().map(|entry| entry.compliances[0].0.to_string()).collect();
+    assert_eq!(unseen, ["joint 1 about z"]);
+    let warning = &vertical.warnings.iter().find(|warning| warning.kind == "unobservable").unwrap().message;
+    for part in
+        ["joint 1 about z is unobservable: every load is vertical, along axis 1", "fit.hold = [\"joints[1].z\"]"]
+    {
+        assert!(warning.contains(part), "{part} in {warning}");
+    }
+}

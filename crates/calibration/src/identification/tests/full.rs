@@ -12,7 +12,7 @@ const ABOUT_Z: [f64; 6] = [0.54, 0.41, 0.42, 2.8, 3.1, 2.1];
 const NORMAL: [[f64; 2]; 6] = [[0.31, 0.22], [0.35, 0.41], [0.52, 0.37], [1.2, 0.9], [0.8, 1.4], [1.9, 1.1]];
 
 /// An arm with springs about three directions of every joint, those normal to the axes at these places on them.
-pub(super) fn full_arm(bearings: [f64; 6]) -> Robot {
+pub(in super::super) fn full_arm(bearings: [f64; 6]) -> Robot {
     let normal = std::array::from_fn(|joint| NormalSprings {
         compliance: NORMAL[joint].map(|urad| urad * 1e-6),
         bearing: bearings[joint],
@@ -22,7 +22,7 @@ pub(super) fn full_arm(bearings: [f64; 6]) -> Robot {
 }
 
 /// Bearings of joints 1 to 3 and 6 only; of joint 4 too; of all joints.
-const WRIST_CENTRE: [f64; 6] = [-0.75, 0.1, -0.05, 0.0, 0.0, 0.12];
+pub(in super::super) const WRIST_CENTRE: [f64; 6] = [-0.75, 0.1, -0.05, 0.0, 0.0, 0.12];
 const FOREARM: [f64; 6] = [-0.75, 0.1, -0.05, -0.621, 0.0, 0.12];
 const ALL: [f64; 6] = [-0.75, 0.1, -0.05, -0.621, 0.08, 0.12];
 

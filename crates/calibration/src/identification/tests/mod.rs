@@ -14,7 +14,7 @@ use stead_model::robot::testing::kr270;
 use stead_model::robot::{Compensator, Compliance, Pose, Robot};
 use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 
-mod full;
+pub(super) mod full;
 mod hold;
 mod large_deflections;
 mod refusals;

@@ -87,7 +87,7 @@ records! {
         /// Standard deviation that `fit` is expected to report for this compliance alone. urad/(N m)
         std_urad_per_nm: Option<f64> = urad(bar.deviation),
         /// The same in per cent of the compliance. %
-        std_percent: Option<f64> = bar.deviation.and_then(|deviation| digits(100.0 * deviation / bar.value)),
+        std_percent: Option<f64> = bar.deviation.and_then(|deviation| digits((100.0 * deviation / bar.value).abs())),
         /// Standard deviation by the law of the joint over all its angles. urad/(N m)
         by_law_std_urad_per_nm: Option<f64> = urad(Some(bar.by_law)),
         /// Least standard deviation by the law among the random sets of configurations. urad/(N m)

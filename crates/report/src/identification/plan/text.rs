@@ -84,7 +84,7 @@ fn bar_rows(model: FitModel, plan: &Design) -> Vec<Vec<String>> {
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     for bar in &plan.compliances {
         let percent = |deviation: Option<f64>| {
-            deviation.map_or_else(|| "-".to_owned(), |deviation| fixed(100.0 * deviation / bar.value, 2))
+            deviation.map_or_else(|| "-".to_owned(), |deviation| fixed((100.0 * deviation / bar.value).abs(), 2))
         };
         let angle = bar.angle.map_or_else(|| "-".to_owned(), |angle| fixed(angle.to_degrees(), 2));
         let deviation = bar.deviation.map_or_else(|| "-".to_owned(), |deviation| figures(deviation * URAD));

@@ -1,25 +1,24 @@
 //! Springs about three directions of every joint, on the shipped arms that state them: which are told apart and how well,
 //! what a fit of the axes alone makes of them, and what a file may ask for.
 
-use super::{read_identification, read_plan};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::springs::FULL;
 use stead_calibration::identification::synthetic::{MeasuringCell, sheet};
 use stead_calibration::identification::{FitModel, Identified, LoadCase, Problem, Sheet, identify};
 use stead_format::read_robot;
-use stead_format::testing::root;
 use stead_model::robot::{About, MeasuredFrom, Pose, Robot, SpringModel};
 use stead_numerics::monitor::Monitor;
+use stead_run_files::{read_identification, read_plan};
 
 const NOISE: f64 = 3e-5;
 
 fn shipped(name: &str) -> Robot {
-    read_robot(&root().join("configs/robots").join(name)).unwrap()
+    read_robot(&Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/robots").join(name)).unwrap()
 }
 
 /// What a tracker reads of an arm at random poses under 2.7 kN in random directions at a point of the flange frame.
@@ -83,7 +82,7 @@ fn percents(name: &str, count: usize) -> [Vec<f64>; 2] {
     })
 }
 
-/// The figures of the guide: `cargo test -p stead-run-files --lib springs_normal_to_the_axes_ask -- --nocapture`.
+/// The figures of the guide: `cargo test --test all springs_normal_to_the_axes_ask -- --nocapture`.
 #[test]
 fn springs_normal_to_the_axes_ask_for_more_configurations() {
     #[expect(clippy::print_stdout, reason = "the figures of the guide")]
