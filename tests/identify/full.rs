@@ -17,9 +17,15 @@ const SHEET: &str = "tasks/identify-example.csv";
 const TRUTH: [[f64; 3]; 6] =
     [[0.54, 0.12, 0.12], [0.3, 0.2, 0.1], [0.42, 0.6, 0.4], [2.79, 0.8, 1.0], [3.48, 1.2, 0.7], [2.07, 1.5, 1.9]];
 
+/// Where those normal to the axes sit, joint 6 apart from the wrist centre.
+const BEARING_MM: [f64; 6] = [0.0, 0.0, 0.0, 0.0, 0.0, 120.0];
+
 fn truth() -> Robot {
     let robot = stead_format::read_robot(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(ROBOT)).unwrap();
-    let normal = TRUTH.map(|[_, x, y]| NormalSprings { compliance: [x * 1e-6, y * 1e-6], bearing: 0.0 });
+    let normal = std::array::from_fn(|joint| {
+        let [_, x, y] = TRUTH[joint];
+        NormalSprings { compliance: [x * 1e-6, y * 1e-6], bearing: BEARING_MM[joint] / 1e3 }
+    });
     let robot = robot.with_compliances(TRUTH.map(|[z, ..]| z * 1e-6)).unwrap();
     robot.with_normal_springs(Some(normal)).unwrap().with_spring_model(Some(SpringModel::Full))
 }
@@ -53,6 +59,19 @@ fn full_bench(fit: &str) -> Bench {
          {fit}\n"
     );
     bench.write(CONFIG, &text);
+    // The file says where they sit, and that they are as good as rigid.
+    let robot = bench.read(ROBOT);
+    let mut rows = robot.split("[[joints]]\n");
+    let mut stated = rows.next().unwrap().to_owned();
+    for (row, bearing) in rows.zip(BEARING_MM) {
+        stated += "[[joints]]\n";
+        if fit.contains("full") {
+            stated +=
+                &format!("orthogonal_compliance_urad_per_nm = 0.01 # as good as rigid\nbearing_mm = {bearing:?}\n");
+        }
+        stated += row;
+    }
+    bench.write(ROBOT, &stated);
     bench
 }
 

@@ -2,7 +2,7 @@
 
 use super::FitModel;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, Visitor};
+use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use stead_calibration::identification::springs::{AXES, FULL, column, key_name, spring};
 use stead_disk::input::InputError;
@@ -42,6 +42,12 @@ impl Expects for HeldSprings {
          \"joints[1].y\" (normal to it), for joints 1 to 6"
             .to_owned()
     }
+
+    fn expected_of_each() -> String {
+        "whole numbers from 1 to 6, or names of springs: \"joints[1].z\" (about the axis), \"joints[1].x\", \"joints[1].y\" \
+         (normal to it), for joints 1 to 6"
+            .to_owned()
+    }
 }
 
 impl<'de> Deserialize<'de> for HeldSprings {
@@ -59,16 +65,15 @@ impl Visitor<'_> for HeldVisitor {
     expecting!(HeldSprings);
 
     fn visit_str<E: Error>(self, name: &str) -> Result<Self::Value, E> {
-        HeldSprings::of_name(name).ok_or_else(|| E::custom("is no spring of an arm"))
+        HeldSprings::of_name(name).ok_or_else(|| E::invalid_value(Unexpected::Str(name), &self))
     }
 
-    fn visit_i64<E: Error>(self, number: i64) -> Result<Self::Value, E> {
-        let joint = usize::try_from(number - 1).ok().filter(|joint| *joint < 6);
-        joint.map(HeldSprings::Joint).ok_or_else(|| E::custom("is out of range"))
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<Self::Value, E> {
-        self.visit_i64(i64::try_from(number).unwrap_or_default())
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Self::Value, E> {
+        if number.fract() != 0.0 {
+            return Err(E::custom("is not a whole number"));
+        }
+        let joint = (0..6).find(|joint| *joint as f64 + 1.0 == number);
+        joint.map(HeldSprings::Joint).ok_or_else(|| E::invalid_value(Unexpected::Float(number), &self))
     }
 }
 
@@ -108,7 +113,7 @@ pub(super) fn held_from(list: &List<HeldSprings>, model: FitModel, at: &Place<'_
         };
         for column in columns {
             if std::mem::replace(&mut held[column], true) {
-                let allowed = "numbers of joints from 1 to 6 and names of springs, each spring once";
+                let allowed = "numbers of joints from 1 to 6 and names of springs, each once";
                 return Err(at.element(place).error("is there twice", allowed));
             }
         }
