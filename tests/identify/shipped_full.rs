@@ -1,5 +1,5 @@
-//! Springs about three directions of every joint, on the shipped arms that state them: which are told apart and how well,
-//! what a fit of the axes alone makes of them, and what a file may ask for.
+//! Springs about three directions of every joint, on the shipped arms that state them: which are told apart and how
+//! well, what a fit of the axes alone makes of them, and what a file may ask for.
 
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};

@@ -2,8 +2,8 @@
 //! the compliances.
 //!
 //! Behind the drive's turn of a joint come the elastic turns about z, x and y of the frame of its row, in this order
-//! and all at the bearing; or the one about z alone. Each is proportional to the torque of the load about its own axis as
-//! it lies under the load. Turns of the springs about the axes alone are those of the joints, for which
+//! and all at the bearing; or the one about z alone. Each is proportional to the torque of the load about its own axis
+//! as it lies under the load. Turns of the springs about the axes alone are those of the joints, for which
 //! [`equilibrium_with`] has the equilibrium; for all springs it is sought by iterating `q = C tau(q)`, which converges
 //! by a factor of about deflection over arm length a step.
 

@@ -32,8 +32,8 @@ records! {
         configurations: usize = sheet.configurations.len(),
         /// Readings.
         readings: usize = sheet.readings.len(),
-        /// Every compliance, one for each distinct angle of the joint beside a compensator; of springs that cannot be told
-        /// apart their sum.
+        /// Every compliance, one for each distinct angle of the joint beside a compensator; of springs that cannot be
+        /// told apart their sum.
         compliances: Vec<ComplianceFigures> =
             found.compliances.iter().map(|estimate| ComplianceFigures::of(found, estimate)).collect(),
         /// The joint beside a compensator.
@@ -78,7 +78,8 @@ records! {
     } with {
         /// The joint, from 1.
         joint: usize = joint + 1,
-        /// The axis of the frame of its row about which the spring turns, where those normal to the axes were sought too.
+        /// The axis of the frame of its row about which the spring turns, where those normal to the axes were sought
+        /// too.
         #[serde(skip_serializing_if = "Option::is_none")]
         about: Option<&'static str> = is_full(found).then(|| found.spring(estimate.parameter).about.name()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.

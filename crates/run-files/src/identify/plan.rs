@@ -24,8 +24,8 @@ use stead_runs::PlanRun;
 /// Which measurements to choose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanTable {
-    /// Number of configurations to measure; where left out, 20, and 60 for springs about three directions of every joint
-    /// (`fit.model = "full"`).
+    /// Number of configurations to measure; where left out, 20, and 60 for springs about three directions of every
+    /// joint (`fit.model = "full"`).
     pub configurations: Option<Whole<1, 1000>>,
     /// Size of the load.
     pub load_n: N<Positive>,

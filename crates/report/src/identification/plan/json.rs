@@ -66,7 +66,8 @@ records! {
     } with {
         /// The joint, from 1.
         joint: usize = spring.joint + 1,
-        /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought too.
+        /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought
+        /// too.
         #[serde(skip_serializing_if = "Option::is_none")]
         about: Option<&'static str> = is_full.then(|| spring.about.name()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
