@@ -3,6 +3,8 @@
 use crate::common::{Bench, Ended};
 use stead_model::robot::Compliance;
 
+mod full;
+mod shipped_full;
 mod unidentifiable;
 
 const CONFIG: &str = "configs/identify-example.toml";

@@ -2,7 +2,7 @@
 
 use super::outcome::{Plan, PlanPoint};
 use rayon::prelude::*;
-use std::fmt;
+pub use stead_model::robot::{About, Spring};
 use stead_model::robot::{Compliance, Robot};
 use stead_planning::problem::{Placement, Problem, ProblemParts};
 use stead_planning::redundancy::off_grid::Spacing;
@@ -16,44 +16,6 @@ const STEP: f64 = 0.01;
 const FOLLOWING: Spacing = Spacing { first: 4e-3, last: 6e-5 };
 /// A sensitivity is not left uncertain by more than this share of the largest.
 const UNCERTAIN: f64 = 0.01;
-
-/// The axis of the frame of a row about which a spring of the joint turns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum About {
-    /// The axis of the joint.
-    Z,
-    /// Normal to it.
-    X,
-    /// Normal to it.
-    Y,
-}
-
-impl About {
-    /// As the frame names it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Z => "z",
-            Self::X => "x",
-            Self::Y => "y",
-        }
-    }
-}
-
-/// A spring of the arm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Spring {
-    /// Its joint, from 0.
-    pub joint: usize,
-    /// The axis about which it turns.
-    pub about: About,
-}
-
-impl fmt::Display for Spring {
-    /// `joint 3 about x`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "joint {} about {}", self.joint + 1, self.about.name())
-    }
-}
 
 /// How an objective answers to the stiffness of a spring, or of several that turn the tool about one line in every
 /// configuration, so that no deflection tells them apart.

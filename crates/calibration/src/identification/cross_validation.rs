@@ -3,10 +3,10 @@
 //! For least squares the residuals of a configuration without which the estimate was made are `(I - H)^-1 e`, with its
 //! ordinary residuals e and its block H of the hat matrix, so that nothing is estimated again.
 
-use super::law::{ArmFit, ArmParameter};
+use super::law::ArmFit;
 use super::model::{Layout, Observation};
 use super::sheet::Sheet;
-use nalgebra::{DMatrix, DVector, Vector6};
+use nalgebra::{DMatrix, DVector, SVector};
 use serde::Serialize;
 
 /// The error of predicted deflections, each from all other configurations.
@@ -21,8 +21,8 @@ pub struct Prediction {
     pub unpredicted: Vec<usize>,
 }
 
-/// The six compliances of a configuration by the arm's numbers. rad/(N m)
-pub fn compliances(layout: &Layout, arm: &ArmFit, configuration: usize) -> Vector6<f64> {
+/// The compliances of a configuration by the arm's numbers. rad/(N m)
+pub fn compliances<const N: usize>(layout: &Layout, arm: &ArmFit<N>, configuration: usize) -> SVector<f64, N> {
     let mut compliances = arm.joints;
     if let (Some(joint), Some(group)) = (layout.varying, layout.group(configuration)) {
         compliances[joint] = arm.groups[group].0;
@@ -30,13 +30,14 @@ pub fn compliances(layout: &Layout, arm: &ArmFit, configuration: usize) -> Vecto
     compliances
 }
 
-/// Derivatives of those by the arm's numbers, six rows.
-fn derivatives(layout: &Layout, arm: &ArmFit, configuration: usize) -> DMatrix<f64> {
-    let mut derivatives = DMatrix::zeros(6, arm.parameters.len());
+/// Derivatives of those by the arm's numbers, one row for each.
+fn derivatives<const N: usize>(layout: &Layout, arm: &ArmFit<N>, configuration: usize) -> DMatrix<f64> {
+    let mut derivatives = DMatrix::zeros(N, arm.parameters.len());
     let group = layout.group(configuration);
-    for (index, ArmParameter { joint, .. }) in arm.parameters.iter().enumerate() {
-        derivatives[(*joint, index)] = match group {
-            Some(group) if layout.varying == Some(*joint) => arm.groups[group].1[index],
+    for (index, parameter) in arm.parameters.iter().enumerate() {
+        let column = parameter.column();
+        derivatives[(column, index)] = match group {
+            Some(group) if layout.varying == Some(column) => arm.groups[group].1[index],
             _ => 1.0,
         };
     }
@@ -44,12 +45,12 @@ fn derivatives(layout: &Layout, arm: &ArmFit, configuration: usize) -> DMatrix<f
 }
 
 /// Leaves out each configuration in turn; readings for which `kept` does not hold are no part of it.
-pub fn leave_one_out(
+pub fn leave_one_out<const N: usize>(
     sheet: &Sheet,
     layout: &Layout,
-    observations: &[Observation],
+    observations: &[Observation<N>],
     kept: &[bool],
-    arm: &ArmFit,
+    arm: &ArmFit<N>,
 ) -> Prediction {
     /// Below this, a diagonal element of the factor of I - H means that nothing is left to predict with.
     const NOTHING: f64 = 1e-5;

@@ -2,77 +2,71 @@
 //!
 //! At small loads the deflection is linear in the compliances. At 10 mm that is off by as much as half a percent, at 30
 //! mm by two, since the load turns its own levers; so the arm is taken to its exact static equilibrium,
-//! `theta - theta_0 = C tau(theta)` with the diagonal matrix C of the compliances and tau = J^T w. From there
-//! `d theta = (1 - C H)^-1 diag(tau) dc`, with H the derivative of the torques by the angles ([`load_hessian`]).
+//! `q = C tau(q)` with the elastic turns q behind the drives, the diagonal matrix C of the compliances and tau = J^T w.
+//! From there `dq = (1 - C H)^-1 diag(tau) dc`, with H the derivative of the torques by the turns ([`super::elastic`]).
 
-use super::response::{Response, torque};
+use super::elastic::{Elastic, Rest};
+use super::response::Response;
 use super::sheet::Configuration;
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
-use stead_model::robot::{Frames, Robot};
+use super::springs::AXES;
+use nalgebra::{Matrix3, SVector, Vector3};
+use stead_model::robot::Robot;
 use stead_model::stiffness::Displacement;
-use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium_with};
-use stead_model::stiffness::loaded::load_hessian;
+use stead_model::stiffness::equilibrium::{Load, NoEquilibrium};
+use stead_model::stiffness::whole::of_matrix;
 use stead_numerics::rotation::rotation_vector;
 
-/// An arm in a configuration under load.
+/// An arm in a configuration under load. Springs are in the order of [`super::springs`].
 #[derive(Debug, Clone)]
-pub struct Deflected<'a> {
+pub struct Deflected<'a, const N: usize> {
     configuration: &'a Configuration,
     /// Where the wrench acts, in the flange frame. m
     load_point: &'a Vector3<f64>,
-    /// The joint compliances. rad/(N m)
-    compliances: Vector6<f64>,
-    before: Frames<f64>,
+    /// The compliances. rad/(N m)
+    compliances: SVector<f64, N>,
+    before: Elastic<N>,
+    /// What carries the arm, moved by the load as a small displacement at the load point, where it yields.
+    base: Option<Displacement<f64>>,
     /// At rest under the load; nothing where the deflection is taken to be linear in it.
-    rest: Option<Rest>,
+    rest: Option<Rest<N>>,
 }
 
-/// The arm at rest under its load.
-#[derive(Debug, Clone)]
-struct Rest {
-    frames: Frames<f64>,
-    /// Derivatives of the joint angles, in rows, by the compliances. N m
-    turns: Matrix6<f64>,
-}
-
-impl<'a> Deflected<'a> {
+impl<'a, const N: usize> Deflected<'a, N> {
     /// An arm with these compliances (rad/(N m)) and a load at a point of the flange frame (m), its deflection linear
     /// in both.
     pub fn linear(
         robot: &Robot,
-        compliances: Vector6<f64>,
+        compliances: SVector<f64, N>,
         configuration: &'a Configuration,
         load_point: &'a Vector3<f64>,
     ) -> Self {
-        Self { configuration, load_point, compliances, before: Frames::new(robot, &configuration.theta), rest: None }
+        let before = Elastic::unloaded(robot, &configuration.theta);
+        let base = of_base(robot, &before, configuration, load_point);
+        Self { configuration, load_point, compliances, before, base, rest: None }
     }
 
-    /// The same in its exact static equilibrium. A negative compliance is taken for zero.
+    /// The same in its exact static equilibrium. Among springs about the axes alone a negative compliance is taken for
+    /// zero; among all, where it may stand for a difference of two, it counts as it is.
     ///
     /// # Errors
     /// [`NoEquilibrium`] where the arm gives way under the load.
     pub fn at_rest(
         robot: &Robot,
-        compliances: Vector6<f64>,
+        compliances: SVector<f64, N>,
         configuration: &'a Configuration,
         load_point: &'a Vector3<f64>,
     ) -> Result<Self, NoEquilibrium> {
-        let compliances = compliances.map(|compliance| compliance.max(0.0));
+        let compliances = if N == AXES { compliances.map(|compliance| compliance.max(0.0)) } else { compliances };
         let Configuration { theta, force, moment, .. } = configuration;
         let load = Load { point: *load_point, force: *force, moment: *moment };
-        let rest = equilibrium_with(robot, &compliances.into(), theta, &load)?;
-        let frames = Frames::new(robot, &rest);
-        let place = frames.base_from_flange.point(load_point);
-        let torques = Vector6::from_fn(|joint, _| torque(&frames, joint, &place, force, moment));
-        let tangent =
-            Matrix6::identity() - Matrix6::from_diagonal(&compliances) * load_hessian(&frames, &place, force, moment);
-        let turns = tangent.lu().solve(&Matrix6::from_diagonal(&torques)).ok_or(NoEquilibrium { share: 1.0 })?;
-        let before = Frames::new(robot, theta);
-        Ok(Self { configuration, load_point, compliances, before, rest: Some(Rest { frames, turns }) })
+        let rest = Some(Rest::new(robot, &compliances, theta, &load)?);
+        let before = Elastic::unloaded(robot, theta);
+        let base = of_base(robot, &before, configuration, load_point);
+        Ok(Self { configuration, load_point, compliances, before, base, rest })
     }
 
     /// The compliances with which it deflects so. rad/(N m)
-    pub fn compliances(&self) -> &Vector6<f64> {
+    pub fn compliances(&self) -> &SVector<f64, N> {
         &self.compliances
     }
 
@@ -83,13 +77,22 @@ impl<'a> Deflected<'a> {
 
     /// How far the load moves a point of the flange frame (m) and turns the flange, in the base frame.
     pub fn displacement(&self, point: &Vector3<f64>) -> Displacement<f64> {
+        let moved = self.by_springs(point);
+        let Some(base) = &self.base else { return moved };
+        let lever = self.unloaded(point) - self.unloaded(self.load_point);
+        let linear = moved.linear + base.linear + base.angular.cross(&lever);
+        Displacement { linear, angular: moved.angular + base.angular }
+    }
+
+    /// The same by the springs of the arm alone.
+    fn by_springs(&self, point: &Vector3<f64>) -> Displacement<f64> {
         match &self.rest {
             None => {
                 let Response { linear, angular } = self.response(point);
                 Displacement { linear: linear * self.compliances, angular: angular * self.compliances }
             }
-            Some(Rest { frames, .. }) => {
-                let (before, after) = (&self.before.base_from_flange, &frames.base_from_flange);
+            Some(Rest { arm, .. }) => {
+                let (before, after) = (&self.before.base_from_flange, &arm.base_from_flange);
                 Displacement {
                     linear: after.point(point) - before.point(point),
                     angular: rotation_vector(&(after.rotation * before.rotation.transpose())),
@@ -99,23 +102,36 @@ impl<'a> Deflected<'a> {
     }
 
     /// The derivatives of that by the compliances.
-    pub fn response(&self, point: &Vector3<f64>) -> Response {
+    pub fn response(&self, point: &Vector3<f64>) -> Response<N> {
         let Configuration { force, moment, .. } = self.configuration;
-        let Some(Rest { frames, turns }) = &self.rest else {
+        let Some(Rest { arm, turns }) = &self.rest else {
             let [read, load] = [point, self.load_point].map(|place| self.before.base_from_flange.point(place));
             return Response::new(&self.before, &read, &load, force, moment);
         };
-        let jacobian = frames.jacobian(&frames.base_from_flange.point(point)) * turns;
-        let turned = self.displacement(point).angular.cross_matrix();
+        let jacobian = arm.jacobian(&arm.base_from_flange.point(point)) * turns;
+        let turned = self.by_springs(point).angular.cross_matrix();
         // From an angular velocity to the derivative of a rotation vector: 1 - [r]/2 + [r]^2/12 - ...
         let slope = Matrix3::identity() - turned / 2.0 + turned * turned / 12.0;
         Response { linear: jacobian.fixed_rows::<3>(0).into_owned(), angular: slope * jacobian.fixed_rows::<3>(3) }
     }
 }
 
+/// The displacement of what carries the arm at the load point, where it yields; small, and linear in the load.
+fn of_base<const N: usize>(
+    robot: &Robot,
+    arm: &Elastic<N>,
+    configuration: &Configuration,
+    load_point: &Vector3<f64>,
+) -> Option<Displacement<f64>> {
+    let (frame, matrix) = robot.yielding_base()?;
+    let place = arm.base_from_flange.point(load_point);
+    Some(of_matrix(matrix, &frame, &place, [&configuration.force, &configuration.moment]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector6;
     use proptest::prelude::*;
     use stead_model::robot::testing::odd_arms;
 

@@ -7,22 +7,22 @@ use super::normal_equations::{FreeParameters, NormalEquations, Solution};
 use super::outliers::{OutlierSearch, ROUNDING, RobustEstimate};
 use super::problem::Problem;
 use super::setup::Setup;
-use nalgebra::Vector6;
+use nalgebra::SVector;
 use stead_numerics::monitor::Monitor;
 
 /// What all equations of an identification have in common.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Equilibria<'a> {
+pub(super) struct Equilibria<'a, const N: usize> {
     /// The problem.
     pub problem: &'a Problem,
     /// The parameters.
     pub layout: &'a Layout,
     /// Which of them are free.
-    pub free: &'a FreeParameters,
+    pub free: &'a FreeParameters<N>,
     /// Values of the others.
-    pub held: (&'a Vector6<f64>, &'a [f64]),
-    /// Joints whose compliance is that of the starting arm in every configuration.
-    pub hold: [bool; 6],
+    pub held: (&'a SVector<f64, N>, &'a [f64]),
+    /// Springs whose compliance is that of the starting arm in every configuration.
+    pub hold: [bool; N],
     /// Standard deviations by which the equations are divided.
     pub noise: Noise,
     /// Who may stop it.
@@ -31,9 +31,9 @@ pub(super) struct Equilibria<'a> {
 
 /// Equations about the arm that they describe.
 #[derive(Debug, Clone)]
-pub(super) struct Settled {
+pub(super) struct Settled<const N: usize> {
     /// The equations.
-    pub observations: Vec<Observation>,
+    pub observations: Vec<Observation<N>>,
     /// Configurations (from 0) whose equations do not describe the arm at rest: it gives way there with the compliances
     /// found, or the equations did not settle.
     pub not_at_rest: Vec<usize>,
@@ -44,10 +44,10 @@ const STEPS: usize = 12;
 /// Equations that predict every reading as the equilibrium does, within this, describe it. m
 const SAME: f64 = 1e-12;
 
-impl Equilibria<'_> {
+impl<const N: usize> Equilibria<'_, N> {
     /// The equations about the arm with the compliances of a solution, and the configurations in which it would give
     /// way.
-    pub fn about(&self, setup: &Setup, solution: &Solution) -> (Vec<Observation>, Vec<usize>) {
+    pub fn about(&self, setup: &Setup, solution: &Solution<N>) -> (Vec<Observation<N>>, Vec<usize>) {
         let Problem { robot, sheet, load_point, .. } = self.problem;
         let compliances = |configuration| solution.compliances(self.layout.varying, self.layout.group(configuration));
         ObservationModel { robot, sheet, setup, load_point, noise: self.noise, hold: self.hold }.about(compliances)
@@ -55,7 +55,7 @@ impl Equilibria<'_> {
 
     /// From equations about another arm to those about the arm that they describe, by the readings that are kept. Where
     /// these do not determine it, or when `monitor` asked to stop, the equations are left as they are.
-    pub fn settled(&self, setup: &Setup, mut observations: Vec<Observation>, kept: &[bool]) -> Settled {
+    pub fn settled(&self, setup: &Setup, mut observations: Vec<Observation<N>>, kept: &[bool]) -> Settled<N> {
         let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
         let mut not_at_rest = Vec::new();
         for _ in 0..STEPS {
@@ -77,9 +77,9 @@ impl Equilibria<'_> {
     }
 
     /// The configurations in which two sets of equations predict different readings by a solution.
-    fn apart(&self, first: &[Observation], second: &[Observation], solution: &Solution) -> Vec<usize> {
+    fn apart(&self, first: &[Observation<N>], second: &[Observation<N>], solution: &Solution<N>) -> Vec<usize> {
         let difference = libm::sqrt(2.0) * self.noise.position;
-        let predicted = |observation: &Observation, compliances: &Vector6<f64>| {
+        let predicted = |observation: &Observation<N>, compliances: &SVector<f64, N>| {
             (observation.design * compliances + observation.known).fixed_rows::<3>(0) * difference
         };
         let is_apart = |configuration: &usize| {
@@ -97,7 +97,7 @@ impl Equilibria<'_> {
     ///
     /// # Errors
     /// [`IdentifyError::Unidentifiable`] where outliers are needed for it.
-    pub fn robust_estimate(&self, observations: &[Observation]) -> Result<RobustEstimate, IdentifyError> {
+    pub fn robust_estimate(&self, observations: &[Observation<N>]) -> Result<RobustEstimate<N>, IdentifyError> {
         let Self { problem: Problem { sheet, noise, .. }, layout, free, held, .. } = *self;
         let min_scale = if noise.is_some() { 1.0 } else { ROUNDING };
         let search = OutlierSearch { sheet, layout, observations, free, held, min_scale };
@@ -105,7 +105,7 @@ impl Equilibria<'_> {
     }
 
     /// What is unidentifiable from the readings that are kept, and which outliers would be needed for it.
-    fn unidentifiable_without_outliers(&self, observations: &[Observation], kept: &[bool]) -> IdentifyError {
+    fn unidentifiable_without_outliers(&self, observations: &[Observation<N>], kept: &[bool]) -> IdentifyError {
         let (sheet, layout) = (&self.problem.sheet, self.layout);
         let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
         let unidentifiable = NormalEquations::new(sheet, layout, observations, &weights).unidentifiable(self.free);

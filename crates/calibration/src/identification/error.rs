@@ -52,12 +52,14 @@ pub enum IdentifyError {
     },
     /// The estimate of a compliance is far below zero: the arm moves against the load.
     #[error(
-        "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
-         urad/(N m): the joint turns against its load"
+        "the compliance of {name} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} urad/(N m): \
+         the joint turns against its load{hint}"
     )]
     Negative {
-        /// Number of the joint, from 1.
-        joint: usize,
+        /// The joint, or the spring.
+        name: String,
+        /// What else may help, where anything does.
+        hint: &'static str,
         /// The estimate. urad/(N m)
         value_urad: f64,
         /// Its standard deviation. urad/(N m)
@@ -69,11 +71,13 @@ pub enum IdentifyError {
     /// A compliance comes out at zero or below.
     #[error(
         "the compliance of joint {joint} comes out as {value_urad:.4} with a standard deviation of {deviation_urad:.4} \
-         urad/(N m): it is not identifiable from these readings"
+         urad/(N m): it is not identifiable from these readings{hint}"
     )]
     NotPositive {
         /// Number of the joint, from 1.
         joint: usize,
+        /// What else may help, where anything does.
+        hint: &'static str,
         /// The estimate. urad/(N m)
         value_urad: f64,
         /// Its standard deviation. urad/(N m)

@@ -3,6 +3,7 @@
 use super::assemble::Assembly;
 use super::equilibria::Equilibria;
 use super::error::IdentifyError;
+use super::gauge::Gauge;
 use super::load_point::{LoadPointTest, doubted, tested};
 use super::model::{Layout, Noise, Observation, ObservationModel, Parameter};
 use super::normal_equations::{FreeParameters, NormalEquations};
@@ -10,8 +11,9 @@ use super::outcome::Identified;
 use super::problem::Problem;
 use super::response::Response;
 use super::setup::{Setup, check, estimate};
+use super::springs::{AXES, FULL, FitModel, column, compliances_of, held, spring};
 use super::warnings::warnings;
-use nalgebra::Vector6;
+use nalgebra::SVector;
 use stead_model::robot::Pose;
 use stead_numerics::monitor::{Monitor, Progress};
 
@@ -46,6 +48,18 @@ fn fitted(
     stage: &'static str,
     monitor: &Monitor,
 ) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
+    match problem.model {
+        FitModel::Axes => fitted_of::<AXES>(problem, stage, monitor),
+        FitModel::Full => fitted_of::<FULL>(problem, stage, monitor),
+    }
+}
+
+/// The same with so many springs.
+fn fitted_of<const N: usize>(
+    problem: &Problem,
+    stage: &'static str,
+    monitor: &Monitor,
+) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
     monitor.go_on()?;
     let round_done = |done: usize| monitor.report(Progress::Steps { stage, done, total: 1 + ROUNDS });
     if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
@@ -53,25 +67,27 @@ fn fitted(
         return fitted(&Problem { varying: None, ..problem.clone() }, stage, monitor);
     }
     let sheet = &problem.sheet;
-    let layout = Layout::new(sheet, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
+    let layout = Layout::new(sheet, problem.model, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
     let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| problem.robot.forward(&c.theta)).collect();
     let mut kept = vec![true; sheet.readings.len()];
     let mut used = kept.clone();
     let mut setup = estimate(sheet, &flanges, &kept, problem.start.as_ref())?;
-    check_lengths(problem, &setup)?;
-    let held = starting_values(problem, &layout);
+    check_lengths::<N>(problem, &setup)?;
+    let asked: [bool; N] = held(&problem.hold, &problem.hold_normal);
+    let gauge = Gauge::of(problem.model, &problem.robot, &asked);
+    let values = starting_values::<N>(problem, &layout, &gauge);
     let noise = Noise { position: problem.noise.unwrap_or(1.0), orientation: problem.orientation_noise.unwrap_or(1.0) };
-    let Problem { robot, load_point, hold, .. } = problem;
-    let unloaded = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: *hold }.linear();
-    let (free, dropped) = free_parameters(problem, &layout, &unloaded)?;
+    let Problem { robot, load_point, .. } = problem;
+    let unloaded = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: asked }.linear();
+    let (free, dropped) = free_parameters(problem, &layout, &asked, &gauge, &unloaded)?;
     if problem.varying.is_some() && free.groups.iter().all(|is_free| !is_free) {
         // Identifiable at no angle: then its law is not either, and the joint keeps the one it has.
         return fitted(&Problem { varying: None, ..problem.clone() }, stage, monitor);
     }
-    // A joint that is given up is held like one that is to be: at the angle of each configuration.
-    let hold = std::array::from_fn(|joint| problem.hold[joint] || dropped.contains(&Parameter::Joint(joint)));
+    // A spring that is given up is held like one that is to be: at the angle of each configuration.
+    let hold = std::array::from_fn(|number| asked[number] || dropped.contains(&Parameter::of_column(number)));
     let equilibria =
-        Equilibria { problem, layout: &layout, free: &free, held: (&held.0, &held.1), hold, noise, monitor };
+        Equilibria { problem, layout: &layout, free: &free, held: (&values.0, &values.1), hold, noise, monitor };
     let mut settled = equilibria.settled(&setup, unloaded, &kept);
     monitor.go_on()?;
     let mut robust = equilibria.robust_estimate(&settled.observations)?;
@@ -104,19 +120,21 @@ fn fitted(
         free: &free,
         robust,
         noise,
+        asked,
+        gauge,
         not_at_rest: settled.not_at_rest,
     };
     Ok((assembly.assemble(dropped)?, load_point))
 }
 
 /// Refuses a deflection far larger than the one predicted by the starting arm.
-fn check_lengths(problem: &Problem, setup: &Setup) -> Result<(), IdentifyError> {
+fn check_lengths<const N: usize>(problem: &Problem, setup: &Setup) -> Result<(), IdentifyError> {
     for configuration in &problem.sheet.configurations {
-        let compliances = problem.robot.compliances_at(&configuration.theta);
+        let compliances = compliances_of::<N>(&problem.robot, &configuration.theta);
         for reading in &problem.sheet.readings[configuration.readings.clone()] {
             let response =
-                Response::of(&problem.robot, configuration, &problem.load_point, &setup.points[reading.point]);
-            let columns = response.linear.column_iter().zip(compliances);
+                Response::<N>::of(&problem.robot, configuration, &problem.load_point, &setup.points[reading.point]);
+            let columns = response.linear.column_iter().zip(compliances.iter());
             let expected: f64 = columns.map(|(column, compliance)| column.norm() * compliance).sum();
             let deflection = (reading.loaded - reading.unloaded).norm();
             if deflection > FAR * expected.max(1e-4) {
@@ -131,29 +149,34 @@ fn check_lengths(problem: &Problem, setup: &Setup) -> Result<(), IdentifyError> 
     Ok(())
 }
 
-/// The compliances of the starting arm: of the joints, and at the distinct angles.
-fn starting_values(problem: &Problem, layout: &Layout) -> (Vector6<f64>, Vec<f64>) {
+/// The compliances of the starting arm, zero for springs that others replace: of the springs, and at the distinct
+/// angles.
+fn starting_values<const N: usize>(problem: &Problem, layout: &Layout, gauge: &Gauge) -> (SVector<f64, N>, Vec<f64>) {
     let middle = problem.sheet.configurations.first().map_or([0.0; 6], |configuration| configuration.theta);
-    let joints = Vector6::from(problem.robot.compliances_at(&middle));
+    let mut joints = compliances_of::<N>(&problem.robot, &middle);
+    gauge.replaced.iter().for_each(|replaced| joints[column(replaced.spring)] = 0.0);
     let at = |angle: &f64| layout.varying.map_or(0.0, |joint| problem.robot.joints()[joint].compliance_at(*angle));
     (joints, layout.angles.iter().map(at).collect())
 }
 
 /// The parameters to estimate, and those given up so that these are identifiable.
-fn free_parameters(
+fn free_parameters<const N: usize>(
     problem: &Problem,
     layout: &Layout,
-    equations: &[Observation],
-) -> Result<(FreeParameters, Vec<Parameter>), IdentifyError> {
-    if problem.hold == [true; 6] {
+    asked: &[bool; N],
+    gauge: &Gauge,
+    equations: &[Observation<N>],
+) -> Result<(FreeParameters<N>, Vec<Parameter>), IdentifyError> {
+    if asked.iter().all(|held| *held) {
         return Err(IdentifyError::NothingFree);
     }
     let sheet = &problem.sheet;
     let normal = NormalEquations::new(sheet, layout, equations, &vec![1.0; equations.len()]);
-    let (free, unidentifiable) = normal.identifiable(problem.hold);
+    let hold = std::array::from_fn(|number| asked[number] || gauge.is_zero(spring(number)));
+    let (free, unidentifiable) = normal.identifiable(hold);
     let rows = sheet.readings.len() * sheet.rows_per_reading();
     if !unidentifiable.is_empty() && !problem.reduce {
-        let unknowns = normal.free_unless(problem.hold).count();
+        let unknowns = normal.free_unless(hold).count();
         return Err(if rows < unknowns {
             IdentifyError::TooFew { equations: rows, unknowns }
         } else {

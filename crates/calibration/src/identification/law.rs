@@ -8,9 +8,11 @@
 
 use super::normal_equations::{NormalEquations, Solution};
 use super::spring::{Geometry, scaled_inverse, spring_start};
-use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+use super::springs::{column, spring};
+use nalgebra::{DMatrix, DVector, SVector, Vector3};
 use serde::Serialize;
 use std::fmt;
+use stead_model::robot::{About, Spring};
 
 /// How the compliance of the varying joint depends on its angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -30,6 +32,33 @@ pub struct ArmParameter {
     pub quantity: Quantity,
 }
 
+impl ArmParameter {
+    /// The compliance of a spring.
+    pub fn of_spring(Spring { joint, about }: Spring) -> Self {
+        let quantity = match about {
+            About::Z => Quantity::Compliance,
+            About::X => Quantity::AboutX,
+            About::Y => Quantity::AboutY,
+        };
+        Self { joint, quantity }
+    }
+
+    /// The spring whose compliance it is, or of whose law.
+    pub fn spring(&self) -> Spring {
+        let about = match self.quantity {
+            Quantity::Compliance | Quantity::SpringStiffness | Quantity::FreeLength => About::Z,
+            Quantity::AboutX => About::X,
+            Quantity::AboutY => About::Y,
+        };
+        Spring { joint: self.joint, about }
+    }
+
+    /// The column of that spring in the equations: see [`super::springs`].
+    pub fn column(&self) -> usize {
+        column(self.spring())
+    }
+}
+
 impl fmt::Display for ArmParameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = self.joint + 1;
@@ -37,6 +66,8 @@ impl fmt::Display for ArmParameter {
             Quantity::Compliance => write!(f, "the compliance of joint {number}"),
             Quantity::SpringStiffness => write!(f, "the stiffness of the spring beside joint {number}"),
             Quantity::FreeLength => write!(f, "the free length of the spring beside joint {number}"),
+            Quantity::AboutX => write!(f, "the compliance of joint {number} about x"),
+            Quantity::AboutY => write!(f, "the compliance of joint {number} about y"),
         }
     }
 }
@@ -50,19 +81,23 @@ pub enum Quantity {
     SpringStiffness,
     /// Length of that spring without load. m
     FreeLength,
+    /// Compliance about x of the frame of the row, normal to the joint axis. rad/(N m)
+    AboutX,
+    /// Compliance about y of the frame of the row, normal to the joint axis. rad/(N m)
+    AboutY,
 }
 
 /// The parameters of the arm.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ArmFit {
+pub struct ArmFit<const N: usize> {
     /// What they are, joint by joint.
     pub parameters: Vec<ArmParameter>,
     /// Their values, SI.
     pub values: DVector<f64>,
     /// Their covariance for equations of unit variance, SI.
     pub covariance: DMatrix<f64>,
-    /// The compliances of the joints that do not vary, free or held. rad/(N m)
-    pub joints: Vector6<f64>,
+    /// The compliances of the springs that do not vary, free or held. rad/(N m)
+    pub joints: SVector<f64, N>,
     /// At each distinct angle the compliance by the law, and its derivatives by the values. rad/(N m)
     pub groups: Vec<(f64, DVector<f64>)>,
 }
@@ -105,18 +140,18 @@ pub enum LawError {
 
 const STEPS: usize = 60;
 
-/// Fits the parameters of the arm to the normal equations. `joints` says which joints are free, `by_angle` is the
+/// Fits the parameters of the arm to the normal equations. `joints` says which springs are free, `by_angle` is the
 /// estimate with one compliance for each distinct angle, at `angles` in rad.
 ///
 /// # Errors
 /// [`LawError`] where the law is a spring that is not identifiable from the angles.
-pub fn fit(
-    normal: &NormalEquations,
-    joints: [bool; 6],
-    by_angle: &Solution,
+pub fn fit<const N: usize>(
+    normal: &NormalEquations<N>,
+    joints: [bool; N],
+    by_angle: &Solution<N>,
     angles: &[f64],
     law: Law,
-) -> Result<ArmFit, LawError> {
+) -> Result<ArmFit<N>, LawError> {
     let fit = Fit::new(normal, joints, angles, law);
     let number = normal.varying.map_or(0, |joint| joint + 1);
     let unidentifiable = LawError::Unidentifiable { joint: number };
@@ -144,29 +179,31 @@ pub fn fit(
     fit.finish(iterate, number, unidentifiable)
 }
 
-struct Iterate {
-    joints: Vector6<f64>,
+struct Iterate<const N: usize> {
+    joints: SVector<f64, N>,
     /// Compliance, or (K_theta, K_GC, s_0 K_GC), or nothing.
     law: Vec<f64>,
 }
 
-struct Fit<'a> {
-    normal: &'a NormalEquations,
+struct Fit<'a, const N: usize> {
+    normal: &'a NormalEquations<N>,
     law: Law,
     rows: Vec<Vector3<f64>>,
     parameters: Vec<ArmParameter>,
 }
 
-impl<'a> Fit<'a> {
-    fn new(normal: &'a NormalEquations, joints: [bool; 6], angles: &[f64], law: Law) -> Self {
+impl<'a, const N: usize> Fit<'a, N> {
+    fn new(normal: &'a NormalEquations<N>, joints: [bool; N], angles: &[f64], law: Law) -> Self {
         let mut parameters = Vec::new();
-        for joint in 0..6 {
-            let quantities: &[Quantity] = match (normal.varying == Some(joint), law) {
-                (false, _) if !joints[joint] => &[],
-                (false, _) | (true, Law::Constant) => &[Quantity::Compliance],
-                (true, Law::Spring(_)) => &[Quantity::Compliance, Quantity::SpringStiffness, Quantity::FreeLength],
+        for number in 0..N {
+            let first = ArmParameter::of_spring(spring(number));
+            let more: &[Quantity] = match (normal.varying == Some(number), law) {
+                (false, _) if !joints[number] => continue,
+                (false, _) | (true, Law::Constant) => &[],
+                (true, Law::Spring(_)) => &[Quantity::SpringStiffness, Quantity::FreeLength],
             };
-            parameters.extend(quantities.iter().map(|quantity| ArmParameter { joint, quantity: *quantity }));
+            parameters.push(first);
+            parameters.extend(more.iter().map(|quantity| ArmParameter { quantity: *quantity, ..first }));
         }
         let row = |angle: &f64| match law {
             Law::Constant => Vector3::zeros(),
@@ -177,8 +214,8 @@ impl<'a> Fit<'a> {
 
     /// Which number of the law a parameter is.
     fn place(&self, parameter: &ArmParameter) -> Option<usize> {
-        (self.normal.varying == Some(parameter.joint)).then_some(match parameter.quantity {
-            Quantity::Compliance => 0,
+        (self.normal.varying == Some(parameter.column())).then_some(match parameter.quantity {
+            Quantity::Compliance | Quantity::AboutX | Quantity::AboutY => 0,
             Quantity::SpringStiffness => 1,
             Quantity::FreeLength => 2,
         })
@@ -197,11 +234,11 @@ impl<'a> Fit<'a> {
     }
 
     /// Normal matrix and gradient of the sum of squares in the parameters.
-    fn equations(&self, iterate: &Iterate) -> (DMatrix<f64>, DVector<f64>) {
+    fn equations(&self, iterate: &Iterate<N>) -> (DMatrix<f64>, DVector<f64>) {
         let size = self.parameters.len();
         let normal = self.normal;
         let own: Vec<Option<usize>> = self.parameters.iter().map(|parameter| self.place(parameter)).collect();
-        let joint = |index: usize| self.parameters[index].joint;
+        let joint = |index: usize| self.parameters[index].column();
         let mut matrix = DMatrix::zeros(size, size);
         let mut gradient = DVector::zeros(size);
         let mut shared_gradient = normal.shared_rhs - normal.shared * iterate.joints;
@@ -231,26 +268,26 @@ impl<'a> Fit<'a> {
     }
 
     /// A Gauss-Newton step, and the size of each parameter.
-    fn step(&self, iterate: &Iterate) -> Option<(DVector<f64>, DVector<f64>)> {
+    fn step(&self, iterate: &Iterate<N>) -> Option<(DVector<f64>, DVector<f64>)> {
         let (matrix, gradient) = self.equations(iterate);
         let step = scaled_inverse(&matrix)? * gradient;
         let size = |parameter: &ArmParameter| match self.place(parameter) {
             Some(place) => iterate.law[place].abs().max(f64::MIN_POSITIVE),
-            None => iterate.joints[parameter.joint].abs().max(f64::MIN_POSITIVE),
+            None => iterate.joints[parameter.column()].abs().max(f64::MIN_POSITIVE),
         };
         let sizes = DVector::from_iterator(self.parameters.len(), self.parameters.iter().map(size));
         step.iter().all(|value| value.is_finite()).then_some((step, sizes))
     }
 
     /// The state after as much of a step as leaves every stiffness above zero.
-    fn moved(&self, iterate: &Iterate, step: &DVector<f64>) -> Option<Iterate> {
+    fn moved(&self, iterate: &Iterate<N>, step: &DVector<f64>) -> Option<Iterate<N>> {
         let mut part = 1.0;
         while part > 1e-6 {
             let mut next = Iterate { joints: iterate.joints, law: iterate.law.clone() };
             for (parameter, change) in self.parameters.iter().zip(step.iter()) {
                 match self.place(parameter) {
                     Some(place) => next.law[place] += part * change,
-                    None => next.joints[parameter.joint] += part * change,
+                    None => next.joints[parameter.column()] += part * change,
                 }
             }
             let is_spring = matches!(self.law, Law::Spring(_)) && next.law.len() == 3;
@@ -263,7 +300,7 @@ impl<'a> Fit<'a> {
     }
 
     /// From stiffnesses to the numbers that robot files have.
-    fn finish(&self, iterate: Iterate, number: usize, unidentifiable: LawError) -> Result<ArmFit, LawError> {
+    fn finish(&self, iterate: Iterate<N>, number: usize, unidentifiable: LawError) -> Result<ArmFit<N>, LawError> {
         let (matrix, _) = self.equations(&iterate);
         let covariance = scaled_inverse(&matrix).ok_or(unidentifiable)?;
         let size = self.parameters.len();
@@ -271,7 +308,7 @@ impl<'a> Fit<'a> {
         let mut values = DVector::zeros(size);
         for (index, parameter) in self.parameters.iter().enumerate() {
             values[index] = match (self.place(parameter), self.law, &iterate.law[..]) {
-                (None, ..) => iterate.joints[parameter.joint],
+                (None, ..) => iterate.joints[parameter.column()],
                 (Some(0), Law::Spring(_), [stiffness, ..]) => {
                     change[(index, index)] = -1.0 / (stiffness * stiffness);
                     1.0 / stiffness

@@ -5,13 +5,13 @@
 
 use super::distribution::tail;
 use super::equilibria::Equilibria;
-use super::model::{Observation, compliance_name};
+use super::model::Observation;
 use super::normal_equations::{FreeParameters, NormalEquations};
 use super::outcome::Identified;
 use super::outliers::{ROUNDING, RobustEstimate};
 use super::problem::Problem;
 use super::setup::Setup;
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 use stead_numerics::message::Warning;
 
 /// Where the load acts by the readings.
@@ -34,18 +34,18 @@ const STEPS: (usize, f64) = (8, 1e-5);
 
 /// Tests the load point that a problem states, about the arm of an estimate; nothing where there are too few readings
 /// for it.
-pub(super) fn tested(
-    equilibria: &Equilibria<'_>,
+pub(super) fn tested<const N: usize>(
+    equilibria: &Equilibria<'_, N>,
     setup: &Setup,
-    equations: &[Observation],
-    robust: &RobustEstimate,
+    equations: &[Observation<N>],
+    robust: &RobustEstimate<N>,
 ) -> Option<LoadPointTest> {
     let Equilibria { problem, layout, free, .. } = *equilibria;
     let sheet = &problem.sheet;
     let compliances = |reading: usize| {
         robust.solution.compliances(layout.varying, layout.group(sheet.readings[reading].configuration))
     };
-    let predicted = |equations: &[Observation]| -> Vec<Vector6<f64>> {
+    let predicted = |equations: &[Observation<N>]| -> Vec<Vector6<f64>> {
         equations.iter().enumerate().map(|(index, e)| e.design * compliances(index) + e.known).collect()
     };
     let here = predicted(equations);
@@ -80,20 +80,20 @@ pub(super) fn tested(
 }
 
 /// What of a change of all readings no compliance takes up.
-fn unexplained(
-    equilibria: &Equilibria<'_>,
-    equations: &[Observation],
+fn unexplained<const N: usize>(
+    equilibria: &Equilibria<'_, N>,
+    equations: &[Observation<N>],
     change: &[Vector6<f64>],
-    robust: &RobustEstimate,
-    free: &FreeParameters,
+    robust: &RobustEstimate<N>,
+    free: &FreeParameters<N>,
 ) -> Option<Vec<Vector6<f64>>> {
     let (sheet, layout) = (&equilibria.problem.sheet, equilibria.layout);
     let weights: Vec<f64> = robust.kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
-    let changed: Vec<Observation> =
+    let changed: Vec<Observation<N>> =
         equations.iter().zip(change).map(|(e, change)| Observation { deflection: *change, ..*e }).collect();
-    let none = (&Vector6::zeros(), &vec![0.0; layout.angles.len()][..]);
+    let none = (&SVector::zeros(), &vec![0.0; layout.angles.len()][..]);
     let taken = NormalEquations::new(sheet, layout, &changed, &weights).solve(free, none)?;
-    let left = |(e, reading): (&Observation, &super::Reading)| {
+    let left = |(e, reading): (&Observation<N>, &super::Reading)| {
         e.deflection - e.design * taken.compliances(layout.varying, layout.group(reading.configuration))
     };
     Some(changed.iter().zip(&sheet.readings).map(left).collect())
@@ -158,7 +158,7 @@ fn change(estimate: &super::Estimate<super::model::Parameter>, there: &Identifie
     let other = there.compliances.iter().find(|other| other.parameter == estimate.parameter)?;
     let [low, high] = estimate.interval;
     (!(low..=high).contains(&other.value)).then(|| {
-        let name = compliance_name(there.joint(other.parameter), other.angle);
+        let name = there.model.name(there.spring(other.parameter), other.angle);
         format!("the compliance {name} is {:.3} urad/(N m) in place of {:.3}", other.value * 1e6, estimate.value * 1e6)
     })
 }

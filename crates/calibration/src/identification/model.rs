@@ -7,13 +7,16 @@
 use super::deflected::Deflected;
 use super::setup::Setup;
 use super::sheet::{Configuration, Reading, Sheet};
-use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
+use super::springs::{FitModel, column, compliances_of, spring};
+use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 use serde::Serialize;
-use stead_model::robot::Robot;
+use stead_model::robot::{About, Robot, Spring};
 
 /// Which compliances are sought.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Layout {
+    /// About which axes the joints have springs.
+    pub model: FitModel,
     /// The joint (from 0) with one compliance for each distinct angle, if there is one.
     pub varying: Option<usize>,
     /// Its distinct angles: means over the configurations that share one, ascending. rad
@@ -25,8 +28,10 @@ pub struct Layout {
 /// One of the compliances sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Parameter {
-    /// Of a joint (from 0), the same in all configurations.
+    /// Of a joint (from 0) about its axis, the same in all configurations.
     Joint(usize),
+    /// Of a joint about a direction normal to its axis, the same in all configurations.
+    Normal(Spring),
     /// Of the varying joint, at one of its distinct angles (from 0).
     Group(usize),
 }
@@ -34,9 +39,9 @@ pub enum Parameter {
 impl Layout {
     /// The layout for a sheet; angles of the varying joint within `tolerance` (rad) of the smallest of their group are
     /// one.
-    pub fn new(sheet: &Sheet, varying: Option<usize>, tolerance: f64) -> Self {
+    pub fn new(sheet: &Sheet, model: FitModel, varying: Option<usize>, tolerance: f64) -> Self {
         let Some(joint) = varying else {
-            return Self { varying, angles: vec![], group_of: vec![] };
+            return Self { model, varying, angles: vec![], group_of: vec![] };
         };
         let angle = |index: usize| sheet.configurations[index].theta[joint];
         let mut order: Vec<usize> = (0..sheet.configurations.len()).collect();
@@ -49,7 +54,7 @@ impl Layout {
             }
             angles.push(group.iter().map(|index| angle(*index)).sum::<f64>() / group.len() as f64);
         }
-        Self { varying, angles, group_of }
+        Self { model, varying, angles, group_of }
     }
 
     /// The group of a configuration, where a joint varies.
@@ -57,44 +62,59 @@ impl Layout {
         self.varying.map(|_| self.group_of[configuration])
     }
 
-    /// All parameters: the joints in order, the varying one as its groups.
+    /// All parameters: the joints about their axes in order, the varying one as its groups; then the springs normal to
+    /// the axes, where there are any.
     pub fn parameters(&self) -> Vec<Parameter> {
         let groups = || (0..self.angles.len()).map(Parameter::Group);
-        (0..6)
-            .flat_map(|joint| {
-                let is_varying = self.varying == Some(joint);
-                let alone = (!is_varying).then_some(Parameter::Joint(joint));
-                alone.into_iter().chain(groups().filter(move |_| is_varying))
-            })
-            .collect()
+        let about_axes = (0..6).flat_map(|joint| {
+            let is_varying = self.varying == Some(joint);
+            let alone = (!is_varying).then_some(Parameter::Joint(joint));
+            alone.into_iter().chain(groups().filter(move |_| is_varying))
+        });
+        about_axes.chain((6..self.model.columns()).map(|column| Parameter::Normal(spring(column)))).collect()
     }
 
-    /// The joint of a parameter, from 0.
-    pub fn joint(&self, parameter: Parameter) -> usize {
-        match parameter {
-            Parameter::Joint(joint) => joint,
-            Parameter::Group(_) => self.varying.unwrap_or_default(),
-        }
+    /// The spring of a parameter.
+    pub fn spring(&self, parameter: Parameter) -> Spring {
+        parameter.spring(self.varying)
+    }
+
+    /// The column of a parameter in the equations: see [`super::springs`].
+    pub fn column(&self, parameter: Parameter) -> usize {
+        column(self.spring(parameter))
     }
 
     /// The name of a parameter in messages.
     pub fn name(&self, parameter: Parameter) -> String {
-        compliance_name(self.joint(parameter), self.angle(parameter))
+        self.model.name(self.spring(parameter), self.angle(parameter))
     }
 
     /// The angle of a parameter of the varying joint. rad
     pub fn angle(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
-            Parameter::Joint(_) => None,
+            Parameter::Joint(_) | Parameter::Normal(_) => None,
             Parameter::Group(group) => self.angles.get(group).copied(),
         }
     }
 }
 
-/// The name of a compliance in messages: of a joint (from 0), and, where it has several, at an angle (rad).
-pub fn compliance_name(joint: usize, angle: Option<f64>) -> String {
-    let number = joint + 1;
-    angle.map_or_else(|| format!("k_{number}"), |angle| format!("k_{number} at {:.2} deg", angle.to_degrees()))
+impl Parameter {
+    /// The parameter of a column that does not vary with the angle of its joint.
+    pub fn of_column(number: usize) -> Self {
+        match spring(number) {
+            Spring { joint, about: About::Z } => Self::Joint(joint),
+            normal => Self::Normal(normal),
+        }
+    }
+
+    /// The spring, where this joint (from 0) is the one with several compliances.
+    pub fn spring(self, varying: Option<usize>) -> Spring {
+        match self {
+            Self::Joint(joint) => Spring { joint, about: About::Z },
+            Self::Normal(spring) => spring,
+            Self::Group(_) => Spring { joint: varying.unwrap_or_default(), about: About::Z },
+        }
+    }
 }
 
 /// Runs of sorted items that lie within a tolerance of their first.
@@ -129,21 +149,21 @@ impl Noise {
 }
 
 /// One reading as equations of unit variance: `deflection = design * compliances + error`. Rows 3 to 5 are zero in
-/// sheets without orientations.
+/// sheets without orientations. Springs are columns in the order of [`super::springs`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Observation {
-    /// Design matrix: columns are the six joints, those of held joints zero.
-    pub design: Matrix6<f64>,
+pub struct Observation<const N: usize> {
+    /// Design matrix: columns are the springs, those of held springs zero.
+    pub design: SMatrix<f64, 6, N>,
     /// Deflection read, less what is known of it.
     pub deflection: Vector6<f64>,
-    /// What the compliances that are sought do not change: the deflection by the held joints, with the compliances of
+    /// What the compliances that are sought do not change: the deflection by the held springs, with the compliances of
     /// the starting arm at the angles of the configuration, and what is not linear in the others.
     pub known: Vector6<f64>,
 }
 
 /// What the equations of a sheet are made of.
 #[derive(Debug, Clone, Copy)]
-pub struct ObservationModel<'a> {
+pub struct ObservationModel<'a, const N: usize> {
     /// The starting arm.
     pub robot: &'a Robot,
     /// The readings.
@@ -154,15 +174,15 @@ pub struct ObservationModel<'a> {
     pub load_point: &'a Vector3<f64>,
     /// What the equations are divided by.
     pub noise: Noise,
-    /// Which joints are held at the compliances of the starting arm.
-    pub hold: [bool; 6],
+    /// Which springs are held at the compliances of the starting arm.
+    pub hold: [bool; N],
 }
 
-impl ObservationModel<'_> {
+impl<const N: usize> ObservationModel<'_, N> {
     /// The equations of all readings for small deflections, linear in the load.
-    pub fn linear(&self) -> Vec<Observation> {
+    pub fn linear(&self) -> Vec<Observation<N>> {
         let deflected = |configuration| {
-            let held = self.with_held(configuration, Vector6::zeros());
+            let held = self.with_held(configuration, SVector::zeros());
             Deflected::linear(self.robot, held, configuration, self.load_point)
         };
         self.sheet.configurations.iter().flat_map(|c| self.equations(c, &deflected(c))).collect()
@@ -171,7 +191,7 @@ impl ObservationModel<'_> {
     /// The equations of all readings linearised about the arm as it rests with these compliances (rad/(N m)), a
     /// function of the configuration (from 0); and the configurations in which it would give way, whose equations are
     /// those for small deflections.
-    pub fn about(&self, compliances: impl Fn(usize) -> Vector6<f64>) -> (Vec<Observation>, Vec<usize>) {
+    pub fn about(&self, compliances: impl Fn(usize) -> SVector<f64, N>) -> (Vec<Observation<N>>, Vec<usize>) {
         let mut observations = Vec::with_capacity(self.sheet.readings.len());
         let mut given_way = Vec::new();
         for (index, configuration) in self.sheet.configurations.iter().enumerate() {
@@ -186,23 +206,24 @@ impl ObservationModel<'_> {
         (observations, given_way)
     }
 
-    /// Compliances with those of held joints in their places. rad/(N m)
-    fn with_held(&self, configuration: &Configuration, mut compliances: Vector6<f64>) -> Vector6<f64> {
-        for joint in (0..6).filter(|joint| self.hold[*joint]) {
-            compliances[joint] = self.robot.joints()[joint].compliance_at(configuration.theta[joint]);
+    /// Compliances with those of held springs in their places. rad/(N m)
+    fn with_held(&self, configuration: &Configuration, mut compliances: SVector<f64, N>) -> SVector<f64, N> {
+        let own = compliances_of::<N>(self.robot, &configuration.theta);
+        for column in (0..N).filter(|column| self.hold[*column]) {
+            compliances[column] = own[column];
         }
         compliances
     }
 
     /// The equations of the readings in a configuration.
-    fn equations(&self, configuration: &Configuration, deflected: &Deflected<'_>) -> Vec<Observation> {
+    fn equations(&self, configuration: &Configuration, deflected: &Deflected<'_, N>) -> Vec<Observation<N>> {
         let base_from_tracker = self.setup.tracker_from_base.rotation.transpose();
         let (linear, angular) = self.noise.weights();
         let observation = |reading: &Reading| {
             let place = &self.setup.points[reading.point];
             let (response, moved) = (deflected.response(place), deflected.displacement(place));
-            let (mut design, mut read, mut known) = (Matrix6::zeros(), Vector6::zeros(), Vector6::zeros());
-            let mut set = |rows: usize, response: Matrix3x6<f64>, found: Vector3<f64>, predicted: Vector3<f64>| {
+            let (mut design, mut read, mut known) = (SMatrix::<f64, 6, N>::zeros(), Vector6::zeros(), Vector6::zeros());
+            let mut set = |rows: usize, response: SMatrix<f64, 3, N>, found: Vector3<f64>, predicted: Vector3<f64>| {
                 design.fixed_rows_mut::<3>(rows).copy_from(&response);
                 read.fixed_rows_mut::<3>(rows).copy_from(&found);
                 known.fixed_rows_mut::<3>(rows).copy_from(&predicted);
@@ -212,7 +233,7 @@ impl ObservationModel<'_> {
             if let Some(turn) = &reading.turn {
                 set(3, response.angular * angular, base_from_tracker * turn * angular, moved.angular * angular);
             }
-            (0..6).filter(|joint| self.hold[*joint]).for_each(|joint| design.fill_column(joint, 0.0));
+            (0..N).filter(|column| self.hold[*column]).for_each(|column| design.fill_column(column, 0.0));
             known -= design * deflected.compliances();
             Observation { design, deflection: read - known, known }
         };
@@ -235,11 +256,11 @@ mod tests {
         };
         let configurations = [0.5, 0.1, 0.501, 0.1005, 0.502, 0.9].map(configuration).to_vec();
         let sheet = Sheet { points: vec![], configurations, readings: vec![] };
-        let layout = Layout::new(&sheet, Some(1), 1.5e-3);
+        let layout = Layout::new(&sheet, FitModel::Axes, Some(1), 1.5e-3);
         assert_eq!(layout.group_of, [1, 0, 1, 0, 2, 3]);
         assert!((layout.angles[1] - 0.5005).abs() < 1e-15);
         assert_eq!(layout.parameters().len(), 9);
         assert_eq!(layout.parameters()[1], Parameter::Group(0));
-        assert_eq!(Layout::new(&sheet, None, 1e-3).parameters().len(), 6);
+        assert_eq!(Layout::new(&sheet, FitModel::Axes, None, 1e-3).parameters().len(), 6);
     }
 }

@@ -3,29 +3,30 @@
 
 use super::model::{Layout, Observation, Parameter};
 use super::sheet::Sheet;
-use nalgebra::{DMatrix, Matrix6, SymmetricEigen, Vector6};
+use super::springs::column;
+use nalgebra::{DMatrix, SMatrix, SVector, SymmetricEigen};
 use serde::Serialize;
 
 /// Sums over readings: of the products of columns, and of columns and deflections.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NormalEquations {
-    /// The varying joint, whose row and column of `shared` are zero.
+pub struct NormalEquations<const N: usize> {
+    /// The varying joint, whose row and column of `shared` are zero. Springs are in the order of [`super::springs`].
     pub varying: Option<usize>,
-    /// Products of the columns of the joints that do not vary.
-    pub shared: Matrix6<f64>,
+    /// Products of the columns of the springs that do not vary.
+    pub shared: SMatrix<f64, N, N>,
     /// Those with the deflections.
-    pub shared_rhs: Vector6<f64>,
+    pub shared_rhs: SVector<f64, N>,
     /// The same for each distinct angle of the varying joint.
-    pub groups: Vec<Group>,
+    pub groups: Vec<Group<N>>,
     /// Sum of the weights.
     pub weight: f64,
 }
 
 /// The part of one distinct angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Group {
-    /// Product of its column with those of the other joints.
-    pub coupling: Vector6<f64>,
+pub struct Group<const N: usize> {
+    /// Product of its column with those of the other springs.
+    pub coupling: SVector<f64, N>,
     /// Product with itself.
     pub diagonal: f64,
     /// Product with the deflections.
@@ -36,18 +37,19 @@ pub struct Group {
 
 /// Which parameters are free; the others keep the values they are given.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FreeParameters {
-    /// Joints; the varying one is not among them.
-    pub joints: [bool; 6],
+pub struct FreeParameters<const N: usize> {
+    /// Springs; that of the varying joint is not among them.
+    pub joints: [bool; N],
     /// Distinct angles.
     pub groups: Vec<bool>,
 }
 
-impl FreeParameters {
+impl<const N: usize> FreeParameters<N> {
     /// Holds a parameter; whether it was free before.
     fn hold(&mut self, parameter: Parameter) -> bool {
         let slot = match parameter {
             Parameter::Joint(joint) => &mut self.joints[joint],
+            Parameter::Normal(spring) => &mut self.joints[column(spring)],
             Parameter::Group(group) => &mut self.groups[group],
         };
         std::mem::replace(slot, false)
@@ -62,6 +64,7 @@ impl FreeParameters {
     pub fn contains(&self, parameter: Parameter) -> bool {
         match parameter {
             Parameter::Joint(joint) => self.joints[joint],
+            Parameter::Normal(spring) => self.joints[column(spring)],
             Parameter::Group(group) => self.groups[group],
         }
     }
@@ -69,15 +72,15 @@ impl FreeParameters {
 
 /// Compliances of all parameters, and the covariance of the free ones for equations of unit variance.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// Of the joints that do not vary. rad/(N m)
-    pub joints: Vector6<f64>,
+pub struct Solution<const N: usize> {
+    /// Of the springs that do not vary. rad/(N m)
+    pub joints: SVector<f64, N>,
     /// At the distinct angles. rad/(N m)
     pub groups: Vec<f64>,
-    /// Covariance of the joints; zero for what is not free.
-    pub covariance: Matrix6<f64>,
-    /// For each distinct angle: how its estimate follows an error of the joints, and its own variance for given joints.
-    pub follow: Vec<(Vector6<f64>, f64)>,
+    /// Covariance of the springs; zero for what is not free.
+    pub covariance: SMatrix<f64, N, N>,
+    /// For each distinct angle: how its estimate follows an error of the springs, and its own variance for given ones.
+    pub follow: Vec<(SVector<f64, N>, f64)>,
 }
 
 /// A combination of parameters along which no reading changes.
@@ -94,14 +97,14 @@ const DEPENDENT: f64 = 1e-11;
 /// Parameters with less than this share of a dependence are not named.
 const SHARE: f64 = 0.05;
 
-impl NormalEquations {
+impl<const N: usize> NormalEquations<N> {
     /// Sums over all readings with these weights, one for each reading.
-    pub fn new(sheet: &Sheet, layout: &Layout, observations: &[Observation], weights: &[f64]) -> Self {
-        let group = Group { coupling: Vector6::zeros(), diagonal: 0.0, rhs: 0.0, weight: 0.0 };
+    pub fn new(sheet: &Sheet, layout: &Layout, observations: &[Observation<N>], weights: &[f64]) -> Self {
+        let group = Group { coupling: SVector::zeros(), diagonal: 0.0, rhs: 0.0, weight: 0.0 };
         let mut normal = Self {
             varying: layout.varying,
-            shared: Matrix6::zeros(),
-            shared_rhs: Vector6::zeros(),
+            shared: SMatrix::zeros(),
+            shared_rhs: SVector::zeros(),
             groups: vec![group; layout.angles.len()],
             weight: 0.0,
         };
@@ -113,7 +116,7 @@ impl NormalEquations {
         normal
     }
 
-    fn add(&mut self, observation: &Observation, group: Option<usize>, weight: f64) {
+    fn add(&mut self, observation: &Observation<N>, group: Option<usize>, weight: f64) {
         let mut products = observation.design.tr_mul(&observation.design) * weight;
         let mut rhs = observation.design.tr_mul(&observation.deflection) * weight;
         if let (Some(joint), Some(group)) = (self.varying, group) {
@@ -131,8 +134,8 @@ impl NormalEquations {
         self.weight += weight;
     }
 
-    /// All parameters free but those of held joints; the varying one is not held.
-    pub fn free_unless(&self, hold: [bool; 6]) -> FreeParameters {
+    /// All parameters free but those of held springs; the varying one is not held.
+    pub fn free_unless(&self, hold: [bool; N]) -> FreeParameters<N> {
         FreeParameters {
             joints: std::array::from_fn(|joint| self.varying != Some(joint) && !hold[joint]),
             groups: vec![true; self.groups.len()],
@@ -140,21 +143,21 @@ impl NormalEquations {
     }
 
     /// Parameters whose columns are zero but for rounding.
-    fn zero_columns(&self, free: &FreeParameters) -> Vec<Parameter> {
+    fn zero_columns(&self, free: &FreeParameters<N>) -> Vec<Parameter> {
         let mean = |square: f64, weight: f64| if weight > 0.0 { square / weight } else { 0.0 };
         let joint = |joint: usize| mean(self.shared[(joint, joint)], self.weight);
         let group = |group: usize| mean(self.groups[group].diagonal, self.groups[group].weight);
-        let largest = (0..6).map(joint).chain((0..self.groups.len()).map(group)).fold(0.0, f64::max);
-        let joints = (0..6)
+        let largest = (0..N).map(joint).chain((0..self.groups.len()).map(group)).fold(0.0, f64::max);
+        let joints = (0..N)
             .filter(|j| free.joints[*j] && joint(*j) <= ZERO_COLUMN * ZERO_COLUMN * largest)
-            .map(Parameter::Joint);
+            .map(Parameter::of_column);
         let groups =
             (0..self.groups.len()).filter(|g| free.groups[*g] && group(*g) <= ZERO_COLUMN * ZERO_COLUMN * largest);
         joints.chain(groups.map(Parameter::Group)).collect()
     }
 
     /// The unidentifiable combinations: zero columns first, or, where there are none, dependent ones.
-    pub fn unidentifiable(&self, free: &FreeParameters) -> Vec<Unidentifiable> {
+    pub fn unidentifiable(&self, free: &FreeParameters<N>) -> Vec<Unidentifiable> {
         let zero_columns = self.zero_columns(free);
         if !zero_columns.is_empty() {
             return zero_columns.into_iter().map(|parameter| Unidentifiable { parameters: vec![parameter] }).collect();
@@ -170,9 +173,12 @@ impl NormalEquations {
         let eigen = SymmetricEigen::new(scaled);
         let dependent = (0..size).filter(|k| eigen.eigenvalues[*k] <= DEPENDENT);
         let name = |k: usize| {
-            let mut shares: Vec<(Parameter, f64)> =
-                joints.iter().enumerate().map(|(a, j)| (Parameter::Joint(*j), eigen.eigenvectors[(a, k)])).collect();
-            let along = joints.iter().enumerate().fold(Vector6::zeros(), |mut along: Vector6<f64>, (a, j)| {
+            let mut shares: Vec<(Parameter, f64)> = joints
+                .iter()
+                .enumerate()
+                .map(|(a, j)| (Parameter::of_column(*j), eigen.eigenvectors[(a, k)]))
+                .collect();
+            let along = joints.iter().enumerate().fold(SVector::zeros(), |mut along: SVector<f64, N>, (a, j)| {
                 along[*j] = eigen.eigenvectors[(a, k)] * scale[a];
                 along
             });
@@ -189,7 +195,7 @@ impl NormalEquations {
 
     /// The identifiable parameters among those that are not held, and every unidentifiable combination: of each the
     /// first parameter is taken out until the others are identifiable.
-    pub fn identifiable(&self, hold: [bool; 6]) -> (FreeParameters, Vec<Unidentifiable>) {
+    pub fn identifiable(&self, hold: [bool; N]) -> (FreeParameters<N>, Vec<Unidentifiable>) {
         let mut free = self.free_unless(hold);
         let mut all: Vec<Unidentifiable> = Vec::new();
         loop {
@@ -206,15 +212,15 @@ impl NormalEquations {
         }
     }
 
-    /// Products of the joints' columns less what the free groups explain of them (Schur complement).
-    fn reduced(&self, free: &FreeParameters) -> Matrix6<f64> {
+    /// Products of the springs' columns less what the free groups explain of them (Schur complement).
+    fn reduced(&self, free: &FreeParameters<N>) -> SMatrix<f64, N, N> {
         let groups = self.groups.iter().zip(&free.groups).filter(|(_, free)| **free);
         groups.fold(self.shared, |sum, (group, _)| sum - group.coupling * group.coupling.transpose() / group.diagonal)
     }
 
     /// The least-squares estimate (Klimchik et al. 2017, eq. 18), with what is not free held at the values of `held`;
     /// nothing where the matrix is singular.
-    pub fn solve(&self, free: &FreeParameters, held: (&Vector6<f64>, &[f64])) -> Option<Solution> {
+    pub fn solve(&self, free: &FreeParameters<N>, held: (&SVector<f64, N>, &[f64])) -> Option<Solution<N>> {
         let (mut joints, mut groups) = (*held.0, held.1.to_vec());
         for (joint, is_free) in free.joints.iter().enumerate() {
             if *is_free || self.varying == Some(joint) {
@@ -246,26 +252,26 @@ impl NormalEquations {
                 groups[index] = (group_rhs[index] - group.coupling.dot(&step)) / group.diagonal;
                 follow.push((-group.coupling / group.diagonal, 1.0 / group.diagonal));
             } else {
-                follow.push((Vector6::zeros(), 0.0));
+                follow.push((SVector::zeros(), 0.0));
             }
         }
         Some(Solution { joints: joints + step, groups, covariance, follow })
     }
 }
 
-/// The free joints in order.
-fn free_joints(free: &FreeParameters) -> Vec<usize> {
-    (0..6).filter(|joint| free.joints[*joint]).collect()
+/// The free springs in order.
+fn free_joints<const N: usize>(free: &FreeParameters<N>) -> Vec<usize> {
+    (0..N).filter(|joint| free.joints[*joint]).collect()
 }
 
-/// The inverse over the free joints, zero elsewhere.
-fn inverse(matrix: &Matrix6<f64>, free: &FreeParameters) -> Option<Matrix6<f64>> {
+/// The inverse over the free springs, zero elsewhere.
+fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>, free: &FreeParameters<N>) -> Option<SMatrix<f64, N, N>> {
     let joints = free_joints(free);
     let scale: Vec<f64> = joints.iter().map(|j| 1.0 / libm::sqrt(matrix[(*j, *j)])).collect();
     let size = joints.len();
     let scaled = DMatrix::from_fn(size, size, |a, b| matrix[(joints[a], joints[b])] * scale[a] * scale[b]);
     let inverse = scaled.cholesky()?.inverse();
-    let mut whole = Matrix6::zeros();
+    let mut whole = SMatrix::zeros();
     for a in 0..size {
         for b in 0..size {
             whole[(joints[a], joints[b])] = (inverse[(a, b)] + inverse[(b, a)]) / 2.0 * scale[a] * scale[b];
@@ -274,9 +280,9 @@ fn inverse(matrix: &Matrix6<f64>, free: &FreeParameters) -> Option<Matrix6<f64>>
     Some(whole)
 }
 
-impl Solution {
-    /// The six compliances in a configuration of a group. rad/(N m)
-    pub fn compliances(&self, varying: Option<usize>, group: Option<usize>) -> Vector6<f64> {
+impl<const N: usize> Solution<N> {
+    /// The compliances in a configuration of a group. rad/(N m)
+    pub fn compliances(&self, varying: Option<usize>, group: Option<usize>) -> SVector<f64, N> {
         let mut compliances = self.joints;
         if let (Some(joint), Some(group)) = (varying, group) {
             compliances[joint] = self.groups[group];
@@ -285,7 +291,7 @@ impl Solution {
     }
 
     /// Their covariance, for equations of unit variance.
-    pub fn covariance(&self, varying: Option<usize>, group: Option<usize>) -> Matrix6<f64> {
+    pub fn covariance(&self, varying: Option<usize>, group: Option<usize>) -> SMatrix<f64, N, N> {
         let mut covariance = self.covariance;
         if let (Some(joint), Some(group)) = (varying, group) {
             let (follow, own) = &self.follow[group];

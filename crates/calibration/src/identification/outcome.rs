@@ -1,12 +1,14 @@
 //! The result of an identification. SI units and radians, in its serialised form too.
 
 use super::cross_validation::Prediction;
+use super::gauge::Gauge;
 use super::law::ArmParameter;
 use super::model::Parameter;
 use super::setup::{Setup, SetupFit};
+use super::springs::FitModel;
 use nalgebra::{DMatrix, Vector3};
 use serde::{Serialize, Serializer};
-use stead_model::robot::Robot;
+use stead_model::robot::{Robot, Spring};
 use stead_numerics::message::Warning;
 
 /// An estimate with its uncertainty.
@@ -68,16 +70,23 @@ pub struct Identified {
     pub setup: Setup,
     /// How well those fit the unloaded readings.
     pub setup_fit: SetupFit,
-    /// One compliance for each joint, and for each distinct angle of the joint beside a compensator. rad/(N m)
+    /// Which springs were sought.
+    pub model: FitModel,
+    /// Which of them cannot be told apart, and how they are told together.
+    pub gauge: Gauge,
+    /// One compliance for each spring, and for each distinct angle of the joint beside a compensator; of springs that
+    /// cannot be told apart their sum, under the name of one of them. rad/(N m)
     pub compliances: Vec<Estimate<Parameter>>,
     /// The joint (from 0) to which [`Parameter::Group`] refers.
     pub varying: Option<usize>,
-    /// The parameters of the arm, in the units of [`Quantity`](super::law::Quantity).
+    /// The parameters of the arm, in the units of [`Quantity`](super::law::Quantity), as `robot` has them; of a spring
+    /// that is told only together with others its deviation is that of the sum, as if those were exact.
     pub arm: Vec<Estimate<ArmParameter>>,
     /// Covariance of those, in their order; serialised row by row.
     #[serde(serialize_with = "rows_of")]
     pub covariance: DMatrix<f64>,
-    /// The arm with its new compliances; serialised as its name.
+    /// The arm with its new compliances, those that cannot be told apart split such that none is below zero and the sum
+    /// of their squares is least; serialised as its name.
     #[serde(serialize_with = "name_of")]
     pub robot: Robot,
     /// Parameters that were not estimated but held at the values of the starting robot.
@@ -105,6 +114,8 @@ pub struct Identified {
     pub spring_fault: Option<String>,
     /// Configurations (from 0) in which the arm found would give way under its load, or whose equations did not settle.
     pub not_at_rest: Vec<usize>,
+    /// Compliances that came out below zero by chance, and are at their lowest value in `robot`.
+    pub at_lowest: Vec<Parameter>,
     /// What may be wrong with the result though the identification has not failed.
     pub warnings: Vec<Warning>,
 }
@@ -120,10 +131,18 @@ fn name_of<S: Serializer>(robot: &Robot, serializer: S) -> Result<S::Ok, S::Erro
 impl Identified {
     /// The joint (from 0) of a parameter.
     pub fn joint(&self, parameter: Parameter) -> usize {
-        match parameter {
-            Parameter::Joint(joint) => joint,
-            Parameter::Group(_) => self.varying.unwrap_or_default(),
-        }
+        self.spring(parameter).joint
+    }
+
+    /// The spring of a parameter.
+    pub fn spring(&self, parameter: Parameter) -> Spring {
+        parameter.spring(self.varying)
+    }
+
+    /// The name of a parameter in messages, with the springs that are told only together with it.
+    pub fn name(&self, parameter: Parameter, angle: Option<f64>) -> String {
+        let spring = self.spring(parameter);
+        self.gauge.sum_name(spring, self.model.name(spring, angle))
     }
 
     /// The readings that were left out.

@@ -10,15 +10,15 @@ use super::distribution::tail;
 use super::model::{Layout, Observation};
 use super::normal_equations::{FreeParameters, NormalEquations, Solution};
 use super::sheet::Sheet;
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix6, SVector, Vector6};
 
 /// The estimate without outliers, and the residual of each reading.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RobustEstimate {
+pub struct RobustEstimate<const N: usize> {
     /// The estimate.
-    pub solution: Solution,
+    pub solution: Solution<N>,
     /// The equations it solves.
-    pub normal: NormalEquations,
+    pub normal: NormalEquations<N>,
     /// Mean square of the residuals over the degrees of freedom, 1 where the noise is as stated.
     pub variance: f64,
     /// Equations less parameters.
@@ -32,17 +32,17 @@ pub struct RobustEstimate {
 }
 
 /// Inputs of the robust estimate.
-pub struct OutlierSearch<'a> {
+pub struct OutlierSearch<'a, const N: usize> {
     /// The readings.
     pub sheet: &'a Sheet,
     /// The parameters.
     pub layout: &'a Layout,
     /// The equations.
-    pub observations: &'a [Observation],
+    pub observations: &'a [Observation<N>],
     /// Which parameters are free.
-    pub free: &'a FreeParameters,
+    pub free: &'a FreeParameters<N>,
     /// Values of the others.
-    pub held: (&'a Vector6<f64>, &'a [f64]),
+    pub held: (&'a SVector<f64, N>, &'a [f64]),
     /// Lower limit of the scale of the residuals: the known noise, or the resolution of any tracker.
     pub min_scale: f64,
 }
@@ -56,8 +56,8 @@ const ROUNDS: usize = 30;
 /// No weight is less in the robust start, so that no parameter is left without readings.
 const MIN_WEIGHT: f64 = 1e-6;
 
-impl OutlierSearch<'_> {
-    fn solve(&self, weights: &[f64]) -> Option<(NormalEquations, Solution)> {
+impl<const N: usize> OutlierSearch<'_, N> {
+    fn solve(&self, weights: &[f64]) -> Option<(NormalEquations<N>, Solution<N>)> {
         let normal = NormalEquations::new(self.sheet, self.layout, self.observations, weights);
         let solution = normal.solve(self.free, self.held)?;
         Some((normal, solution))
@@ -67,7 +67,7 @@ impl OutlierSearch<'_> {
         self.layout.group(self.sheet.readings[reading].configuration)
     }
 
-    fn residual(&self, solution: &Solution, reading: usize) -> Vector6<f64> {
+    fn residual(&self, solution: &Solution<N>, reading: usize) -> Vector6<f64> {
         let observation = &self.observations[reading];
         let compliances = solution.compliances(self.layout.varying, self.group(reading));
         observation.deflection - observation.design * compliances
@@ -77,7 +77,7 @@ impl OutlierSearch<'_> {
     ///
     /// # Errors
     /// The readings that were kept when not all parameters were identifiable from them any more.
-    pub fn robust_estimate(&self) -> Result<RobustEstimate, Vec<bool>> {
+    pub fn robust_estimate(&self) -> Result<RobustEstimate<N>, Vec<bool>> {
         let readings = self.sheet.readings.len();
         let equations = readings * self.sheet.rows_per_reading();
         let mut kept = vec![true; readings];
@@ -137,7 +137,7 @@ impl OutlierSearch<'_> {
     }
 
     /// The estimate from the readings that are kept, and which readings it keeps.
-    fn estimate_without(&self, kept: &[bool], is_searched: bool) -> Option<(RobustEstimate, Vec<bool>)> {
+    fn estimate_without(&self, kept: &[bool], is_searched: bool) -> Option<(RobustEstimate<N>, Vec<bool>)> {
         let weights: Vec<f64> = kept.iter().map(|kept| if *kept { 1.0 } else { 0.0 }).collect();
         let (normal, solution) = self.solve(&weights)?;
         let rows = self.sheet.rows_per_reading();

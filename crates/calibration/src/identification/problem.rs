@@ -2,14 +2,20 @@
 
 use super::law::Law;
 use super::sheet::Sheet;
+use super::springs::FitModel;
 use nalgebra::{Matrix3, Vector3};
-use stead_model::robot::Robot;
+use stead_model::robot::{MeasuredFrom, Robot};
 
 /// Inputs of an identification: the starting arm, the measurements and what is known beside them. SI units, radians.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// The arm to start from: geometry, limits, and compliances of about the right size.
+    /// The arm to start from: geometry, limits, and compliances of about the right size; on a base that yields
+    /// ([`Robot::base_compliance`]) where that is known and in the readings, which then do not tell it.
     pub robot: Robot,
+    /// Which springs are sought.
+    pub model: FitModel,
+    /// What the measuring instrument stood on, where that is stated.
+    pub measured_from: Option<MeasuredFrom>,
     /// The measurements.
     pub sheet: Sheet,
     /// Where the wrench acts, in the flange frame. m
@@ -26,6 +32,8 @@ pub struct Problem {
     pub start: Option<Matrix3<f64>>,
     /// Whether unidentifiable parameters are held at the values of `robot`; else they are refused.
     pub reduce: bool,
-    /// Joints whose compliance is held at that of `robot`, whatever the readings tell of it.
+    /// Joints whose compliance about their axis is held at that of `robot`, whatever the readings tell of it.
     pub hold: [bool; 6],
+    /// The same of the springs about x and y of each joint, where all are sought; rigid where `robot` states none.
+    pub hold_normal: [[bool; 2]; 6],
 }

@@ -1,7 +1,7 @@
 //! A compensator's spring: how the stiffness of its joint hangs on its unknowns, and their first estimate.
 
 use super::normal_equations::{NormalEquations, Solution};
-use nalgebra::{DMatrix, Matrix3, Matrix3x6, Matrix6, Vector3, Vector6};
+use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
 use serde::Serialize;
 
 /// Where the two ends of a compensator's spring are.
@@ -28,16 +28,16 @@ impl Geometry {
 }
 
 /// Eq. 21 with the inverse of the covariance of the stiffnesses as weights; `joints` says which of the others are free.
-pub(super) fn spring_start(
-    normal: &NormalEquations,
-    joints: [bool; 6],
-    by_angle: &Solution,
+pub(super) fn spring_start<const N: usize>(
+    normal: &NormalEquations<N>,
+    joints: [bool; N],
+    by_angle: &Solution<N>,
     rows: &[Vector3<f64>],
 ) -> Option<Vector3<f64>> {
     let mut matrix = Matrix3::zeros();
     let mut rhs = Vector3::zeros();
-    let mut coupling = Matrix3x6::zeros();
-    let mut coupling_rhs = Vector6::zeros();
+    let mut coupling = SMatrix::<f64, 3, N>::zeros();
+    let mut coupling_rhs = SVector::<f64, N>::zeros();
     for ((group, row), compliance) in normal.groups.iter().zip(rows).zip(&by_angle.groups) {
         if *compliance <= 0.0 {
             continue;
@@ -51,14 +51,14 @@ pub(super) fn spring_start(
     }
     // What is held is known, as far as the weights go.
     let is_free = |joint: usize| joints[joint] && normal.varying != Some(joint);
-    let shared = DMatrix::from_fn(6, 6, |a, b| {
+    let shared = DMatrix::from_fn(N, N, |a, b| {
         if is_free(a) && is_free(b) { normal.shared[(a, b)] } else { f64::from(u8::from(a == b)) }
     });
-    (0..6).filter(|joint| !is_free(*joint)).for_each(|joint| {
+    (0..N).filter(|joint| !is_free(*joint)).for_each(|joint| {
         coupling.fill_column(joint, 0.0);
         coupling_rhs[joint] = 0.0;
     });
-    let shared = Matrix6::from_iterator(scaled_inverse(&shared)?.iter().copied());
+    let shared = SMatrix::<f64, N, N>::from_iterator(scaled_inverse(&shared)?.iter().copied());
     let matrix = matrix - coupling * shared * coupling.transpose();
     let rhs = rhs - coupling * shared * coupling_rhs;
     let inverse = scaled_inverse(&DMatrix::from_iterator(3, 3, matrix.iter().copied()))?;

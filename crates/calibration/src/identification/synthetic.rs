@@ -2,7 +2,8 @@
 
 use super::deflected::Deflected;
 use super::sheet::{Configuration, LoadCase, Reading, Sheet};
-use nalgebra::{Vector3, Vector6};
+use super::springs::{AXES, FULL, compliances_of};
+use nalgebra::Vector3;
 use stead_model::robot::{Pose, Robot};
 use stead_model::stiffness::Displacement;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
@@ -21,9 +22,9 @@ pub struct MeasuringCell {
 }
 
 /// What the tracker would read of the arm in its exact static equilibrium (where it gives way, deflected linearly),
-/// with `position_error` (m) added to every coordinate and `orientation_error` (rad) to every component of a turn.
-/// Configurations are called c1, c2, ... and points p1, p2, ...; line numbers are those of a file with one line of
-/// header.
+/// with all springs that deflections of it count ([`Robot::normal_springs`]), and with `position_error` (m) added to
+/// every coordinate and `orientation_error` (rad) to every component of a turn. Configurations are called c1, c2, ...
+/// and points p1, p2, ...; line numbers are those of a file with one line of header.
 pub fn sheet(
     robot: &Robot,
     cell: &MeasuringCell,
@@ -45,12 +46,12 @@ pub fn sheet(
             moment: *moment,
             readings: first..first + cell.points.len(),
         };
-        let compliances = Vector6::from(robot.compliances_at(theta));
-        let deflected = Deflected::at_rest(robot, compliances, &configuration, &cell.load_point)
-            .unwrap_or_else(|_| Deflected::linear(robot, compliances, &configuration, &cell.load_point));
-        for (point, place) in cell.points.iter().enumerate() {
-            let Displacement { linear, angular } = deflected.displacement(place);
-            let there = deflected.unloaded(place);
+        let moved = if robot.normal_springs().is_some() {
+            displacements::<FULL>(robot, cell, &configuration)
+        } else {
+            displacements::<AXES>(robot, cell, &configuration)
+        };
+        for (point, (there, Displacement { linear, angular })) in moved.into_iter().enumerate() {
             let mut read = |moved: Vector3<f64>| {
                 let error = Vector3::from_fn(|_, _| position_error());
                 cell.tracker_from_base.point(&(there + moved)) + error
@@ -68,4 +69,16 @@ pub fn sheet(
         sheet.configurations.push(configuration);
     }
     sheet
+}
+
+/// Where the reference points are without the load (m), and how far it moves them.
+fn displacements<const N: usize>(
+    robot: &Robot,
+    cell: &MeasuringCell,
+    configuration: &Configuration,
+) -> Vec<(Vector3<f64>, Displacement<f64>)> {
+    let compliances = compliances_of::<N>(robot, &configuration.theta);
+    let deflected = Deflected::at_rest(robot, compliances, configuration, &cell.load_point)
+        .unwrap_or_else(|_| Deflected::linear(robot, compliances, configuration, &cell.load_point));
+    cell.points.iter().map(|place| (deflected.unloaded(place), deflected.displacement(place))).collect()
 }

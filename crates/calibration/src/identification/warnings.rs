@@ -6,8 +6,10 @@ use super::model::{Layout, Parameter};
 use super::outcome::{Estimate, HeldReason, Identified};
 use super::problem::Problem;
 use super::sheet::Sheet;
+use super::springs::FitModel;
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use stead_model::robot::About;
 use stead_numerics::message::Warning;
 
 /// Distances below this are rounding. m
@@ -29,6 +31,8 @@ const NOISE_RATIO: std::ops::Range<f64> = 0.8..1.25;
 const MISFIT_PROBABILITY: f64 = 1e-3;
 /// A law is doubted below this probability.
 const LAW_PROBABILITY: f64 = 0.01;
+/// Residuals of springs about the axes alone are doubted where they are more than so many times the noise.
+const LEFT_OVER: f64 = 2.0;
 /// The model is doubted with more outliers than one reading in so many.
 const READINGS_PER_OUTLIER: usize = 5;
 
@@ -38,13 +42,21 @@ pub(super) fn warnings(problem: &Problem, result: &Identified) -> Vec<Warning> {
     warnings.extend(held(problem, result));
     warnings.extend(setup(problem, result));
     warnings.extend(scale(problem, result));
-    warnings.extend(result.arm.iter().filter(|e| e.value < WEAK * e.deviation).map(weak));
+    match result.model {
+        FitModel::Axes => {
+            let weak_ones = result.arm.iter().filter(|e| e.value < WEAK * e.deviation);
+            warnings.extend(weak_ones.map(|e| weak(e.parameter.to_string(), e.parameter)));
+        }
+        FitModel::Full => warnings.extend(weak_sums(result)),
+    }
+    warnings.extend(at_lowest(result));
     let ratio = libm::sqrt(result.variance_ratio);
     if !result.is_noise_estimated && !NOISE_RATIO.contains(&ratio) {
         let message = format!("the residuals are {ratio:.2} times as large as noise_mm lets expect");
         warnings.push(Warning::new("noise-mismatch", message));
     }
     warnings.extend(misfit(result));
+    warnings.extend(full_model(result, ratio));
     if result.law_probability.is_some_and(|probability| probability < LAW_PROBABILITY) {
         let number = result.varying.unwrap_or_default() + 1;
         let message = format!(
@@ -124,28 +136,47 @@ fn correlated(sheet: &Sheet) -> Vec<Warning> {
 
 /// Parameters that were not estimated.
 fn held(problem: &Problem, result: &Identified) -> Vec<Warning> {
-    let layout = Layout::new(&problem.sheet, result.varying, problem.angle_tolerance);
+    let layout = Layout::new(&problem.sheet, result.model, result.varying, problem.angle_tolerance);
     let warning = |held: &super::Held| {
-        let joint = result.joint(held.parameter) + 1;
+        let spring = result.spring(held.parameter);
+        let joint = match result.model {
+            FitModel::Axes => format!("joint {}", spring.joint + 1),
+            FitModel::Full => spring.to_string(),
+        };
+        let is_unstated = spring.about != About::Z && problem.robot.stated_normal_springs().is_none();
         match (held.reason, layout.angle(held.parameter)) {
+            (HeldReason::Asked, _) if is_unstated => Warning::new(
+                "held",
+                format!(
+                    "the spring of {joint} is held rigid, as asked: the robot file states no springs normal to the axes; intervals \
+                     and covariance take it for exact"
+                ),
+            ),
+            (HeldReason::Unidentifiable, _) if is_unstated => Warning::new(
+                "unidentifiable",
+                format!(
+                    "the compliance of {joint} is not identifiable: it is taken for rigid, since the robot file states no springs \
+                     normal to the axes, and intervals and covariance take that for exact"
+                ),
+            ),
             (HeldReason::Asked, _) => Warning::new(
                 "held",
                 format!(
-                    "the compliance of joint {joint} is held at the value of the robot file, as asked: intervals and covariance \
+                    "the compliance of {joint} is held at the value of the robot file, as asked: intervals and covariance \
                      take it for exact"
                 ),
             ),
             (HeldReason::Unidentifiable, None) => Warning::new(
                 "unidentifiable",
                 format!(
-                    "the compliance of joint {joint} is not identifiable: it keeps the value of the robot file, which intervals \
+                    "the compliance of {joint} is not identifiable: it keeps the value of the robot file, which intervals \
                      and covariance take for exact"
                 ),
             ),
             (HeldReason::Unidentifiable, Some(angle)) => Warning::new(
                 "unidentifiable",
                 format!(
-                    "the compliance of joint {joint} at {:.2} deg is not identifiable: there it follows from its other angles",
+                    "the compliance of {joint} at {:.2} deg is not identifiable: there it follows from its other angles",
                     angle.to_degrees()
                 ),
             ),
@@ -200,12 +231,56 @@ fn misfit(result: &Identified) -> Option<Warning> {
     })
 }
 
+/// Whether springs about the axes alone leave so much over that others are to be sought.
+fn full_model(result: &Identified, ratio: f64) -> Option<Warning> {
+    let fit = &result.setup_fit;
+    let by_unloaded = result.noise.max(ROUNDING) / fit.noise.max(ROUNDING);
+    let (ratio, noise) = if result.is_noise_estimated {
+        (by_unloaded, "the scatter of the unloaded readings")
+    } else {
+        (ratio, "noise_mm")
+    };
+    let is_left = ratio > LEFT_OVER && (!result.is_noise_estimated || fit.degrees > 0);
+    (result.model == FitModel::Axes && is_left).then(|| {
+        let message = format!(
+            "springs about the joint axes alone leave residuals {ratio:.1} times as large as {noise}: links and bearings may \
+             yield too; fit the full model (fit.model = \"full\")"
+        );
+        Warning::new("full-model", message)
+    })
+}
+
+/// Compliances that came out below zero by chance.
+fn at_lowest(result: &Identified) -> Option<Warning> {
+    if result.at_lowest.is_empty() {
+        return None;
+    }
+    let named = |parameter: &Parameter| {
+        let estimate = result.compliances.iter().find(|estimate| estimate.parameter == *parameter)?;
+        let (value, deviation) = (estimate.value * 1e6, estimate.deviation * 1e6);
+        Some(format!("{} ({value:.3}, standard deviation {deviation:.3})", result.name(*parameter, estimate.angle)))
+    };
+    let names: Vec<String> = result.at_lowest.iter().filter_map(named).collect();
+    let message = format!(
+        "compliances in urad/(N m) that come out below zero, or too low for the others, by no more than noise explains: {}; the \
+         robot file has them as good as rigid and the others as they agree best with the readings then; the estimates and \
+         intervals listed, and [covariance], are without that bound",
+        names.join(", ")
+    );
+    Some(Warning::new("below-zero", message))
+}
+
 /// Whether all compliances are off by a common factor.
 fn scale(problem: &Problem, result: &Identified) -> Option<Warning> {
     let start = problem.robot.joints();
     let ratio =
         |e: &Estimate<Parameter>| e.value / start[result.joint(e.parameter)].compliance_at(e.angle.unwrap_or_default());
-    let mut ratios: Vec<f64> = result.compliances.iter().map(ratio).collect();
+    // Springs normal to the axes, and sums with them, may be of any size beside those of a robot file.
+    let is_alone = |e: &&Estimate<Parameter>| {
+        let spring = result.spring(e.parameter);
+        spring.about == About::Z && result.gauge.others(spring).is_empty()
+    };
+    let mut ratios: Vec<f64> = result.compliances.iter().filter(is_alone).map(ratio).collect();
     ratios.sort_by(f64::total_cmp);
     let median = *ratios.get(ratios.len() / 2)?;
     // Three digits, and no exponent where none is needed.
@@ -218,13 +293,27 @@ fn scale(problem: &Problem, result: &Identified) -> Option<Warning> {
     })
 }
 
-fn weak(estimate: &Estimate<ArmParameter>) -> Warning {
-    let ArmParameter { joint, quantity } = estimate.parameter;
+/// Springs, or sums of them, of a full set that are hardly known; all in one sentence.
+fn weak_sums(result: &Identified) -> Option<Warning> {
+    let is_weak = |e: &&Estimate<Parameter>| e.value.abs() < WEAK * e.deviation;
+    let names: Vec<String> =
+        result.compliances.iter().filter(is_weak).map(|e| result.name(e.parameter, e.angle)).collect();
+    (!names.is_empty()).then(|| {
+        let message = format!(
+            "weakly identified, by less than {WEAK} standard deviations: {}; take more configurations, with larger loads on \
+             longer levers in all directions",
+            names.join("; ")
+        );
+        Warning::new("weakly-identified", message)
+    })
+}
+
+fn weak(name: String, parameter: ArmParameter) -> Warning {
+    let ArmParameter { joint, quantity } = parameter;
     let advice = match quantity {
         Quantity::Compliance => "load the arm so that this joint turns".to_owned(),
         _ => format!("take more angles of joint {}, wider apart", joint + 1),
     };
-    let message =
-        format!("{} is weakly identified, by less than {WEAK} standard deviations: {advice}", estimate.parameter);
+    let message = format!("{name} is weakly identified, by less than {WEAK} standard deviations: {advice}");
     Warning::new("weakly-identified", message)
 }

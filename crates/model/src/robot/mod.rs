@@ -58,7 +58,7 @@ pub use pose::{Pose, cast};
 pub use posture::{Posture, PostureClass};
 pub use shipped::ShippedArm;
 pub use spindle::{Spindle, point_from_tool};
-pub use springs::{BaseCompliance, MeasuredFrom, NormalSprings, SpringModel};
+pub use springs::{About, BaseCompliance, MeasuredFrom, NormalSprings, Spring, SpringModel};
 pub use uncertainty::{Parameter, Uncertainty, UncertaintyError};
 
 use chain::{Axis, Chain, Link};

@@ -8,6 +8,8 @@
 use super::{Pose, Robot, RobotError};
 use crate::stiffness::matrix::{MatrixError, checked};
 use nalgebra::{Matrix6, Vector3};
+use serde::Serialize;
+use std::fmt;
 
 /// Two springs of a joint, about the directions normal to its axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +18,45 @@ pub struct NormalSprings {
     pub compliance: [f64; 2],
     /// Where on the axis they sit: coordinate on the z axis of the row's frame. m
     pub bearing: f64,
+}
+
+/// The axis of the frame of a row about which a spring of the joint turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum About {
+    /// The axis of the joint.
+    Z,
+    /// Normal to it.
+    X,
+    /// Normal to it.
+    Y,
+}
+
+impl About {
+    /// As the frame names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Z => "z",
+            Self::X => "x",
+            Self::Y => "y",
+        }
+    }
+}
+
+/// A spring of the arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Spring {
+    /// Its joint, from 0.
+    pub joint: usize,
+    /// The axis about which it turns.
+    pub about: About,
+}
+
+impl fmt::Display for Spring {
+    /// `joint 3 about x`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "joint {} about {}", self.joint + 1, self.about.name())
+    }
 }
 
 /// What the compliances of an arm stand for.
@@ -50,6 +91,19 @@ pub enum MeasuredFrom {
     Base,
     /// The floor: what yields under the base is in the compliances.
     Floor,
+}
+
+impl MeasuredFrom {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::Base, Self::Floor];
+
+    /// As files state it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Floor => "floor",
+        }
+    }
 }
 
 /// How what carries the robot yields.

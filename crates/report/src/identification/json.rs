@@ -6,11 +6,13 @@ use crate::figure::{AngleDeg, PlaceMm, each, some};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
+use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
 use stead_calibration::identification::model::Parameter;
 use stead_calibration::identification::outcome::Estimate;
-use stead_calibration::identification::{Held, Identified, RowResult};
-use stead_model::robot::{Compensator, Compliance};
+use stead_calibration::identification::springs::key_name;
+use stead_calibration::identification::{FitModel, Held, Identified, RowResult};
+use stead_model::robot::{Compensator, Compliance, Spring};
 use stead_runs::IdentifyRun;
 
 /// Significant digits of estimates.
@@ -23,19 +25,30 @@ records! {
     } with {
         /// Name of the robot.
         robot: String = found.robot.name().to_owned(),
+        /// Which springs were sought, where those normal to the axes were too: `full`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        model: Option<&'static str> = is_full(found).then(|| found.model.word()),
         /// Configurations measured.
         configurations: usize = sheet.configurations.len(),
         /// Readings.
         readings: usize = sheet.readings.len(),
-        /// Every compliance, one for each distinct angle of the joint beside a compensator.
+        /// Every compliance, one for each distinct angle of the joint beside a compensator; of springs that cannot be
+        /// told apart their sum.
         compliances: Vec<ComplianceFigures> =
             found.compliances.iter().map(|estimate| ComplianceFigures::of(found, estimate)).collect(),
         /// The joint beside a compensator.
         compensator: Option<CompensatorFigures> = compensator(found),
         /// The parameters of the robot file.
         arm: Vec<ParameterFigures> = found.arm.iter().map(Into::into).collect(),
-        /// Joints that keep the compliance of the robot file, from 1.
+        /// The springs of the robot file, where those normal to the axes were sought too.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        springs: Option<Vec<SpringsFigures>> =
+            is_full(found).then(|| (0..6).map(|joint| SpringsFigures::of(found, joint)).collect()),
+        /// Joints that keep the compliance of the robot file, from 1: that about their axis.
         held: Vec<usize> = held(found),
+        /// All springs that do, by name, where those normal to the axes were sought too.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        held_springs: Option<Vec<String>> = is_full(found).then(|| held_springs(found)),
         /// Standard deviation of a reading. mm
         noise_mm: f64 = millimetres(found.noise),
         /// Whether it was estimated from the readings.
@@ -65,6 +78,13 @@ records! {
     } with {
         /// The joint, from 1.
         joint: usize = joint + 1,
+        /// The axis of the frame of its row about which the spring turns, where those normal to the axes were sought
+        /// too.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        about: Option<&'static str> = is_full(found).then(|| found.spring(estimate.parameter).about.name()),
+        /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        with: Option<Vec<SharedFigures>> = shared(&found.gauge, found.spring(estimate.parameter)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
         #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = some(estimate.angle),
         /// The same angle under the name of joint 2; only where that joint is beside the compensator.
@@ -78,6 +98,43 @@ records! {
         low_urad_per_nm: f64 = low_urad_per_nm,
         /// Upper end of the 95 % confidence interval. urad/(N m)
         high_urad_per_nm: f64 = high_urad_per_nm,
+    }
+}
+
+/// A spring whose compliance is in the estimate of another.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct SharedFigures {
+    /// The spring, as identification files name it.
+    spring: String,
+    /// How much of its compliance is in the sum.
+    share: f64,
+}
+
+/// The springs that are told only together with one.
+pub(super) fn shared(gauge: &Gauge, spring: Spring) -> Option<Vec<SharedFigures>> {
+    let others = gauge.others(spring);
+    let figures = |(other, share): (Spring, f64)| SharedFigures { spring: key_name(other), share };
+    (!others.is_empty()).then(|| others.into_iter().map(figures).collect())
+}
+
+records! {
+    /// The springs of a joint as the robot file has them: those that cannot be told apart are split such that none is
+    /// below zero and the sum of all squares is least.
+    pub struct SpringsFigures of (found: &Identified, joint: usize) {
+        let [about_x, about_y] = found.robot.stated_normal_springs().map_or([0.0; 2], |all| all[joint].compliance);
+        let about_z = match found.robot.joints()[joint].compliance {
+            Compliance::Constant(value) => Some(rounded(value * URAD, DIGITS)),
+            _ => None,
+        };
+    } with {
+        /// The joint, from 1.
+        joint: usize = joint + 1,
+        /// Compliance about its axis; null where it changes with the angle. urad/(N m)
+        about_z_urad_per_nm: Option<f64> = about_z,
+        /// Compliance about x of the frame of its row. urad/(N m)
+        about_x_urad_per_nm: f64 = rounded(about_x * URAD, DIGITS),
+        /// Compliance about y of the frame of its row. urad/(N m)
+        about_y_urad_per_nm: f64 = rounded(about_y * URAD, DIGITS),
     }
 }
 
@@ -242,9 +299,20 @@ fn millimetres(length: f64) -> f64 {
 fn held(found: &Identified) -> Vec<usize> {
     let joint = |held: &Held| match held.parameter {
         Parameter::Joint(joint) => Some(joint + 1),
-        Parameter::Group(_) => None,
+        Parameter::Normal(_) | Parameter::Group(_) => None,
     };
     found.held.iter().filter_map(joint).collect()
+}
+
+/// The springs that do, by name.
+fn held_springs(found: &Identified) -> Vec<String> {
+    let springs = found.held.iter().filter(|held| !matches!(held.parameter, Parameter::Group(_)));
+    springs.map(|held| key_name(found.spring(held.parameter))).collect()
+}
+
+/// Whether springs normal to the axes were sought too.
+pub(super) fn is_full(found: &Identified) -> bool {
+    found.model == FitModel::Full
 }
 
 /// Value, standard deviation and 95 % interval, rounded in a unit.

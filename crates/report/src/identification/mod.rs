@@ -59,13 +59,15 @@ fn key(parameter: &ArmParameter) -> (String, f64) {
         Quantity::Compliance => (format!("joints[{number}].compliance_urad_per_nm"), 1e6),
         Quantity::SpringStiffness => (format!("joints[{number}].compensator.spring_stiffness_n_per_mm"), 1e-3),
         Quantity::FreeLength => (format!("joints[{number}].compensator.free_length_mm"), 1e3),
+        Quantity::AboutX => (format!("joints[{number}].orthogonal_compliance_urad_per_nm[1]"), 1e6),
+        Quantity::AboutY => (format!("joints[{number}].orthogonal_compliance_urad_per_nm[2]"), 1e6),
     }
 }
 
 /// Its unit there.
 fn unit(quantity: Quantity) -> &'static str {
     match quantity {
-        Quantity::Compliance => "urad/(N m)",
+        Quantity::Compliance | Quantity::AboutX | Quantity::AboutY => "urad/(N m)",
         Quantity::SpringStiffness => "N/mm",
         Quantity::FreeLength => "mm",
     }

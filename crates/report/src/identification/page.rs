@@ -4,7 +4,7 @@ use super::{URAD, key, unit};
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
 use stead_calibration::identification::outcome::Estimate;
-use stead_calibration::identification::{Identified, RowResult};
+use stead_calibration::identification::{FitModel, Identified, RowResult};
 use stead_runs::IdentifyRun;
 
 /// Compliances with their intervals, how well they explain the readings, and every reading.
@@ -24,6 +24,9 @@ pub(super) fn page(run: &IdentifyRun, found: &Identified) -> Page {
         .with(compliances(found));
     if found.varying.is_some() {
         page = page.with(arm(found));
+    }
+    if found.model == FitModel::Full {
+        page = page.with(springs(found));
     }
     page.with(Card::Chart(agreement(run, found)))
         .with(Card::Chart(residuals_chart(run, found)))
@@ -51,7 +54,10 @@ fn tiles(found: &Identified) -> Card {
 
 /// What a compliance is of.
 fn name(found: &Identified, estimate: &Estimate<stead_calibration::identification::model::Parameter>) -> String {
-    let joint = format!("joint {}", found.joint(estimate.parameter) + 1);
+    let joint = match found.model {
+        FitModel::Axes => format!("joint {}", found.joint(estimate.parameter) + 1),
+        FitModel::Full => found.name(estimate.parameter, None),
+    };
     estimate.angle.map_or(joint.clone(), |angle| format!("{joint} at {} deg", fixed(angle.to_degrees(), 2)))
 }
 
@@ -112,6 +118,20 @@ fn arm(found: &Identified) -> Card {
         title: "In the robot file".to_owned(),
         columns: columns("parameter", "value"),
         rows: found.arm.iter().map(row).collect(),
+        ..Table::default()
+    })
+}
+
+/// The springs as the robot file has them.
+fn springs(found: &Identified) -> Card {
+    let rows = super::text::spring_rows(found).into_iter().skip(1);
+    Card::Table(Table {
+        title: "Springs of the robot file".to_owned(),
+        detail: "urad/(N m); springs that cannot be told apart are split such that none is below zero and the sum of squares is \
+                 least"
+            .to_owned(),
+        columns: ["joint", "about z", "about x", "about y"].map(Column::number).to_vec(),
+        rows: rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect(),
         ..Table::default()
     })
 }

@@ -1,17 +1,21 @@
 //! The user's robot file with the identified numbers in it, everything else as it was.
 
 use super::super::output::ReportError;
+use super::json::is_full;
 use super::key;
 use std::fmt::Display;
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::law::Quantity;
-use stead_model::robot::Compliance;
+use stead_calibration::identification::model::Parameter;
+use stead_model::robot::{About, Compliance, MeasuredFrom, Spring, SpringModel};
 use toml_edit::{Array, DocumentMut, Item, Key, Table, TableLike, Value};
 
 const STIFFNESS: &str = "stiffness_mnm_per_rad";
 const COMPLIANCE: &str = "compliance_urad_per_nm";
 const COMPENSATOR: &str = "compensator";
 const COVARIANCE: &str = "covariance";
+const NORMAL_STIFFNESS: &str = "orthogonal_stiffness_mnm_per_rad";
+const NORMAL_COMPLIANCE: &str = "orthogonal_compliance_urad_per_nm";
 
 /// The text of the robot file with new compliances, compensator and `[covariance]`; comments and all else are kept. A
 /// joint that was given by its stiffness is given by its compliance, in the same place. The covariance is in the
@@ -22,7 +26,7 @@ const COVARIANCE: &str = "covariance";
 pub fn robot_file(text: &str, found: &Identified) -> Result<String, ReportError> {
     let mut document: DocumentMut = text.parse().map_err(fail)?;
     let joints = document.get_mut("joints").ok_or_else(|| fail("it has no joints"))?;
-    for estimate in &found.arm {
+    for estimate in found.arm.iter().filter(|estimate| estimate.parameter.spring().about == About::Z) {
         let index = estimate.parameter.joint;
         let row = row(joints, index).ok_or_else(|| fail("its joints are no tables"))?;
         let (_, factor) = key(&estimate.parameter);
@@ -48,6 +52,20 @@ pub fn robot_file(text: &str, found: &Identified) -> Result<String, ReportError>
             if old.is_none_or(|old| (old - value).abs() > 1e-9 * value.abs().max(1.0)) {
                 set(spring, name, value);
             }
+        }
+    }
+    if is_full(found) {
+        for index in 0..6 {
+            let row = row(joints, index).ok_or_else(|| fail("its joints are no tables"))?;
+            set_normal(row, found, index);
+        }
+    }
+    for (name, word) in [
+        ("stiffness_model", found.robot.spring_model().map(SpringModel::word)),
+        ("stiffness_measured_from", found.robot.stiffness_measured_from().map(MeasuredFrom::word)),
+    ] {
+        if let Some(word) = word {
+            set_word(&mut document, name, word);
         }
     }
     if found.robot.stiffness_like().is_none() {
@@ -88,6 +106,37 @@ fn set(table: &mut dyn TableLike, name: &str, number: f64) {
     match table.get_mut(name) {
         Some(slot) => *slot = Item::Value(value),
         None => drop(table.insert(name, Item::Value(value))),
+    }
+}
+
+/// Sets a word of the file, keeping blanks and comment around it.
+fn set_word(document: &mut DocumentMut, name: &str, word: &str) {
+    let mut value = Value::from(word);
+    if let Some(old) = document.get(name).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    document[name] = Item::Value(value);
+}
+
+/// Sets the compliances normal to the axis of a joint, unless both are held as the row states them.
+fn set_normal(row: &mut dyn TableLike, found: &Identified, joint: usize) {
+    let is_stated = row.contains_key(NORMAL_STIFFNESS) || row.contains_key(NORMAL_COMPLIANCE);
+    let is_held = |about: About| {
+        let parameter = Parameter::Normal(Spring { joint, about });
+        found.held.iter().any(|held| held.parameter == parameter)
+    };
+    if is_stated && is_held(About::X) && is_held(About::Y) {
+        return;
+    }
+    row.remove(NORMAL_STIFFNESS);
+    let normal = found.robot.stated_normal_springs().map_or([0.0; 2], |all| all[joint].compliance);
+    let mut value = Value::from(normal.map(|value| value * 1e6).into_iter().collect::<Array>());
+    if let Some(old) = row.get(NORMAL_COMPLIANCE).and_then(Item::as_value) {
+        *value.decor_mut() = old.decor().clone();
+    }
+    match row.get_mut(NORMAL_COMPLIANCE) {
+        Some(slot) => *slot = Item::Value(value),
+        None => drop(row.insert(NORMAL_COMPLIANCE, Item::Value(value))),
     }
 }
 
@@ -145,10 +194,26 @@ fn covariance(found: &Identified) -> Table {
     }
     let mut table = Table::new();
     table.decor_mut().set_prefix(format!(
-        "\n# The compliances above are identified by stead {} from measurements, with this covariance.\n",
-        env!("CARGO_PKG_VERSION")
+        "\n# The compliances above are identified by stead {} from measurements, with this covariance.\n{}",
+        env!("CARGO_PKG_VERSION"),
+        told_together(found)
     ));
     table.insert("parameters", Item::Value(Value::from(names)));
     table.insert("matrix", Item::Value(Value::from(matrix)));
     table
+}
+
+/// Lines of comment on springs that cannot be told apart.
+fn told_together(found: &Identified) -> String {
+    if found.gauge.replaced.is_empty() {
+        return String::new();
+    }
+    let sums = found.compliances.iter().map(|estimate| found.spring(estimate.parameter));
+    let sums = sums.filter(|spring| !found.gauge.others(*spring).is_empty());
+    let lines: String =
+        sums.map(|spring| format!("#     {}\n", found.gauge.sum_name(spring, spring.to_string()))).collect();
+    format!(
+        "# Told together only, whatever is measured, and split such that none is below zero and the sum of squares is least; the\n\
+         # covariance is that of the sums, as if the first spring of each had all of it:\n{lines}"
+    )
 }

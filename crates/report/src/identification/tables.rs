@@ -2,12 +2,15 @@
 
 use super::super::output::ReportError;
 use super::json::numbers;
-use super::{URAD, key, unit};
+use super::{URAD, key, rounded, unit};
 use crate::csv_file::rows_or;
 use crate::figure::{AngleDeg, DeflectionMm, Studentised, each, some};
 use nalgebra::Vector3;
-use stead_calibration::identification::Identified;
+use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::outcome::RowResult;
+use stead_calibration::identification::springs::key_name;
+use stead_calibration::identification::{FitModel, Identified};
+use stead_model::robot::Spring;
 use stead_runs::IdentifyRun;
 
 /// Significant digits of estimates.
@@ -38,7 +41,7 @@ records! {
 /// compensator), then for the parameters of the robot file.
 pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
     let seen = found.compliances.iter().map(|estimate| {
-        let name = format!("seen.joints[{}].compliance", found.joint(estimate.parameter) + 1);
+        let name = seen_name(found.model, &found.gauge, found.spring(estimate.parameter));
         EstimateRow::of(name, "urad/(N m)", estimate.angle, numbers(estimate, URAD, DIGITS))
     });
     let arm = found.arm.iter().map(|estimate| {
@@ -46,6 +49,21 @@ pub(super) fn compliances(found: &Identified) -> Result<Vec<u8>, ReportError> {
         EstimateRow::of(name, unit(estimate.parameter.quantity), None, numbers(estimate, factor, DIGITS))
     });
     rows_or("the table of compliances", &EstimateRow::default(), seen.chain(arm))
+}
+
+/// The name of a compliance that was seen: `seen.joints[3].compliance`; among springs about three directions
+/// `seen.joints[3].x`, with those that are told only together with it, `seen.joints[5].z + joints[4].y`.
+pub(super) fn seen_name(model: FitModel, gauge: &Gauge, spring: Spring) -> String {
+    if model == FitModel::Axes {
+        return format!("seen.joints[{}].compliance", spring.joint + 1);
+    }
+    let other = |(other, share): (Spring, f64)| match share {
+        1.0 => format!(" + {}", key_name(other)),
+        -1.0 => format!(" - {}", key_name(other)),
+        share => format!(" + {} {}", rounded(share, DIGITS), key_name(other)),
+    };
+    let others: String = gauge.others(spring).into_iter().map(other).collect();
+    format!("seen.{}{others}", key_name(spring))
 }
 
 records! {

@@ -1,10 +1,12 @@
 //! The table for people.
 
+use super::json::is_full;
 use super::{URAD, key};
 use crate::columns::aligned;
 use crate::units::fixed;
 use stead_calibration::identification::outcome::Estimate;
-use stead_calibration::identification::{Identified, RowResult};
+use stead_calibration::identification::{FitModel, Identified, RowResult};
+use stead_model::robot::Compliance;
 use stead_runs::IdentifyRun;
 
 /// Compliances with their 95 % intervals, the parameters of the robot file, how well they explain and predict the
@@ -19,6 +21,10 @@ pub fn identify_text(run: &IdentifyRun, found: &Identified) -> String {
         sheet.configurations.len()
     );
     text += &aligned(&compliance_rows(found), &[0]);
+    if is_full(found) {
+        text += "\nin the robot file, urad/(N m)\n";
+        text += &aligned(&spring_rows(found), &[0]);
+    }
     if found.varying.is_some() {
         text += "\n";
         text += &aligned(&arm_rows(found), &[0]);
@@ -57,13 +63,35 @@ pub(super) fn cells<P>(estimate: &Estimate<P>, factor: f64) -> [String; 4] {
 }
 
 fn compliance_rows(found: &Identified) -> Vec<Vec<String>> {
-    let header = ["joint", "at deg", "urad/(N m)", "std", "%", "95 % interval"];
+    let first = if is_full(found) { "spring" } else { "joint" };
+    let header = [first, "at deg", "urad/(N m)", "std", "%", "95 % interval"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for estimate in &found.compliances {
         let angle = estimate.angle.map_or_else(|| "-".to_owned(), |angle| fixed(angle.to_degrees(), 2));
-        let mut row = vec![(found.joint(estimate.parameter) + 1).to_string(), angle];
+        let name = match found.model {
+            FitModel::Axes => (found.joint(estimate.parameter) + 1).to_string(),
+            FitModel::Full => found.name(estimate.parameter, None),
+        };
+        let mut row = vec![name, angle];
         row.extend(cells(estimate, URAD));
         rows.push(row);
+    }
+    rows
+}
+
+/// The springs of the robot file, a joint a row.
+pub(super) fn spring_rows(found: &Identified) -> Vec<Vec<String>> {
+    let header = ["joint", "about z", "about x", "about y"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for (joint, row) in found.robot.joints().iter().enumerate() {
+        let about_z = match row.compliance {
+            Compliance::Constant(value) => fixed(value * URAD, 4),
+            _ => "by its law".to_owned(),
+        };
+        let normal = found.robot.stated_normal_springs().map_or([0.0; 2], |all| all[joint].compliance);
+        rows.push(
+            [vec![(joint + 1).to_string(), about_z], normal.map(|value| fixed(value * URAD, 4)).to_vec()].concat(),
+        );
     }
     rows
 }

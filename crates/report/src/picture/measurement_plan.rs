@@ -5,9 +5,9 @@ use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
 use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
 use crate::units::{figures, fixed};
 use nalgebra::{Vector2, Vector3};
-use stead_calibration::identification::LoadCase;
 use stead_calibration::identification::design::expected::ExpectedCompliance;
 use stead_calibration::identification::design::{Design, Request};
+use stead_calibration::identification::{FitModel, LoadCase};
 use stead_model::robot::Frames;
 
 const LEFT: i32 = 85;
@@ -27,14 +27,14 @@ pub fn measurement_plan(request: &Request, plan: &Design) -> String {
         let title = format!("Expected errors of {} configurations", plan.load_cases.len());
         canvas.title(&title, (LEFT, 26));
         legend(canvas, plan);
-        draw_bars(canvas, plan);
+        draw_bars(canvas, request, plan);
         draw_views(canvas, request, plan)
     })
 }
 
 /// The three standard deviations of a compliance in per cent of it: plan, best and median of the random sets.
 fn percents(bar: &ExpectedCompliance) -> [Option<f64>; 3] {
-    [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| 100.0 * d / bar.value))
+    [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| (100.0 * d / bar.value).abs()))
 }
 
 const COLOURS: [Colour; 3] = [GREEN, BLUE, PALE];
@@ -59,7 +59,7 @@ fn legend(canvas: &mut Canvas, plan: &Design) {
     canvas.text(&text, (LEFT, 84), TextStyle::new(12.0).coloured(INK))
 }
 
-fn draw_bars(canvas: &mut Canvas, plan: &Design) {
+fn draw_bars(canvas: &mut Canvas, request: &Request, plan: &Design) {
     let max = plan.compliances.iter().flat_map(percents).flatten().fold(0.0, f64::max);
     let y = Scale::new(0.0, if max > 0.0 { 1.12 * max } else { 1.0 }, BARS.1, BARS.0);
     let x = Scale::new(0.0, plan.compliances.len().max(1) as f64, LEFT, RIGHT);
@@ -76,7 +76,10 @@ fn draw_bars(canvas: &mut Canvas, plan: &Design) {
             canvas.text(&two_figures(percent), (left + width / 2, panel.y.pixel(percent) - 8), style);
         }
         let angle = bar.angle.map_or_else(String::new, |angle| format!(" at {}°", fixed(angle.to_degrees(), 0)));
-        let name = format!("k{}{angle}", bar.joint + 1);
+        let name = match request.model {
+            FitModel::Axes => format!("k{}{angle}", bar.joint + 1),
+            FitModel::Full => format!("{}{}{angle}", bar.joint + 1, bar.about.name()),
+        };
         let size = (f64::from(to - from) / (name.chars().count() as f64 * 0.55)).min(12.0);
         canvas.text(&name, ((from + to) / 2, panel.y.start + 15), TextStyle::new(size).centred());
     }

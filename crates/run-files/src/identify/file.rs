@@ -1,13 +1,18 @@
 //! What an identification file declares.
 
+use super::FitModel;
+use super::held::HeldSprings;
 use super::plan::PlanTable;
+use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::Included;
+use stead_format::compliance_matrix::BaseComplianceTable;
 use stead_format::orientation::Quaternion;
 use stead_format::scalars::Whole;
 use stead_format::shapes::{List, Matrix, Vector};
 use stead_format::units::*;
+use stead_model::robot::MeasuredFrom;
 
 ranges! {
     /// By how much angles may differ that count as one. deg
@@ -34,6 +39,9 @@ pub struct IdentificationFile {
     pub compensator: Option<CompensatorGeometryTable>,
     /// Where the tracker stands.
     pub base: Option<BaseTable>,
+    /// How what carries the robot yields, where the readings have it (`fit.stiffness_measured_from` is `floor`): it is
+    /// taken as stated, and the springs are found without it.
+    pub base_compliance: Option<BaseComplianceTable>,
     /// What is identified.
     pub fit: Option<FitTable>,
     /// Which measurements to choose. Needed by `plan` alone.
@@ -75,8 +83,15 @@ pub struct FitTable {
     /// Whether parameters that the readings do not determine keep their values of the robot file; false where left out,
     /// and then such a sheet is refused.
     pub reduce: Option<bool>,
-    /// Numbers of one to five joints that keep their compliance of the robot file.
-    pub hold: Option<List<Whole<1, 6>>>,
+    /// Which springs are sought: those about the joint axes, `axes` (where left out), or those about z, x and y of the
+    /// frame of every row, `full`.
+    pub model: Option<Word<FitModel>>,
+    /// What the measuring instrument stood on, `base` (of the robot) or `floor`: the robot file that is made says so.
+    /// Needed where `model` is `full`.
+    pub stiffness_measured_from: Option<Word<MeasuredFrom>>,
+    /// What keeps its compliance of the robot file: numbers of joints, whose springs are all held, or names of springs,
+    /// `joints[3].z` about the axis, `joints[3].x` and `joints[3].y` normal to it; not all.
+    pub hold: Option<List<HeldSprings>>,
     /// Whether joint 2 has one compliance for each of its angles without a compensator too; false where left out.
     pub distinct_q2: Option<bool>,
     /// Angles of the joint beside the compensator that differ by no more than this count as one; 0.05 where left out.

@@ -1,9 +1,11 @@
 //! Random configurations under random loads, as many as a user could take.
 
+use super::super::elastic::Elastic;
 use super::super::response::Response;
 use super::super::sheet::LoadCase;
+use super::super::springs::{AXES, FULL, FitModel, compliances_of};
 use super::request::{LoadDirections, Request, Volume};
-use nalgebra::{Vector3, Vector6};
+use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
@@ -134,11 +136,20 @@ fn rejection(
     if places().any(|place| !request.volume.contains(&place)) {
         return Some(|rejected| &mut rejected.radius);
     }
-    let compliances = Vector6::from(request.robot.compliances_at(theta));
-    let load = at(&request.load_point);
-    let is_far = request.points.iter().any(|point| {
-        let response = Response::new(&frames, &at(point), &load, force, moment);
-        (response.linear * compliances).norm() > request.max_deflection
-    });
+    let is_far = match request.model {
+        FitModel::Axes => is_far::<AXES>(request, theta, force, moment),
+        FitModel::Full => is_far::<FULL>(request, theta, force, moment),
+    };
     is_far.then_some(|rejected| &mut rejected.deflection)
+}
+
+/// Whether a reference point is deflected too far.
+fn is_far<const N: usize>(request: &Request, theta: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> bool {
+    let arm = Elastic::<N>::unloaded(&request.robot, theta);
+    let at = |place: &Vector3<f64>| arm.base_from_flange.point(place);
+    let (compliances, load) = (compliances_of::<N>(&request.robot, theta), at(&request.load_point));
+    request.points.iter().any(|point| {
+        let response = Response::new(&arm, &at(point), &load, force, moment);
+        (response.linear * compliances).norm() > request.max_deflection
+    })
 }

@@ -1,26 +1,30 @@
 //! The standard deviations that an identification from a set will report, predicted by its own normal equations.
 
+use super::super::gauge::Gauge;
 use super::super::law::{ArmParameter, Law, Quantity};
 use super::super::model::{Layout, Noise, ObservationModel, Parameter};
 use super::super::normal_equations::{NormalEquations, Unidentifiable};
 use super::super::setup::Setup;
 use super::super::sheet::{LoadCase, Sheet};
 use super::super::spring::scaled_inverse;
+use super::super::springs::{spring, stated_normal};
 use super::super::synthetic::{MeasuringCell, sheet};
-use super::parameters::{InformationMatrix, MAX_PARAMETERS, Parameters};
+use super::parameters::{InformationMatrix, Parameters};
 use super::request::Request;
-use nalgebra::{DMatrix, SVector, Vector6};
+use nalgebra::{DMatrix, SVector};
 use serde::Serialize;
-use stead_model::robot::{Compliance, Pose};
+use stead_model::robot::{About, Compliance, Pose, Robot, Spring};
 
 /// A compliance and its expected standard deviation. rad/(N m)
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedCompliance {
     /// The joint, from 0.
     pub joint: usize,
+    /// About which axis of the frame of its row.
+    pub about: About,
     /// The angle to which it belongs, where the joint has several compliances. rad
     pub angle: Option<f64>,
-    /// The compliance of the arm as far as it is known.
+    /// The compliance of the arm as far as it is known; of springs that cannot be told apart their sum.
     pub value: f64,
     /// Standard deviation on its own, as `fit` reports it; nothing where the plan has no configuration at this angle.
     pub deviation: Option<f64>,
@@ -35,7 +39,12 @@ pub struct ExpectedCompliance {
 impl ExpectedCompliance {
     /// The smallest standard deviation that the plan gives, as a share of the compliance.
     pub fn share(&self) -> f64 {
-        self.by_law / self.value
+        (self.by_law / self.value).abs()
+    }
+
+    /// The spring.
+    pub fn spring(&self) -> Spring {
+        Spring { joint: self.joint, about: self.about }
     }
 }
 
@@ -62,33 +71,34 @@ pub fn sheet_of(request: &Request, load_cases: &[LoadCase]) -> Sheet {
 }
 
 /// The normal equations that `fit` will have for a sheet, in equations of unit variance, and its parameters.
-pub fn normal_of(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations) {
+pub fn normal_of<const N: usize>(request: &Request, sheet: &Sheet) -> (Layout, NormalEquations<N>) {
     let setup = Setup { tracker_from_base: Pose::identity(), points: request.points.clone(), residual_rms: 0.0 };
     let noise = Noise { position: request.noise, orientation: 1.0 };
-    let Request { robot, load_point, hold, .. } = request;
-    let equations = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: *hold }.linear();
-    let layout = Layout::new(sheet, request.varying.map(|(joint, _)| joint), request.angle_tolerance);
+    let Request { robot, load_point, .. } = request;
+    let hold = request.held();
+    let equations = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold }.linear();
+    let layout = Layout::new(sheet, request.model, request.varying.map(|(joint, _)| joint), request.angle_tolerance);
     let normal = NormalEquations::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
     (layout, normal)
 }
 
 /// The compliances that an identification will report from a sheet, each by itself, with their standard deviations; and
 /// the unidentifiable combinations.
-pub fn seen(
+pub fn seen<const N: usize>(
     layout: &Layout,
-    normal: &NormalEquations,
-    hold: [bool; 6],
+    normal: &NormalEquations<N>,
+    hold: [bool; N],
 ) -> (Vec<(Parameter, f64)>, Vec<Unidentifiable>) {
     let (free, unidentifiable) = normal.identifiable(hold);
     let held = vec![0.0; layout.angles.len()];
-    let Some(solution) = normal.solve(&free, (&Vector6::zeros(), &held)) else { return (vec![], unidentifiable) };
+    let Some(solution) = normal.solve(&free, (&SVector::zeros(), &held)) else { return (vec![], unidentifiable) };
     let deviation = |parameter: Parameter| {
-        let joint = layout.joint(parameter);
+        let column = layout.column(parameter);
         let group = match parameter {
-            Parameter::Joint(_) => None,
+            Parameter::Joint(_) | Parameter::Normal(_) => None,
             Parameter::Group(group) => Some(group),
         };
-        (parameter, libm::sqrt(solution.covariance(layout.varying, group)[(joint, joint)]))
+        (parameter, libm::sqrt(solution.covariance(layout.varying, group)[(column, column)]))
     };
     (
         layout.parameters().into_iter().filter(|parameter| free.contains(*parameter)).map(deviation).collect(),
@@ -97,10 +107,13 @@ pub fn seen(
 }
 
 /// Covariance of the free numbers of the arm, zero elsewhere; nothing where they are not told.
-pub fn covariance(information: &InformationMatrix, free: &[bool; MAX_PARAMETERS]) -> Option<InformationMatrix> {
-    let free: Vec<usize> = (0..MAX_PARAMETERS).filter(|k| free[*k]).collect();
+pub fn covariance<const P: usize>(
+    information: &InformationMatrix<P>,
+    free: &[bool; P],
+) -> Option<InformationMatrix<P>> {
+    let free: Vec<usize> = (0..P).filter(|k| free[*k]).collect();
     let inverse = scaled_inverse(&DMatrix::from_fn(free.len(), free.len(), |i, j| information[(free[i], free[j])]))?;
-    let mut covariance = InformationMatrix::zeros();
+    let mut covariance = InformationMatrix::<P>::zeros();
     for (i, a) in free.iter().enumerate() {
         for (j, b) in free.iter().enumerate() {
             covariance[(*a, *b)] = inverse[(i, j)];
@@ -110,21 +123,24 @@ pub fn covariance(information: &InformationMatrix, free: &[bool; MAX_PARAMETERS]
 }
 
 /// Standard deviation of something with these derivatives by the numbers of the arm.
-pub fn deviation(covariance: &InformationMatrix, derivatives: &SVector<f64, MAX_PARAMETERS>) -> f64 {
+pub fn deviation<const P: usize>(covariance: &InformationMatrix<P>, derivatives: &SVector<f64, P>) -> f64 {
     libm::sqrt((covariance * derivatives).dot(derivatives).max(0.0))
 }
 
-/// The joints and, where one varies, its angles: every compliance that a plan has an error bar for.
-pub fn identifiable_compliances(request: &Request, free: &[bool; MAX_PARAMETERS]) -> Vec<(usize, Option<f64>)> {
-    let entry = |joint: usize| match request.varying {
-        Some((varying, _)) if varying == joint => request.levels.iter().map(|angle| (joint, Some(*angle))).collect(),
-        _ => vec![(joint, None)],
+/// The springs by their columns and, where one varies, its angles: every compliance that a plan has an error bar for.
+pub fn identifiable_compliances<const P: usize>(request: &Request, free: &[bool; P]) -> Vec<(usize, Option<f64>)> {
+    let entry = |column: usize| match request.varying {
+        Some((varying, _)) if varying == column => request.levels.iter().map(|angle| (column, Some(*angle))).collect(),
+        _ => vec![(column, None)],
     };
-    (0..6).filter(|joint| free[*joint]).flat_map(entry).collect()
+    (0..P - 2).filter(|column| free[*column]).flat_map(entry).collect()
 }
 
 /// The numbers of the compensator and of the joint beside it, where the starting robot has them.
-pub fn expected_compensator(request: &Request, covariance: &InformationMatrix) -> Vec<ExpectedParameter> {
+pub fn expected_compensator<const P: usize>(
+    request: &Request,
+    covariance: &InformationMatrix<P>,
+) -> Vec<ExpectedParameter> {
     let Some((joint, Law::Spring(_))) = request.varying else { return vec![] };
     let Compliance::Compensated { alone, compensator } = request.robot.joints()[joint].compliance else {
         return vec![];
@@ -137,29 +153,32 @@ pub fn expected_compensator(request: &Request, covariance: &InformationMatrix) -
     };
     vec![
         bar(Quantity::Compliance, alone, [(joint, -alone * alone), (joint, 0.0)]),
-        bar(Quantity::SpringStiffness, spring, [(6, 1.0), (7, 0.0)]),
-        bar(Quantity::FreeLength, length, [(6, -length / spring), (7, 1.0 / spring)]),
+        bar(Quantity::SpringStiffness, spring, [(P - 2, 1.0), (P - 1, 0.0)]),
+        bar(Quantity::FreeLength, length, [(P - 2, -length / spring), (P - 1, 1.0 / spring)]),
     ]
 }
 
 /// The covariances by which the compliance of a joint at an angle is judged.
-pub(super) fn expected_compliances(
+pub(super) fn expected_compliances<const P: usize>(
     request: &Request,
     parameters: &Parameters<'_>,
-    free: &[bool; MAX_PARAMETERS],
-    plan: &InformationMatrix,
-    random: &[InformationMatrix],
-    best_random: Option<&InformationMatrix>,
+    gauge: &Gauge,
+    free: &[bool; P],
+    plan: &InformationMatrix<P>,
+    random: &[InformationMatrix<P>],
+    best_random: Option<&InformationMatrix<P>>,
 ) -> Vec<ExpectedCompliance> {
-    let bar = |(joint, angle): (usize, Option<f64>)| {
+    let bar = |(column, angle): (usize, Option<f64>)| {
         let at = angle.unwrap_or_default();
-        let row = parameters.row(joint, at);
+        let row = parameters.row(column, at);
+        let Spring { joint, about } = spring(column);
         let mut spread: Vec<f64> = random.iter().map(|covariance| deviation(covariance, &row)).collect();
         spread.sort_by(f64::total_cmp);
         ExpectedCompliance {
             joint,
+            about,
             angle,
-            value: request.robot.joints()[joint].compliance_at(at),
+            value: known(&request.robot, gauge, spring(column), at),
             deviation: None,
             by_law: deviation(plan, &row),
             best_random: best_random.map(|covariance| deviation(covariance, &row)),
@@ -167,4 +186,14 @@ pub(super) fn expected_compliances(
         }
     };
     identifiable_compliances(request, free).into_iter().map(bar).collect()
+}
+
+/// What is told under the name of a spring, as far as it is known: its compliance with that of those that are told only
+/// together with it. rad/(N m)
+fn known(robot: &Robot, gauge: &Gauge, of: Spring, angle: f64) -> f64 {
+    let compliance = |spring: Spring| match spring.about {
+        About::Z => robot.joints()[spring.joint].compliance_at(angle),
+        _ => stated_normal(robot, spring),
+    };
+    gauge.others(of).into_iter().fold(compliance(of), |sum, (other, share)| sum + share * compliance(other))
 }

@@ -2,12 +2,12 @@
 //! configuration at a time for the best that is not in the set (Fedorov's exchange, in the order of Cook and Nachtsheim
 //! 1980), until no exchange improves it.
 //!
-//! With at most eight parameters a new value of the criterion costs as much as an update of the last one: no updates
-//! are used.
+//! With eight parameters a new value of the criterion costs as much as an update of the last one, and with twenty it is
+//! dear but exact: no updates are used.
 
 use super::candidates::{Purpose, stream};
 use super::parameters::{InformationMatrix, MAX_PARAMETERS};
-use nalgebra::{SMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, SymmetricEigen};
 use rand::RngExt;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,17 +15,17 @@ use stead_numerics::monitor::{Monitor, Progress};
 
 /// A matrix over the free parameters only, each in a unit in which the sum over a set of mean configurations has a unit
 /// diagonal.
-type Packed = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
+type Packed<const P: usize> = [[f64; P]; P];
 
 /// The criterion `trace(Q M^-1)` of an I-optimal design, prepared for many M.
 #[derive(Debug, Clone, PartialEq)]
-pub struct IOptimality {
+pub struct IOptimality<const P: usize = MAX_PARAMETERS> {
     /// The free parameters.
     free: Vec<usize>,
     /// Their units.
-    unit: [f64; MAX_PARAMETERS],
+    unit: [f64; P],
     /// Columns of a factor of Q.
-    factor: Packed,
+    factor: Packed<P>,
 }
 
 /// A set of candidates and its value of the criterion.
@@ -46,12 +46,12 @@ const ROUNDS: usize = 200;
 /// Weight of the mean candidate that a greedy start begins with, so that its first steps differ in value.
 const PRIOR: f64 = 1e-3;
 
-impl IOptimality {
+impl<const P: usize> IOptimality<P> {
     /// For Q, the free parameters, and sets of so many of these candidates.
     pub fn new(
-        weighting: &InformationMatrix,
-        free: &[bool; MAX_PARAMETERS],
-        informations: &[InformationMatrix],
+        weighting: &InformationMatrix<P>,
+        free: &[bool; P],
+        informations: &[InformationMatrix<P>],
         size: usize,
     ) -> Self {
         let sum = informations.iter().fold(InformationMatrix::zeros(), |sum, information| sum + information);
@@ -60,13 +60,13 @@ impl IOptimality {
             let diagonal = sum[(k, k)] * share;
             if diagonal > 0.0 { 1.0 / libm::sqrt(diagonal) } else { 1.0 }
         });
-        let free: Vec<usize> = (0..MAX_PARAMETERS).filter(|k| free[*k]).collect();
-        let mut criterion = Self { free, unit, factor: [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS] };
+        let free: Vec<usize> = (0..P).filter(|k| free[*k]).collect();
+        let mut criterion = Self { free, unit, factor: [[0.0; P]; P] };
         // trace(Q M^-1) is trace(D Q D (D M D)^-1) with the units D: Q is packed as M is.
         let packed = criterion.packed(weighting);
         let size = criterion.free.len();
-        let eigen = SymmetricEigen::new(SMatrix::<f64, MAX_PARAMETERS, MAX_PARAMETERS>::from_fn(|i, j| packed[i][j]));
-        for column in 0..MAX_PARAMETERS {
+        let eigen = SymmetricEigen::new(DMatrix::from_fn(P, P, |i, j| packed[i][j]));
+        for column in 0..P {
             let root = libm::sqrt(eigen.eigenvalues[column].max(0.0));
             for row in 0..size {
                 criterion.factor[row][column] = eigen.eigenvectors[(row, column)] * root;
@@ -75,8 +75,8 @@ impl IOptimality {
         criterion
     }
 
-    fn packed(&self, information: &InformationMatrix) -> Packed {
-        let mut packed = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+    fn packed(&self, information: &InformationMatrix<P>) -> Packed<P> {
+        let mut packed = [[0.0; P]; P];
         for (i, a) in self.free.iter().enumerate() {
             for (j, b) in self.free.iter().enumerate() {
                 packed[i][j] = information[(*a, *b)] * self.unit[*a] * self.unit[*b];
@@ -86,13 +86,13 @@ impl IOptimality {
     }
 
     /// `trace(Q M^-1)`, infinite where not every free parameter is identifiable from M.
-    pub fn value(&self, information: &InformationMatrix) -> f64 {
+    pub fn value(&self, information: &InformationMatrix<P>) -> f64 {
         self.packed_value(&self.packed(information))
     }
 
-    fn packed_value(&self, matrix: &Packed) -> f64 {
+    fn packed_value(&self, matrix: &Packed<P>) -> f64 {
         let size = self.free.len();
-        let mut lower = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+        let mut lower = [[0.0; P]; P];
         for i in 0..size {
             for j in 0..=i {
                 let mut rest = matrix[i][j];
@@ -115,7 +115,7 @@ impl IOptimality {
             let (done, rest) = solved.split_at_mut(i);
             let row = &mut rest[0];
             for (k, known) in done.iter().enumerate() {
-                for column in 0..MAX_PARAMETERS {
+                for column in 0..P {
                     row[column] -= lower[i][k] * known[column];
                 }
             }
@@ -128,7 +128,7 @@ impl IOptimality {
     }
 }
 
-fn add(sum: &mut Packed, part: &Packed, sign: f64) {
+fn add<const P: usize>(sum: &mut Packed<P>, part: &Packed<P>, sign: f64) {
     for (row, part) in sum.iter_mut().zip(part) {
         for (value, part) in row.iter_mut().zip(part) {
             *value += sign * part;
@@ -136,8 +136,8 @@ fn add(sum: &mut Packed, part: &Packed, sign: f64) {
     }
 }
 
-fn sum_of(parts: &[Packed], set: &[usize]) -> Packed {
-    let mut sum = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+fn sum_of<const P: usize>(parts: &[Packed<P>], set: &[usize]) -> Packed<P> {
+    let mut sum = [[0.0; P]; P];
     set.iter().for_each(|index| add(&mut sum, &parts[*index], 1.0));
     sum
 }
@@ -156,21 +156,26 @@ pub fn random_set(seed: u64, draw: usize, size: usize, of: usize) -> Vec<usize> 
 }
 
 /// Values of the criterion, in the order of the sets.
-pub fn values(criterion: &IOptimality, informations: &[InformationMatrix], sets: &[Vec<usize>]) -> Vec<f64> {
-    let sum = |set: &Vec<usize>| set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + informations[*index]);
+pub fn values<const P: usize>(
+    criterion: &IOptimality<P>,
+    informations: &[InformationMatrix<P>],
+    sets: &[Vec<usize>],
+) -> Vec<f64> {
+    let sum =
+        |set: &Vec<usize>| set.iter().fold(InformationMatrix::<P>::zeros(), |sum, index| sum + informations[*index]);
     sets.iter().map(|set| criterion.value(&sum(set))).collect()
 }
 
 /// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `None` when
 /// `monitor` asked to stop. The result does not depend on the number of threads; ties go to the first.
-pub fn exchange(
-    criterion: &IOptimality,
-    informations: &[InformationMatrix],
+pub fn exchange<const P: usize>(
+    criterion: &IOptimality<P>,
+    informations: &[InformationMatrix<P>],
     size: usize,
     starts: &[Vec<usize>],
     monitor: &Monitor,
 ) -> Option<ExactDesign> {
-    let parts: Vec<Packed> = informations.iter().map(|information| criterion.packed(information)).collect();
+    let parts: Vec<Packed<P>> = informations.iter().map(|information| criterion.packed(information)).collect();
     let (done, total) = (AtomicUsize::new(0), starts.len() + 1);
     let improved: Vec<Option<ExactDesign>> = (0..=starts.len())
         .into_par_iter()
@@ -193,8 +198,8 @@ pub fn exchange(
 }
 
 /// Adds the best candidate, one after the other, to a small multiple of the mean of all.
-fn greedy(criterion: &IOptimality, parts: &[Packed], size: usize) -> Vec<usize> {
-    let mut sum = [[0.0; MAX_PARAMETERS]; MAX_PARAMETERS];
+fn greedy<const P: usize>(criterion: &IOptimality<P>, parts: &[Packed<P>], size: usize) -> Vec<usize> {
+    let mut sum = [[0.0; P]; P];
     let share = PRIOR / parts.len() as f64 * size as f64;
     parts.iter().for_each(|part| add(&mut sum, part, share));
     let mut set = Vec::with_capacity(size);
@@ -212,10 +217,10 @@ fn greedy(criterion: &IOptimality, parts: &[Packed], size: usize) -> Vec<usize> 
 }
 
 /// The candidate outside a set whose addition gives the smallest value, if that is below a bound.
-fn best_addition(
-    criterion: &IOptimality,
-    parts: &[Packed],
-    sum: &Packed,
+fn best_addition<const P: usize>(
+    criterion: &IOptimality<P>,
+    parts: &[Packed<P>],
+    sum: &Packed<P>,
     is_in: &[bool],
     bound: f64,
 ) -> Option<(usize, f64)> {
@@ -235,7 +240,12 @@ fn best_addition(
     best
 }
 
-fn improve(criterion: &IOptimality, parts: &[Packed], mut set: Vec<usize>, monitor: &Monitor) -> ExactDesign {
+fn improve<const P: usize>(
+    criterion: &IOptimality<P>,
+    parts: &[Packed<P>],
+    mut set: Vec<usize>,
+    monitor: &Monitor,
+) -> ExactDesign {
     let mut is_in = vec![false; parts.len()];
     set.iter().for_each(|index| is_in[*index] = true);
     let mut value = criterion.packed_value(&sum_of(parts, &set));

@@ -1,10 +1,11 @@
 //! The choice of measurements as a whole.
 
+use super::super::gauge::Gauge;
 use super::super::law::{Law, LawError};
 use super::super::model::{Layout, Parameter};
-use super::super::response::Response;
 use super::super::setup::{SetupError, estimate};
 use super::super::sheet::{LoadCase, Sheet};
+use super::super::springs::{AXES, FULL, FitModel, spring};
 use super::candidates::{Candidates, draw_candidates, test_cases};
 use super::error::DesignError;
 use super::expected::{
@@ -12,14 +13,14 @@ use super::expected::{
 };
 use super::fedorov::{IOptimality, exchange, random_set, values};
 use super::order::{ordered, travel};
-use super::parameters::{InformationMatrix, MAX_PARAMETERS, Parameters};
+use super::parameters::{FULL_PARAMETERS, InformationMatrix, MAX_PARAMETERS, Parameters};
 use super::request::{Request, TestCases};
 use super::result::{Design, ExpectedErrors};
 use super::unobservable::{Unobservable, unobservable, weakly_observed};
 use super::warnings::{unused_angles, warnings};
-use nalgebra::{Matrix3, Vector6};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
-use stead_model::robot::{Frames, Pose};
+use stead_model::robot::Pose;
 use stead_numerics::monitor::Monitor;
 
 /// Chooses the configurations and loads to measure, start by start of the exchange.
@@ -33,9 +34,20 @@ pub fn design_experiment(request: &Request, monitor: &Monitor) -> Result<Design,
         // The joint keeps the law of the starting arm, as in an identification that holds it.
         return design_experiment(&Request { varying: None, ..request.clone() }, monitor);
     }
-    check_counts(request)?;
+    match request.model {
+        FitModel::Axes => designed::<AXES, MAX_PARAMETERS>(request, monitor),
+        FitModel::Full => designed::<FULL, FULL_PARAMETERS>(request, monitor),
+    }
+}
+
+/// The same with so many springs and parameters.
+fn designed<const N: usize, const P: usize>(request: &Request, monitor: &Monitor) -> Result<Design, DesignError> {
+    let held: [bool; N] = request.held();
+    let gauge = Gauge::of(request.model, &request.robot, &held);
+    let hold: [bool; N] = std::array::from_fn(|column| held[column] || gauge.is_zero(spring(column)));
+    check_counts(request, hold.iter().filter(|is_free| !**is_free).count())?;
     let size = request.configurations;
-    let pool = Pool::new(request)?;
+    let pool: Pool<'_, P> = Pool::new(request, hold)?;
     let random = RandomSets::new(&pool);
     let starts = random.starts(request.starts.saturating_sub(1));
     let chosen = exchange(&pool.criterion, &pool.informations, size, &starts, monitor).ok_or(DesignError::Stopped)?;
@@ -46,30 +58,31 @@ pub fn design_experiment(request: &Request, monitor: &Monitor) -> Result<Design,
     let sheet = sheet_of(request, &load_cases);
     check_setup(request, &sheet)?;
     let (layout, normal) = normal_of(request, &sheet);
-    let (alone, unidentifiable) = seen(&layout, &normal, request.hold);
+    let (alone, unidentifiable) = seen(&layout, &normal, hold);
     let mut all_unobservable = pool.unobservable.clone();
     for spot in unobservable(request, &load_cases, &layout, &unidentifiable) {
         if !all_unobservable.iter().any(|known| known.is_same(&spot)) {
             all_unobservable.push(spot);
         }
     }
-    let spreads: Vec<InformationMatrix> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
+    let spreads: Vec<InformationMatrix<P>> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
     let best_random = random.best.and_then(|best| pool.covariance(&random.sets[best]));
     let mut compliances =
-        expected_compliances(request, &pool.parameters, &pool.free, &planned, &spreads, best_random.as_ref());
+        expected_compliances(request, &pool.parameters, &gauge, &pool.free, &planned, &spreads, best_random.as_ref());
     compliances.iter_mut().for_each(|c| c.deviation = own_deviation(request, c, &layout, &alone));
     let weakly_observed = weakly_observed(request, &load_cases, &compliances);
     Ok(Design {
         travel: travel(&load_cases),
-        notes: unused_angles(&compliances).into_iter().collect(),
-        warnings: warnings(request, &all_unobservable, &weakly_observed),
+        notes: unused_angles(request.model, &compliances).into_iter().collect(),
+        warnings: warnings(request, &gauge, &all_unobservable, &weakly_observed),
         weakly_observed,
         load_cases,
         sheet,
         compliances,
         compensator: expected_compensator(request, &planned),
         errors: random.errors(chosen.value),
-        deflection: deflection(request, &pool.tests),
+        deflection: pool.parameters.deflection(request, &pool.tests),
+        gauge,
         tests: pool.tests,
         unobservable: all_unobservable,
         candidates: pool.drawn.load_cases.len(),
@@ -79,21 +92,21 @@ pub fn design_experiment(request: &Request, monitor: &Monitor) -> Result<Design,
 }
 
 /// What there is to choose from, and by what.
-struct Pool<'a> {
+struct Pool<'a, const P: usize> {
     request: &'a Request,
     drawn: Candidates,
     tests: Vec<LoadCase>,
     parameters: Parameters<'a>,
-    informations: Vec<InformationMatrix>,
+    informations: Vec<InformationMatrix<P>>,
     /// The parameters of the arm that are identifiable from all candidates together.
-    free: [bool; MAX_PARAMETERS],
+    free: [bool; P],
     /// The others.
     unobservable: Vec<Unobservable>,
-    criterion: IOptimality,
+    criterion: IOptimality<P>,
 }
 
-impl<'a> Pool<'a> {
-    fn new(request: &'a Request) -> Result<Self, DesignError> {
+impl<'a, const P: usize> Pool<'a, P> {
+    fn new<const N: usize>(request: &'a Request, hold: [bool; N]) -> Result<Self, DesignError> {
         let size = request.configurations;
         let drawn = draw_candidates(request);
         if drawn.load_cases.len() < size {
@@ -108,22 +121,22 @@ impl<'a> Pool<'a> {
             return Err(DesignError::NoTest);
         }
         let parameters = Parameters::new(&request.robot, request.varying);
-        let (layout, normal) = normal_of(request, &sheet_of(request, &drawn.load_cases));
-        let (identifiable, unidentifiable) = normal.identifiable(request.hold);
-        let free = parameters.free(&identifiable);
+        let (layout, normal) = normal_of::<N>(request, &sheet_of(request, &drawn.load_cases));
+        let (identifiable, unidentifiable) = normal.identifiable(hold);
+        let free: [bool; P] = parameters.free(&identifiable);
         if !free.contains(&true) {
             return Err(DesignError::NothingIdentifiable);
         }
         let unobservable = unobservable(request, &drawn.load_cases, &layout, &unidentifiable);
-        let informations: Vec<InformationMatrix> =
+        let informations: Vec<InformationMatrix<P>> =
             drawn.load_cases.par_iter().map(|load_case| parameters.information(request, load_case)).collect();
         let criterion = IOptimality::new(&parameters.weighting(request, &tests), &free, &informations, size);
         Ok(Self { request, drawn, tests, parameters, informations, free, unobservable, criterion })
     }
 
     /// Covariance of the parameters of the arm from a set; nothing where they are not identifiable.
-    fn covariance(&self, set: &[usize]) -> Option<InformationMatrix> {
-        let sum = set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + self.informations[*index]);
+    fn covariance(&self, set: &[usize]) -> Option<InformationMatrix<P>> {
+        let sum = set.iter().fold(InformationMatrix::<P>::zeros(), |sum, index| sum + self.informations[*index]);
         covariance(&sum, &self.free)
     }
 }
@@ -136,7 +149,7 @@ struct RandomSets {
 }
 
 impl RandomSets {
-    fn new(pool: &Pool<'_>) -> Self {
+    fn new<const P: usize>(pool: &Pool<'_, P>) -> Self {
         let (request, of) = (pool.request, pool.informations.len());
         let draw = |draw| random_set(request.seed, draw, request.configurations, of);
         let sets: Vec<Vec<usize>> = (0..request.random_sets).into_par_iter().map(draw).collect();
@@ -173,7 +186,7 @@ fn own_deviation(
     alone: &[(Parameter, f64)],
 ) -> Option<f64> {
     let is_it = |parameter: Parameter| {
-        layout.joint(parameter) == expected.joint
+        layout.spring(parameter) == expected.spring()
             && match (expected.angle, layout.angle(parameter)) {
                 (Some(a), Some(b)) => (a - b).abs() <= request.angle_tolerance.max(1e-9),
                 (a, b) => a.is_none() && b.is_none(),
@@ -183,17 +196,16 @@ fn own_deviation(
 }
 
 /// Refuses what has fewer equations than unknowns.
-fn check_counts(request: &Request) -> Result<(), DesignError> {
+fn check_counts(request: &Request, springs: usize) -> Result<(), DesignError> {
     let (size, levels) = (request.configurations, request.levels.len());
     let equations = 3 * size * request.points.len();
     let unknowns = match request.varying {
         Some((joint, Law::Spring(_))) if size.min(levels) < 3 => {
             return Err(LawError::TooFewAngles { found: size.min(levels), joint: joint + 1 }.into());
         }
-        Some((_, Law::Spring(_))) => 8,
-        _ => 6,
+        Some((_, Law::Spring(_))) => springs + 2,
+        _ => springs,
     };
-    let unknowns = unknowns - request.hold.iter().filter(|held| **held).count();
     if equations < unknowns {
         return Err(DesignError::TooFew { equations, unknowns });
     }
@@ -209,15 +221,4 @@ fn check_setup(request: &Request, sheet: &Sheet) -> Result<(), DesignError> {
     let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| request.robot.forward(&c.theta)).collect();
     estimate(sheet, &flanges, &vec![true; sheet.readings.len()], Some(&Matrix3::identity()))?;
     Ok(())
-}
-
-/// Root of the mean square of the deflection in the tests.
-fn deflection(request: &Request, tests: &[LoadCase]) -> f64 {
-    let square = |test: &LoadCase| {
-        let frames = Frames::new(&request.robot, &test.theta);
-        let tip = frames.base_from_flange.point(&request.tip);
-        let response = Response::new(&frames, &tip, &tip, &test.force, &test.moment);
-        (response.linear * Vector6::from(request.robot.compliances_at(&test.theta))).norm_squared()
-    };
-    libm::sqrt(tests.iter().map(square).sum::<f64>() / tests.len().max(1) as f64)
 }

@@ -2,6 +2,7 @@
 
 use super::super::law::Law;
 use super::super::sheet::LoadCase;
+use super::super::springs::{FitModel, held};
 use nalgebra::Vector3;
 use stead_model::robot::Robot;
 
@@ -10,6 +11,8 @@ use stead_model::robot::Robot;
 pub struct Request {
     /// The arm as far as it is known: geometry, limits, and compliances of about the right size.
     pub robot: Robot,
+    /// Which springs the identification will seek.
+    pub model: FitModel,
     /// Where the load acts, in the flange frame. m
     pub load_point: Vector3<f64>,
     /// About where the reference points are, in the flange frame. m
@@ -18,8 +21,10 @@ pub struct Request {
     pub noise: f64,
     /// The joint (from 0) with one compliance for each distinct angle, and the law of those.
     pub varying: Option<(usize, Law)>,
-    /// Joints whose compliance the identification will hold at that of `robot`.
+    /// Joints whose compliance about their axis the identification will hold at that of `robot`.
     pub hold: [bool; 6],
+    /// Springs about x and y of each joint that it will hold likewise, where it seeks all.
+    pub hold_normal: [[bool; 2]; 6],
     /// Angles of that joint that differ by no more than this count as one. rad
     pub angle_tolerance: f64,
     /// The joint (from 0) that is put to few angles only.
@@ -52,6 +57,13 @@ pub struct Request {
     pub random_sets: usize,
     /// A compliance whose expected standard deviation is above this share of it is weakly observed.
     pub max_relative_deviation: f64,
+}
+
+impl Request {
+    /// The springs that the identification will hold, by their columns.
+    pub fn held<const N: usize>(&self) -> [bool; N] {
+        held(&self.hold, &self.hold_normal)
+    }
 }
 
 /// Directions of the load, in the base frame, whose z axis points up.

@@ -1,5 +1,6 @@
 //! A chosen set of measurements, and how well the compliances will be known from it. SI units and radians.
 
+use super::super::gauge::Gauge;
 use super::super::sheet::{LoadCase, Sheet};
 use super::candidates::Rejected;
 use super::expected::{ExpectedCompliance, ExpectedParameter};
@@ -14,6 +15,8 @@ pub struct Design {
     pub load_cases: Vec<LoadCase>,
     /// The sheet of these, with the readings of the starting arm; base and tracker frame are the same.
     pub sheet: Sheet,
+    /// Which springs cannot be told apart.
+    pub gauge: Gauge,
     /// Every identifiable compliance with its expected standard deviation.
     pub compliances: Vec<ExpectedCompliance>,
     /// The parameters of the compensator and of the joint beside it likewise, where the starting robot has a

@@ -5,7 +5,7 @@ use super::super::sheet::LoadCase;
 use super::super::synthetic::sheet;
 use super::super::tests::identify;
 use super::super::tests::{GEOMETRY, NOISE, arm, cell, gauss, problem};
-use super::super::{Estimate, Problem};
+use super::super::{Estimate, FitModel, Problem};
 use super::candidates::draw_candidates;
 use super::expected::{normal_of, sheet_of};
 use super::fedorov::{IOptimality, exchange, random_set, values};
@@ -40,7 +40,9 @@ fn request(seed: u64) -> Request {
         points: cell(3).points,
         noise: NOISE,
         varying: Some((1, Law::Spring(GEOMETRY))),
+        model: FitModel::Axes,
         hold: [false; 6],
+        hold_normal: [[false; 2]; 6],
         angle_tolerance: 1e-4,
         level_joint: 1,
         levels: [0.2, 0.75, 1.3, 1.9, 2.5].to_vec(),
@@ -103,7 +105,7 @@ fn the_criterion_is_the_trace_of_the_product_with_the_inverse() {
 fn information_is_that_of_the_normal_equations_of_fit() {
     let request = Request { varying: None, levels: vec![], candidates: 30, ..request(2) };
     let (informations, ..) = prepared(&request);
-    let (_, normal) = normal_of(&request, &sheet_of(&request, &draw_candidates(&request).load_cases));
+    let (_, normal) = normal_of::<6>(&request, &sheet_of(&request, &draw_candidates(&request).load_cases));
     let sum = informations.iter().fold(InformationMatrix::zeros(), |sum, part| sum + part);
     for i in 0..6 {
         for j in 0..6 {
@@ -171,7 +173,8 @@ fn plans_are_better_than_the_best_of_a_thousand_random_sets() {
         let informations: Vec<_> =
             draw_candidates(&others).load_cases.iter().map(|s| parameters.information(&others, s)).collect();
         let weighting = parameters.weighting(&others, &plan.tests);
-        let free = std::array::from_fn(|number| number < 6 || matches!(others.varying, Some((_, Law::Spring(_)))));
+        let free: [bool; MAX_PARAMETERS] =
+            std::array::from_fn(|number| number < 6 || matches!(others.varying, Some((_, Law::Spring(_)))));
         let criterion = IOptimality::new(&weighting, &free, &informations, others.configurations);
         let sets: Vec<_> =
             (0..1000).map(|k| random_set(others.seed + 77, k, others.configurations, informations.len())).collect();
@@ -256,7 +259,8 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         change(&mut request);
         planned(&request)
     };
-    let reasons = |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0, b.reason)).collect::<Vec<_>>();
+    let reasons =
+        |plan: &Design| plan.unobservable.iter().map(|b| (b.compliances[0].0.joint, b.reason)).collect::<Vec<_>>();
     let vertical = small(|request| request.loads = LoadDirections::Vertical);
     assert_eq!(reasons(&vertical), [(0, UnobservableReason::LoadsAlongAxis)]);
     assert!(
@@ -271,7 +275,7 @@ fn what_no_load_shows_is_named_with_the_reason_and_the_rest_is_planned() {
         reasons(&straight).iter().map(|(_, reason)| *reason).collect::<Vec<_>>(),
         [UnobservableReason::Dependent]
     );
-    let pair: Vec<usize> = straight.unobservable[0].compliances.iter().map(|(joint, _)| *joint).collect();
+    let pair: Vec<usize> = straight.unobservable[0].compliances.iter().map(|(spring, _)| spring.joint).collect();
     assert!(pair == [3, 5] || pair == [5, 3], "{pair:?}");
 
     let near = small(|request| request.load_point = Vector3::new(0.002, 0.0, 0.2));
@@ -357,4 +361,53 @@ fn counts_that_cannot_do_are_refused() {
         (r.configurations, r.varying) = (1, None);
     };
     assert!(matches!(refused(one), DesignError::TooFew { equations: 3, unknowns: 6 }));
+}
+
+#[test]
+fn a_plan_for_all_springs_expects_what_a_full_fit_reports() {
+    use super::super::gauge::Gauge;
+    use super::super::tests::full::{WRIST_CENTRE, full_arm};
+    let robot = full_arm(WRIST_CENTRE);
+    let request = Request {
+        model: FitModel::Full,
+        varying: None,
+        levels: vec![],
+        configurations: 30,
+        candidates: 150,
+        starts: 2,
+        random_sets: 100,
+        robot: robot.clone(),
+        ..request(1)
+    };
+    let plan = planned(&request);
+    assert_eq!((plan.compliances.len(), plan.gauge.replaced.len()), (15, 3));
+    assert!(plan.errors.planned < plan.errors.best_random && plan.unobservable.is_empty(), "{:?}", plan.errors);
+    let readings = sheet(&robot, &cell(3), &plan.load_cases, || 0.0, || 0.0);
+    let start = Some(cell(3).tracker_from_base.rotation);
+    let varying = None;
+    let fit =
+        Problem { robot, noise: Some(NOISE), start, varying, model: FitModel::Full, ..problem(readings, &cell(3)) };
+    let found = identify(&fit).unwrap();
+    for (bar, estimate) in plan.compliances.iter().zip(&found.compliances) {
+        assert_eq!(bar.spring(), found.spring(estimate.parameter));
+        // The plan takes the arm as it is without the load.
+        assert!((estimate.deviation / bar.deviation.unwrap() - 1.0).abs() < 0.02, "{bar:?} {estimate:?}");
+        assert!((bar.by_law / bar.deviation.unwrap() - 1.0).abs() < 1e-6, "{bar:?}");
+        assert!((estimate.value / bar.value - 1.0).abs() < 1e-3, "{bar:?} {estimate:?}");
+    }
+    // With all of joint 5 held there is nothing that cannot be told apart but by joint 4 and 6 alone.
+    let held =
+        Request { hold_normal: [[false; 2], [false; 2], [false; 2], [false, true], [true; 2], [false; 2]], ..request };
+    let plan = planned(&held);
+    assert_eq!((plan.compliances.len(), &plan.gauge), (15, &Gauge::default()));
+    // Loads along the axis of joint 1 do not turn it about that, but about x and y.
+    let vertical = planned(&Request { loads: LoadDirections::Vertical, ..held });
+    let unseen: Vec<String> = vertical.unobservable.iter().map(|entry| entry.compliances[0].0.to_string()).collect();
+    assert_eq!(unseen, ["joint 1 about z"]);
+    let warning = &vertical.warnings.iter().find(|warning| warning.kind == "unobservable").unwrap().message;
+    for part in
+        ["joint 1 about z is unobservable: every load is vertical, along axis 1", "fit.hold = [\"joints[1].z\"]"]
+    {
+        assert!(warning.contains(part), "{part} in {warning}");
+    }
 }

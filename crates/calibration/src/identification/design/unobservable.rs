@@ -1,19 +1,21 @@
 //! Compliances that a set of configurations and loads leaves unobservable, and why.
 
+use super::super::elastic::Elastic;
 use super::super::model::{Layout, Parameter};
 use super::super::normal_equations::Unidentifiable;
 use super::super::sheet::LoadCase;
+use super::super::springs::{FULL, column};
 use super::expected::ExpectedCompliance;
 use super::request::Request;
 use serde::Serialize;
-use stead_model::robot::Frames;
+use stead_model::robot::{About, Spring};
 
 /// A compliance, or a combination of several, on which no reading depends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unobservable {
-    /// The compliances in it by joint (from 0) and, where the joint has several, angle (rad); the one that is given up
+    /// The compliances in it by spring and, where the joint has several, angle (rad); the one that is given up
     /// comes first.
-    pub compliances: Vec<(usize, Option<f64>)>,
+    pub compliances: Vec<(Spring, Option<f64>)>,
     /// Why.
     pub reason: UnobservableReason,
 }
@@ -22,7 +24,7 @@ impl Unobservable {
     /// Whether both are of the same compliances, in any order.
     pub fn is_same(&self, other: &Self) -> bool {
         let near = |(a, b): (Option<f64>, Option<f64>)| (a.unwrap_or_default() - b.unwrap_or_default()).abs() < NOTHING;
-        let has = |all: &[(usize, Option<f64>)], one: &(usize, Option<f64>)| {
+        let has = |all: &[(Spring, Option<f64>)], one: &(Spring, Option<f64>)| {
             all.iter().any(|entry| entry.0 == one.0 && near((entry.1, one.1)))
         };
         self.compliances.len() == other.compliances.len()
@@ -52,11 +54,13 @@ pub enum UnobservableReason {
 pub struct WeaklyObserved {
     /// The joint, from 0.
     pub joint: usize,
+    /// About which axis of the frame of its row.
+    pub about: About,
     /// The angle, where the joint has several compliances. rad
     pub angle: Option<f64>,
     /// Expected standard deviation as a share of the compliance.
     pub share: f64,
-    /// Root of the mean square of the load's lever about the axis of the joint. m
+    /// Root of the mean square of the load's lever about the axis of the spring. m
     pub lever: f64,
 }
 
@@ -70,11 +74,11 @@ pub fn unobservable(
     layout: &Layout,
     unidentifiable: &[Unidentifiable],
 ) -> Vec<Unobservable> {
-    let name = |parameter: &Parameter| (layout.joint(*parameter), layout.angle(*parameter));
+    let name = |parameter: &Parameter| (layout.spring(*parameter), layout.angle(*parameter));
     let unobservable = |unidentifiable: &Unidentifiable| {
         let compliances: Vec<_> = unidentifiable.parameters.iter().map(name).collect();
         let reason = match compliances[..] {
-            [(joint, _)] => reason(request, load_cases, joint),
+            [(spring, _)] => reason(request, load_cases, column(spring)),
             _ => UnobservableReason::Dependent,
         };
         Unobservable { compliances, reason }
@@ -82,19 +86,19 @@ pub fn unobservable(
     unidentifiable.iter().map(unobservable).collect()
 }
 
-fn reason(request: &Request, load_cases: &[LoadCase], joint: usize) -> UnobservableReason {
+fn reason(request: &Request, load_cases: &[LoadCase], column: usize) -> UnobservableReason {
     let [mut lever, mut aside, mut off_load, mut off_points] = [0.0_f64; 4];
     for LoadCase { theta, force, .. } in load_cases {
-        let frames = Frames::new(&request.robot, theta);
-        let (axis, flange) = (frames.axes[joint], &frames.base_from_flange);
+        let arm = Elastic::<FULL>::unloaded(&request.robot, theta);
+        let flange = &arm.base_from_flange;
         let along = force / force.norm();
         let load = flange.point(&request.load_point);
-        let velocity = frames.twist(joint, &load).0;
+        let (velocity, axis) = arm.twist(column, &load);
         lever = lever.max(velocity.dot(&along).abs());
         aside = aside.max(axis.cross(&along).norm());
         off_load = off_load.max(velocity.norm());
         for point in &request.points {
-            off_points = off_points.max(frames.twist(joint, &flange.point(point)).0.norm());
+            off_points = off_points.max(arm.twist(column, &flange.point(point)).0.norm());
         }
     }
     if lever > NOTHING && off_points <= NOTHING {
@@ -117,19 +121,20 @@ pub fn weakly_observed(
     let is_weak = |compliance: &&ExpectedCompliance| compliance.share() > request.max_relative_deviation;
     let entry = |compliance: &ExpectedCompliance| WeaklyObserved {
         joint: compliance.joint,
+        about: compliance.about,
         angle: compliance.angle,
         share: compliance.share(),
-        lever: lever(request, load_cases, compliance.joint),
+        lever: lever(request, load_cases, compliance.spring()),
     };
     compliances.iter().filter(is_weak).map(entry).collect()
 }
 
-/// Root of the mean square of the load's lever about the axis of a joint. m
-pub fn lever(request: &Request, load_cases: &[LoadCase], joint: usize) -> f64 {
+/// Root of the mean square of the load's lever about the axis of a spring. m
+pub fn lever(request: &Request, load_cases: &[LoadCase], of: Spring) -> f64 {
     let square = |LoadCase { theta, force, .. }: &LoadCase| {
-        let frames = Frames::new(&request.robot, theta);
-        let load = frames.base_from_flange.point(&request.load_point);
-        let torque = frames.twist(joint, &load).0.dot(force);
+        let arm = Elastic::<FULL>::unloaded(&request.robot, theta);
+        let load = arm.base_from_flange.point(&request.load_point);
+        let torque = arm.twist(column(of), &load).0.dot(force);
         torque * torque / force.norm_squared()
     };
     libm::sqrt(load_cases.iter().map(square).sum::<f64>() / load_cases.len().max(1) as f64)

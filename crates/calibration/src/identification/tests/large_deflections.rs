@@ -27,13 +27,14 @@ fn off_by_linear_equations(problem: &Problem) -> f64 {
     let setup = Setup { tracker_from_base: cell.tracker_from_base, points: cell.points, residual_rms: 0.0 };
     let Problem { robot, sheet, load_point, .. } = problem;
     let equations = ObservationModel { robot, sheet, setup: &setup, load_point, noise, hold: [false; 6] }.linear();
-    let layout = Layout::new(sheet, Some(1), problem.angle_tolerance);
+    let layout = Layout::new(sheet, FitModel::Axes, Some(1), problem.angle_tolerance);
     let normal = NormalEquations::new(sheet, &layout, &equations, &vec![1.0; equations.len()]);
     let held = vec![0.0; layout.angles.len()];
     let solution = normal.solve(&normal.free_unless([false; 6]), (&nalgebra::Vector6::zeros(), &held)).unwrap();
     let off = |parameter: Parameter| {
         let value = match parameter {
             Parameter::Joint(joint) => solution.joints[joint],
+            Parameter::Normal(_) => 0.0,
             Parameter::Group(group) => solution.groups[group],
         };
         (value / truth(parameter, layout.angle(parameter)) - 1.0).abs()

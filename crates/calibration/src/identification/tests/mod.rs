@@ -14,6 +14,7 @@ use stead_model::robot::testing::kr270;
 use stead_model::robot::{Compensator, Compliance, Pose, Robot};
 use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 
+pub(super) mod full;
 mod hold;
 mod large_deflections;
 mod refusals;
@@ -100,6 +101,8 @@ pub(super) fn gauss(random: &mut ChaCha8Rng) -> f64 {
 pub(super) fn problem(sheet: Sheet, cell: &MeasuringCell) -> Problem {
     Problem {
         robot: kr270(),
+        model: FitModel::Axes,
+        measured_from: None,
         sheet,
         load_point: cell.load_point,
         noise: None,
@@ -109,6 +112,7 @@ pub(super) fn problem(sheet: Sheet, cell: &MeasuringCell) -> Problem {
         start: None,
         reduce: false,
         hold: [false; 6],
+        hold_normal: [[false; 2]; 6],
     }
 }
 
@@ -125,6 +129,7 @@ fn standard(seed: u64, noise: f64, points: usize) -> Problem {
 fn truth(parameter: Parameter, angle: Option<f64>) -> f64 {
     match parameter {
         Parameter::Joint(joint) => arm().joints()[joint].compliance_at(0.0),
+        Parameter::Normal(_) => 0.0,
         Parameter::Group(_) => arm().joints()[1].compliance_at(angle.unwrap()),
     }
 }
@@ -135,6 +140,7 @@ fn arm_truth(parameter: law::ArmParameter) -> f64 {
         Quantity::Compliance => truth(Parameter::Joint(parameter.joint), None),
         Quantity::SpringStiffness => COMPENSATOR.spring_stiffness,
         Quantity::FreeLength => COMPENSATOR.free_length,
+        Quantity::AboutX | Quantity::AboutY => 0.0,
     }
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 
 /// The equations of a sheet that was read in this cell.
-fn observations(robot: &Robot, sheet: &Sheet, cell: &synthetic::MeasuringCell) -> Vec<model::Observation> {
+fn observations(robot: &Robot, sheet: &Sheet, cell: &synthetic::MeasuringCell) -> Vec<model::Observation<6>> {
     let setup =
         setup::Setup { tracker_from_base: cell.tracker_from_base, points: cell.points.clone(), residual_rms: 0.0 };
     let noise = model::Noise { position: NOISE, orientation: 1.0 };
@@ -20,7 +20,7 @@ fn leaving_a_configuration_out_is_what_estimating_without_it_gives() {
     let mut random = ChaCha8Rng::seed_from_u64(4);
     let readings = sheet(&robot, &cell, &load_cases, || NOISE * gauss(&mut random), || 0.0);
     let equations = observations(&robot, &readings, &cell);
-    let layout = model::Layout::new(&readings, None, 0.0);
+    let layout = model::Layout::new(&readings, FitModel::Axes, None, 0.0);
     let solved = |weights: &[f64]| {
         let normal = normal_equations::NormalEquations::new(&readings, &layout, &equations, weights);
         let solution = normal.solve(&normal.free_unless([false; 6]), (&nalgebra::Vector6::zeros(), &[])).unwrap();
@@ -65,7 +65,7 @@ fn a_reading_that_is_left_out_is_judged_by_how_well_the_others_predict_it() {
     let mut readings = sheet(&robot, &cell, &load_cases, || NOISE * gauss(&mut random), || 0.0);
     readings.readings[4].loaded += direction(&mut random) * 5e-3;
     let observations = observations(&robot, &readings, &cell);
-    let layout = model::Layout::new(&readings, None, 0.0);
+    let layout = model::Layout::new(&readings, FitModel::Axes, None, 0.0);
     let free =
         normal_equations::NormalEquations::new(&readings, &layout, &observations, &[1.0; 9]).free_unless([false; 6]);
     let held = (&nalgebra::Vector6::zeros(), &[][..]);

@@ -1,13 +1,17 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
+use super::super::json::{SharedFigures, shared};
 use super::super::{URAD, key, rounded};
 use crate::document::Document;
 use crate::figure::{AngleDeg, ForceN, PlaceMm, each};
 use serde_json::Value;
-use stead_calibration::identification::design::Design;
+use stead_calibration::identification::FitModel;
 use stead_calibration::identification::design::expected::{ExpectedCompliance, ExpectedParameter};
 use stead_calibration::identification::design::unobservable::{Unobservable, UnobservableReason, WeaklyObserved};
+use stead_calibration::identification::design::{Design, Request};
+use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::sheet::Configuration;
+use stead_model::robot::Spring;
 use stead_runs::PlanRun;
 
 /// Significant digits of expected errors.
@@ -31,7 +35,7 @@ records! {
         /// Configurations in the order of measuring.
         configurations: Vec<ConfigurationFigures> = plan.sheet.configurations.iter().map(Into::into).collect(),
         /// Expected errors of the compliances.
-        compliances: Vec<ExpectedFigures> = plan.compliances.iter().map(Into::into).collect(),
+        compliances: Vec<ExpectedFigures> = plan.compliances.iter().map(|bar| ExpectedFigures::of(request, plan, bar)).collect(),
         /// Expected errors of the compensator.
         compensator: Vec<ParameterFigures> = plan.compensator.iter().map(Into::into).collect(),
         /// Expected error of the deflection.
@@ -41,9 +45,9 @@ records! {
         /// Motion through the configurations, by the joint that moves furthest in each move.
         travel_deg: AngleDeg = plan.travel.into(),
         /// Compliances that the plan does not show.
-        unseen: Vec<UnseenFigures> = plan.unobservable.iter().map(Into::into).collect(),
+        unseen: Vec<UnseenFigures> = plan.unobservable.iter().map(|entry| UnseenFigures::of(request, entry)).collect(),
         /// Compliances that it hardly shows.
-        hardly_seen: Vec<HardlySeenFigures> = plan.weakly_observed.iter().map(Into::into).collect(),
+        hardly_seen: Vec<HardlySeenFigures> = plan.weakly_observed.iter().map(|hardly| HardlySeenFigures::of(request, plan, hardly)).collect(),
     }
 
     /// A configuration to be measured.
@@ -57,24 +61,34 @@ records! {
     }
 
     /// A compliance: that of a joint, or of one angle of the joint beside a compensator.
-    pub struct ComplianceName of (joint: usize, angle: Option<f64>) {
+    pub struct ComplianceName of (request: &Request, gauge: Option<&Gauge>, spring: Spring, angle: Option<f64>) {
+        let is_full = request.model == FitModel::Full;
+    } with {
         /// The joint, from 1.
-        joint: usize = joint + 1,
+        joint: usize = spring.joint + 1,
+        /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought
+        /// too.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        about: Option<&'static str> = is_full.then(|| spring.about.name()),
+        /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        with: Option<Vec<SharedFigures>> = gauge.and_then(|gauge| shared(gauge, spring)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
         #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = angle.map(Into::into),
     }
 
     /// The expected error of a compliance, beside those of random sets of configurations.
-    pub struct ExpectedFigures from bar: &ExpectedCompliance {
+    pub struct ExpectedFigures of (request: &Request, plan: &Design, bar: &ExpectedCompliance) {
         let urad = |value: Option<f64>| value.and_then(|value| digits(value * URAD));
     } with {
-        #[serde(flatten)] compliance: ComplianceName = ComplianceName::of(bar.joint, bar.angle),
+        #[serde(flatten)] compliance: ComplianceName =
+            ComplianceName::of(request, Some(&plan.gauge), bar.spring(), bar.angle),
         /// Compliance assumed for the plan. urad/(N m)
         urad_per_nm: Option<f64> = urad(Some(bar.value)),
         /// Standard deviation that `fit` is expected to report for this compliance alone. urad/(N m)
         std_urad_per_nm: Option<f64> = urad(bar.deviation),
         /// The same in per cent of the compliance. %
-        std_percent: Option<f64> = bar.deviation.and_then(|deviation| digits(100.0 * deviation / bar.value)),
+        std_percent: Option<f64> = bar.deviation.and_then(|deviation| digits((100.0 * deviation / bar.value).abs())),
         /// Standard deviation by the law of the joint over all its angles. urad/(N m)
         by_law_std_urad_per_nm: Option<f64> = urad(Some(bar.by_law)),
         /// Least standard deviation by the law among the random sets of configurations. urad/(N m)
@@ -133,8 +147,9 @@ records! {
     }
 
     /// Compliances that a plan does not show.
-    pub struct UnseenFigures from unobservable: &Unobservable {
-        let names = unobservable.compliances.iter().map(|(joint, angle)| ComplianceName::of(*joint, *angle));
+    pub struct UnseenFigures of (request: &Request, unobservable: &Unobservable) {
+        let names = unobservable.compliances.iter();
+        let names = names.map(|(spring, angle)| ComplianceName::of(request, None, *spring, *angle));
     } with {
         /// The compliances that are not identifiable.
         compliances: Vec<ComplianceName> = names.collect(),
@@ -143,8 +158,11 @@ records! {
     }
 
     /// A compliance that a plan hardly shows.
-    pub struct HardlySeenFigures from hardly: &WeaklyObserved {
-        #[serde(flatten)] compliance: ComplianceName = ComplianceName::of(hardly.joint, hardly.angle),
+    pub struct HardlySeenFigures of (request: &Request, plan: &Design, hardly: &WeaklyObserved) {
+        let spring = Spring { joint: hardly.joint, about: hardly.about };
+    } with {
+        #[serde(flatten)] compliance: ComplianceName =
+            ComplianceName::of(request, Some(&plan.gauge), spring, hardly.angle),
         /// Expected standard deviation in per cent of the compliance. %
         std_percent: Option<f64> = digits(hardly.share * 100.0),
         /// Largest lever arm of the load about the axis of the joint.

@@ -37,7 +37,7 @@ pub fn plan_files(run: &PlanRun, plan: &Design) -> Result<Files, ReportError> {
     Ok(named([
         (SHEET, plan.sheet.form().into_bytes()),
         ("plan.json", documents::bytes(&plan_json(run, plan))),
-        ("expected.csv", tables::expected(plan)?),
+        ("expected.csv", tables::expected(run.request.model, plan)?),
         ("plan.svg", picture::measurement_plan(&run.request, plan).into_bytes()),
     ]))
 }

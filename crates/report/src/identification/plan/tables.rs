@@ -1,11 +1,13 @@
 //! The CSV file of expected errors.
 
 use super::super::super::output::ReportError;
+use super::super::tables::seen_name;
 use super::super::{URAD, key, rounded, unit};
 use crate::csv_file::rows_or;
 use crate::figure::AngleDeg;
 use schemars::JsonSchema;
 use serde::Serialize;
+use stead_calibration::identification::FitModel;
 use stead_calibration::identification::design::Design;
 
 /// Significant digits of expected errors.
@@ -37,10 +39,10 @@ pub struct ExpectedRow {
 }
 
 /// `expected.csv`: an [`ExpectedRow`] for every compliance, then for the numbers of the compensator.
-pub(super) fn expected(plan: &Design) -> Result<Vec<u8>, ReportError> {
+pub(super) fn expected(model: FitModel, plan: &Design) -> Result<Vec<u8>, ReportError> {
     let urad = |value: f64| number(value * URAD);
     let bars = plan.compliances.iter().map(|bar| ExpectedRow {
-        parameter: format!("joints[{}].compliance", bar.joint + 1),
+        parameter: seen_name(model, &plan.gauge, bar.spring()).trim_start_matches("seen.").to_owned(),
         unit: "urad/(N m)",
         angle_deg: bar.angle.map(Into::into),
         value: urad(bar.value),

@@ -3,6 +3,7 @@
 use super::super::{URAD, key};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
+use stead_calibration::identification::FitModel;
 use stead_calibration::identification::design::{Design, TestCases};
 use stead_runs::PlanRun;
 
@@ -19,7 +20,7 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         figures(request.load),
         request.noise * 1e3
     );
-    text += &aligned(&bar_rows(plan), &[0]);
+    text += &aligned(&bar_rows(request.model, plan), &[0]);
     if !plan.compensator.is_empty() {
         text += "\n";
         text += &aligned(&spring_rows(plan), &[0]);
@@ -74,20 +75,24 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
     text
 }
 
-fn bar_rows(plan: &Design) -> Vec<Vec<String>> {
+fn bar_rows(model: FitModel, plan: &Design) -> Vec<Vec<String>> {
     let has_law = plan.compliances.iter().any(|bar| bar.angle.is_some());
-    let mut header = vec!["joint", "at deg", "urad/(N m)", "std", "%"];
+    let first = if model == FitModel::Full { "spring" } else { "joint" };
+    let mut header = vec![first, "at deg", "urad/(N m)", "std", "%"];
     header.extend(has_law.then_some("% by law"));
     header.extend(["% best random", "% median random"]);
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     for bar in &plan.compliances {
         let percent = |deviation: Option<f64>| {
-            deviation.map_or_else(|| "-".to_owned(), |deviation| fixed(100.0 * deviation / bar.value, 2))
+            deviation.map_or_else(|| "-".to_owned(), |deviation| fixed((100.0 * deviation / bar.value).abs(), 2))
         };
         let angle = bar.angle.map_or_else(|| "-".to_owned(), |angle| fixed(angle.to_degrees(), 2));
         let deviation = bar.deviation.map_or_else(|| "-".to_owned(), |deviation| figures(deviation * URAD));
-        let mut row =
-            vec![(bar.joint + 1).to_string(), angle, fixed(bar.value * URAD, 4), deviation, percent(bar.deviation)];
+        let name = match model {
+            FitModel::Axes => (bar.joint + 1).to_string(),
+            FitModel::Full => plan.gauge.sum_name(bar.spring(), bar.spring().to_string()),
+        };
+        let mut row = vec![name, angle, fixed(bar.value * URAD, 4), deviation, percent(bar.deviation)];
         row.extend(has_law.then(|| percent(Some(bar.by_law))));
         row.extend([percent(bar.best_random), percent(bar.median_random)]);
         rows.push(row);
