@@ -34,7 +34,7 @@ use crate::forces::{BeforeTable, ReadingTable, RemovalTables};
 use crate::stated::stated;
 use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
-use notes::{direction_note, override_note, speed_note, tilt_note};
+use notes::{direction_note, override_note, speed_note, tilt_note, weight_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
 use removed::removed;
@@ -312,13 +312,16 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     inputs.extend(around.inputs);
     notes.extend(base_note(&problem.robot));
     notes.extend(problem.notes());
+    notes.extend(weight_note(&problem));
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     let stated = stated(&at);
-    let warnings = removal.iter().flat_map(|removal| removal.warnings.iter().cloned()).collect();
+    let of_removal = removal.iter().flat_map(|removal| removal.warnings.iter().cloned());
+    let left_out = path_stability.as_ref().and_then(|analysis| analysis.variant.left_out(&problem.robot));
+    let warnings = of_removal.chain(left_out).collect();
     Ok(Run {
         problem,
         search,
