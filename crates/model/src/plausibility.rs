@@ -75,7 +75,9 @@ pub fn springs_left_out(robot: &Robot) -> Option<String> {
 /// That motion and stability leave out what a spindle states of static compliance.
 pub fn static_alone(spindle: &Spindle) -> Option<String> {
     flange_matrices(spindle).map(|keys| {
-        format!("{keys} is of static deflection alone: motion and stability leave out what mount, holder and tool yield")
+        format!(
+            "{keys} is of static deflection alone: motion and stability leave out what mount, holder and tool yield"
+        )
     })
 }
 

@@ -1,7 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
-use super::sag::Sag;
 use super::lookup::{Accuracy, Shape};
+use super::sag::Sag;
 use crate::sensitivity::SpringSlope;
 use nalgebra::Vector3;
 use serde::Serialize;

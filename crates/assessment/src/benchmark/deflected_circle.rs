@@ -3,9 +3,11 @@
 use super::{Benchmark, JUMP, LimitsAt, MAX_DEFLECTION, Obstacle, StiffnessModel, Turning};
 use crate::circle::least_squares;
 use nalgebra::{Matrix2, Matrix3, Vector3};
-use std::f64::consts::{PI, TAU};
 use std::borrow::Cow;
-use stead_model::robot::{Frames, NormalSprings, Pose, Posture, PostureClass, Robot, Spindle, angles::wrap, turns::Range};
+use std::f64::consts::{PI, TAU};
+use stead_model::robot::{
+    Frames, NormalSprings, Pose, Posture, PostureClass, Robot, Spindle, angles::wrap, turns::Range,
+};
 use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
 use stead_model::stiffness::loaded::loaded_displacement;
 use stead_model::stiffness::whole::WholeArm;

@@ -46,8 +46,7 @@ pub struct ToolLoad {
 
 impl ToolLoad {
     /// None.
-    pub const NONE: Self =
-        Self { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
+    pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
 }
 
 /// An arm with a spindle, and everything of it that yields.

@@ -152,12 +152,11 @@ pub(super) fn by_origin(plan: &Plan) -> Option<String> {
 /// How far the weight moves the tool along a plan, where that is known.
 pub(super) fn sag(plan: &Plan) -> Option<String> {
     let sag = plan.sag.as_ref()?;
-    let [least, largest, spread] = [sag.path.least, sag.path.largest, sag.path.spread].map(|value| fixed(value * 1e3, 4));
-    let within = sag.segments.iter().map(|(_, range)| range.spread).fold(0.0, f64::max);
+    let [least, largest, spread] =
+        [sag.path.least, sag.path.largest, sag.path.spread].map(|value| fixed(value * 1e3, 4));
+    let within = fixed(sag.segments.iter().map(|(_, range)| range.spread).fold(0.0, f64::max) * 1e3, 4);
     Some(format!(
-        "the weight moves the tool by {least} to {largest} mm, which no score counts: differently by up to {spread} mm along the \
-         path, {} mm within a segment",
-        fixed(within * 1e3, 4)
+        "weight moves the tool by {least} to {largest} mm, differently by up to {spread} mm ({within} mm within a segment)"
     ))
 }
 

@@ -211,9 +211,15 @@ fn full_note(robots: &[Robot]) -> Option<String> {
     }
     let beside = match &others[..] {
         [] => String::new(),
-        others => format!("; of the others ({}) those about the axes alone are stated: that is no comparison of like with like", names(others)),
+        others => format!(
+            "; of the others ({}) those about the axes alone are stated: that is no comparison of like with like",
+            names(others)
+        ),
     };
-    Some(format!("springs normal to the joint axes count as stated ({}), what carries the robot and the spindle do not yield{beside}", names(&full)))
+    Some(format!(
+        "springs normal to the joint axes count as stated ({}), what carries the robot and the spindle do not yield{beside}",
+        names(&full)
+    ))
 }
 
 /// Which robots may be chosen for any force.

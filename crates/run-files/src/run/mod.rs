@@ -34,7 +34,7 @@ use crate::forces::{BeforeTable, ReadingTable, RemovalTables};
 use crate::stated::stated;
 use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
-use notes::{direction_note, override_note, speed_note, tilt_note, weight_note};
+use notes::{direction_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
 use removed::removed;
@@ -312,7 +312,6 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     inputs.extend(around.inputs);
     notes.extend(base_note(&problem.robot));
     notes.extend(problem.notes());
-    notes.extend(weight_note(&problem));
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));

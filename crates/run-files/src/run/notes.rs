@@ -3,8 +3,6 @@
 use stead_format::field::FieldOverride;
 use stead_model::robot::Robot;
 use stead_model::task::{Task, ToolPath};
-use stead_numerics::digits::figures;
-use stead_planning::problem::Problem;
 
 /// A feed that misses the plane normal to the tool axis by no more than this is normal to it. deg
 const NORMAL_FEED_DEG: f64 = 0.1;
@@ -42,21 +40,6 @@ pub(super) fn direction_note(task: &Task) -> Option<String> {
     let first = inner.find(|point| off(point) > FEED_TO_PATH_DEG)?;
     let (from, angle) = (first - 1, off(&first));
     Some(format!("at point {from} the feed is {angle:.0} deg off the way to the next point: check the signs of feed_*"))
-}
-
-/// What of the weight is known, that no score counts it, and what is to be done about it; where the mass of what the
-/// flange carries is known.
-pub(super) fn weight_note(problem: &Problem) -> Option<String> {
-    let mass = problem.spindle.carried_mass()?.mass;
-    let links = match problem.robot.dynamics() {
-        Some(_) => " and of the links",
-        None => " (the masses of the links are not known, their weight is left out)",
-    };
-    Some(format!(
-        "the weight of the {} kg on the flange{links} moves the tool too, differently along the path (sag_mm): no score counts it, since \
-         it is there when the program is touched up; it must be calibrated out, or corrected (stead compensate with gravity = true)",
-        figures(mass)
-    ))
 }
 
 /// The joints whose speed is not known, where there are some.

@@ -7,14 +7,13 @@ use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
 
 /// Yields alike in all directions, with turns that couple with shifts.
 fn matrix(scale: f64) -> Matrix6<f64> {
-    let root = Matrix6::from_fn(|row, column| {
-        if row == column { 1.0 } else { 0.2 / (1.0 + (row + column) as f64) }
-    });
+    let root = Matrix6::from_fn(|row, column| if row == column { 1.0 } else { 0.2 / (1.0 + (row + column) as f64) });
     root * root.transpose() * scale
 }
 
 fn full(arm: Robot) -> Robot {
-    let springs = std::array::from_fn(|j| NormalSprings { compliance: [3e-7, 1e-7 * j as f64], bearing: 0.1 - 0.05 * j as f64 });
+    let springs =
+        std::array::from_fn(|j| NormalSprings { compliance: [3e-7, 1e-7 * j as f64], bearing: 0.1 - 0.05 * j as f64 });
     arm.with_normal_springs(Some(springs)).unwrap().with_spring_model(Some(SpringModel::Full))
 }
 

@@ -159,9 +159,9 @@ impl Posed {
             let behind = applied.iter().filter(|load| load.behind > k);
             match place {
                 None => behind.map(|load| axis.dot(&load.force)).sum(),
-                Some(place) => behind
-                    .map(|load| axis.cross(&(load.point - place)).dot(&load.force) + axis.dot(&load.moment))
-                    .sum(),
+                Some(place) => {
+                    behind.map(|load| axis.cross(&(load.point - place)).dot(&load.force) + axis.dot(&load.moment)).sum()
+                }
             }
         })
     }

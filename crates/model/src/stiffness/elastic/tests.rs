@@ -229,7 +229,8 @@ fn a_tube_under_the_arm_buckles_at_its_hinge() {
     let height = arm.forward(&theta).then(&spindle.flange_from_tool).translation.z;
     let side = arm.forward(&theta).then(&spindle.flange_from_tool).translation.y;
     assert!(height > 0.5 && side.abs() < 0.05);
-    let pressed = |share: f64| ToolLoad { force: vector![0.0, 0.0, -share / (1e-6 * height)], moment: Vector3::zeros() };
+    let pressed =
+        |share: f64| ToolLoad { force: vector![0.0, 0.0, -share / (1e-6 * height)], moment: Vector3::zeros() };
     let elastic = ElasticArm::new(&arm, &spindle);
     assert!(elastic.at_rest(&theta, &pressed(0.9)).is_ok());
     let compliances = arm.compliances_at(&theta);

@@ -5,7 +5,7 @@ use super::*;
 use stead_model::robot::{Joint, NormalSprings, Robot, Spindle, SpringModel};
 
 /// `configs/whole-arm.toml`, with the part of the deflection that is scored.
-fn full_arm(weights: Weights) -> Problem {
+pub(crate) fn full_arm(weights: Weights) -> Problem {
     let row = |alpha: f64, a, d, [min, max]: [f64; 2], speed: f64, stiffness: f64| Joint {
         alpha: alpha.to_radians(),
         a,
