@@ -6,9 +6,13 @@ use crate::{
 use nalgebra::{Matrix3, Vector3};
 use stead_calibration::compensation::compensate;
 use stead_format::testing::root;
-use stead_model::robot::Frames;
+use stead_format::toml_file::TomlFile;
+use stead_model::robot::{Frames, Inertial, Pose, Posture, Spindle};
 use stead_model::stiffness::whole::WholeArm;
 use stead_numerics::monitor::Monitor;
+use stead_numerics::rotation::rotation_from_zyx;
+use stead_simulation::arm::{Arm, Variant};
+use stead_simulation::modes::LinearArm;
 use stead_simulation::stability_analysis::analyse;
 
 /// A shipped file with pieces replaced, in a folder beside the others of its kind.
@@ -70,7 +74,7 @@ fn motion_and_stability_note_matrices_and_warn_of_springs_that_the_variant_leave
     let notes = run.setup.notes();
     let is_static = |note: &&String| note.contains("spindle.tip_um_per_n is of static deflection alone");
     assert_eq!(notes.iter().filter(is_static).count(), 1, "{notes:?}");
-    for variant in stead_simulation::arm::Variant::ALL {
+    for variant in Variant::ALL {
         let run = read_stability(&file, &Overrides { variant: Some(variant), ..Overrides::default() }).unwrap();
         let warnings = run.setup.warnings();
         let is_left_out = matches!(variant.word(), "springs" | "gravity");
@@ -85,21 +89,44 @@ fn motion_and_stability_note_matrices_and_warn_of_springs_that_the_variant_leave
     assert_eq!(run.warnings.iter().filter(|warning| warning.kind == "springs-left-out").count(), 1);
 }
 
-/// What the source of these springs has at the start of its program: lengths of the arm and its springs, on a spindle
-/// of which it prints place and angle.
+/// The static compliance at the tool that other code has for these springs, with the spindle and at the start of the
+/// path of the program that states them; in its workpiece frame, um/N.
 #[test]
-fn eighteen_springs_of_the_tx200_yield_as_their_source_has_it() {
+fn eighteen_springs_of_the_tx200_yield_as_other_code_has_it() {
     let robot = stead_format::read_robot(&root().join("configs/robots/staubli-tx200-huynh.toml")).unwrap();
     let tilt = nalgebra::Rotation3::from_axis_angle(&Vector3::y_axis(), 75_f64.to_radians());
-    let spindle = stead_model::robot::Spindle::new(*tilt.matrix(), Vector3::new(0.277, 0.0, 0.326)).unwrap();
-    // -90, 30, 95, 0, 0, 0 deg of the encoders.
-    let theta = [-90.0, 30.0 - 90.0, 95.0 + 90.0, 0.0, 0.0, 0.0].map(f64::to_radians);
+    let spindle = Spindle::new(*tilt.matrix(), Vector3::new(0.277, 0.0, 0.326)).unwrap();
+    // -90, 30, 95, 0, 0, 0 deg of the encoders bring the tool over the corner of the part.
+    let near = [-90.0, 30.0 - 90.0, 95.0 + 90.0, 0.0, 0.0, 0.0].map(f64::to_radians);
+    let corner = robot.forward(&near).then(&spindle.flange_from_tool).translation;
+    assert!((corner - Vector3::new(0.0, -1.6474000255922296, 0.4806981213437843)).norm() < 1e-12, "{corner}");
+    // The path begins 25 mm before it in both directions and 5 mm above, with the tool upright.
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let upright = rotation_from_zyx([quarter, 0.0, 2.0 * quarter]);
+    let tool = Pose { rotation: upright, translation: Vector3::new(-0.025, -1.6224, 0.4857) };
+    let flange = tool.then(&spindle.flange_from_tool.inverse());
+    let posture = Posture::of(&robot, &[near[0], near[1], near[2], near[3], -0.6, near[5]]);
+    let theta = robot.inverse(&flange, posture).unwrap();
     let frames = Frames::new(&robot, &theta);
-    let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
-    let arm = WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(&theta), tip);
+    let arm = WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(&theta), tool.translation);
     let column = |k: usize| arm.displacement(&Vector3::ith(k, 1.0), &Vector3::zeros()).linear * 1e6;
     let found = Matrix3::from_columns(&[column(0), column(1), column(2)]);
-    panic!("{tip} {found}");
+    // The workpiece is a quarter turn behind the base: its x is the base's -y.
+    let diagonal = [found[(1, 1)], found[(0, 0)], found[(2, 2)]];
+    for (found, printed) in diagonal.into_iter().zip([1.467, 2.611, 1.875]) {
+        assert!((found - printed).abs() <= 0.0005, "{diagonal:?}");
+    }
+    // The springs of the moving arm, at rest without gravity, are the same.
+    let full = stead_format::robot::moving_robot_from(
+        &TomlFile::read(&root().join("configs/robots/staubli-tx200-huynh.toml")).unwrap(),
+        true,
+    );
+    let body = Inertial::new(61.4, Vector3::zeros(), Matrix3::identity()).unwrap();
+    let spindle = Spindle { payload: Some(body), ..spindle };
+    let moving = Arm::eighteen(&full.unwrap(), &spindle, Variant::Springs, &theta).unwrap();
+    let linear = LinearArm::of(&moving, &Arm::<18>::spread(&theta), 1.0);
+    let response = linear.response(0.0).unwrap().map(|entry| entry.re * 1e6);
+    assert!((response - found).norm() < 1e-9 * found.norm(), "{response} {found}");
 }
 
 /// An arm of the same geometry that has springs beside those about the axes.

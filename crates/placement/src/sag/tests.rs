@@ -1,25 +1,17 @@
 //! The displacement by the weight along plans.
 
 use super::*;
-use crate::place::tests::whole_arm::full_arm;
-use crate::settings::SearchSettings;
+use crate::place::tests::whole_arm::{full_arm, heavy};
 use nalgebra::vector;
 use proptest::prelude::*;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
-use stead_model::robot::{PointMass, Pose, Spindle};
-use stead_numerics::monitor::Monitor;
+use stead_model::robot::Pose;
 use stead_numerics::rotation::rotation_from_zyx;
 use stead_planning::criterion::Weights;
 use stead_planning::setup::{AxisPositions, Setup};
-use stead_planning::transfer::TransferSettings;
-
-/// 61 kg, 250 mm from the flange.
-fn heavy(spindle: &Spindle) -> Spindle {
-    Spindle { point_mass: Some(PointMass { mass: 61.0, centre: vector![0.0, 0.0, 0.25] }), ..*spindle }
-}
 
 fn problem() -> Problem {
-    full_arm(Weights::TOTAL).with(|parts| parts.spindle = heavy(&parts.spindle))
+    heavy(full_arm(Weights::TOTAL))
 }
 
 const HERE: [f64; 6] = [-1.5, 0.4, -2.4, 0.3, 0.9, 0.2];
@@ -28,31 +20,6 @@ const THERE: [f64; 6] = [-1.2, 0.7, -2.0, -2.5, -0.9, 1.2];
 fn sag_of(problem: &Problem, joints: &[[f64; 6]]) -> Option<Sag> {
     let placement = Placement { x: 0.0, y: -1.7, z: 0.3, yaw: 0.7 };
     Sag::of(problem, &placement, joints.iter().copied().enumerate())
-}
-
-/// Both placements of the published path: figures of another program are 0.5 to 1.1 mm along the path.
-#[test]
-fn the_weight_of_a_spindle_moves_the_tool_more_than_the_cut_and_no_score_counts_it() {
-    let settings = SearchSettings::default();
-    let transfer = TransferSettings::default();
-    let of = |problem: &Problem| crate::place::place(problem, &settings, &transfer, &Monitor::silent()).unwrap();
-    let (with, without) = (of(&problem()), of(&full_arm(Weights::TOTAL)));
-    for (case, light) in with.cases.optima().into_iter().zip(without.cases.optima()) {
-        let sag = case.plan.sag.as_ref().unwrap();
-        let SagRange { least, largest, spread } = sag.path;
-        assert!(0.4e-3 < least && largest < 1.2e-3 && 0.1e-3 < spread && spread < 0.9e-3, "{:?}", sag.path);
-        assert_eq!(sag.segments.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
-        let segments = sag.segments.iter().map(|(_, range)| range);
-        assert!(
-            segments.clone().all(|range| range.least >= least && range.largest <= largest && range.spread <= spread)
-        );
-        // The plan and its score are those without a mass, which has no sag.
-        assert_eq!((case.plan.mean, &case.plan.points), (light.plan.mean, &light.plan.points));
-        assert!(light.plan.sag.is_none());
-    }
-    let is_of_weight = |note: &&String| note.contains("the weight of the 61 kg on the flange (the masses of the links");
-    assert_eq!(with.notes.iter().filter(is_of_weight).count(), 1, "{:?}", with.notes);
-    assert_eq!(without.notes.iter().filter(|note| note.contains("weight")).count(), 0);
 }
 
 #[test]
