@@ -216,6 +216,10 @@ impl Report for StabilityAnalysis {
     fn notes(&self) -> &[String] {
         &self.analysis.notes
     }
+
+    fn warnings(&self) -> &[Warning] {
+        &self.analysis.warnings
+    }
 }
 
 result!(SimulatedPass, StabilityAnalysis);

@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use stead_disk::input::InputError;
-use stead_model::robot::{Inertial, InertialError};
+use stead_model::robot::{Inertial, InertialError, PointMass};
 
 pub(super) const MASS: &str = "mass_kg";
 pub(super) const CENTRE: &str = "centre_of_mass_mm";
@@ -44,6 +44,18 @@ impl InertiaTable {
         let [xy, xz, yz] = [self.xy, self.xz, self.yz].map(|entry| entry.map_or(0.0, Quantity::si));
         Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
     }
+}
+
+/// Mass and centre of a body from the keys `mass_kg` and `centre_of_mass_mm` of a table.
+///
+/// # Errors
+/// [`InputError`] with file, line and field: a missing key.
+pub(super) fn point_mass_from(
+    mass: Option<Kg<Positive>>,
+    centre: Option<Vector<Mm>>,
+    at: &Place<'_>,
+) -> Result<PointMass, InputError> {
+    Ok(PointMass { mass: at.require(MASS, mass)?.si(), centre: at.require(CENTRE, centre)?.vector() })
 }
 
 /// A body from the keys `mass_kg`, `centre_of_mass_mm` and `inertia_kg_m2` of a table.

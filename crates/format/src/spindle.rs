@@ -1,7 +1,7 @@
 //! The table `[spindle]`: the tool frame in the flange frame, and what the flange carries.
 
 use crate::compliance_matrix::{WrenchMatrix, force_matrix, wrench_matrix};
-use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from};
+use crate::inertial::{CENTRE, INERTIA, InertiaTable, MASS, inertial_from, point_mass_from};
 use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
@@ -30,11 +30,13 @@ pub struct SpindleTable {
     pub rpy_deg: Option<Vector<Deg>>,
     /// The same as ABB's quaternion.
     pub quaternion_wxyz: Option<Quaternion>,
-    /// Mass of all that the flange carries: spindle, holder and tool. Needed where motion or stability is computed.
+    /// Mass of all that the flange carries: spindle, holder and tool. With it results state how far the weight moves the
+    /// tool. Needed where motion or stability is computed.
     pub mass_kg: Option<Kg<Positive>>,
     /// Centre of mass of all that the flange carries, in the flange frame.
     pub centre_of_mass_mm: Option<Vector<Mm>>,
-    /// Inertia tensor of all that the flange carries about its centre of mass, in the directions of the flange frame.
+    /// Inertia tensor of all that the flange carries about its centre of mass, in the directions of the flange frame;
+    /// needed where motion or stability is computed.
     pub inertia_kg_m2: Option<InertiaTable>,
     /// How the spindle is fixed to the flange, where that yields: displacement and turn per force and moment at the
     /// origin of the flange frame, in its directions, translations first: um/N, urad/N; urad/N, urad/(N m).
@@ -60,18 +62,6 @@ pub fn read_spindle(file: &Path) -> Result<(Spindle, Vec<u8>), InputError> {
 }
 
 impl SpindleTable {
-    /// Refuses what yields on the flange, for jobs that do not count it.
-    ///
-    /// # Errors
-    /// [`InputError`] at `mount_matrix` or `tip_um_per_n`.
-    pub fn refuse_matrices(&self, at: &Place<'_>) -> Result<(), InputError> {
-        let stated = ["mount_matrix", "tip_um_per_n"].map(|key| at.key(key)).into_iter().find(Place::is_given);
-        stated.map_or(Ok(()), |key| {
-            let problem = "is counted in the scores of placements alone, and would have no effect here";
-            Err(key.error(problem, "this key in the run file of a placement only").found_if(None))
-        })
-    }
-
     /// The spindle that the table describes.
     ///
     /// # Errors
@@ -84,8 +74,10 @@ impl SpindleTable {
         spindle.mount = self.mount_matrix.as_ref().map(matrix).transpose()?;
         let matrix = |rows| force_matrix(rows, &at.key("tip_um_per_n"));
         spindle.tip = self.tip_um_per_n.as_ref().map(matrix).transpose()?;
-        if self.mass_kg.is_some() || self.centre_of_mass_mm.is_some() || self.inertia_kg_m2.is_some() {
+        if self.inertia_kg_m2.is_some() {
             spindle.payload = Some(inertial_from(self.mass_kg, self.centre_of_mass_mm, self.inertia_kg_m2, at)?);
+        } else if self.mass_kg.is_some() || self.centre_of_mass_mm.is_some() {
+            spindle.point_mass = Some(point_mass_from(self.mass_kg, self.centre_of_mass_mm, at)?);
         }
         Ok(spindle)
     }
@@ -97,9 +89,10 @@ impl SpindleTable {
     pub fn moving_spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
         let spindle = self.spindle(at)?;
         if spindle.payload.is_none() {
+            let key = if spindle.point_mass.is_some() { INERTIA } else { MASS };
             let what = "is missing: how the arm moves depends on what the flange carries";
             let allowed = format!("{MASS}, {CENTRE} and {INERTIA} of spindle, holder and tool, in the flange frame");
-            return Err(at.key(MASS).error(what, allowed));
+            return Err(at.key(key).error(what, allowed));
         }
         Ok(spindle)
     }

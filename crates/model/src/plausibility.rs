@@ -72,16 +72,30 @@ pub fn springs_left_out(robot: &Robot) -> Option<String> {
     })
 }
 
-/// That a job counts the springs about the axes alone of an arm that has others too.
-pub fn axes_alone(robot: &Robot) -> Option<String> {
-    let is_more = robot.normal_springs().is_some() || robot.base_compliance().is_some();
-    is_more.then(|| {
+/// That motion and stability leave out what a spindle states of static compliance.
+pub fn static_alone(spindle: &Spindle) -> Option<String> {
+    flange_matrices(spindle).map(|keys| {
         format!(
-            "{}: only its springs about the joint axes are counted here; those normal to the axes and the base, which scores \
-             count, are left out, so that deflections are too small",
-            robot.name()
+            "{keys} is of static deflection alone: motion and stability leave out what mount, holder and tool yield"
         )
     })
+}
+
+/// That a benchmark of the joints leaves out what a spindle states of its compliance.
+pub fn joints_alone(spindle: &Spindle) -> Option<String> {
+    flange_matrices(spindle).map(|keys| {
+        format!("{keys} is left out: the joints are assessed, without base, mount, holder and tool, as published comparisons do")
+    })
+}
+
+/// The keys of the matrices that a spindle states, where it states one.
+fn flange_matrices(spindle: &Spindle) -> Option<&'static str> {
+    match (spindle.mount, spindle.tip) {
+        (None, None) => None,
+        (Some(_), None) => Some("spindle.mount_matrix"),
+        (None, Some(_)) => Some("spindle.tip_um_per_n"),
+        (Some(_), Some(_)) => Some("spindle.mount_matrix, with spindle.tip_um_per_n,"),
+    }
 }
 
 /// Softer than this (m/N; rad/N, rad/(N m)) a matrix looks wrong.

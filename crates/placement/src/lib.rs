@@ -32,6 +32,7 @@ pub mod path_comparison;
 pub mod path_subset;
 pub mod place;
 pub mod refine;
+pub mod sag;
 pub mod search;
 pub mod sensitivity;
 pub mod settings;

@@ -1,6 +1,7 @@
 //! What the placement job returns: plain data, in SI units and radians, for the reports to read.
 
 use super::lookup::{Accuracy, Shape};
+use super::sag::Sag;
 use crate::sensitivity::SpringSlope;
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -133,6 +134,9 @@ pub struct Plan {
     /// What each thing that yields adds to the scored part, in the mean, where more does than the joints about their
     /// axes.
     pub by_origin: Option<ScoredByOrigin>,
+    /// How far the weight of links and spindle moves the tool, which no score counts; where the mass of what the flange
+    /// carries is known.
+    pub sag: Option<Sag>,
     /// The point with the least room, and its pair; `None` without a scene, and where nothing is near.
     pub clearance: Option<PlanClearance>,
 }

@@ -210,4 +210,4 @@ fn force_sensitivity(
 #[cfg(test)]
 mod brute_force;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

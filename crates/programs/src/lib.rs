@@ -312,7 +312,7 @@ fn files(
         spindle_off: off.as_deref(),
         external_units: motion::external_units(problem),
         sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
-        load: problem.spindle.payload.map(|body| (body.mass(), [0, 1, 2].map(|axis| body.centre()[axis]))),
+        load: problem.spindle.carried_mass().map(|body| (body.mass, [0, 1, 2].map(|axis| body.centre[axis]))),
     };
     Ok(match format {
         ProgramFormat::Rapid => rapid::files(&layout),

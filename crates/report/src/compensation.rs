@@ -142,6 +142,8 @@ records! {
         reality: Option<String> = run.has_reality.then(|| run.job.reality.name().to_owned()),
         /// The model of the deflection.
         model: Word<DeflectionModel> = Word::from(settings.model),
+        /// True where the weight of links and spindle is corrected too; left out where it is not.
+        #[serde(skip_serializing_if = "Option::is_none")] gravity: Option<bool> = settings.gravity.then_some(true),
         /// Share of the deflection that each iteration corrects.
         alpha: f64 = settings.alpha,
         /// The iteration ends below this. mm
@@ -242,7 +244,8 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
     let count = outcome.points.len();
     let kept = outcome.not_corrected().map_or(0, |not| not.failed.len());
     let which = if kept > 0 { format!("{} of them ", count - kept) } else { String::new() };
-    let mut text = format!("{}: {count} points, {which}compensated for {model}\n", run.job.robot.name());
+    let weight = if run.job.settings.gravity { " with the weight" } else { "" };
+    let mut text = format!("{}: {count} points, {which}compensated for {model}{weight}\n", run.job.robot.name());
     let executed = if run.has_reality {
         format!("executed on {} ({})", run.job.reality.name(), run.inputs.last().map_or("", |input| &input.name))
     } else {

@@ -177,6 +177,7 @@ impl Grid {
             held: None,
             mean_deviation: None,
             by_origin: None,
+            sag: None,
             clearance: None,
             axes: Vec::new(),
             points,

@@ -5,6 +5,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 use serde::Serialize;
 use stead_model::robot::chain::{Axis, Chain, Link, Posed};
 use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spindle};
+use stead_numerics::message::Warning;
 
 /// How much of the arm is modelled; each adds to the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -31,6 +32,19 @@ impl Variant {
             Self::Orthogonal => "orthogonal",
             Self::Backlash => "backlash",
         }
+    }
+
+    /// That this variant leaves out springs of a full set, of which those about the axes are but a part.
+    pub fn left_out(self, robot: &Robot) -> Option<Warning> {
+        (self < Self::Orthogonal && robot.normal_springs().is_some()).then(|| {
+            let message = format!(
+                "{}: variant {} leaves out the springs normal to the axes, which are part of the set (stiffness_model = \"full\"): \
+                 the arm is softer than that, and critical depths are smaller; variant orthogonal has them",
+                robot.name(),
+                self.word()
+            );
+            Warning::new("springs-left-out", message)
+        })
     }
 }
 

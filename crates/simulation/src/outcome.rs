@@ -78,7 +78,7 @@ pub struct Simulation {
     /// Roughness of the wall as it is, and filtered; `None` if no wall was cut.
     pub roughness: Option<[Roughness; 2]>,
     /// Why the figures may not be those of the steady cut: `ended-early`, `not-settled`, `slow-growth` or
-    /// `at-the-limit`.
+    /// `at-the-limit`; or those of another arm than its file states: `springs-left-out`.
     pub warnings: Vec<Warning>,
     /// What the result rests on.
     pub notes: Vec<String>,
@@ -134,7 +134,7 @@ impl Simulation {
             wall,
             filtered,
             roughness,
-            warnings: warning(judgement, &run.end).into_iter().collect(),
+            warnings: warning(judgement, &run.end).into_iter().chain(job.setup.warnings()).collect(),
             notes: notes(job, &run),
             run,
         })

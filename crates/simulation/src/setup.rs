@@ -4,6 +4,7 @@ use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::motion::Motion;
 use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
+use stead_numerics::message::Warning;
 
 /// An arm, how much of it is modelled, and the pass that it makes.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +24,13 @@ pub struct Setup {
 impl Setup {
     /// What looks like a wrong unit or sign though it is possible, in sentences.
     pub fn notes(&self) -> Vec<String> {
-        plausibility::arm(&self.robot).into_iter().chain(plausibility::spindle(&self.spindle)).collect()
+        let spindle = [plausibility::spindle(&self.spindle), plausibility::static_alone(&self.spindle)];
+        plausibility::arm(&self.robot).into_iter().chain(spindle.into_iter().flatten()).collect()
+    }
+
+    /// What makes the result another than that of the arm as its file states it.
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.variant.left_out(&self.robot).into_iter().collect()
     }
 
     /// Chain and drives, their stiffnesses taken at the start of the pass.

@@ -10,6 +10,7 @@ use serde::Serialize;
 use stead_model::cutting::PassCut;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
 use stead_model::robot::{Robot, Spindle};
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Stop};
 
 /// Settings of a stability analysis.
@@ -64,6 +65,8 @@ pub struct StabilityAnalysis {
     pub lobes: Vec<Lobe>,
     /// Time of the pass through the work at the feed. s
     pub pass_time: f64,
+    /// What makes it another result than that of the arm as its file states it: `springs-left-out`.
+    pub warnings: Vec<Warning>,
     /// What the result rests on.
     pub notes: Vec<String>,
 }
@@ -104,6 +107,7 @@ pub fn analyse(
         cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
         lobes: lobes(&plant, cutter, cut, &speeds, settings.max_depth, monitor)?,
         pass_time: cut.length / setup.motion.ramp().feed,
+        warnings: setup.warnings(),
         notes: setup.notes().into_iter().chain(runout_note(cutter)).collect(),
     })
 }

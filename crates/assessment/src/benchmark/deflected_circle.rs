@@ -3,18 +3,23 @@
 use super::{Benchmark, JUMP, LimitsAt, MAX_DEFLECTION, Obstacle, StiffnessModel, Turning};
 use crate::circle::least_squares;
 use nalgebra::{Matrix2, Matrix3, Vector3};
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
-use stead_model::robot::{Frames, Pose, Posture, PostureClass, Robot, angles::wrap, turns::Range};
-use stead_model::stiffness::displacement;
+use stead_model::robot::{
+    Frames, NormalSprings, Pose, Posture, PostureClass, Robot, Spindle, angles::wrap, turns::Range,
+};
+use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
 use stead_model::stiffness::loaded::loaded_displacement;
+use stead_model::stiffness::whole::WholeArm;
 
 /// An arm on the benchmark: what does not change from circle to circle.
 #[derive(Debug, Clone)]
 pub struct DeflectedCircle<'a> {
     benchmark: &'a Benchmark,
-    robot: &'a Robot,
+    robot: Cow<'a, Robot>,
     tool_from_flange: Pose<f64>,
-    tip_in_flange: Vector3<f64>,
+    /// A tool on the flange that does not yield.
+    spindle: Spindle,
     ranges: [Range; 6],
     /// Cosine and sine of each polar angle.
     directions: Vec<[f64; 2]>,
@@ -58,9 +63,9 @@ impl<'a> DeflectedCircle<'a> {
             .collect();
         Self {
             benchmark,
-            robot,
+            robot: joints_of(robot, benchmark.yielding),
             tool_from_flange: flange_from_tool.inverse(),
-            tip_in_flange: flange_from_tool.translation,
+            spindle: Spindle::rigid(flange_from_tool),
             ranges: std::array::from_fn(|j| Range::of(&robot.joints()[j])),
             directions,
         }
@@ -195,9 +200,27 @@ impl<'a> DeflectedCircle<'a> {
 
     /// Displacement of the tip for joint angles under a wrench at the tip, all in the base frame. m
     fn displacement(&self, joints: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector3<f64> {
-        let frames = Frames::new(self.robot, joints);
-        let tip = frames.base_from_flange.point(&self.tip_in_flange);
-        displacement(&frames, &tip, &self.compliances(joints), force, moment).linear
+        let frames = Frames::new(&self.robot, joints);
+        let tip = self.tip(&frames);
+        let arm = WholeArm::new(&self.robot, &self.spindle, &frames, self.compliances(joints), tip);
+        arm.displacement(force, moment).linear
+    }
+
+    fn tip(&self, frames: &Frames<f64>) -> Vector3<f64> {
+        frames.base_from_flange.point(&self.spindle.flange_from_tool.translation)
+    }
+
+    /// The same by the compliance under the load.
+    fn loaded(&self, joints: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> Result<Vector3<f64>, Obstacle> {
+        let compliances = self.compliances(joints);
+        let moved = if self.robot.normal_springs().is_some() {
+            let load = ToolLoad { force: *force, moment: *moment };
+            ElasticArm::new(&self.robot, &self.spindle).loaded_displacement(&compliances, joints, &load)?
+        } else {
+            let frames = Frames::new(&self.robot, joints);
+            loaded_displacement(&frames, &self.tip(&frames), &compliances, force, moment)?
+        };
+        Ok(moved.linear)
     }
 
     fn compliances(&self, joints: &[f64; 6]) -> [f64; 6] {
@@ -226,11 +249,7 @@ impl<'a> DeflectedCircle<'a> {
             let (force, moment) = (in_base(&wrench.force), in_base(&wrench.moment));
             let moved = match self.benchmark.stiffness {
                 StiffnessModel::Unloaded => self.displacement(joints, &force, &moment),
-                StiffnessModel::Loaded => {
-                    let frames = Frames::new(self.robot, joints);
-                    let tip = frames.base_from_flange.point(&self.tip_in_flange);
-                    loaded_displacement(&frames, &tip, &self.compliances(joints), &force, &moment)?.linear
-                }
+                StiffnessModel::Loaded => self.loaded(joints, &force, &moment)?,
             };
             profile.displacements.push([moved.dot(&plane.x), moved.dot(&plane.y)]);
         }
@@ -253,6 +272,18 @@ impl<'a> DeflectedCircle<'a> {
         }
         least_squares(&profile.points).map(|fit| fit.circularity).map_err(|_| Obstacle::TooSoft)
     }
+}
+
+/// The arm with the springs normal to the axes of the joints that yield, on a base that does not.
+fn joints_of(robot: &Robot, yielding: [bool; 6]) -> Cow<'_, Robot> {
+    let Some(normal) = robot.normal_springs() else { return Cow::Borrowed(robot) };
+    let springs = std::array::from_fn(|j| match yielding[j] {
+        true => normal[j],
+        false => NormalSprings { compliance: [0.0; 2], ..normal[j] },
+    });
+    // Springs that do not yield are as good as those that did.
+    let masked = robot.clone().with_normal_springs(Some(springs)).unwrap_or_else(|_| robot.clone());
+    Cow::Owned(masked.with_base_compliance(None))
 }
 
 /// Whether some number of turns brings an interval of angles into a range.

@@ -113,7 +113,8 @@ pub struct Benchmark {
     /// The tool frame, its origin at the point that follows the circle, in the flange frame. `None`: the wrist centre
     /// follows it, with the flange frame's own orientation.
     pub flange_from_tool: Option<Pose<f64>>,
-    /// Which joints yield; the others count as rigid.
+    /// Which joints yield, about their axes and normal to them as far as their springs are known; the others count as
+    /// rigid, and so do base and spindle.
     pub yielding: [bool; 6],
     /// Where limits are checked.
     pub limits_at: LimitsAt,

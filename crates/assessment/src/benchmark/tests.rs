@@ -2,7 +2,7 @@ use super::*;
 use crate::map::Elbow;
 use nalgebra::{Matrix6, Vector6};
 use std::path::Path;
-use stead_model::robot::{Frames, Robot, Spindle, point_from_tool};
+use stead_model::robot::{BaseCompliance, Frames, NormalSprings, Robot, Spindle, point_from_tool};
 
 fn shipped(name: &str) -> Robot {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/robots").join(name);
@@ -105,6 +105,65 @@ fn the_profile_is_equation_34() {
         let expected = [0.1 * cosine + moved[0], 0.1 * sine + moved[2]];
         assert!((point[0] - expected[0]).abs() < 1e-12 && (point[1] - expected[1]).abs() < 1e-12, "{k}");
     }
+}
+
+/// Springs about three directions of every joint: the sum of 18 columns, by the linear model and by that under load.
+#[test]
+fn a_full_arm_yields_by_all_springs_of_its_joints_and_by_no_others() {
+    let full = shipped("kuka-kr210-2-full.toml");
+    let normal = *full.normal_springs().unwrap();
+    let with = |springs: [NormalSprings; 6]| full.clone().with_normal_springs(Some(springs)).unwrap();
+    let stiff = with(normal.map(|springs| NormalSprings { compliance: [0.0; 2], ..springs }));
+    let axial = full.clone().with_spring_model(None);
+    let (centre, class) = ([1.6, 1.1], Elbow::Up.forward_class(&full));
+    let points = |benchmark: &Benchmark, robot: &Robot, load: f64| {
+        let mut profile = Profile::default();
+        DeflectedCircle::new(benchmark, robot).circularity(centre, class, [load], &mut profile).unwrap();
+        profile.points().to_vec()
+    };
+    let apart = |a: &[[f64; 2]], b: &[[f64; 2]]| {
+        a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs())).fold(0.0, f64::max)
+    };
+    let all = Benchmark { flange_from_tool: Some(tool()), ..published() };
+    let loaded = Benchmark { stiffness: StiffnessModel::Loaded, ..all.clone() };
+    for benchmark in [&all, &loaded] {
+        // Springs that do not yield leave the arm about its axes, and what carries the robot is left out.
+        assert!(apart(&points(benchmark, &stiff, 1.0), &points(benchmark, &axial, 1.0)) < 1e-12);
+        let base = BaseCompliance::new(Vector3::zeros(), Matrix6::from_diagonal_element(1e-7)).unwrap();
+        let on_base = full.clone().with_base_compliance(Some(base));
+        assert_eq!(points(benchmark, &on_base, 1.0), points(benchmark, &full, 1.0));
+        assert!(apart(&points(benchmark, &full, 1.0), &points(benchmark, &axial, 1.0)) > 1e-4);
+        // A joint that counts as rigid is so about all its directions.
+        let mut rigid = normal;
+        rigid[2].compliance = [0.0; 2];
+        let but_third = Benchmark { yielding: [true, true, false, true, true, true], ..benchmark.clone() };
+        assert_eq!(points(&but_third, &full, 1.0), points(&but_third, &with(rigid), 1.0));
+        assert!(apart(&points(&but_third, &full, 1.0), &points(benchmark, &full, 1.0)) > 1e-5);
+    }
+    // Under a small load both models are one.
+    let [linear, under] = [&all, &loaded].map(|benchmark| points(benchmark, &full, 1e-3));
+    let nominal = points(&all, &full, 0.0);
+    assert!(apart(&linear, &under) < 1e-4 * apart(&linear, &nominal) && apart(&linear, &nominal) > 1e-7);
+    // One point by hand.
+    let base_from_tool =
+        Pose { rotation: all.base_from_tool, translation: Vector3::new(centre[0] + 0.1, 0.0, centre[1]) };
+    let joints = full.inverse(&base_from_tool.then(&tool().inverse()), class.postures()[0]).unwrap();
+    let frames = Frames::new(&full, &joints);
+    let (force, moment) = (Vector3::new(-440.0, 635.0, -1370.0), Vector3::new(0.0, -10.5, 3.0));
+    let tip = base_from_tool.translation;
+    let axial = full.compliances_at(&joints);
+    let mut moved = Vector3::zeros();
+    for j in 0..6 {
+        let [x, y] = normal[j].compliance;
+        let bearing = frames.origins[j] + frames.axes[j] * normal[j].bearing;
+        let compliance = frames.rotations[j]
+            * Matrix3::from_diagonal(&Vector3::new(x, y, axial[j]))
+            * frames.rotations[j].transpose();
+        let lever = tip - bearing;
+        moved += (compliance * (moment + lever.cross(&force))).cross(&lever);
+    }
+    let found = points(&all, &full, 1.0)[0];
+    assert!((found[0] - 0.1 - moved.x).abs() < 1e-12 && (found[1] - moved.z).abs() < 1e-12, "{found:?} {moved}");
 }
 
 /// A spindle at 17 deg with the tool centre point off axis 6.

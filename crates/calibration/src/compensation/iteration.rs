@@ -5,8 +5,10 @@ use super::{
 };
 use std::f64::consts::TAU;
 use stead_model::robot::{Frames, Pose, Robot, angles::ANGLE_ROUNDING};
+use stead_model::stiffness::Displacement;
+use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
 use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium};
-use stead_model::stiffness::{Displacement, displacement};
+use stead_model::stiffness::whole::{WholeArm, yields_elsewhere};
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 /// A commanded pose.
@@ -53,7 +55,7 @@ fn deflection(job: &CompensationProblem, point: &PathPoint, joints: &[f64; 6]) -
 
 /// The command at which the loaded tool of the model rests at the target.
 fn corrected(job: &CompensationProblem, point: &PathPoint) -> Result<Command, PointError> {
-    let Settings { alpha, tolerance, characteristic_length, max_iterations, model } = job.settings;
+    let Settings { alpha, tolerance, characteristic_length, max_iterations, model, .. } = job.settings;
     let target = &point.base_from_tool;
     let mut command = *target;
     let mut last = f64::INFINITY;
@@ -91,7 +93,7 @@ fn joints(job: &CompensationProblem, point: &PathPoint, base_from_tool: &Pose<f6
     Ok(std::array::from_fn(near))
 }
 
-/// Where the tool of an arm comes to rest.
+/// Where the tool of an arm comes to rest, seen from a part that does not yield.
 fn rest(
     job: &CompensationProblem,
     robot: &Robot,
@@ -99,23 +101,46 @@ fn rest(
     point: &PathPoint,
     joints: &[f64; 6],
 ) -> Result<Pose<f64>, NoEquilibrium> {
-    let PathPoint { force, moment, .. } = *point;
+    let rest = match model {
+        DeflectionModel::Equilibrium => at_rest(job, robot, point, joints)?,
+        DeflectionModel::Linear => displaced(job, robot, point, joints),
+    };
+    // The part moves against the force on the tool.
+    Ok(Pose { translation: rest.translation + point.of_part, ..rest })
+}
+
+/// Where the tool of an arm comes to rest in its exact equilibrium.
+fn at_rest(
+    job: &CompensationProblem,
+    robot: &Robot,
+    point: &PathPoint,
+    joints: &[f64; 6],
+) -> Result<Pose<f64>, NoEquilibrium> {
+    let PathPoint { force, moment, free_fall, .. } = *point;
     let flange_from_tool = &job.spindle.flange_from_tool;
-    match model {
-        DeflectionModel::Equilibrium => {
-            let load = Load { point: flange_from_tool.translation, force, moment };
-            Ok(robot.forward(&equilibrium(robot, joints, &load)?).then(flange_from_tool))
-        }
-        DeflectionModel::Linear => {
-            let frames = Frames::new(robot, joints);
-            let tool = frames.base_from_flange.then(flange_from_tool);
-            let compliances = robot.compliances_at(joints);
-            let moved = displacement(&frames, &tool.translation, &compliances, &force, &moment);
-            Ok(Pose {
-                rotation: rotation_from_vector(&moved.angular) * tool.rotation,
-                translation: tool.translation + moved.linear,
-            })
-        }
+    if !job.settings.gravity && !yields_elsewhere(robot, &job.spindle) {
+        let load = Load { point: flange_from_tool.translation, force, moment };
+        return Ok(robot.forward(&equilibrium(robot, joints, &load)?).then(flange_from_tool));
+    }
+    let arm = ElasticArm::new(robot, &job.spindle);
+    let arm = if job.settings.gravity { arm.in_gravity(free_fall) } else { arm };
+    arm.at_rest(joints, &ToolLoad { force, moment })
+}
+
+/// Where the tool of an arm is by the displacement linear in the load.
+fn displaced(job: &CompensationProblem, robot: &Robot, point: &PathPoint, joints: &[f64; 6]) -> Pose<f64> {
+    let frames = Frames::new(robot, joints);
+    let tool = frames.base_from_flange.then(&job.spindle.flange_from_tool);
+    let arm = WholeArm::new(robot, &job.spindle, &frames, robot.compliances_at(joints), tool.translation);
+    let mut moved = arm.displacement(&point.force, &point.moment);
+    if job.settings.gravity {
+        let sag = ElasticArm::new(robot, &job.spindle).in_gravity(point.free_fall).sag(joints);
+        moved.linear += sag.linear;
+        moved.angular += sag.angular;
+    }
+    Pose {
+        rotation: rotation_from_vector(&moved.angular) * tool.rotation,
+        translation: tool.translation + moved.linear,
     }
 }
 

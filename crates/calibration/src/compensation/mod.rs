@@ -11,6 +11,11 @@
 //! leaves `1 - alpha` of the error each time, which a very soft arm may need. An iteration that does not converge is
 //! never taken for a correction: such a point keeps its target, with the reason.
 //!
+//! What yields is all that the arm has: springs about the joint axes and normal to them, base, mount of the spindle,
+//! holder and tool ([`stead_model::stiffness::elastic`]); a part that yields moves against the force on the tool, and
+//! the tool is to rest at the target on the part. With [`Settings::gravity`] the weight of links and spindle, as far as
+//! their masses are known, bends the arm too.
+//!
 //! Then the commands are executed in simulation: on the same arm, or on another one of the same geometry, which stands
 //! for reality. There the arm always comes to rest in its exact static equilibrium. The remaining error is the share of
 //! the deflection that the model does not predict.
@@ -60,6 +65,10 @@ pub struct PathPoint {
     pub force: Vector3<f64>,
     /// Moment on the tool about the tool centre point in the base frame. N m
     pub moment: Vector3<f64>,
+    /// What a part that yields adds to the displacement of the tool against it, in the base frame. m
+    pub of_part: Vector3<f64>,
+    /// Acceleration of free fall in the base frame, which external axes may have turned. m/s^2
+    pub free_fall: Vector3<f64>,
     /// The direction in which a deflection spoils the wall, to the left of the feed, of unit length in the base frame.
     pub normal: Vector3<f64>,
 }
@@ -69,7 +78,7 @@ pub struct PathPoint {
 pub enum DeflectionModel {
     /// The exact static equilibrium ([`stead_model::stiffness::equilibrium`]).
     Equilibrium,
-    /// The displacement linear in the load ([`stead_model::stiffness::displacement`]), as in the score of a placement.
+    /// The displacement linear in the load ([`stead_model::stiffness::whole`]), as in the score of a placement.
     Linear,
 }
 
@@ -92,6 +101,8 @@ pub struct Settings {
     pub max_iterations: usize,
     /// The deflection model, f of eq. 26.
     pub model: DeflectionModel,
+    /// Whether the weight of links and spindle counts, in the model and in reality.
+    pub gravity: bool,
 }
 
 impl Default for Settings {
@@ -103,6 +114,7 @@ impl Default for Settings {
             characteristic_length: 1.0,
             max_iterations: 50,
             model: DeflectionModel::Equilibrium,
+            gravity: false,
         }
     }
 }

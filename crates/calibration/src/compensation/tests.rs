@@ -21,6 +21,8 @@ fn path_point(robot: &Robot, theta: &[f64; 6], wrench: [f64; 6]) -> PathPoint {
         joints: *theta,
         force: vector![fx, fy, fz],
         moment: vector![mx, my, mz],
+        of_part: Vector3::zeros(),
+        free_fall: vector![0.0, 0.0, -9.81],
         normal: vector![0.6, 0.0, 0.8],
     }
 }
@@ -322,3 +324,5 @@ fn a_stop_before_or_during_the_job_leaves_no_path() {
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     assert_eq!(alone.install(|| super::compensate(&job, &during)), Err(Stop::Asked));
 }
+
+mod whole_arm;

@@ -3,6 +3,15 @@
 use super::pose::Pose;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
+/// What of a body its weight depends on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMass {
+    /// Mass, above zero. kg
+    pub mass: f64,
+    /// Centre of mass in the frame that the body is given in. m
+    pub centre: Vector3<f64>,
+}
+
 /// Mass, centre of mass and inertia tensor of a rigid body, in a frame fixed to it; checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertial {
@@ -91,6 +100,11 @@ impl Inertial {
     /// Inertia tensor about the centre of mass, along the axes of the frame. kg m^2
     pub fn inertia(&self) -> &Matrix3<f64> {
         &self.inertia
+    }
+
+    /// Mass and centre alone.
+    pub fn point_mass(&self) -> PointMass {
+        PointMass { mass: self.mass, centre: self.centre }
     }
 
     /// The same body in another frame a, where `a_from_body` places its own.

@@ -52,7 +52,7 @@ pub use data_sheet::DataSheet;
 pub use dynamics::{JointDynamics, Orthogonal};
 pub use forward::Frames;
 pub use geometry::Geometry;
-pub use inertial::{Inertial, InertialError};
+pub use inertial::{Inertial, InertialError, PointMass};
 pub use inverse::Unreachable;
 pub use pose::{Pose, cast};
 pub use posture::{Posture, PostureClass};

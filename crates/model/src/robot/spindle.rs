@@ -1,6 +1,6 @@
 //! The spindle on the flange.
 
-use super::{Inertial, Pose};
+use super::{Inertial, PointMass, Pose};
 use crate::stiffness::matrix::{MatrixError, checked};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use stead_numerics::rotation::orthonormal;
@@ -23,6 +23,8 @@ pub struct Spindle {
     pub flange_from_tool: Pose<f64>,
     /// Mass of spindle, holder and tool in the flange frame, where known.
     pub payload: Option<Inertial>,
+    /// Mass and centre of spindle, holder and tool in the flange frame, where they are known without the inertia.
+    pub point_mass: Option<PointMass>,
     /// How the spindle is fixed to the flange, where that yields: displacement and turn (m, rad) per force and moment
     /// (N, N m) at the origin of the flange frame, in that frame.
     pub mount: Option<Matrix6<f64>>,
@@ -45,7 +47,12 @@ impl Spindle {
 
     /// A spindle of which nothing but the place of the tool is known; it does not yield.
     pub fn rigid(flange_from_tool: Pose<f64>) -> Self {
-        Self { flange_from_tool, payload: None, mount: None, tip: None }
+        Self { flange_from_tool, payload: None, point_mass: None, mount: None, tip: None }
+    }
+
+    /// Mass of all that the flange carries, and its centre in the flange frame, where they are known.
+    pub fn carried_mass(&self) -> Option<PointMass> {
+        self.payload.map(|body| body.point_mass()).or(self.point_mass)
     }
 
     /// The same fixed to the flange so that it yields by a matrix in the flange frame at its origin: displacement and

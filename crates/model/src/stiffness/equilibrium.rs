@@ -83,13 +83,13 @@ pub fn displaced(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<Displac
 }
 
 /// The load is not applied in smaller steps than this share.
-const MIN_LOAD_STEP: f64 = 1.0 / 4096.0;
+pub(super) const MIN_LOAD_STEP: f64 = 1.0 / 4096.0;
 /// Newton steps at the most; convergence is quadratic.
-const MAX_STEPS: usize = 20;
+pub(super) const MAX_STEPS: usize = 20;
 /// A Newton step that turns a joint farther than this does not follow the arm any more. rad
-const WIDEST_STEP: f64 = 0.5;
+pub(super) const WIDEST_STEP: f64 = 0.5;
 /// A Newton step below this is the last: the next would be below its square. rad
-const LAST_STEP: f64 = 1e-9;
+pub(super) const LAST_STEP: f64 = 1e-9;
 
 /// Newton's method on `x - S J^T w = 0` for a share of the load, with the tangent `1 - S H S`; `None` where it leads
 /// through a configuration that does not hold.

@@ -148,4 +148,4 @@ pub fn of_part<T: Scalar>(matrix: &Matrix3<f64>, rotation: &Matrix3<T>, force: &
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

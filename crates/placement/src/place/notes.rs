@@ -31,7 +31,27 @@ pub(super) fn of(
 ) -> Vec<String> {
     let large = plausibility::deflection(plan.deflection.total.max);
     let of_travel = [swing(plan), calmer(problem, placement, plan, monitor)].into_iter().flatten();
-    small_part(problem, plan).into_iter().chain(large).chain(slowed(feed)).chain(of_travel).collect()
+    let of_weight = weight(problem, plan);
+    small_part(problem, plan).into_iter().chain(large).chain(of_weight).chain(slowed(feed)).chain(of_travel).collect()
+}
+
+/// A note on the weight, which moves the tool and is in no score, where the mass of what the flange carries is known.
+fn weight(problem: &Problem, plan: &Plan) -> Option<String> {
+    let (sag, mass) = (plan.sag.as_ref()?, problem.spindle.carried_mass()?.mass);
+    let links = match problem.robot.dynamics() {
+        Some(_) => " and of the links",
+        None => " (the masses of the links are not known, and left out)",
+    };
+    let mm = |value: f64| figures(value * 1e3);
+    Some(format!(
+        "the weight of the {} kg on the flange{links} moves the tool by {} to {} mm along the best plan, differently by up to {} mm (sag_mm): \
+         no score counts it, since it is there when the program is touched up; it must be calibrated out, or corrected by the controller \
+         or by `stead compensate` with gravity = true",
+        figures(mass),
+        mm(sag.path.least),
+        mm(sag.path.largest),
+        mm(sag.path.spread)
+    ))
 }
 
 /// A note that there is no worst placement to compare with.

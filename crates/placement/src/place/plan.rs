@@ -3,6 +3,7 @@
 use super::refined::Refined;
 use crate::outcome::{AtHeldFeed, Cycle, DeflectionFigures, Plan, PlanPoint};
 use crate::refine::planned;
+use crate::sag::Sag;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
@@ -141,6 +142,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         percentiles: [0.5, 0.95].map(|share| percentile(scored.clone().map(|p| p.score), share)),
         deflection: DeflectionFigures::of(scored),
         held: None,
+        sag: Sag::of(problem, placement, points.iter().map(|p| (p.point, p.joints))),
         by_origin: origins.map(|origins| origins.scaled(1.0 / count)),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         clearance: plan_clearance(problem, &points),

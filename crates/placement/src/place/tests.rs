@@ -20,7 +20,7 @@ mod following;
 mod held_feed;
 mod long_path;
 mod setup;
-mod whole_arm;
+pub(crate) mod whole_arm;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 16, generations: 4, basins: 1, ..SearchSettings::default() }

@@ -5,9 +5,11 @@
 
 use super::{Placement, Problem};
 use crate::setup::{AxisPath, AxisPositions, Orientation, Setup};
+use nalgebra::Vector3;
 use std::borrow::Cow;
-use stead_model::external_axis::{AxisKind, ExternalAxis, robot_from_workpiece};
+use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried, robot_from_workpiece};
 use stead_model::robot::Pose;
+use stead_model::robot::chain::GRAVITY;
 use stead_numerics::scalar::Scalar;
 
 impl Problem {
@@ -64,6 +66,16 @@ impl Problem {
     /// The same with the external axes at given positions. m or rad
     pub fn base_from_workpiece_at<T: Scalar>(&self, positions: &[f64], placement: &Placement<T>) -> Pose<T> {
         robot_from_workpiece(&self.external_axes, positions).cast().then(&placement.base_from_workpiece())
+    }
+
+    /// Acceleration of free fall in the base frame while path point `point` is machined: along -z of the cell, which
+    /// turntables that carry the robot may have turned. m/s^2
+    pub fn free_fall(&self, point: usize) -> Vector3<f64> {
+        let down = Vector3::new(0.0, 0.0, -GRAVITY);
+        if self.external_axes.iter().all(|axis| axis.carries == Carried::Workpiece) {
+            return down;
+        }
+        carried(&self.external_axes, self.axis_positions(point), Carried::Robot).rotation.tr_mul(&down)
     }
 
     /// The part itself, as the task file and its meshes have it, in the base frame while path point `point` is

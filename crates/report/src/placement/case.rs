@@ -10,6 +10,7 @@ use serde::Serialize;
 use stead_model::robot::Posture;
 use stead_model::stiffness::whole::ByOrigin;
 use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
+use stead_placement::sag::{Sag, SagRange};
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::collision;
 use stead_planning::criterion::CANCELLATION;
@@ -66,6 +67,10 @@ records! {
         /// joints about their axes.
         #[serde(skip_serializing_if = "Option::is_none")]
         by_origin_mm: Option<OriginFigures> = plan.by_origin.as_ref().map(Into::into),
+        /// How far the weight of links and spindle moves the tool, which no score counts; where the mass of what the
+        /// flange carries is known.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        sag_mm: Option<SagFigures> = plan.sag.as_ref().map(Into::into),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
         #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
         /// Deflections by direction.
@@ -161,6 +166,33 @@ records! {
         tip_mm: DeflectionMm = tip.into(),
         /// The part.
         part_mm: DeflectionMm = origins.part.into(),
+    }
+
+    /// How far the weight moves the tool.
+    pub struct SagFigures from sag: &Sag {
+        let SagRange { least, largest, spread } = sag.path;
+    } with {
+        /// The smallest displacement along the path.
+        least_mm: DeflectionMm = least.into(),
+        /// The largest.
+        largest_mm: DeflectionMm = largest.into(),
+        /// The largest difference between the displacements of two points: what remains at most where the program is
+        /// touched up at one of them.
+        spread_mm: DeflectionMm = spread.into(),
+        /// The same of each segment.
+        segments: Vec<SegmentSag> = sag.segments.iter().map(|(segment, range)| SegmentSag::of(*segment, range)).collect(),
+    }
+
+    /// How far the weight moves the tool within a segment.
+    pub struct SegmentSag of (segment: usize, range: &SagRange) {
+        /// The segment, from 1.
+        segment: usize = segment,
+        /// The smallest displacement.
+        least_mm: DeflectionMm = range.least.into(),
+        /// The largest.
+        largest_mm: DeflectionMm = range.largest.into(),
+        /// The largest difference between the displacements of two of its points.
+        spread_mm: DeflectionMm = range.spread.into(),
     }
 
     /// A bound that holds an optimum.

@@ -111,6 +111,7 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
     let mut feed = String::new();
     super::text::by_origin(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
+    super::text::sag(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
     for (plan, name) in [(&score.plans.best, "best plan"), (&score.plans.worst, "worst plan")] {
         least_room(plan, name).iter().for_each(|row| line(&mut feed, row));
     }

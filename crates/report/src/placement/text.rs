@@ -40,6 +40,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
     by_origin(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, row));
+    sag(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, &format!("best plan: {row}")));
     stiffest(&outcome.cases.best).iter().for_each(|row| line(&mut text, row));
     least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
     highest_feed(&outcome.cases.best.cycle.feed).iter().for_each(|row| line(&mut text, row));
@@ -145,6 +146,17 @@ pub(super) fn by_origin(plan: &Plan) -> Option<String> {
         "of the scored deflection of {} mm in the mean: {}",
         fixed(origins.total() * 1e3, 4),
         parts.join(", ")
+    ))
+}
+
+/// How far the weight moves the tool along a plan, where that is known.
+pub(super) fn sag(plan: &Plan) -> Option<String> {
+    let sag = plan.sag.as_ref()?;
+    let [least, largest, spread] =
+        [sag.path.least, sag.path.largest, sag.path.spread].map(|value| fixed(value * 1e3, 4));
+    let within = fixed(sag.segments.iter().map(|(_, range)| range.spread).fold(0.0, f64::max) * 1e3, 4);
+    Some(format!(
+        "weight moves the tool by {least} to {largest} mm, differently by up to {spread} mm ({within} mm within a segment)"
     ))
 }
 

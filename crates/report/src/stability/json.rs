@@ -39,7 +39,10 @@ records! {
 
 /// What `stead stability --json` prints, and the content of `summary.json`.
 pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Value {
-    Document::new(&run.inputs).notes(&analysis.notes).with(StabilityFigures::of(run, analysis))
+    Document::new(&run.inputs)
+        .notes(&analysis.notes)
+        .warnings(&analysis.warnings)
+        .with(StabilityFigures::of(run, analysis))
 }
 
 records! {

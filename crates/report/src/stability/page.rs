@@ -20,7 +20,7 @@ pub(super) fn page(run: &SimulationRun, analysis: &StabilityAnalysis) -> Page {
     };
     let subtitle = format!("stability · {}", run.setup.variant.word());
     Page::new(run.setup.robot.name(), subtitle, lead, &run.inputs)
-        .messages(&[] as &[&str], &analysis.notes)
+        .messages(&analysis.warnings, &analysis.notes)
         .with(tiles(run, analysis))
         .with(Card::Chart(lobes(run, analysis)))
         .with(Card::Chart(response(analysis)))

@@ -39,9 +39,6 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let at = document.root();
     let file: AssessmentFile = document.read()?;
     let plane = file.plane.map(|table| plane_from(&table, &at.key("plane"))).transpose()?.unwrap_or(Plane::XOZ);
-    if let Some(table) = &file.spindle {
-        table.refuse_matrices(&at.key("spindle"))?;
-    }
     let spindle = file.spindle.map(|table| table.spindle(&at.key("spindle"))).transpose()?;
     let flange_from_tool = spindle.as_ref().map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
@@ -73,13 +70,14 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     };
     let requested = !selection.forces.is_empty();
     // A benchmark of the arm alone has its tool at the flange.
-    let spindle_note = spindle.filter(|spindle| spindle.flange_from_tool.translation != Vector3::zeros());
-    let alone = robots.iter().filter_map(plausibility::axes_alone);
+    let spindle_note = spindle.as_ref().filter(|spindle| spindle.flange_from_tool.translation != Vector3::zeros());
+    let joints = spindle.as_ref().and_then(plausibility::joints_alone);
     let odd = robots
         .iter()
-        .flat_map(plausibility::arm)
-        .chain(alone)
-        .chain(spindle_note.as_ref().and_then(plausibility::spindle));
+        .flat_map(|robot| plausibility::arm(robot).into_iter().chain(plausibility::springs_left_out(robot)))
+        .chain(full_note(&robots))
+        .chain(joints)
+        .chain(spindle_note.and_then(plausibility::spindle));
     let known = range_note(&robots).into_iter().chain(requested.then(|| payload_note(&robots)).flatten());
     let borrowed = robots.len() > 1 && robots.iter().any(|robot| robot.stiffness_like().is_some());
     let ranked = borrowed.then(|| {
@@ -202,6 +200,26 @@ fn range_note(robots: &[Robot]) -> Option<String> {
             names.join(", ")
         )
     })
+}
+
+/// Which robots have springs beside those about their axes, where some do: they and others are not compared alike.
+fn full_note(robots: &[Robot]) -> Option<String> {
+    let (full, others): (Vec<&Robot>, Vec<&Robot>) = robots.iter().partition(|robot| robot.normal_springs().is_some());
+    let names = |robots: &[&Robot]| robots.iter().map(|robot| robot.name()).collect::<Vec<_>>().join(", ");
+    if full.is_empty() {
+        return None;
+    }
+    let beside = match &others[..] {
+        [] => String::new(),
+        others => format!(
+            "; of the others ({}) those about the axes alone are stated: that is no comparison of like with like",
+            names(others)
+        ),
+    };
+    Some(format!(
+        "springs normal to the joint axes count as stated ({}), what carries the robot and the spindle do not yield{beside}",
+        names(&full)
+    ))
 }
 
 /// Which robots may be chosen for any force.

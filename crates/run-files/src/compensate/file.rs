@@ -40,4 +40,8 @@ pub struct CompensationTable {
     pub max_iterations: Option<Whole<1, 100000>>,
     /// What the deflection is taken for: the exact static `equilibrium` (where left out), or `linear`.
     pub model: Option<Word<DeflectionModel>>,
+    /// Whether the weight of the spindle (`spindle.mass_kg` of the run) and of the links, as far as their masses are
+    /// known, is corrected too; `false` where left out. Not for a program that is touched up at the machine, nor for a
+    /// controller that corrects the weight itself.
+    pub gravity: Option<bool>,
 }

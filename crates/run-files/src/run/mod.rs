@@ -318,7 +318,9 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     let stated = stated(&at);
-    let warnings = removal.iter().flat_map(|removal| removal.warnings.iter().cloned()).collect();
+    let of_removal = removal.iter().flat_map(|removal| removal.warnings.iter().cloned());
+    let left_out = path_stability.as_ref().and_then(|analysis| analysis.variant.left_out(&problem.robot));
+    let warnings = of_removal.chain(left_out).collect();
     Ok(Run {
         problem,
         search,

@@ -34,7 +34,6 @@ pub(super) fn setup_from(
 ) -> Result<Setup, InputError> {
     let variant = overrides.variant.or(file.variant.map(|word| word.0)).unwrap_or(Variant::Springs);
     let damping_scale = overrides.damping_scale.or(file.damping_scale.map(|scale| scale.si())).unwrap_or(1.0);
-    file.spindle.refuse_matrices(&at.key("spindle"))?;
     let spindle = file.spindle.moving_spindle(&at.key("spindle"))?;
     let (source, input) = at.key("robot").named_toml("robot")?;
     let robot = moving_robot_from(&source, variant >= Variant::Orthogonal)?;

@@ -6,7 +6,7 @@
 //! spindle, task or cell known at its first row that does not.
 
 use super::rows::{FORCE, JOINTS, POSITION, PlanRow};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 use stead_calibration::compensation::PathPoint;
 use stead_disk::input::InputError;
@@ -93,7 +93,7 @@ fn placed(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<PlacedPlan
         let station = station(problem, &placement, point, row);
         check_force(&station, row).map_err(|misfit| located(row, misfit))?;
         check_posture(problem, &station, row).map_err(|misfit| located(row, misfit))?;
-        note = note.or_else(|| deflection_note(problem, &placement, point, &station, row));
+        note = note.or_else(|| deflection_note(problem, &station, row));
         stations.push(station);
     }
     let setup = problem.setup.clone();
@@ -187,15 +187,28 @@ fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow
     let (path_point, wrench) = (&problem.task.points()[point], &problem.task.wrenches()[point]);
     let base_from_flange = problem.at(placement).base_from_flange(point, row.beta);
     let tool = base_from_flange.then(&problem.spindle.flange_from_tool);
+    let force = base_from_workpiece.rotation * wrench.force;
     PathPoint {
         segment: problem.task.path().segment_of(point) + 1,
         base_from_tool: Pose { translation: base_from_workpiece.point(&path_point.position), ..tool },
         posture: row.posture,
         joints: row.joints,
-        force: base_from_workpiece.rotation * wrench.force,
+        force,
         moment: base_from_workpiece.rotation * wrench.moment,
+        of_part: displacement_of_part(problem, point, &base_from_workpiece.rotation, &force),
+        free_fall: problem.free_fall(point),
         normal: base_from_workpiece.rotation * path_point.normal(),
     }
+}
+
+/// What a part that yields adds to the displacement of the tool against it under a force (N), all in the base frame. m
+fn displacement_of_part(
+    problem: &Problem,
+    point: usize,
+    rotation: &Matrix3<f64>,
+    force: &Vector3<f64>,
+) -> Vector3<f64> {
+    problem.task.part_compliance(point).map_or_else(Vector3::zeros, |part| of_part(part, rotation, force))
 }
 
 fn check_force(station: &PathPoint, row: &PlanRow) -> Result<(), Misfit> {
@@ -225,21 +238,12 @@ fn check_posture(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Resul
 }
 
 /// Whether the deflection of a row is that of the run's robot.
-fn deflection_note(
-    problem: &Problem,
-    placement: &Placement,
-    point: usize,
-    station: &PathPoint,
-    row: &PlanRow,
-) -> Option<String> {
+fn deflection_note(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Option<String> {
     let frames = Frames::new(&problem.robot, &row.joints);
     let compliances = problem.robot.compliances_at(&row.joints);
     let tip = &station.base_from_tool.translation;
     let whole = WholeArm::new(&problem.robot, &problem.spindle, &frames, compliances, *tip);
-    let mut ours = whole.displacement(&station.force, &station.moment).linear;
-    if let Some(part) = problem.task.part_compliance(point) {
-        ours += of_part(part, &problem.base_from_workpiece(point, placement).rotation, &station.force);
-    }
+    let ours = whole.displacement(&station.force, &station.moment).linear + station.of_part;
     let off = (ours - row.deflection?).norm();
     let tolerance = DEFLECTION_TOLERANCE.0.max(DEFLECTION_TOLERANCE.1 * ours.norm());
     (off > tolerance).then(|| {

@@ -1,18 +1,23 @@
 use super::*;
 use crate::arm::testing::{spindle, start, tx200};
 use crate::arm::{Arm, Compensation, Variant};
+use stead_model::robot::{Frames, JointDynamics, NormalSprings, Orthogonal, Robot, SpringModel};
+use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
+use stead_model::stiffness::whole::WholeArm;
 
 /// The arm by itself with motors at rest, and a force on its tip that swings.
 struct Free<const N: usize> {
     arm: Arm<N>,
     reference: SVector<f64, N>,
     force: f64,
+    /// A force that stays. N
+    constant: nalgebra::Vector3<f64>,
     kept: Vec<f64>,
 }
 
 impl<const N: usize> Free<N> {
     fn new(arm: Arm<N>, reference: SVector<f64, N>) -> Self {
-        Self { arm, reference, force: 0.0, kept: vec![] }
+        Self { arm, reference, force: 0.0, constant: nalgebra::Vector3::zeros(), kept: vec![] }
     }
 
     fn energy(&self, state: &MotionState<N>) -> f64 {
@@ -26,7 +31,7 @@ impl<const N: usize> Free<N> {
 impl<const N: usize> System<N> for Free<N> {
     fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N> {
         let posed = self.arm.chain.at(&state.q);
-        let push = nalgebra::Vector3::new(0.0, self.force * libm::sin(400.0 * time), 0.0);
+        let push = self.constant + nalgebra::Vector3::new(0.0, self.force * libm::sin(400.0 * time), 0.0);
         let motion = [&state.q, &state.speed, &state.acceleration];
         let mut compensation = Compensation::about(&self.arm, &state.q);
         let reference = [&self.reference, &SVector::zeros()];
@@ -210,4 +215,69 @@ fn a_step_takes_about_one_evaluation() {
         evaluations += newmark.step(&mut system, 3.6e-5 * f64::from(k), 3.6e-5, &mut state).unwrap().evaluations;
     }
     assert!(evaluations < 1100, "{evaluations}");
+}
+
+/// What shakes out of the motion under a force that stays is what the static sum over all springs has, and with the
+/// exact equilibrium under weight and force to more digits.
+#[test]
+fn an_arm_of_eighteen_springs_comes_to_rest_where_the_static_sum_has_it() {
+    let (robot, spindle, theta) = (full(), spindle(), start());
+    let force = nalgebra::Vector3::new(60.0, -80.0, 50.0);
+    let reference = Arm::<18>::spread(&theta);
+    let mut arm = Arm::eighteen(&robot, &spindle, Variant::Springs, &theta).unwrap();
+    // Static: damping only ends the swinging sooner.
+    arm.drive.damping *= 40.0;
+    let tip = |q: &SVector<f64, 18>| arm.chain.at(q).tip();
+    let mut system = Free::new(arm.clone(), reference);
+    system.constant = force;
+    let settled = run(&mut system, &at_rest(reference), 1e-3, 3.0).0;
+    assert!(settled.speed.amax() < 1e-9, "{}", settled.speed.amax());
+    let found = tip(&settled.q) - tip(&reference);
+    let frames = Frames::new(&robot, &theta);
+    let whole = WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(&theta), tip(&reference));
+    let sum = whole.displacement(&force, &nalgebra::Vector3::zeros()).linear;
+    assert!((found - sum).norm() < 5e-4 * sum.norm() && sum.norm() > 5e-5, "{found} {sum}");
+    let load = ToolLoad { force, moment: nalgebra::Vector3::zeros() };
+    let exact = ElasticArm::new(&robot, &spindle).at_rest(&theta, &load).unwrap().translation;
+    assert!((tip(&settled.q) - exact).norm() < 1e-10, "{} {exact}", tip(&settled.q));
+}
+
+#[test]
+fn weight_and_compensators_bend_the_arm_as_the_static_chain_has_it() {
+    let (robot, spindle, theta) = (full(), spindle(), start());
+    let arm = Arm::eighteen(&robot, &spindle, Variant::Orthogonal, &theta).unwrap();
+    let reference = Arm::<18>::spread(&theta);
+    let tip = |q: &SVector<f64, 18>| arm.chain.at(q).tip();
+    let found = tip(&arm.at_rest(&reference)) - tip(&reference);
+    let elastic = ElasticArm::new(&robot, &spindle).in_gravity(*arm.chain.free_fall());
+    let load = ToolLoad::NONE;
+    let exact = elastic.at_rest(&theta, &load).unwrap().translation - tip(&reference);
+    // Compensators are taken at the commanded angles there and at the deflected ones here.
+    assert!((found - exact).norm() < 2e-3 * exact.norm() && exact.norm() > 1e-4, "{found} {exact}");
+    assert!((elastic.sag(&theta).linear - exact).norm() < 5e-3 * exact.norm());
+    // Without compensators the two are one.
+    let links = robot.dynamics().unwrap().map(|joint| JointDynamics { gravity_compensated: false, ..joint });
+    let robot = robot.clone().with_dynamics(links);
+    let arm = Arm::eighteen(&robot, &spindle, Variant::Orthogonal, &theta).unwrap();
+    let elastic = ElasticArm::new(&robot, &spindle).in_gravity(*arm.chain.free_fall());
+    let exact = elastic.at_rest(&theta, &load).unwrap().translation;
+    assert!((tip(&arm.at_rest(&reference)) - exact).norm() < 1e-10);
+}
+
+/// The arm with springs normal to its axes, unlike each other.
+fn full() -> Robot {
+    let robot = tx200();
+    let dynamics = robot.dynamics().unwrap();
+    let stiffness = |j: usize| [13.1e6 - 2e6 * j as f64, 2.1e6 + 1.1e6 * j as f64];
+    let normal = std::array::from_fn(|j| NormalSprings {
+        compliance: stiffness(j).map(|stiffness| 1.0 / stiffness),
+        bearing: dynamics[j].bearing,
+    });
+    let damping = [1000.0; 2];
+    let links = std::array::from_fn(|j| JointDynamics {
+        orthogonal: Some(Orthogonal { stiffness: stiffness(j), damping }),
+        ..dynamics[j]
+    });
+    let robot = robot.clone().with_dynamics(links).with_normal_springs(Some(normal)).unwrap();
+    robot.with_spring_model(Some(SpringModel::Full))
 }

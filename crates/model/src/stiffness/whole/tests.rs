@@ -1,7 +1,7 @@
 //! The sum over everything that yields, against figures from elsewhere, closed forms, and the arm as a finite chain.
 
 mod chain;
-mod oracle;
+pub(in crate::stiffness) mod oracle;
 
 use super::*;
 use crate::robot::testing::{odd_arms, spindle};
@@ -12,7 +12,7 @@ use stead_numerics::rotation::rotation_from_zyx;
 use stead_numerics::scalar::Dual;
 
 /// A matrix that is symmetric and positive definite, of some numbers.
-pub(super) fn matrix(seed: u32, scale: f64) -> Matrix6<f64> {
+pub(in crate::stiffness) fn matrix(seed: u32, scale: f64) -> Matrix6<f64> {
     let root = Matrix6::from_fn(|row, column| {
         let k = f64::from(seed) + (6 * row + column) as f64;
         libm::sin(1.7 * k) + if row == column { 1.5 } else { 0.0 }
@@ -21,7 +21,7 @@ pub(super) fn matrix(seed: u32, scale: f64) -> Matrix6<f64> {
 }
 
 /// Springs normal to every axis, unlike each other, with bearings.
-pub(super) fn normal_springs() -> [NormalSprings; 6] {
+pub(in crate::stiffness) fn normal_springs() -> [NormalSprings; 6] {
     std::array::from_fn(|j| {
         let j = j as f64;
         NormalSprings { compliance: [3e-7 + 1e-7 * j, 8e-7 - 1e-7 * j], bearing: 0.05 * j - 0.12 }
@@ -29,7 +29,7 @@ pub(super) fn normal_springs() -> [NormalSprings; 6] {
 }
 
 /// An arm with everything that can yield.
-pub(super) fn everything(arm: Robot) -> (Robot, Spindle) {
+pub(in crate::stiffness) fn everything(arm: Robot) -> (Robot, Spindle) {
     let robot = arm.with_normal_springs(Some(normal_springs())).unwrap().with_spring_model(Some(SpringModel::Full));
     let base = BaseCompliance::new(vector![0.1, -0.05, -0.2], matrix(3, 1e-8)).unwrap();
     let spindle = spindle().with_mount(matrix(17, 2e-8)).unwrap();

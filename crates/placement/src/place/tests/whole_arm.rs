@@ -2,10 +2,12 @@
 //! of another program: the guide's page `whole_arm`.
 
 use super::*;
-use stead_model::robot::{Joint, NormalSprings, Robot, Spindle, SpringModel};
+use crate::sag::SagRange;
+use nalgebra::Vector3;
+use stead_model::robot::{Joint, NormalSprings, PointMass, Robot, Spindle, SpringModel};
 
 /// `configs/whole-arm.toml`, with the part of the deflection that is scored.
-fn full_arm(weights: Weights) -> Problem {
+pub(crate) fn full_arm(weights: Weights) -> Problem {
     let row = |alpha: f64, a, d, [min, max]: [f64; 2], speed: f64, stiffness: f64| Joint {
         alpha: alpha.to_radians(),
         a,
@@ -41,19 +43,42 @@ fn full_arm(weights: Weights) -> Problem {
     })
 }
 
-/// Mean deflections of best and worst placement, each under its best plan, in mm, within half a per cent.
+/// With 61 kg on the flange, 250 mm from it.
+pub(crate) fn heavy(problem: Problem) -> Problem {
+    problem
+        .with(|parts| parts.spindle.point_mass = Some(PointMass { mass: 61.0, centre: Vector3::new(0.0, 0.0, 0.25) }))
+}
+
+/// Mean deflections of best and worst placement, each under its best plan, in mm, within half a per cent; and by how
+/// much the weight of a spindle moves the tool there, least, most and differently, by the sum over 18 springs in a
+/// program of its own: more than the cut, and in no score.
 #[test]
 fn a_full_arm_is_placed_as_another_program_places_it() {
+    let by_weight = [[0.4834, 0.9999, 0.7329], [0.7983, 1.3166, 0.8023]];
     for (weights, expected) in [(Weights::TOTAL, [0.1690, 0.2228]), (Weights::WALL, [0.0144, 0.0871])] {
-        let problem = full_arm(weights);
+        let is_heavy = weights == Weights::TOTAL;
+        let problem = if is_heavy { heavy(full_arm(weights)) } else { full_arm(weights) };
         let transfer = TransferSettings::default();
         let outcome = place(&problem, &SearchSettings::default(), &transfer, &Monitor::silent()).unwrap();
         let plans = outcome.cases.optima();
-        for (case, expected) in plans.into_iter().zip(expected) {
+        for ((case, expected), by_weight) in plans.into_iter().zip(expected).zip(by_weight) {
             let mean = case.plan.mean * 1e3;
             let origins = case.plan.by_origin.unwrap();
             assert!((origins.total() - case.plan.mean).abs() < 1e-12, "{origins:?}");
             assert!((mean / expected - 1.0).abs() < 0.005, "{weights:?}: {mean} {expected}, {origins:?}");
+            let Some(sag) = &case.plan.sag else {
+                assert!(!is_heavy);
+                continue;
+            };
+            let SagRange { least, largest, spread } = sag.path;
+            for (found, expected) in [least, largest, spread].into_iter().zip(by_weight) {
+                assert!((found * 1e3 / expected - 1.0).abs() < 0.005, "{:?} {expected}", sag.path);
+            }
+            assert_eq!(sag.segments.iter().map(|(number, _)| *number).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
+            let mut ranges = sag.segments.iter().map(|(_, range)| range);
+            assert!(ranges.all(|range| range.least >= least && range.largest <= largest && range.spread <= spread));
         }
+        let words = "the weight of the 61 kg on the flange (the masses of the links";
+        assert_eq!(outcome.notes.iter().filter(|note| note.contains(words)).count(), usize::from(is_heavy));
     }
 }

@@ -12,7 +12,7 @@ fn numbers(value: &toml::Value) -> Vec<f64> {
     }
 }
 
-struct Oracle {
+pub(in crate::stiffness) struct Oracle {
     robot: Robot,
     spindle: Spindle,
     base: BaseCompliance,
@@ -56,8 +56,8 @@ impl Oracle {
         }
     }
 
-    /// Displacement (um) and turn (urad) of the tool against the part.
-    fn moved(&self, springs: &str, theta: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> Vector6<f64> {
+    /// The arm with these springs: `axes`, `normal` (with those about the axes) or `all`.
+    pub fn arm(&self, springs: &str) -> (Robot, Spindle) {
         let (mut robot, mut spindle) = (self.robot.clone(), self.spindle);
         if springs != "axes" {
             robot = robot.with_normal_springs(Some(self.normal)).unwrap().with_spring_model(Some(SpringModel::Full));
@@ -66,37 +66,71 @@ impl Oracle {
             robot = robot.with_base_compliance(Some(self.base.clone()));
             spindle = spindle.with_mount(self.mount).unwrap().with_tip(self.tip).unwrap();
         }
-        let frames = Frames::new(&robot, theta);
-        let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
-        let mut moved =
-            WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(theta), tip).displacement(force, moment);
-        if springs == "all" {
-            moved.linear += of_part(&self.part, &rotation_from_zyx([30_f64.to_radians(), 0.0, 0.0]), force);
+        (robot, spindle)
+    }
+
+    /// What the part adds to the displacement with these springs. m
+    pub fn of_part(&self, springs: &str, force: &Vector3<f64>) -> Vector3<f64> {
+        if springs != "all" {
+            return Vector3::zeros();
         }
-        Vector6::from_iterator(moved.linear.iter().chain(moved.angular.iter()).map(|value| value * 1e6))
+        of_part(&self.part, &rotation_from_zyx([30_f64.to_radians(), 0.0, 0.0]), force)
     }
 }
 
-#[test]
-fn figures_of_another_program_come_out() {
+/// A row of the table.
+pub(in crate::stiffness) struct Row {
+    pub arm: Oracle,
+    pub springs: String,
+    pub theta: [f64; 6],
+    pub force: Vector3<f64>,
+    pub moment: Vector3<f64>,
+    /// Displacement (um) and turn (urad) of the tool against the part.
+    pub moved: Vector6<f64>,
+}
+
+/// All rows.
+pub(in crate::stiffness) fn rows() -> Vec<Row> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data");
     let arms: toml::Table = std::fs::read_to_string(format!("{folder}/arm-oracle.toml")).unwrap().parse().unwrap();
     let arms = arms["arm"].as_array().unwrap();
     let table = std::fs::read_to_string(format!("{folder}/arm-oracle.csv")).unwrap();
-    let mut rows = 0;
-    for line in table.lines().skip(1) {
+    let row = |line: &str| {
         let cells: Vec<&str> = line.split(',').collect();
         let arm = arms.iter().find(|arm| arm["name"].as_str() == Some(cells[0])).unwrap();
         let number = |k: usize| cells[k].parse::<f64>().unwrap();
-        let theta = std::array::from_fn(|j| number(4 + j).to_radians());
         let vector = |k: usize| Vector3::new(number(k), number(k + 1), number(k + 2));
-        let found = Oracle::read(arm).moved(cells[3], &theta, &vector(10), &vector(13));
-        for k in 0..6 {
-            // Ten digits are printed of each.
-            let (found, expected) = (found[k], number(16 + k));
-            assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{line}: {found}");
+        Row {
+            arm: Oracle::read(arm),
+            springs: cells[3].to_owned(),
+            theta: std::array::from_fn(|j| number(4 + j).to_radians()),
+            force: vector(10),
+            moment: vector(13),
+            moved: Vector6::from_fn(|k, _| number(16 + k)),
         }
-        rows += 1;
+    };
+    table.lines().skip(1).map(row).collect()
+}
+
+/// In um and urad.
+pub(in crate::stiffness) fn micro(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::from_iterator(linear.iter().chain(angular.iter()).map(|value| value * 1e6))
+}
+
+#[test]
+fn figures_of_another_program_come_out() {
+    let rows = rows();
+    assert_eq!(rows.len(), 54);
+    for Row { arm, springs, theta, force, moment, moved: expected } in rows {
+        let (robot, spindle) = arm.arm(&springs);
+        let frames = Frames::new(&robot, &theta);
+        let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
+        let whole = WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(&theta), tip);
+        let moved = whole.displacement(&force, &moment);
+        let found = micro(&(moved.linear + arm.of_part(&springs, &force)), &moved.angular);
+        for (found, expected) in found.iter().zip(expected.iter()) {
+            // Ten digits are printed of each.
+            assert!((found - expected).abs() < 1e-9 * expected.abs().max(1.0), "{springs} {theta:?}: {found}");
+        }
     }
-    assert_eq!(rows, 54);
 }
