@@ -72,6 +72,20 @@ pub fn springs_left_out(robot: &Robot) -> Option<String> {
     })
 }
 
+/// That nobody knows what the compliances of an arm stand for, where its file states no springs normal to the axes
+/// ([`springs_left_out`] is for those).
+pub fn model_not_stated(robot: &Robot) -> Option<String> {
+    let is_open = robot.spring_model().is_none() && robot.stated_normal_springs().is_none();
+    is_open.then(|| {
+        format!(
+            "{}: the robot file does not state what its stiffness stands for (stiffness_model): it is taken for a fit of springs \
+             about the axes alone (\"axes\"), which absorb what links and bearings do; if it is the part about the axes of springs about \
+             three directions (\"axial_part\"), a third to a half of the deflection is missing",
+            robot.name()
+        )
+    })
+}
+
 /// That a job counts the springs about the axes alone of an arm that has others too.
 pub fn axes_alone(robot: &Robot) -> Option<String> {
     let is_more = robot.normal_springs().is_some() || robot.base_compliance().is_some();

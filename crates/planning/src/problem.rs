@@ -249,7 +249,8 @@ impl Problem {
         let of_tool = self.segment_moves.tool.iter().filter(|_| has_moves).flat_map(|tool| tool.notes());
         let matrices = plausibility::matrices(&self.robot, &self.spindle, &self.task);
         let left_out = plausibility::springs_left_out(&self.robot);
-        let parts = parts.into_iter().flatten().chain(matrices).chain(left_out);
+        let not_stated = plausibility::model_not_stated(&self.robot);
+        let parts = parts.into_iter().flatten().chain(matrices).chain(left_out).chain(not_stated);
         plausibility::arm(&self.robot).into_iter().chain(parts).chain(of_tool).collect()
     }
 
