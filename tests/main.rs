@@ -48,4 +48,5 @@ mod study;
 mod study_killed;
 mod study_report;
 mod uncertainty;
+mod whole_arm;
 mod your_cell;

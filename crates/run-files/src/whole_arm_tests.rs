@@ -36,7 +36,7 @@ fn an_assessment_and_a_correction_note_what_they_leave_out() {
     let folder = tempfile::tempdir().unwrap();
     let text = std::fs::read_to_string(root().join("configs/robots/kuka-kr270-2.toml")).unwrap();
     let text = text.replace("\n[[joints]]", "\n[[joints]]\northogonal_compliance_urad_per_nm = 0.1");
-    let text = text.replacen("\nname = ", "\nstiffness_model = \"full\"\nname = ", 1);
+    let text = text.replacen("\"axes\"", "\"full\"", 1);
     let reality = folder.path().join("full.toml");
     std::fs::write(&reality, text).unwrap();
     let config = root().join("configs/compensate-caro-2013.toml");

@@ -99,8 +99,7 @@ pub(super) fn of_postures(postures: &[Explanation; 8]) -> Option<String> {
         std::iter::once(posture.to_string()).chain(figures).collect()
     }));
     Some(format!(
-        "of the scored deflection, in mm, what comes from the joints about their axes, normal to them by joint, and from what \
-         else yields\n\n{}",
+        "of the scored deflection, in mm: joints about their axes, normal to them by joint, and what else yields\n\n{}",
         aligned(&rows, &[])
     ))
 }
