@@ -44,9 +44,9 @@ impl Instructions {
         match self.0 {
             None => plain(work),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Some(Arch::V3(simd)) => simd.vectorize(work),
+            Some(Arch::V3(simd)) => Simd::vectorize(simd, work),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Some(Arch::V4(simd)) => simd.vectorize(work),
+            Some(Arch::V4(simd)) => Simd::vectorize(simd, work),
             Some(arch) => of_others(arch, work),
         }
     }
