@@ -139,9 +139,7 @@ fn every_key_of_the_input_files_is_stated_by_some_run_or_left_out_with_a_reason(
     let missing: Vec<&String> = known
         .iter()
         .filter(|key| !stated.contains(*key) && !left_out.contains(key.as_str()))
-        .filter(|key| {
-            !is_motion(key) && !is_angle(key) && !in_surroundings(key) && !is_removal(key)
-        })
+        .filter(|key| !is_motion(key) && !is_angle(key) && !in_surroundings(key) && !is_removal(key))
         .collect();
     assert!(missing.is_empty(), "no run states {missing:?}: add them to tests/judge/src/cover.rs and write.rs");
     for (key, reason) in LEFT_OUT {

@@ -30,7 +30,7 @@ fn mm(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {value}"))
 }
 
-/// What a document states of a deflection by what yields; the springs normal to the axes joint by joint make up their sum.
+/// What a document states of a deflection by what yields; springs normal to the axes, joint by joint, add up too.
 fn by_origin(value: &Value) -> [f64; 6] {
     let stated = &value["by_origin_mm"];
     let by_joint: f64 = stated["normal_by_joint_mm"].as_array().unwrap().iter().map(|mm| mm.as_f64().unwrap()).sum();
@@ -42,7 +42,8 @@ fn by_origin(value: &Value) -> [f64; 6] {
 fn columns(table: &str, other: &str) -> Vec<([f64; 6], f64)> {
     let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let names = rows.next().unwrap();
-    let at = |name: &str| names.iter().position(|known| *known == name).unwrap_or_else(|| panic!("no {name}: {names:?}"));
+    let at =
+        |name: &str| names.iter().position(|known| *known == name).unwrap_or_else(|| panic!("no {name}: {names:?}"));
     let wanted = ORIGINS.map(|name| at(&format!("from_{name}_mm")));
     let other = at(other);
     let full = rows.filter(|row| !row[other].is_empty());
@@ -67,7 +68,8 @@ fn explain_says_where_the_deflection_of_every_posture_comes_from() {
     }
     assert!(reached >= 2 && postures.iter().all(|p| p["by_origin_mm"].is_null() == p["joints_deg"].is_null()));
     let text = explain(&[]).stdout;
-    let rows: Vec<&str> = text.lines().skip_while(|line| !line.starts_with("of the scored deflection, in mm")).collect();
+    let rows: Vec<&str> =
+        text.lines().skip_while(|line| !line.starts_with("of the scored deflection, in mm")).collect();
     let header: Vec<&str> = rows[2].split("  ").filter(|word| !word.is_empty()).map(str::trim).collect();
     let words = ["posture", "sum", "axes", "normal 1", "normal 2", "normal 3", "normal 4", "normal 5", "normal 6"];
     assert_eq!(header, [&words[..], &["base", "tool", "part"]].concat(), "{text}");

@@ -4,7 +4,7 @@
 //!
 //! `cargo run --release -p stead-experiments --bin whole-arm [-- RANDOM DESCENTS]` (default 600 6) in the root of the
 //! repository, with three arms along the path of `configs/whole-arm.toml`, each scored by the whole deflection and by
-//! its part normal to the wall: the KUKA KR 210-2 and the Staubli TX200 with their full sets, and a made-up arm of which
+//! its part normal to the wall: KUKA KR 210-2 and Staubli TX200 with their full sets, and a made-up arm of which
 //! everything yields that can. It prints the best and the worst mean of `place` and of this search, and by how much the
 //! search is ahead (below 0: behind).
 

@@ -182,7 +182,9 @@ impl Arm {
         let number: Option<usize> = name.strip_prefix("joints[").and_then(|rest| rest.split(']').next()?.parse().ok());
         let Some(row) = number.and_then(|number| arm.rows.get_mut(number.wrapping_sub(1))) else { return (arm, 1.0) };
         let scale = 1.0 + share;
-        if let (Some((_, about)), Some(normal)) = (name.split_once("orthogonal_compliance_urad_per_nm"), &mut arm.normal) {
+        if let (Some((_, about)), Some(normal)) =
+            (name.split_once("orthogonal_compliance_urad_per_nm"), &mut arm.normal)
+        {
             let joint = number.unwrap_or(1) - 1;
             let step = grown(&mut normal[joint].about[usize::from(about == "[2]")], scale, 1e6);
             return (arm, step);

@@ -250,7 +250,8 @@ mod tests {
     fn what_the_springs_of_a_file_stand_for_decides_what_is_scored() {
         let with = |head: &'static str| {
             move |text: String| {
-                let rows = unstated(&text).replace("[[joints]]\n", "[[joints]]\northogonal_stiffness_mnm_per_rad = [4, 5]\n");
+                let rows =
+                    unstated(&text).replace("[[joints]]\n", "[[joints]]\northogonal_stiffness_mnm_per_rad = [4, 5]\n");
                 format!("{head}\n{rows}")
             }
         };
@@ -266,7 +267,8 @@ mod tests {
         let axial = |text: String| format!("stiffness_model = 'axial_part'\n{}", unstated(&text));
         let run = read("", &axial, &same).unwrap();
         assert!(run.notes.iter().any(|note| note.contains("axial_part")), "{:?}", run.notes);
-        let says = |run: &Run| run.notes.iter().any(|note| note.contains("does not state what its stiffness stands for"));
+        let says =
+            |run: &Run| run.notes.iter().any(|note| note.contains("does not state what its stiffness stands for"));
         assert!(says(&read("", &|text| unstated(&text), &same).unwrap()));
         assert!(!says(&run) && !says(&read("", &same, &same).unwrap()));
     }

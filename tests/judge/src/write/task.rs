@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use std::fmt::Write as _;
 
 /// The columns of a part that yields.
-const PART: &str = ",part_xx_um_per_n,part_yy_um_per_n,part_zz_um_per_n,part_xy_um_per_n,part_xz_um_per_n,part_yz_um_per_n";
+const PART: &str =
+    ",part_xx_um_per_n,part_yy_um_per_n,part_zz_um_per_n,part_xy_um_per_n,part_xz_um_per_n,part_yz_um_per_n";
 
 impl Writer<'_> {
     /// The tool path, about the origin of the part, some 120 mm wide.

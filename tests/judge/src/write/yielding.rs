@@ -27,7 +27,8 @@ impl Writer<'_> {
 
     /// Springs normal to the axis of a row, in one of the ways in which rows state them.
     pub(super) fn normal_springs(&mut self, row: &mut Table, j: usize, softer: f64) {
-        let mut soft = |scale: f64| [0.3, 0.2, 0.3, 0.9, 0.8, 1.2][j.min(5)] * scale * softer * self.random.between(0.5, 1.5);
+        let mut soft =
+            |scale: f64| [0.3, 0.2, 0.3, 0.9, 0.8, 1.2][j.min(5)] * scale * softer * self.random.between(0.5, 1.5);
         let (x, y) = (soft(1.0), soft(0.7));
         let mut put = |key: &str, value: Value| {
             row.insert(key.to_owned(), value);
@@ -104,7 +105,8 @@ impl Writer<'_> {
     pub(super) fn part_columns(&mut self) -> [f64; 6] {
         let all = self.semidefinite(3, 0.05);
         // What the columns state is rounded, and still no negative eigenvalue.
-        let all = Matrix3::from_fn(|row, column| (all[(row, column)] * 1e6).round() * 1e-6) + Matrix3::identity() * 1e-5;
+        let all =
+            Matrix3::from_fn(|row, column| (all[(row, column)] * 1e6).round() * 1e-6) + Matrix3::identity() * 1e-5;
         [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| all[at])
     }
 }
