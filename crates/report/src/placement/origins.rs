@@ -37,17 +37,17 @@ records! {
     pub struct OriginColumns of (origins: Option<&ScoredByOrigin>) {
         let ByOrigin { axes, normal, base, mount, tip } = origins.map(|origins| origins.arm.map(Some)).unwrap_or_default();
     } with {
-        /// Of the scored part, what the joints add about their axes, where more yields than these.
+        /// What the joints about their axes add to the scored part, where more yields than these.
         from_axes_mm: Option<DeflectionMm> = some(axes),
-        /// What they add normal to their axes.
+        /// What the joints normal to their axes add to it.
         from_normal_mm: Option<DeflectionMm> = some(normal),
-        /// What that adds which carries the robot.
+        /// What adds to it that carries the robot.
         from_base_mm: Option<DeflectionMm> = some(base),
-        /// What the bolts of the spindle add.
+        /// What the bolts of the spindle add to it.
         from_mount_mm: Option<DeflectionMm> = some(mount),
-        /// What holder and tool add.
+        /// What holder and tool add to it.
         from_tip_mm: Option<DeflectionMm> = some(tip),
-        /// What the part adds.
+        /// What the part adds to it.
         from_part_mm: Option<DeflectionMm> = some(origins.map(|origins| origins.part)),
     }
 }
