@@ -4,6 +4,7 @@
 
 mod assess;
 mod bad_input;
+mod by_origin;
 mod calm;
 mod cell_setup;
 mod certify;
@@ -48,5 +49,4 @@ mod study;
 mod study_killed;
 mod study_report;
 mod uncertainty;
-mod whole_arm;
 mod your_cell;
