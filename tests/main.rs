@@ -4,6 +4,7 @@
 
 mod assess;
 mod bad_input;
+mod by_origin;
 mod calm;
 mod cell_setup;
 mod certify;

@@ -49,6 +49,17 @@ pub fn arm(robot: &Robot) -> Vec<String> {
         .collect()
 }
 
+/// What is to be said of an arm by which placements are scored, beside [`arm`]: springs of its file that scores leave
+/// out, and compliances of which nobody knows what they stand for.
+pub fn scored_arm(robot: &Robot) -> Option<String> {
+    springs_left_out(robot).or_else(|| model_not_stated(robot))
+}
+
+/// What is to be said of what the compliances of a further stiffness set stand for.
+pub fn stiffness_set(robot: &Robot) -> Option<String> {
+    axial_part(robot).or_else(|| scored_arm(robot))
+}
+
 /// That an arm has but the part about the axes of a full set.
 fn axial_part(robot: &Robot) -> Option<String> {
     (robot.spring_model() == Some(SpringModel::AxialPart)).then(|| {
@@ -67,6 +78,20 @@ pub fn springs_left_out(robot: &Robot) -> Option<String> {
         format!(
             "{}: its file states springs normal to the axes, but not that they are of one set with the others (stiffness_model = \
              \"full\"): scores leave them out",
+            robot.name()
+        )
+    })
+}
+
+/// That nobody knows what the compliances of an arm stand for, where its file states no springs normal to the axes
+/// ([`springs_left_out`] is for those).
+fn model_not_stated(robot: &Robot) -> Option<String> {
+    let is_open = robot.spring_model().is_none() && robot.stated_normal_springs().is_none();
+    is_open.then(|| {
+        format!(
+            "{}: the robot file does not state what its stiffness stands for (stiffness_model): it is taken for a fit of springs \
+             about the axes alone (\"axes\"), which absorb what links and bearings do; if it is the part about the axes of springs about \
+             three directions (\"axial_part\"), a third to a half of the deflection is missing",
             robot.name()
         )
     })

@@ -42,10 +42,27 @@ impl Instructions {
     #[inline(always)]
     pub fn run<W: WithSimd>(self, work: W) -> W::Output {
         match self.0 {
-            None => work.with_simd(Scalar256b),
-            Some(arch) => arch.dispatch(work),
+            None => plain(work),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(Arch::V3(simd)) => Simd::vectorize(simd, work),
+            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+            Some(Arch::V4(simd)) => Simd::vectorize(simd, work),
+            Some(arch) => of_others(arch, work),
         }
     }
+}
+
+/// Work with what every processor has. As with the wide instructions, a function of its own: in one with the others it
+/// would add its stack to theirs in builds without optimisation, megabytes of it.
+#[inline(never)]
+fn plain<W: WithSimd>(work: W) -> W::Output {
+    work.with_simd(Scalar256b)
+}
+
+/// Work with instructions that have no name here.
+#[inline(never)]
+fn of_others<W: WithSimd>(arch: Arch, work: W) -> W::Output {
+    arch.dispatch(work)
 }
 
 /// Some numbers, as many as `S` has lanes.

@@ -56,6 +56,8 @@ pub struct PlanPoint {
     pub score: f64,
     /// Standard deviation of the scored part, where the robot's uncertainty is known. m
     pub deviation: Option<f64>,
+    /// What each thing that yields adds to the scored part, where more does than the joints about their axes.
+    pub by_origin: Option<ScoredByOrigin>,
     /// The pair of shapes with the least room; `None` without a scene, and where nothing is near.
     pub clearance: Option<Clearance>,
 }

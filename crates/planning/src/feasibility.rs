@@ -2,7 +2,7 @@
 //! and of what forbids states along a path.
 
 use super::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
-use super::evaluate::reference::State;
+use super::evaluate::reference::{ScoredByOrigin, State, scored_by_origin};
 use super::problem::{BetaPlan, Placement, Problem};
 use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
@@ -21,6 +21,9 @@ pub struct Explanation {
     pub state: Option<State<f64>>,
     /// The constraints broken; none means allowed.
     pub violations: Vec<Measured>,
+    /// What each thing that yields adds to the scored part, where more does than the joints about their axes; of
+    /// [`explain`] alone.
+    pub by_origin: Option<ScoredByOrigin>,
 }
 
 impl Explanation {
@@ -46,6 +49,8 @@ pub fn explain(problem: &Problem, placement: &Placement, point: usize, beta: f64
         let measured =
             explanation.state.as_ref().and_then(|s| problem.clearance_constraint(point, placement, &s.joints));
         explanation.violations.extend(measured.filter(|measured| !measured.holds()));
+        let state = explanation.state.as_ref().filter(|_| problem.yields_beside());
+        explanation.by_origin = state.map(|s| scored_by_origin(problem, point, placement, &s.joints));
         explanation
     })
 }
@@ -81,14 +86,16 @@ pub fn unscored(problem: &Problem, point: usize) -> Option<String> {
 /// The same without the shapes of the scene.
 pub fn without_clearance(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
     Posture::ALL.map(|posture| match problem.at(placement).state(point, beta, posture) {
-        Err(unreachable) => Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)] },
+        Err(unreachable) => {
+            Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)], by_origin: None }
+        }
         Ok(mut found) => {
             for (angle, joint) in found.joints.iter_mut().zip(problem.robot.joints()) {
                 *angle = Range::of(joint).nearest(*angle).0;
             }
             let measured = on_joints(problem, &found.joints).into_iter().chain(on_state(problem, &found));
             let violations = measured.filter(|measured| !measured.holds()).collect();
-            Explanation { posture, state: Some(found), violations }
+            Explanation { posture, state: Some(found), violations, by_origin: None }
         }
     })
 }

@@ -248,8 +248,7 @@ impl Problem {
         let has_moves = self.task.segments().len() > 1;
         let of_tool = self.segment_moves.tool.iter().filter(|_| has_moves).flat_map(|tool| tool.notes());
         let matrices = plausibility::matrices(&self.robot, &self.spindle, &self.task);
-        let left_out = plausibility::springs_left_out(&self.robot);
-        let parts = parts.into_iter().flatten().chain(matrices).chain(left_out);
+        let parts = parts.into_iter().flatten().chain(matrices).chain(plausibility::scored_arm(&self.robot));
         plausibility::arm(&self.robot).into_iter().chain(parts).chain(of_tool).collect()
     }
 

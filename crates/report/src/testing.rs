@@ -260,6 +260,7 @@ impl Grid {
             surface_part: None,
             score: state.score(),
             deviation: state.own.deviation,
+            by_origin: None,
             clearance: None,
         }
     }

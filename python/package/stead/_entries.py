@@ -110,11 +110,24 @@ class HeldFeed(Record):
     }
 
 
+class ByOrigin(Record):
+    """What each thing that yields adds to the scored part, under the robot's own compliances and without what force
+    errors or deviations add: the sum is the size of that part. A part below 0 takes from the others."""
+
+    axes_mm: float
+    base_mm: float
+    mount_mm: float
+    normal_by_joint_mm: list[float]
+    normal_mm: float
+    part_mm: float
+    tip_mm: float
+
+
 class PlanEntries(Record):
     """A plan with its feeds and times."""
 
     at_held_feed: HeldFeed | None
-    by_origin_mm: Record | None
+    by_origin_mm: ByOrigin | None
     clearance: Clearance | None
     cutting_s: float
     cycle_s: float | None
@@ -131,6 +144,7 @@ class PlanEntries(Record):
     unfollowed_moves: list[UnfollowedMove]
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
         "at_held_feed": HeldFeed,
+        "by_origin_mm": ByOrigin,
         "clearance": Clearance,
         "deflection_mm": Deflections,
         "feed": CutFeed,
@@ -194,7 +208,7 @@ class CaseEntries(Record):
 
     active_bounds: list[ActiveBound] | None
     at_held_feed: HeldFeed | None
-    by_origin_mm: Record | None
+    by_origin_mm: ByOrigin | None
     case: int
     clearance: Clearance | None
     cutting_s: float
@@ -219,6 +233,7 @@ class CaseEntries(Record):
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
         "active_bounds": ActiveBound,
         "at_held_feed": HeldFeed,
+        "by_origin_mm": ByOrigin,
         "clearance": Clearance,
         "deflection_mm": Deflections,
         "external_axes": ExternalAxes,
@@ -277,6 +292,7 @@ class Certificate(Record):
 class Explanation(Record):
     """A posture at a path point; its figures are null where it is out of reach."""
 
+    by_origin_mm: ByOrigin | None
     feasible: bool
     inverse_condition: float | None
     joints_deg: list[float] | None
@@ -286,6 +302,9 @@ class Explanation(Record):
     std_mm: float | None
     total_deflection_mm: float | None
     violations: list[str]
+    _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
+        "by_origin_mm": ByOrigin,
+    }
 
 
 class ReferenceCircle(Record):

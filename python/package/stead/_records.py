@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ._entries import (
     ActiveBound,
+    ByOrigin,
     CaseEntries,
     Certificate,
     Clearance,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ActiveBound",
+    "ByOrigin",
     "Case",
     "Certificate",
     "Clearance",

@@ -2,6 +2,7 @@
 //! out.
 
 use crate::values::{Answer, list, number, plain, pose, required, section, sections, text, texts};
+use crate::yielding::{Normal, normal};
 use nalgebra::{DMatrix, Isometry3, Matrix6, Rotation3, Translation3, Vector3, Vector6};
 use std::path::Path;
 use toml::{Table, Value};
@@ -43,6 +44,8 @@ pub(crate) struct Counting {
 #[derive(Debug, Clone)]
 pub(crate) struct Arm {
     pub rows: Vec<Row>,
+    /// Springs normal to the axes, where they count.
+    pub normal: Option<Vec<Normal>>,
     pub covariance: Option<(Vec<String>, DMatrix<f64>)>,
     pub counting: Option<Counting>,
 }
@@ -59,6 +62,12 @@ impl Arm {
         let rows = sections(&table, "joints").into_iter().map(row).collect::<Answer<Vec<_>>>().map_err(told)?;
         if rows.len() != 6 {
             return Err(told("an arm has six rows".to_owned()));
+        }
+        let is_full = text(&table, "stiffness_model") == Some("full");
+        let normal: Option<Vec<Normal>> =
+            is_full.then(|| sections(&table, "joints").into_iter().filter_map(normal).collect());
+        if normal.as_ref().is_some_and(|all| all.len() != 6) {
+            return Err(told("a full arm has springs normal to the axis in six rows".to_owned()));
         }
         let covariance = section(&table, "covariance").and_then(|table| {
             let names = texts(table, "parameters")?;
@@ -80,7 +89,7 @@ impl Arm {
                 Some(Counting { sign, offset: offset.map(f64::to_radians), is_j3_level, root_from_base })
             }
         };
-        Ok(Self { rows, covariance, counting })
+        Ok(Self { rows, normal, covariance, counting })
     }
 
     /// The base and the frames of the six rows, where the base has this pose.
@@ -117,7 +126,7 @@ impl Arm {
         std::array::from_fn(|j| self.rows[j].compliance(joints[j]))
     }
 
-    /// Displacement of a point (m) by a force (N) and a moment (N m) there.
+    /// Displacement of a point (m) by a force (N) and a moment (N m) there, of the springs about the axes.
     pub(crate) fn deflection(
         &self,
         frames: &[Isometry3<f64>; 7],

@@ -4,6 +4,7 @@ use crate::arm::Arm;
 use crate::path::{self, Point};
 use crate::solid::Solid;
 use crate::values::{Answer, number, placed, pose, range, rotation, section, sections, text, texts, vector};
+use crate::yielding::Beside;
 use nalgebra::{Isometry3, Point3, Rotation3, Vector3};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
@@ -81,6 +82,8 @@ pub(crate) struct Cell {
     pub arm: Arm,
     /// Stiffness sets of the criterion.
     pub sets: Vec<Arm>,
+    /// What yields beside the arm.
+    pub beside: Beside,
     /// Tool frame in the flange frame.
     pub tool: Isometry3<f64>,
     pub mount: Isometry3<f64>,
@@ -147,6 +150,7 @@ impl Cell {
         let mut all = Self {
             arm,
             sets,
+            beside: Beside::read(&run),
             tool,
             mount,
             axes,

@@ -21,6 +21,10 @@ pub const FACTORS: &[Factor] = &[
         &["kuka-kr270-2", "kuka-kr210-r2700", "abb-irb6640-185", "fanuc-m900ib-700", "staubli-tx200", "kuka-kr500"],
     ),
     factor("compliance", &["constant", "stiffness", "range", "compensator"]),
+    factor("springs", &["not stated", "axes", "axial part", "left out", "full", "full pairs"]),
+    factor("base", &["none", "alike", "unlike"]),
+    factor("spindle yields", &["no", "mount", "tip", "both"]),
+    factor("part yields", &["no", "table", "columns"]),
     factor("sets", &["one", "mean", "worst", "regret"]),
     factor("confidence", &["none", "2"]),
     factor("speeds", &["file", "none", "accelerations"]),
@@ -82,6 +86,7 @@ const IMPOSSIBLE: &[([&str; 4], &str)] = &[
     (["load", "conventional", "tool", "none"], "the cutter gives the force"),
     (["load", "climb", "tool", "none"], "the cutter gives the force"),
     (["load", "stock", "tool", "none"], "the cutter gives the force"),
+    (["part yields", "columns", "load", "stock"], "refused: the stock adds points of which the columns say nothing"),
     (["search", "genetic", "postures", "never"], "refused: it searches for a posture of each segment"),
     (["arm", "staubli-tx200", "program", "native"], "no programs are written for this controller"),
 ];

@@ -19,6 +19,7 @@ mod solid;
 mod values;
 mod verdict;
 pub mod write;
+mod yielding;
 
 pub use verdict::Verdict;
 

@@ -17,6 +17,8 @@ pub(crate) struct Point {
     pub normal: Option<Vector3<f64>>,
     pub force: Vector3<f64>,
     pub moment: Vector3<f64>,
+    /// How the part yields there, where the task says so. m/N
+    pub part: Option<Matrix3<f64>>,
     /// m/s
     pub speed: Option<f64>,
     pub is_scored: bool,
@@ -84,6 +86,7 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
             normal: three("normal_", "").map(|normal| normal.normalize()),
             force: three("force_", "_n").unwrap_or_else(Vector3::zeros),
             moment: three("moment_", "_nm").unwrap_or_else(Vector3::zeros),
+            part: part(&value),
             speed: value("feed_mm_per_s").map(|speed| speed * 1e-3),
             is_scored: value("scored").is_none_or(|scored| scored != 0.0),
         });
@@ -95,6 +98,13 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
         (point.force, point.moment) = (Vector3::zeros(), Vector3::zeros());
     }
     Ok(points)
+}
+
+/// The compliance of the part in the columns of a point.
+fn part(value: &dyn Fn(&str) -> Option<f64>) -> Option<Matrix3<f64>> {
+    let of = |entry: &str| value(&format!("part_{entry}_um_per_n")).map(|micro| micro * 1e-6);
+    let (xy, xz, yz) = (of("xy")?, of("xz")?, of("yz")?);
+    Some(Matrix3::new(of("xx")?, xy, xz, xy, of("yy")?, yz, xz, yz, of("zz")?))
 }
 
 fn load(points: &mut [Point], run: &Table) -> Answer<()> {

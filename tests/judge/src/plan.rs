@@ -9,6 +9,7 @@ use crate::path::Point;
 use crate::score::{Criterion, Loaded};
 use crate::values::{Answer, angle_between, section, text};
 use crate::verdict::Verdict;
+use crate::yielding::{Loading, ORIGINS};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Vector3};
 use serde_json::Value;
 use std::path::Path;
@@ -27,6 +28,8 @@ pub(crate) struct Row {
     pub deflection: Vector3<f64>,
     /// Normal, feed, axial, score, total.
     pub parts: [f64; 5],
+    /// What each thing that yields adds to the scored part, where the table says so.
+    pub origins: Option<Vec<f64>>,
     /// Of the external axes.
     pub positions: Vec<f64>,
     pub clearance: Option<f64>,
@@ -81,6 +84,7 @@ pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
             force: three("force_", "_n", 1.0)?,
             deflection: three("deflection_", "_mm", 1e-3)?,
             parts: [part("normal_mm")?, part("feed_mm")?, part("axial_mm")?, part("score_mm")?, part("total_mm")?],
+            origins: ORIGINS.iter().map(|name| Some(maybe(&format!("from_{name}_mm"))? * 1e-3)).collect(),
             positions,
             clearance: maybe("clearance_mm").map(|mm| mm * 1e-3),
             nearest: cell_of("nearest_pair").unwrap_or_default().to_owned(),
@@ -278,9 +282,9 @@ impl Plan<'_> {
         let force = part * point.force;
         let size = force.norm();
         verdict.within("force (N)", || self.at(i), (carrier * force - row.force).amax(), 0.6e-4 + 1e-6 * size);
-        let at = stand.tool.translation.vector;
         let moment = part * point.moment;
-        let moved = self.cell.arm.deflection(&stand.frames, &row.joints, &at, &force, &moment);
+        let loading = Loading { stand, joints: &row.joints, part: point.part.or(self.cell.beside.part) };
+        let moved = loading.moved(self.cell, &self.cell.arm, &force, &moment);
         let slack = 0.6e-10 + OF_DIGITS * moved.norm();
         verdict.within("deflection (m)", || self.at(i), (carrier * moved - row.deflection).amax(), slack);
         let axes = part.matrix() * point.axes;
@@ -291,12 +295,25 @@ impl Plan<'_> {
         }
         verdict.close("total deflection (m)", || self.at(i), stated[4], moved.norm(), slack);
         let normal = point.normal.map(|normal| part * normal);
-        let load = Loaded { frames: &stand.frames, joints: &row.joints, at, force, moment, axes, normal };
+        let load = Loaded { loading, force, moment, axes, normal };
         let score = criterion.score(self.cell, &load);
         if point.is_scored {
+            self.origins(verdict, i, &criterion.by_origin(self.cell, &load));
             verdict.close("score (m)", || self.at(i), stated[3], score, slack + OF_DIGITS * score);
         }
         (score, slack + OF_DIGITS * score)
+    }
+
+    /// What each thing that yields adds.
+    fn origins(&self, verdict: &mut Verdict, i: usize, found: &[f64; 6]) {
+        let stated = &self.rows[i].origins;
+        verdict.holds("columns by what yields", || self.at(i), stated.is_some() == self.cell.yields_beside());
+        let Some(stated) = stated else { return };
+        let size: f64 = found.iter().map(|part| part.abs()).sum();
+        for ((name, found), stated) in ORIGINS.iter().zip(found).zip(stated) {
+            let told = || format!("{} from {name}", self.at(i));
+            verdict.close("part by what yields (m)", told, *stated, *found, 0.6e-10 + OF_DIGITS * size);
+        }
     }
 
     fn step(&self, verdict: &mut Verdict, i: usize) {
@@ -434,6 +451,12 @@ impl Plan<'_> {
             let all: Vec<f64> = scored.iter().map(|i| part(&self.rows[*i]).abs()).collect();
             (all.iter().sum::<f64>() / all.len() as f64, all.iter().copied().fold(0.0, f64::max))
         };
+        for (k, name) in ORIGINS.iter().enumerate().filter(|_| self.cell.yields_beside()) {
+            let stated = case.pointer(&format!("/by_origin_mm/{name}_mm")).and_then(Value::as_f64).unwrap_or(f64::NAN);
+            let all = scored.iter().filter_map(|i| self.rows[*i].origins.as_ref()).map(|all| all[k]);
+            let mean = all.sum::<f64>() / scored.len() as f64;
+            verdict.close("mean by what yields (m)", || told(name), stated * 1e-3, mean, 1.2e-10);
+        }
         for (word, k) in [("wall", 0), ("feed", 1), ("axis", 2), ("total", 4)] {
             let (mean, most) = of(&|row| row.parts[k]);
             let stated = |key: &str| {

@@ -4,7 +4,8 @@ use crate::arm::{Arm, Law};
 use crate::cell::Cell;
 use crate::path::Point;
 use crate::values::{number, section, text};
-use nalgebra::{DVector, Isometry3, Matrix3, Vector3};
+use crate::yielding::Loading;
+use nalgebra::{DVector, Matrix3, Vector3};
 
 /// The criterion as the run states it.
 pub(crate) struct Criterion {
@@ -22,9 +23,7 @@ pub(crate) struct Criterion {
 
 /// An arm at a path point under the load there.
 pub(crate) struct Loaded<'a> {
-    pub frames: &'a [Isometry3<f64>; 7],
-    pub joints: &'a [f64; 6],
-    pub at: Vector3<f64>,
+    pub loading: Loading<'a>,
     pub force: Vector3<f64>,
     pub moment: Vector3<f64>,
     /// Axes of the point as columns, and the normal of the surface, in the cell.
@@ -76,7 +75,7 @@ impl Criterion {
 
     /// The score of a point under the arm itself, or all sets. m
     pub(crate) fn score(&self, cell: &Cell, load: &Loaded<'_>) -> f64 {
-        let under = |arm: &Arm| self.score_of(arm, load);
+        let under = |arm: &Arm| self.score_of(cell, arm, load);
         match (&cell.sets[..], self.is_worst_of_sets) {
             ([], _) => under(&cell.arm),
             (sets, true) => sets.iter().map(under).fold(0.0, f64::max),
@@ -84,10 +83,21 @@ impl Criterion {
         }
     }
 
-    fn score_of(&self, arm: &Arm, load: &Loaded<'_>) -> f64 {
+    /// What each thing that yields adds to the size of the scored part, under the arm itself. m
+    pub(crate) fn by_origin(&self, cell: &Cell, load: &Loaded<'_>) -> [f64; 6] {
+        let directions = self.directions(load);
+        let all = load.loading.by_origin(cell, &cell.arm, &load.force, &load.moment);
+        let whole: Vector3<f64> = all.iter().sum();
+        let parts: Vec<f64> = directions.iter().map(|v| v.dot(&whole)).collect();
+        let size = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let along = |v: &Vector3<f64>| directions.iter().zip(&parts).map(|(d, part)| d.dot(v) * part).sum::<f64>();
+        all.map(|v| if size > 0.0 { along(&v) / size } else { 0.0 })
+    }
+
+    fn score_of(&self, cell: &Cell, arm: &Arm, load: &Loaded<'_>) -> f64 {
         let directions = self.directions(load);
         let parts = |arm: &Arm, force: &Vector3<f64>, moment: &Vector3<f64>| {
-            let moved = arm.deflection(load.frames, load.joints, &load.at, force, moment);
+            let moved = load.loading.moved(cell, arm, force, moment);
             DVector::from_iterator(directions.len(), directions.iter().map(|v| v.dot(&moved)))
         };
         let own = parts(arm, &load.force, &load.moment);
@@ -172,6 +182,13 @@ impl Arm {
         let number: Option<usize> = name.strip_prefix("joints[").and_then(|rest| rest.split(']').next()?.parse().ok());
         let Some(row) = number.and_then(|number| arm.rows.get_mut(number.wrapping_sub(1))) else { return (arm, 1.0) };
         let scale = 1.0 + share;
+        if let (Some((_, about)), Some(normal)) =
+            (name.split_once("orthogonal_compliance_urad_per_nm"), &mut arm.normal)
+        {
+            let joint = number.unwrap_or(1) - 1;
+            let step = grown(&mut normal[joint].about[usize::from(about == "[2]")], scale, 1e6);
+            return (arm, step);
+        }
         let step = match &mut row.law {
             Law::Spring { stiffness, .. } if name.ends_with("spring_stiffness_n_per_mm") => {
                 grown(stiffness, scale, 1e-3)

@@ -3,6 +3,7 @@
 mod cutter;
 mod shapes;
 mod task;
+mod yielding;
 
 use crate::cover::{Choice, Random, value_of};
 use crate::values::{Answer, number, placed};
@@ -169,6 +170,7 @@ impl Writer<'_> {
             }
         }
         table.insert("stiffness_like".to_owned(), Value::from("made up"));
+        self.model(&mut table);
         if let Some(controller) = table.get_mut("controller").and_then(Value::as_table_mut) {
             let is_fanuc = controller.get("kind").and_then(Value::as_str) == Some("fanuc");
             controller.insert("is_j3_level".to_owned(), Value::from(is_fanuc));
@@ -215,14 +217,14 @@ impl Writer<'_> {
                     spring.into_iter().map(|(key, value)| (key.to_owned(), Value::from(value))).collect();
                 kept.insert("compensator".to_owned(), Value::Table(table));
             }
+            self.normal_springs(&mut kept, j, softer);
             joints.push(Value::Table(kept));
         }
         table.insert("joints".to_owned(), Value::Array(joints));
         if self.of("confidence") != "none" {
             let scale = 0.04;
-            let names = ["joints[1].compliance_urad_per_nm", "joints[3].compliance_urad_per_nm"].map(str::to_owned);
             let mut covariance = Table::new();
-            covariance.insert("parameters".to_owned(), Value::from(names.to_vec()));
+            covariance.insert("parameters".to_owned(), Value::from(self.uncertain()));
             let square = scale * scale;
             let rows = vec![Value::from(vec![square, 0.3 * square]), Value::from(vec![0.3 * square, square])];
             covariance.insert("matrix".to_owned(), Value::Array(rows));
@@ -275,9 +277,10 @@ impl Writer<'_> {
         let spindle = Rotation3::from_matrix_unchecked(matrix);
         self.tool = placed(&spindle, &tcp);
         let (xyz, turned) = (vector(&(tcp * 1e3)), angles(self.key, &spindle));
+        let [of_spindle, tables] = self.matrices();
         self.line(format_args!(
             "\n[spindle]\nxyz_mm = {xyz}\n{turned}\nmass_kg = 20.0\ncentre_of_mass_mm = [0.0, 0.0, 120.0]\n\
-             inertia_kg_m2 = {{ xx = 0.4, yy = 0.4, zz = 0.1 }}"
+             inertia_kg_m2 = {{ xx = 0.4, yy = 0.4, zz = 0.1 }}{of_spindle}\n{tables}"
         ));
         let middle = self.part * 1e3;
         let wide = if self.of("cell") == "range" { 60.0 } else { 0.0 };

@@ -166,6 +166,32 @@ fn results_of_another_cell_are_found() {
 }
 
 #[test]
+fn what_yields_and_was_not_counted_is_found() {
+    let small = "[[0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]";
+    let six = "[[0.01, 0, 0, 0, 0, 0], [0, 0.01, 0, 0, 0, 0], [0, 0, 0.01, 0, 0, 0], [0, 0, 0, 0.01, 0, 0], \
+               [0, 0, 0, 0, 0.01, 0], [0, 0, 0, 0, 0, 0.01]]";
+    for (from, to) in [
+        ("[cell]", format!("[base_compliance]\nmatrix = {six}\n\n[cell]")),
+        ("[cell]", format!("[part_compliance]\num_per_n = {small}\n\n[cell]")),
+        ("[spindle]", format!("[spindle]\nmount_matrix = {six}")),
+        ("[spindle]", format!("[spindle]\ntip_um_per_n = {small}")),
+    ] {
+        let case = Case::new();
+        case.change("configs/run.toml", |text| text.replacen(from, &to, 1));
+        case.finds("deflection (m)");
+        case.finds("columns by what yields");
+    }
+    let robot = "configs/robots/kuka-kr270-2.toml";
+    let springs = "[[joints]]\northogonal_compliance_urad_per_nm = 0.1\n";
+    let case = Case::new();
+    case.change(robot, |text| text.replace("[[joints]]\n", springs));
+    assert!(case.verdict().disagreements.is_empty(), "springs of no full set count");
+    case.change(robot, |text| text.replacen("\"axes\"", "\"full\"", 1));
+    case.finds("deflection (m)");
+    case.finds("columns by what yields");
+}
+
+#[test]
 fn shapes_that_were_not_kept_apart_are_found() {
     let shape = |attached: &str, place: &str| {
         format!(

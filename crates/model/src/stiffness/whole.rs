@@ -100,17 +100,29 @@ impl<'a, T: Scalar> WholeArm<'a, T> {
         }
     }
 
+    /// What the springs normal to the axis of each joint add to [`ByOrigin::normal`]; nothing where there are none.
+    pub fn normal_by_joint(&self, force: &Vector3<T>, moment: &Vector3<T>) -> [Displacement<T>; 6] {
+        std::array::from_fn(|j| {
+            let mut moved = Displacement { linear: Vector3::zeros(), angular: Vector3::zeros() };
+            self.add_normal_springs(j, force, moment, &mut moved);
+            moved
+        })
+    }
+
     fn of_normal_springs(&self, force: &Vector3<T>, moment: &Vector3<T>) -> Displacement<T> {
         let mut moved = Displacement { linear: Vector3::zeros(), angular: Vector3::zeros() };
-        for (j, springs) in self.robot.normal_springs().into_iter().flatten().enumerate() {
-            for (about, compliance) in springs.compliance.into_iter().enumerate() {
-                let (velocity, axis) = self.frames.twist_normal(j, about, springs.bearing, &self.point);
-                let yielding = (velocity.dot(force) + axis.dot(moment)).scale(compliance);
-                moved.linear += velocity * yielding;
-                moved.angular += axis * yielding;
-            }
-        }
+        (0..6).for_each(|j| self.add_normal_springs(j, force, moment, &mut moved));
         moved
+    }
+
+    fn add_normal_springs(&self, j: usize, force: &Vector3<T>, moment: &Vector3<T>, moved: &mut Displacement<T>) {
+        let Some(springs) = self.robot.normal_springs().map(|all| all[j]) else { return };
+        for (about, compliance) in springs.compliance.into_iter().enumerate() {
+            let (velocity, axis) = self.frames.twist_normal(j, about, springs.bearing, &self.point);
+            let yielding = (velocity.dot(force) + axis.dot(moment)).scale(compliance);
+            moved.linear += velocity * yielding;
+            moved.angular += axis * yielding;
+        }
     }
 
     fn of_tip(&self, force: &Vector3<T>) -> Vector3<T> {

@@ -93,17 +93,11 @@ fn at_held_feed(
 pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Plan {
     let mut points = Vec::with_capacity(problem.task.points().len());
     let known = problem.robot.uncertainty();
-    let mut origins = problem.yields_beside().then(ScoredByOrigin::default);
     let mut slopes = vec![0.0; known.map_or(0, |known| known.parameters().len())];
     for (segment, plan) in plans.iter().enumerate() {
         for (place, point) in plan.points.clone().enumerate() {
             let Ok(s) = problem.at(placement).state(point, plan.betas[place], plan.posture) else { continue };
             let placed = problem.placed(point, placement);
-            if let Some(origins) = &mut origins
-                && problem.task.path().is_scored(point)
-            {
-                origins.add(&scored_by_origin(problem, point, placement, &s.joints));
-            }
             let sign = if s.own.scored < 0.0 { -1.0 } else { 1.0 };
             for (sum, slope) in slopes.iter_mut().zip(scored_part_by_parameters(problem, point, placement, &s.joints)) {
                 *sum += sign * slope;
@@ -124,6 +118,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 surface_part: s.surface_part,
                 score: s.score(),
                 deviation: s.own.deviation,
+                by_origin: problem.yields_beside().then(|| scored_by_origin(problem, point, placement, &s.joints)),
                 clearance: problem.state_clearance(point, placement, &plan.joints[place]),
             });
         }
@@ -143,13 +138,21 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
         deflection: DeflectionFigures::of(scored),
         held: None,
         sag: Sag::of(problem, placement, points.iter().map(|p| (p.point, p.joints))),
-        by_origin: origins.map(|origins| origins.scaled(1.0 / count)),
+        by_origin: mean_by_origin(problem, &points),
         mean_deviation: known.map(|known| known.standard_deviation(&slopes) / count),
         clearance: plan_clearance(problem, &points),
         travel,
         points,
         axes: problem.axis_paths(),
     }
+}
+
+/// What each thing that yields adds in the mean of the scored points.
+fn mean_by_origin(problem: &Problem, points: &[PlanPoint]) -> Option<ScoredByOrigin> {
+    let path = problem.task.path();
+    let mut sum = problem.yields_beside().then(ScoredByOrigin::default)?;
+    points.iter().filter(|p| path.is_scored(p.point)).filter_map(|p| p.by_origin.as_ref()).for_each(|p| sum.add(p));
+    Some(sum.scaled(1.0 / path.scored_count() as f64))
 }
 
 /// The point of a plan at which a pair has the least room beyond what it has to keep.

@@ -276,6 +276,8 @@ pub fn scored_part_by_parameters<T: Scalar>(
 pub struct ScoredByOrigin {
     /// What yields of robot and spindle.
     pub arm: ByOrigin<f64>,
+    /// Of the springs normal to the axes, what those of each joint add.
+    pub normal_by_joint: [f64; 6],
     /// The part.
     pub part: f64,
 }
@@ -286,13 +288,18 @@ impl ScoredByOrigin {
         let others = other.arm.into_array();
         let mut others = others.into_iter();
         self.arm = self.arm.map(|own| own + others.next().unwrap_or_default());
+        self.normal_by_joint = std::array::from_fn(|j| self.normal_by_joint[j] + other.normal_by_joint[j]);
         self.part += other.part;
     }
 
     /// All of it by a factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
-        Self { arm: self.arm.map(|own| own * factor), part: self.part * factor }
+        Self {
+            arm: self.arm.map(|own| own * factor),
+            normal_by_joint: self.normal_by_joint.map(|own| own * factor),
+            part: self.part * factor,
+        }
     }
 
     /// The sum. m
@@ -314,6 +321,7 @@ pub fn scored_by_origin(problem: &Problem, point: usize, placement: &Placement, 
     let PlacedPoint { force, moment, .. } = &at.placed;
     ScoredByOrigin {
         arm: deflected.whole.by_origin(force, moment).map(|moved| along(moved.linear)),
+        normal_by_joint: deflected.whole.normal_by_joint(force, moment).map(|moved| along(moved.linear)),
         part: at.part.map_or(0.0, |matrix| along(matrix * force)),
     }
 }

@@ -1,5 +1,6 @@
 //! A case as documents state it: a placement with its plan, feeds and moves.
 
+use super::origins::OriginFigures;
 use super::setup::SetupFigures;
 use super::text::spring_name;
 use crate::document::{DeflectionByDirection, FeedFigures, JointTravelFigures, PlacementExact, PlacementFigures};
@@ -8,13 +9,11 @@ use crate::names;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stead_model::robot::Posture;
-use stead_model::stiffness::whole::ByOrigin;
 use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
 use stead_placement::sag::{Sag, SagRange};
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::collision;
 use stead_planning::criterion::CANCELLATION;
-use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::limit::ActiveBound;
 use stead_planning::transfer::Transfer;
 use stead_planning::transfer_path;
@@ -148,24 +147,6 @@ records! {
         mm_per_percent: MmPerPercent = MmPerPercent(slope / 100.0),
         /// The same in per cent of it; null where the objective is nothing.
         percent_per_percent: Option<Plain> = (objective > CANCELLATION).then(|| Plain(slope / objective)),
-    }
-
-    /// What each thing that yields adds to the scored part.
-    pub struct OriginFigures from origins: &ScoredByOrigin {
-        let ByOrigin { axes, normal, base, mount, tip } = origins.arm;
-    } with {
-        /// The joints about their axes.
-        axes_mm: DeflectionMm = axes.into(),
-        /// The joints normal to their axes.
-        normal_mm: DeflectionMm = normal.into(),
-        /// What carries the robot.
-        base_mm: DeflectionMm = base.into(),
-        /// The bolts of the spindle.
-        mount_mm: DeflectionMm = mount.into(),
-        /// Holder and tool.
-        tip_mm: DeflectionMm = tip.into(),
-        /// The part.
-        part_mm: DeflectionMm = origins.part.into(),
     }
 
     /// How far the weight moves the tool.

@@ -2,6 +2,7 @@
 
 use super::Context;
 use super::case::PlanFigures;
+use super::origins::{self, OriginFigures};
 use super::setup::{SetupFigures, lines};
 use super::text::least_room;
 use crate::columns::{aligned, line};
@@ -110,7 +111,7 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .as_ref()
         .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
     let mut feed = String::new();
-    super::text::by_origin(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
+    origins::of_plan(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
     super::text::sag(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
     for (plan, name) in [(&score.plans.best, "best plan"), (&score.plans.worst, "worst plan")] {
         least_room(plan, name).iter().for_each(|row| line(&mut feed, row));
@@ -160,6 +161,9 @@ records! {
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
         #[serde(skip_serializing_if = "Option::is_none")]
         std_mm: Option<FineDeflectionMm> = some(state.and_then(|s| s.own.deviation)),
+        /// What each thing that yields adds to the scored part, where more does than the joints about their axes.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        by_origin_mm: Option<OriginFigures> = explanation.by_origin.as_ref().map(Into::into),
         /// Whether the state is allowed.
         feasible: bool = explanation.is_allowed(),
         /// The constraints that it breaks.
@@ -210,6 +214,10 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
         fixed(beta.to_degrees(), 3),
         aligned(&rows, &[last])
     );
+    if let Some(origins) = origins::of_postures(postures) {
+        text.push('\n');
+        text.push_str(&origins);
+    }
     if !broken.is_empty() {
         text.push_str("\nbroken constraints\n");
         text.push_str(&broken);

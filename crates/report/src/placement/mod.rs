@@ -3,6 +3,7 @@
 mod case;
 pub mod evaluation;
 mod json;
+mod origins;
 pub(crate) mod plan_row;
 mod settings;
 pub(crate) mod setup;
@@ -144,7 +145,8 @@ fn map_files(
     place: &str,
 ) -> Result<[(&'static str, Vec<u8>); 2], ReportError> {
     let svg = picture::deflection_map(problem, map, plans, place);
-    Ok([(names[0], tables::deflection_map(problem, map)?), (names[1], svg.into_bytes())])
+    let at = (&*problem.in_setup(&plans[0].setup), &plans[0].placement);
+    Ok([(names[0], tables::deflection_map(at, map)?), (names[1], svg.into_bytes())])
 }
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,

@@ -1,5 +1,6 @@
 //! A row of a plan.
 
+use super::origins::OriginColumns;
 use super::setup::{AxisColumns, at_point};
 use crate::figure::{AngleDeg, DeflectionMm, ForceN, PlaceMm, Plain, each, some};
 use schemars::JsonSchema;
@@ -66,6 +67,7 @@ records! {
         #[serde(skip_serializing_if = "Option::is_none")] surface_mm: Option<DeflectionMm> = some(point.surface_part),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
         #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+        #[serde(flatten)] origins: Option<OriginColumns> = point.by_origin.as_ref().map(|origins| OriginColumns::of(Some(origins))),
         #[serde(flatten)] axes: AxisColumns = at_point(&plan.axes, point.point),
         #[serde(flatten)] clearance: Option<ClearanceColumns> =
             scene.map(|scene: &Scene| ClearanceColumns::of(scene, point)),

@@ -1,5 +1,6 @@
 //! The CSV files. One function makes one file; every column carries its unit.
 
+use super::origins::{self, OriginColumns};
 use super::plan_row::PlanRow;
 use super::setup;
 use crate::csv_file::{rows, rows_or};
@@ -126,9 +127,11 @@ pub fn convergence(generations: &[Generation]) -> Result<Vec<u8>, ReportError> {
 records! {
     /// A state of the grid over the path points and beta.
     #[derive(Default)]
-    pub struct MapRow of (problem: &Problem, map: &DeflectionMap, point: usize, k: usize) {
+    pub struct MapRow of (at: (&Problem, &Placement), map: &DeflectionMap, point: usize, k: usize) {
         let cell = &map.rows[point][k];
         let blocked = cell.as_ref().err();
+        let problem = at.0;
+        let posture = cell.as_ref().ok().map(|cell| cell.posture);
         let pair = |scene: &Scene| blocked.and_then(|blocked| scene.pair(blocked.pair?)).map(ToString::to_string);
     } with {
         /// Path point, from 0.
@@ -140,22 +143,24 @@ records! {
         /// The smallest score over the allowed postures; empty where none is allowed.
         score_mm: Option<DeflectionMm> = cell.as_ref().ok().map(|cell| cell.score.into()),
         /// The posture of that score, 1 to 8.
-        #[schemars(with = "Option<u8>")] posture: Option<Posture> = cell.as_ref().ok().map(|cell| cell.posture),
+        #[schemars(with = "Option<u8>")] posture: Option<Posture> = posture,
         /// Why none is allowed.
         reason: Option<String> = blocked.map(|blocked| blocked.kind.code()),
         /// The pair of shapes that hits, among shapes of a cell.
         #[serde(skip_serializing_if = "Option::is_none")]
         pair: Option<String> = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
+        #[serde(flatten)] origins: Option<OriginColumns> =
+            origins::of_state(at, point, problem.redundancy.beta(k), posture),
     }
 }
 
-/// `deflection-map-*.csv`: a [`MapRow`] for every state of the grid.
+/// `deflection-map-*.csv` of a problem in its setup and a placement: a [`MapRow`] for every state of the grid.
 ///
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
-pub fn deflection_map(problem: &Problem, map: &DeflectionMap) -> Result<Vec<u8>, ReportError> {
+pub fn deflection_map(at: (&Problem, &Placement), map: &DeflectionMap) -> Result<Vec<u8>, ReportError> {
     let states = map.rows.iter().enumerate().flat_map(|(point, row)| (0..row.len()).map(move |k| (point, k)));
-    let states = states.map(|(point, k)| MapRow::of(problem, map, point, k));
+    let states = states.map(|(point, k)| MapRow::of(at, map, point, k));
     rows("the table of a deflection map", states)
 }
 

@@ -116,7 +116,7 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
 #[test]
 fn maps_have_a_row_per_state_with_a_score_or_a_reason() {
     let map = &outcome().maps.as_ref().unwrap()[0];
-    let table = rows(&tables::deflection_map(problem(), map).unwrap());
+    let table = rows(&tables::deflection_map((problem(), &outcome().cases.best.placement), map).unwrap());
     assert_eq!(table[0].join(","), "point,segment,beta_deg,score_mm,posture,reason");
     assert_eq!(table.len(), 1 + 105 * 120);
     assert_eq!(column(&table, "beta_deg")[..2], ["-180.0000", "-177.0000"]);

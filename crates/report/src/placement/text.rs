@@ -1,11 +1,10 @@
 //! The short table for people.
 
-use super::{Context, setup};
+use super::{Context, origins, setup};
 use crate::columns::{aligned, line};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
-use stead_model::stiffness::whole::ByOrigin;
 use stead_placement::outcome::{Case, DeflectionFigures, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::collision::PlanClearance;
@@ -39,7 +38,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     for case in outcome.cases.optima() {
         held_by(case).iter().for_each(|row| line(&mut text, row));
     }
-    by_origin(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, row));
+    origins::of_plan(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, row));
     sag(&outcome.cases.best.plan).iter().for_each(|row| line(&mut text, &format!("best plan: {row}")));
     stiffest(&outcome.cases.best).iter().for_each(|row| line(&mut text, row));
     least_room(&outcome.cases.best.plan, "best plan").iter().for_each(|row| line(&mut text, row));
@@ -126,27 +125,6 @@ fn held_by(case: &Case) -> Vec<String> {
 /// The springs of a slope in words: `joint 5 about z with joint 4 about y`.
 pub(super) fn spring_name(slope: &SpringSlope) -> String {
     slope.springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(" with ")
-}
-
-/// What each thing that yields adds to the mean of a plan, where more does than the joints about their axes.
-pub(super) fn by_origin(plan: &Plan) -> Option<String> {
-    let origins = plan.by_origin?;
-    let ByOrigin { axes, normal, base, mount, tip } = origins.arm;
-    let all = [
-        ("joints about their axes", axes),
-        ("normal to them", normal),
-        ("base", base),
-        ("mount of the spindle", mount),
-        ("holder and tool", tip),
-        ("part", origins.part),
-    ];
-    let parts = all.into_iter().filter(|(_, part)| *part != 0.0);
-    let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {}", fixed(part * 1e3, 4))).collect();
-    Some(format!(
-        "of the scored deflection of {} mm in the mean: {}",
-        fixed(origins.total() * 1e3, 4),
-        parts.join(", ")
-    ))
 }
 
 /// How far the weight moves the tool along a plan, where that is known.

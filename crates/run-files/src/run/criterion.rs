@@ -10,6 +10,7 @@ use stead_format::quantity::Quantity;
 use stead_format::robot::{checked_to_score, robot_from};
 use stead_format::scalars::{Whole, words};
 use stead_format::units::{MmPerRad, Number, ZeroToTen, ranges};
+use stead_model::plausibility;
 use stead_model::robot::{Joint, MeasuredFrom, Robot};
 use stead_model::task::Task;
 use stead_planning::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
@@ -192,7 +193,8 @@ impl CriterionTable {
         })
     }
 
-    /// Reads the robot files of the stiffness sets: the robot itself with the compliances of each, and the files.
+    /// Reads the robot files of the stiffness sets: the robot itself with the compliances of each, the files, and what is
+    /// to be said of them.
     ///
     /// # Errors
     /// [`InputError`] for a file that cannot be read, an arm of another geometry or with other joint limits, an empty
@@ -202,19 +204,20 @@ impl CriterionTable {
         robot: &Robot,
         narrowed: impl Fn(Robot) -> Result<Robot, InputError>,
         root: &Place<'_>,
-    ) -> Result<(Vec<Robot>, Vec<InputFile>), InputError> {
+    ) -> Result<(Vec<Robot>, Vec<InputFile>, Vec<String>), InputError> {
         let at = root.key("criterion").key("robots");
-        let Some(names) = &self.robots else { return Ok((Vec::new(), Vec::new())) };
+        let Some(names) = &self.robots else { return Ok((Vec::new(), Vec::new(), Vec::new())) };
         if names.is_empty() {
             return Err(at.error("is empty", "one robot file or more"));
         }
-        let (mut robots, mut inputs) = (Vec::new(), Vec::new());
+        let (mut robots, mut inputs, mut notes) = (Vec::new(), Vec::new(), Vec::new());
         for number in 1..=names.len() {
             let at = at.element(number);
             let file = at.named_file()?;
             let source = file.toml()?;
             let set = narrowed(robot_from(&source)?)?;
             checked_to_score(&set, &source)?;
+            notes.extend(plausibility::stiffness_set(&set));
             if let Some(joint) = differs(robot, &set) {
                 let problem = format!("is an arm of another geometry or other limits at joint {joint}");
                 return Err(at.error(problem, "robot files with the rows and joint limits of the run's robot"));
@@ -244,7 +247,7 @@ impl CriterionTable {
             let allowed = "stiffness_model = \"axes\", \"axial_part\" or \"full\" in each of them, or in none";
             return Err(at.element(unstated + 1).error(problem, allowed));
         }
-        Ok((robots, inputs))
+        Ok((robots, inputs, notes))
     }
 }
 

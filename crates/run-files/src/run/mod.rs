@@ -270,7 +270,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let segments = run.segment.unwrap_or_default();
     let criterion = run.criterion.unwrap_or_default();
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
-    let (sets, files) = criterion.sets(&robot, narrowed, &at)?;
+    let (sets, files, of_sets) = criterion.sets(&robot, narrowed, &at)?;
     inputs.extend(files);
     inputs.extend(lender);
     let (force_uncertainty, about) = criterion.force_errors(removal.as_deref(), &at.key("criterion"))?;
@@ -312,6 +312,9 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     inputs.extend(around.inputs);
     notes.extend(base_note(&problem.robot));
     notes.extend(problem.notes());
+    // The robot of the run may be a set too.
+    let of_sets: Vec<String> = of_sets.into_iter().filter(|note| !notes.contains(note)).collect();
+    notes.extend(of_sets);
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));

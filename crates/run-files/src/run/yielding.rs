@@ -217,10 +217,18 @@ mod tests {
         assert_eq!(run.problem.robot.spring_model(), Some(SpringModel::Full));
     }
 
+    /// A robot file that does not state what its stiffness stands for.
+    fn unstated(text: &str) -> String {
+        let model = "stiffness_model = \"axes\"\n";
+        assert!(text.contains(model));
+        text.replace(model, "")
+    }
+
     #[test]
     fn sets_that_state_their_model_stand_beside_none_that_does_not() {
         let folder = folder();
-        let arm = std::fs::read_to_string(folder.path().join("arm.toml")).unwrap();
+        let arm = unstated(&std::fs::read_to_string(folder.path().join("arm.toml")).unwrap());
+        std::fs::write(folder.path().join("arm.toml"), &arm).unwrap();
         let full = arm.replace("[[joints]]\n", "[[joints]]\northogonal_stiffness_mnm_per_rad = 4\n");
         std::fs::write(folder.path().join("full.toml"), format!("stiffness_model = 'full'\n{full}")).unwrap();
         std::fs::write(folder.path().join("axes.toml"), format!("stiffness_model = 'axes'\n{arm}")).unwrap();
@@ -242,7 +250,8 @@ mod tests {
     fn what_the_springs_of_a_file_stand_for_decides_what_is_scored() {
         let with = |head: &'static str| {
             move |text: String| {
-                let rows = text.replace("[[joints]]\n", "[[joints]]\northogonal_stiffness_mnm_per_rad = [4, 5]\n");
+                let rows =
+                    unstated(&text).replace("[[joints]]\n", "[[joints]]\northogonal_stiffness_mnm_per_rad = [4, 5]\n");
                 format!("{head}\n{rows}")
             }
         };
@@ -255,8 +264,12 @@ mod tests {
         let run = read("", &with(""), &same).unwrap();
         assert!(!run.problem.yields_beside());
         assert!(run.notes.iter().any(|note| note.contains("scores leave them out")), "{:?}", run.notes);
-        let axial = |text: String| format!("stiffness_model = 'axial_part'\n{text}");
+        let axial = |text: String| format!("stiffness_model = 'axial_part'\n{}", unstated(&text));
         let run = read("", &axial, &same).unwrap();
         assert!(run.notes.iter().any(|note| note.contains("axial_part")), "{:?}", run.notes);
+        let says =
+            |run: &Run| run.notes.iter().any(|note| note.contains("does not state what its stiffness stands for"));
+        assert!(says(&read("", &|text| unstated(&text), &same).unwrap()));
+        assert!(!says(&run) && !says(&read("", &same, &same).unwrap()));
     }
 }

@@ -4,6 +4,10 @@ use super::Writer;
 use nalgebra::Vector3;
 use std::fmt::Write as _;
 
+/// The columns of a part that yields.
+const PART: &str =
+    ",part_xx_um_per_n,part_yy_um_per_n,part_zz_um_per_n,part_xy_um_per_n,part_xz_um_per_n,part_yz_um_per_n";
+
 impl Writer<'_> {
     /// The tool path, about the origin of the part, some 120 mm wide.
     pub(super) fn task(&mut self) -> String {
@@ -82,6 +86,7 @@ impl Writer<'_> {
         }
         let load = self.of("load");
         let (has_forces, has_moments) = (matches!(load, "task" | "moments"), load == "moments");
+        let has_part = self.of("part yields") == "columns";
         let (has_feeds, has_scored) = (self.of("feeds") == "task", self.of("unscored") != "none");
         let mut text =
             "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z".to_owned();
@@ -89,6 +94,7 @@ impl Writer<'_> {
             (has_forces, ",force_x_n,force_y_n,force_z_n"),
             (has_moments, ",moment_x_nm,moment_y_nm,moment_z_nm"),
             (has_feeds, ",feed_mm_per_s"),
+            (has_part, PART),
             (has_scored, ",scored"),
         ] {
             text.push_str(if is_there { names } else { "" });
@@ -106,6 +112,9 @@ impl Writer<'_> {
             }
             if has_feeds {
                 numbers.push(self.random.between(15.0, 45.0).round());
+            }
+            if has_part {
+                numbers.extend(self.part_columns());
             }
             let words: Vec<String> = numbers.iter().map(|number| format!("{number:.9}")).collect();
             let _ = write!(text, "{},{}", step.segment, words.join(","));

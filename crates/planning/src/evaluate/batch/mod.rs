@@ -216,9 +216,16 @@ impl<'a> BatchEvaluator<'a> {
             return;
         }
         let evaluation = Evaluation { evaluator: self, geometry: &geometry, classes, states };
-        match self.fixed {
-            None => self.instructions.run(evaluation),
-            Some(_) => self.instructions.run(WholeEvaluation(evaluation)),
+        let is_single = self.problem.criterion.weights.is_single();
+        match (self.fixed.is_some(), is_single, self.is_plain(point)) {
+            (false, true, true) => self.instructions.run(Variant::<true, false, 1>(evaluation)),
+            (false, true, false) => self.instructions.run(Variant::<false, false, 1>(evaluation)),
+            (false, false, true) => self.instructions.run(Variant::<true, false, 3>(evaluation)),
+            (false, false, false) => self.instructions.run(Variant::<false, false, 3>(evaluation)),
+            (true, true, true) => self.instructions.run(Variant::<true, true, 1>(evaluation)),
+            (true, true, false) => self.instructions.run(Variant::<false, true, 1>(evaluation)),
+            (true, false, true) => self.instructions.run(Variant::<true, true, 3>(evaluation)),
+            (true, false, false) => self.instructions.run(Variant::<false, true, 3>(evaluation)),
         }
     }
 
@@ -275,45 +282,22 @@ struct Evaluation<'k> {
     states: &'k mut StateGrid,
 }
 
-impl WithSimd for Evaluation<'_> {
+/// The evaluation with `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of
+/// compliances, and scores cover no errors; `WHOLE` where more than the joints about their axes yields. Each is a
+/// function of its own: what one needs costs the others nothing, and without optimisation none needs the stack of all.
+struct Variant<'k, const PLAIN: bool, const WHOLE: bool, const N: usize>(Evaluation<'k>);
+
+impl<const PLAIN: bool, const WHOLE: bool, const N: usize> WithSimd for Variant<'_, PLAIN, WHOLE, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        self.of_criterion::<S, false>(simd);
-    }
-}
-
-/// The same where more than the joints about their axes yields: a function of its own, so that the one above stays as
-/// it is without.
-struct WholeEvaluation<'k>(Evaluation<'k>);
-
-impl WithSimd for WholeEvaluation<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.0.of_criterion::<S, true>(simd);
+        self.0.batches::<S, PLAIN, WHOLE, N>(simd);
     }
 }
 
 impl Evaluation<'_> {
-    /// By what is scored.
-    #[inline(always)]
-    fn of_criterion<S: Simd, const WHOLE: bool>(self, simd: S) {
-        let is_plain =
-            self.geometry.uncertainty == 0.0 && matches!(self.evaluator.sets[..], [Set { deviation: None, .. }]);
-        let is_single = self.evaluator.problem.criterion.weights.is_single();
-        match (is_single, is_plain) {
-            (true, true) => self.batches::<S, true, WHOLE, 1>(simd),
-            (true, false) => self.batches::<S, false, WHOLE, 1>(simd),
-            (false, true) => self.batches::<S, true, WHOLE, 3>(simd),
-            (false, false) => self.batches::<S, false, WHOLE, 3>(simd),
-        }
-    }
-
-    /// With `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of compliances,
-    /// and scores cover no errors; `WHOLE` where more than the joints about their axes yields.
+    /// As [`Variant`].
     #[inline(always)]
     fn batches<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
         let Self { evaluator, geometry, classes, states } = self;

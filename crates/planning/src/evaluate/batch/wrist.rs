@@ -148,16 +148,16 @@ impl BatchEvaluator<'_> {
         }
         let planar = Planar { second: [c2, s2 * g.lift], third: [cos_psi, sin_psi * g.lift] };
         let state = ScoredState { pose: &pose, demand, directions: &turned, planar };
-        let mut score = self.score_of_set::<S, PLAIN, WHOLE, N>(simd, &self.sets[0], &state, uncertainty);
-        if !PLAIN {
-            for set in &self.sets[1..] {
+        let score = if PLAIN {
+            self.score_of_set::<S, PLAIN, WHOLE, N>(simd, &self.sets[0], &state, uncertainty)
+        } else {
+            let mut score = zero;
+            for set in &self.sets {
                 let other = self.score_of_set::<S, PLAIN, WHOLE, N>(simd, set, &state, uncertainty);
                 score = if self.is_over_worst { score.max(other) } else { score + other };
             }
-            if !self.is_over_worst {
-                score = score * (1.0 / self.sets.len() as f64);
-            }
-        }
+            if self.is_over_worst { score } else { score * (1.0 / self.sets.len() as f64) }
+        };
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));
             if !allowed.any() {
@@ -179,7 +179,8 @@ impl BatchEvaluator<'_> {
         let ScoredState { pose, demand, directions, planar } = state;
         let compliances = laws.at(simd, &self.limits, directions);
         let lateral = self.problem.robot.geometry().lateral;
-        if let Some(fixed) = self.fixed.as_ref().filter(|_| WHOLE) {
+        // Two conditions, so that nothing of this is compiled where it is not needed.
+        if WHOLE && let Some(fixed) = &self.fixed {
             // Axis 5 against the one that the pose has, z4 x z6.
             let [_, s5, s6] = self.problem.robot.geometry().twist;
             let side = if self.flips == Flips::Flipped { s5 * s6 } else { -s5 * s6 };

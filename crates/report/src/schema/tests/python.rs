@@ -92,7 +92,7 @@ fn records_declare_the_keys_of_their_documents() {
 }
 
 /// Records of the package that are made of schemas: the class, the document, the part of it, if it is not the whole.
-const ENTRIES: [(&str, &str, &str); 22] = [
+const ENTRIES: [(&str, &str, &str); 23] = [
     ("Input", "place-result", "Input"),
     ("MeanAndMax", "place-result", "DeflectionMean"),
     ("Deflections", "place-result", "DeflectionByDirection"),
@@ -103,6 +103,7 @@ const ENTRIES: [(&str, &str, &str); 22] = [
     ("Clearance", "place-result", "ClearanceFigures"),
     ("UnfollowedMove", "place-result", "UnfollowedMove"),
     ("HeldFeed", "place-result", "HeldFeedFigures"),
+    ("ByOrigin", "place-result", "OriginFigures"),
     ("PlanEntries", "score-result", "PlanFigures"),
     ("ShortLine", "place-result", "ShortLine"),
     ("Transfer", "place-result", "TransferFigures"),

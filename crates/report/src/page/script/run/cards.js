@@ -5,21 +5,10 @@ import { card, el } from '../draw/dom.js';
 import { figures, fixed } from '../draw/scale.js';
 import { alongPath, limitAt } from './charts.js';
 import { CASES, IS_SCORE, RAW, SHORT_NAMES, singlesOf } from './data.js';
+import { originsCard } from './origins.js';
+import { smallTable } from './small-table.js';
 /** @import { Series } from '../draw/chart-data.js' */
-
-/** @param {string[]} heads @param {(string | number | Node)[][]} rows */
-function smallTable(heads, rows) {
-  const isNumber = (/** @type {string | number | Node} */ value) => typeof value === 'number' || /^[-–]?\d|^–$/.test(String(value));
-  const isWords = heads.map((_, k) => k === 0 || !rows.every((row) => isNumber(row[k])));
-  const cell = (/** @type {string | number | Node} */ value, /** @type {number} */ k) =>
-    el(isWords[k] ? 'td.words' : 'td', {}, value);
-  const head = el(
-    'thead',
-    {},
-    el('tr', {}, ...heads.map((name, k) => el(isWords[k] ? 'th.words' : 'th', { scope: 'col' }, name))),
-  );
-  return el('table', {}, head, el('tbody', {}, ...rows.map((row) => el('tr', {}, ...row.map(cell)))));
-}
+/** @import { Case } from './data.js' */
 
 /** Warnings stand in the open; notes can be folded. */
 export function messages() {
@@ -137,14 +126,18 @@ function openRegion(name) {
 
 /** How the objective answers to the stiffness of each joint, and what force errors would do. */
 function sensitivityCard() {
-  const rows = CASES.filter((of) => of.entry.objective_by_stiffness?.length).map((of) => [
+  const known = CASES.filter((of) => of.entry.objective_by_stiffness?.length);
+  const rows = known.map((of) => [
     SHORT_NAMES[of.number - 1],
     ...of.entry.objective_by_stiffness.map((/** @type {any} */ joint) => fixed(joint.percent_per_percent, 3)),
   ]);
+  const what = '% of the objective per % of stiffness';
+  const isFull = known[0]?.entry.objective_by_stiffness[0].spring !== undefined;
   const force = RAW.document.sensitivity;
   if (!rows.length && !force) return null;
   const parts = [];
-  if (rows.length) parts.push(smallTable(['% of the objective per % of stiffness', 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
+  if (isFull) parts.push(springTable(what, known, rows));
+  else if (rows.length) parts.push(smallTable([what, 'A1', 'A2', 'A3', 'A4', 'A5', 'A6'], rows));
   if (force) {
     const share_ = fixed(force.force_uncertainty * 100, 0);
     parts.push(
@@ -156,6 +149,15 @@ function sensitivityCard() {
     );
   }
   return card('Sensitivity', 'to the stiffness of the joints and to the force', ...parts);
+}
+
+/** Of a full set, a row for each spring. @param {string} what @param {Case[]} known @param {string[][]} columns name and figures of each case */
+function springTable(what, known, columns) {
+  const springs = known[0].entry.objective_by_stiffness.map((/** @type {any} */ of, /** @type {number} */ k) => [
+    of.spring,
+    ...columns.map((column) => column[k + 1]),
+  ]);
+  return smallTable([what, ...columns.map(([name]) => name)], springs);
 }
 
 /** What the plans come to at the feed that the arm holds, where it is known how the forces change with the feed. */
@@ -222,6 +224,7 @@ function stabilityCard() {
 
 export function furtherCards() {
   const cards = [
+    originsCard(),
     heldFeedCard(),
     boundsCard(),
     sensitivityCard(),
