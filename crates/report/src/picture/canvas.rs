@@ -239,10 +239,18 @@ fn escaped(text: &str) -> String {
 
 /// Draws a picture of the given size in pixels on white and returns the SVG document.
 pub(super) fn picture(size: Pixel, paint: impl FnOnce(&mut Canvas)) -> String {
+    drawn(size, [size.0.to_string(), size.1.to_string()], paint)
+}
+
+/// Draws a page of A4, upright, with pixels of a quarter of a millimetre.
+pub(super) fn paper(paint: impl FnOnce(&mut Canvas)) -> String {
+    drawn((840, 1188), ["210mm".to_owned(), "297mm".to_owned()], paint)
+}
+
+fn drawn(size: Pixel, [wide, high]: [String; 2], paint: impl FnOnce(&mut Canvas)) -> String {
     let (width, height) = raster(size);
     let document = format!(
-        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n",
-        size.0, size.1
+        "<svg width=\"{wide}\" height=\"{high}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n"
     );
     let mut canvas = Canvas { document };
     canvas.fill((0, 0), size, WHITE);

@@ -91,13 +91,15 @@ function convergenceCard() {
   const series = [line('best', '--good'), line('worst', '--bad')].filter((one) => one.y.length);
   const values = series.flatMap((one) => Array.from(one.y)).filter(Number.isFinite);
   if (!values.length) return null;
-  return chartCard({
+  const out = chartCard({
     title: 'Search',
     detail: series.length > 1 ? 'best and worst objective over generations' : 'best objective over generations',
     x: { label: 'generation', is_log: false },
     y: { label: 'objective (mm)', is_log: false, range: [0, Math.max(.../** @type {number[]} */ (values)) * 1.05] },
     series,
   });
+  out.classList.add('search');
+  return out;
 }
 
 /** How far the placements can be from the best and the worst possible. */

@@ -11,13 +11,15 @@ import { header } from './header.js';
 import { framesOf, jointsAt } from './kinematics.js';
 import { mapCard } from './map.js';
 import { gauges, tiles } from './readings.js';
+import { printed } from './printed.js';
 import { sceneCard, viewPicture } from './scene-card.js';
+import { sheetCard } from './sheet.js';
 import { set, state, steps } from './state.js';
 import { onKey, transport } from './transport.js';
 
 function footer() {
   const key = (/** @type {string[]} */ names, /** @type {string} */ words) =>
-    el('span', {}, ...names.flatMap((name) => [el('kbd', {}, name), ' ']), words);
+    el('span.keys', {}, ...names.flatMap((name) => [el('kbd', {}, name), ' ']), words);
   const { document: said } = RAW;
   const count = (/** @type {number | undefined} */ n, /** @type {string} */ words) =>
     n ? `, ${n.toLocaleString('en')} ${words}` : '';
@@ -51,8 +53,10 @@ function main() {
     el(
       'main.wrap',
       {},
+      sheetCard(),
       header(),
       messages(),
+      printed(),
       el('div.main', {}, sceneCard(), el('div.right', {}, tiles(), mapCard())),
       transport(),
       chartCards(),
