@@ -9,6 +9,7 @@ import { axesAt, meets } from './external-axes.js';
 import { forcesCard } from './forces.js';
 import { header } from './header.js';
 import { framesOf, jointsAt } from './kinematics.js';
+import { linked } from './link.js';
 import { mapCard } from './map.js';
 import { gauges, tiles } from './readings.js';
 import { printed } from './printed.js';
@@ -67,6 +68,7 @@ function main() {
     ),
   );
   addEventListener('keydown', onKey);
+  linked();
   set({}, true);
   const observer = new ResizeObserver(() => set({ size: true }));
   document.querySelectorAll('.view').forEach((host) => observer.observe(host));

@@ -19,6 +19,18 @@ function flattened(host) {
   return whole.toDataURL();
 }
 
+/** The legend of the map, its canvases as pictures. */
+function legend() {
+  const shown = document.querySelector('.mapbox .legend');
+  const copy = /** @type {HTMLElement | undefined} */ (shown?.cloneNode(true));
+  const drawn = shown?.querySelectorAll('canvas') ?? [];
+  copy?.querySelectorAll('canvas').forEach((blank, k) => {
+    const { width, height } = drawn[k].getBoundingClientRect();
+    blank.replaceWith(el('img', { src: drawn[k].toDataURL(), alt: '', width, height }));
+  });
+  return copy;
+}
+
 /** The case as it is printed: its picture with its figures below. @param {number} number */
 function pictured(number) {
   set({ case: number, t: 0 }, true);
@@ -45,11 +57,11 @@ export function printed() {
     const worst = CASES.findIndex((of) => of.place === 1);
     const pair = (worst < 0 ? [0] : [0, worst]).map(pictured);
     set({ case: 0, t: 0 }, true);
-    const map = document.querySelector('.mapbox .legend')?.cloneNode(true);
+    const map = legend();
     const parts = [el('div.pair', {}, ...pair)];
     if (currentMap() && map) {
       const title = 'Deflection map of the best placement: spindle angle β over path point';
-      parts.push(el('figure', {}, el('figcaption', {}, el('b', {}, title)), el('img', { src: flattened(document.getElementById('map')), alt: '' }), map));
+      parts.push(el('figure.charted', {}, el('figcaption', {}, el('b', {}, title)), el('img', { src: flattened(document.getElementById('map')), alt: '' }), map));
     }
     host.replaceChildren(...parts);
   });
