@@ -57,7 +57,7 @@ impl PlacementScore {
         if !self.run.page {
             return;
         }
-        self.score.make_sheet(&self.run.problem, monitor);
+        self.context.warnings.extend(self.score.make_sheet(&self.run.problem, monitor));
         self.score.interrupted |= monitor.should_stop();
     }
 }

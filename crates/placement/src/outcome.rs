@@ -403,9 +403,12 @@ impl Outcome {
         }
     }
 
-    /// Makes the setup sheet of the best placement. A stop may leave out its tolerances, which it says.
+    /// Makes the setup sheet of the best placement. A stop may leave out its tolerances, which is then among the
+    /// warnings.
     pub fn make_sheet(&mut self, problem: &Problem, monitor: &Monitor) {
-        self.sheet = Some(SetupSheet::new(problem, &self.cases.best, monitor));
+        let sheet = SetupSheet::new(problem, &self.cases.best, monitor);
+        self.warnings.extend(sheet.left_out());
+        self.sheet = Some(sheet);
     }
 }
 

@@ -53,9 +53,10 @@ impl Score {
         })
     }
 
-    /// Makes the setup sheet. A stop may leave out its tolerances, which it says.
-    pub fn make_sheet(&mut self, problem: &Problem, monitor: &Monitor) {
-        self.sheet = Some(SetupSheet::new(problem, &self.cases().best, monitor));
+    /// Makes the setup sheet. A stop may leave out its tolerances, which is then the warning that is returned.
+    pub fn make_sheet(&mut self, problem: &Problem, monitor: &Monitor) -> Option<Warning> {
+        let sheet = SetupSheet::new(problem, &self.cases().best, monitor);
+        self.sheet.insert(sheet).left_out()
     }
 }
 

@@ -5,11 +5,12 @@ mod tolerance;
 
 pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances};
 
-use crate::outcome::{Case, Plan};
+use crate::outcome::{Case, Plan, left_out};
 use nalgebra::Vector3;
 use stead_cell::{Attachment, Solid};
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried};
 use stead_model::robot::Pose;
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem};
 use tolerance::tolerances;
@@ -107,7 +108,16 @@ pub struct SetupSheet {
 /// Places that differ by less are one. m
 const SAME: f64 = 1e-3;
 
+/// Why tolerances are not there after a stop.
+const INTERRUPTED: &str = "interrupted";
+
 impl SetupSheet {
+    /// The warning that a stop left the tolerances out.
+    pub fn left_out(&self) -> Option<Warning> {
+        let is_interrupted = self.tolerances.as_ref().is_err_and(|why| why == INTERRUPTED);
+        is_interrupted.then(|| left_out("the tolerances of the setup sheet are"))
+    }
+
     /// The sheet of a case of a problem, whatever its setup.
     pub fn new(problem: &Problem, case: &Case, monitor: &Monitor) -> Self {
         let problem = &*problem.in_setup(&case.setup);
@@ -149,7 +159,7 @@ impl SetupSheet {
             })
         };
         let tolerances = match monitor.should_stop() {
-            true => Err("interrupted".to_owned()),
+            true => Err(INTERRUPTED.to_owned()),
             false => tolerances(
                 problem,
                 placement,

@@ -170,7 +170,7 @@ pub(super) fn tolerances(
         found
     };
     let found: Option<Vec<(Tolerance, usize)>> = directions.par_iter().map(one).collect();
-    let (directions, plans): (Vec<_>, Vec<usize>) = found.ok_or("interrupted")?.into_iter().unzip();
+    let (directions, plans): (Vec<_>, Vec<usize>) = found.ok_or(super::INTERRUPTED)?.into_iter().unzip();
     let points = [problem.task.points().len(), all];
     Ok(Tolerances { nominal, points, plans: 1 + plans.iter().sum::<usize>(), directions })
 }

@@ -63,18 +63,13 @@ pub(super) fn fixed_positions(axes: &[AxisPath]) -> AxisColumns {
     columns(axes, one_position)
 }
 
-/// A position of an axis of a kind. m or rad
-pub(super) fn axis_figure(kind: AxisKind, at: f64) -> AxisFigure {
-    match kind {
+fn columns(axes: &[AxisPath], position: impl Fn(&AxisPath) -> Option<f64>) -> AxisColumns {
+    let figure = |axis: &AxisPath, at: f64| match axis.kind {
         AxisKind::Rail => AxisFigure::Rail(at.into()),
         AxisKind::Turntable => AxisFigure::Turntable(at.into()),
-    }
-}
-
-fn columns(axes: &[AxisPath], position: impl Fn(&AxisPath) -> Option<f64>) -> AxisColumns {
-    let named = |(number, axis): (usize, &AxisPath)| {
-        (column(number, axis.kind), position(axis).map(|at| axis_figure(axis.kind, at)))
     };
+    let named =
+        |(number, axis): (usize, &AxisPath)| (column(number, axis.kind), position(axis).map(|at| figure(axis, at)));
     Columns(axes.iter().enumerate().map(named).collect())
 }
 

@@ -1,7 +1,6 @@
 //! The setup sheet as documents state it: what a fitter needs to set the best placement up and to check it.
 
-use super::setup::{AxisColumns, axis_figure, column, unit_name, word};
-use crate::csv_file::Columns;
+use super::setup::{unit, unit_name, word};
 use crate::figure::{AngleDeg, DeflectionMm, Percent, PlaceMm, each, some};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -78,7 +77,7 @@ records! {
         /// Unit of its positions.
         unit: &'static str = unit_name(axis.kind),
         /// The least and the largest position along the plan, which are one where it stands still.
-        positions: [f64; 2] = axis.positions.map(|at| super::setup::unit(axis.kind).number(at)),
+        positions: [f64; 2] = axis.positions.map(|at| unit(axis.kind).number(at)),
         /// Its direction, all axes at zero.
         direction: [f64; 3] = axis.direction.into(),
         /// A point on it there.
@@ -87,10 +86,7 @@ records! {
 
     /// A path point to which the tool is driven to check a setup.
     pub struct CheckFigures of (check: &CheckPoint, sheet: &SetupSheet) {
-        let axes = sheet.axes.iter().zip(&check.axes).enumerate();
-        let axis = |(number, (axis, at)): (usize, (&AxisSetup, &f64))| {
-            (column(number, axis.kind), Some(axis_figure(axis.kind, *at)))
-        };
+        let axes = sheet.axes.iter().zip(&check.axes);
     } with {
         /// The path point, from 0.
         point: usize = check.point,
@@ -103,7 +99,9 @@ records! {
         joints_deg: [AngleDeg; 6] = each(check.joints),
         /// Joint angles as the controller counts them; null without `[controller]`.
         controller_deg: Option<[AngleDeg; 6]> = check.controller.map(each),
-        #[serde(flatten)] axes: AxisColumns = Columns(axes.map(axis).collect()),
+        /// Positions of the external axes in their units.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        axes: Vec<f64> = axes.map(|(axis, at)| unit(axis.kind).number(*at)).collect(),
     }
 
     /// How near a plan comes to a limit of a joint.

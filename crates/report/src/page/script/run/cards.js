@@ -320,5 +320,13 @@ export function furtherCards() {
     stabilityCard(),
     convergenceCard(),
   ].filter(Boolean);
+  // What scrolls can be reached by keys.
+  onChange(({ size: resized }) => {
+    if (!resized) return;
+    for (const one of /** @type {HTMLElement[]} */ (cards)) {
+      if (one.scrollWidth > one.clientWidth) one.tabIndex = 0;
+      else one.removeAttribute('tabindex');
+    }
+  });
   return cards.length ? el('div.further', {}, .../** @type {HTMLElement[]} */ (cards)) : null;
 }

@@ -22,7 +22,7 @@ export function sheetCard() {
   picture.setAttribute('role', 'img');
   picture.setAttribute('aria-label', `Setup sheet: ${summaryOf(sheet)}`);
   const fold = /** @type {HTMLDetailsElement} */ (
-    el('details', {}, el('summary', {}, el('b', {}, 'Setup sheet'), ` ${summaryOf(sheet)}`), el('div.sheet', {}, picture))
+    el('details', {}, el('summary', {}, el('b', {}, 'Setup sheet'), ` ${summaryOf(sheet)}`), el('div.sheet', { tabindex: 0, role: 'group', 'aria-label': 'The sheet at full size' }, picture))
   );
   // What is folded is not printed.
   let wasOpen = false;
