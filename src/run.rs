@@ -211,7 +211,11 @@ impl Run {
     /// As [`Run::place`].
     pub fn search(&self, monitor: &Monitor) -> Result<Placements, Error> {
         let started = Instant::now();
-        let Placed { outcome, stability } = study::place(&self.run, monitor)?;
+        let Placed { mut outcome, stability } = study::place(&self.run, monitor)?;
+        if self.run.page {
+            outcome.make_sheet(&self.run.problem, monitor);
+        }
+        outcome.interrupted |= monitor.should_stop();
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
         let mut context = Context { stability, ..Context::new(&self.run, self.run.search) };
         context.warnings.extend(outcome.warnings.iter().cloned());

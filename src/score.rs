@@ -50,6 +50,16 @@ impl PlacementScore {
         }
         self.score.interrupted |= monitor.should_stop();
     }
+
+    /// Makes the setup sheet of the placement, to be written with the plans; does nothing where the run leaves no page. A
+    /// stop that the monitor asks for leaves out its tolerances.
+    pub fn make_sheet(&mut self, monitor: &Monitor) {
+        if !self.run.page {
+            return;
+        }
+        self.context.warnings.extend(self.score.make_sheet(&self.run.problem, monitor));
+        self.score.interrupted |= monitor.should_stop();
+    }
 }
 
 impl Explanations {

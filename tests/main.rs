@@ -38,6 +38,7 @@ mod place;
 mod results_folder;
 mod robots;
 mod score_explain;
+mod setup_sheet;
 mod simulate;
 mod stability;
 mod standard_output;

@@ -101,6 +101,7 @@ impl Outcome {
         self.extended(py, &options, |kind, monitor| {
             if let Kind::Score(score) = kind {
                 score.map(monitor);
+                score.make_sheet(monitor);
             }
         })
     }

@@ -64,6 +64,10 @@ pub(super) const MANUAL: Manual = Manual {
         ("refinements.csv", "the gradient refinement of each basin: start, end, optimality residual, status"),
         ("transfers.csv", "joint moves between segments: duration and largest travel"),
         ("cell.svg", "the cell from above: reach, limits, placements"),
+        (
+            "setup.svg",
+            "setup sheet of the best placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false or --no-page",
+        ),
         ("summary.json", "all of it for programs, with the keys of the run file and their values"),
         (
             "report.html, cell.glb, page-data.json",

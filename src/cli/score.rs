@@ -47,7 +47,11 @@ pub(super) const MANUAL: Manual = Manual {
             "report.html, cell.glb, page-data.json",
             "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false",
         ),
-        ("score.json", "what --json prints"),
+        (
+            "setup.svg",
+            "setup sheet of the placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false",
+        ),
+        ("score.json", "what --json prints, and with a setup sheet its numbers"),
         ("stability-{best,worst}-plan.csv, stability.svg", "with a table [stability]: critical depth along the path"),
     ],
     failed: "the placement is infeasible, with the violated constraints and the path points, or a file could not be written",
@@ -73,6 +77,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
         let mut score = run.score(&placement, &shown.monitor)?;
         if options.out.is_some() {
             score.map(&shown.monitor);
+            score.make_sheet(&shown.monitor);
         }
         Ok(score)
     })?;

@@ -103,7 +103,7 @@ await check('names that look like markup are text', {}, saved('names.html', name
   assert.ok((await page.locator('#messages').textContent()).includes(evil));
   assert.deepEqual(
     await page.evaluate(() => [window.owned, document.scripts.length, document.querySelectorAll('img').length]),
-    [undefined, 2, 1],
+    [undefined, 2, 0],
   );
 });
 
@@ -125,6 +125,23 @@ await check('the table of cases fits in a window of 1400', { width: 1400, height
     return [card.scrollWidth, card.clientWidth];
   });
   assert.ok(is <= may, `${is} pixels in ${may}`);
+});
+
+await check('the play bar is in a low window', { width: 1280, height: 720 }, address, async (page) => {
+  const { y, height } = await page.locator('#play').boundingBox();
+  assert.ok(y > 0 && y + height <= 720, `${y}`);
+});
+
+await check('a finger that goes up scrolls the page', { width: 390, height: 844, touch: true }, address, async (page) => {
+  const actions = await page.evaluate(() =>
+    [...document.querySelectorAll('.view > canvas, #map canvas')].map((one) => getComputedStyle(one).touchAction),
+  );
+  assert.ok(actions.includes('pan-y') && !actions.includes('none'), String(actions));
+});
+
+await check('printed it is two pages', {}, address, async (page) => {
+  const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
+  assert.equal(pdf.match(/\/Type\s*\/Page[^s]/g).length, 2);
 });
 
 // Each part broken, with the test that is about it: that one must fail, and none before it.

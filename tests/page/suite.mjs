@@ -17,8 +17,8 @@ const REASONS = { reach: 'out of reach', conditioning: 'near a singularity', def
 const reasonText = (code) => REASONS[code] ?? `limit of joint ${code.replace('joint_', '')}`;
 
 /** Opens a page with the network denied; what it asks for and complains of is collected. */
-export async function open(browser, address, { width = 1400, height = 1000, before, scheme = 'light' } = {}) {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, offline: true });
+export async function open(browser, address, { width = 1400, height = 1000, before, scheme = 'light', touch = false } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: scheme, offline: true, hasTouch: touch });
   const page = await context.newPage();
   const seen = { requests: [], complaints: [] };
   page.on('request', (request) => request.url() !== address && seen.requests.push(request.url()));
@@ -315,14 +315,77 @@ export function tests(folder, others) {
       }
     },
 
-    'it prints with the view': async (page) => {
+    'a link leads to its case and point, and the address follows': async (page) => {
+      await page.evaluate(() => {
+        location.hash = '#case=3&point=26';
+      });
+      await page.waitForFunction(() => document.getElementById('now').textContent.startsWith('point 26 '));
+      await shows(page, plans[2], 26);
+      await page.evaluate(() => window.stead.set({ case: 1, t: 40 }));
+      await page.waitForFunction(() => location.hash === '#case=2&point=40');
+      await page.evaluate(() => {
+        location.hash = '#case=9&point=x';
+      });
+      await frame(page);
+      await shows(page, plans[1], 40);
+      await page.evaluate(() => window.stead.set({ case: 0, t: 0 }));
+    },
+
+    'a state that is not allowed is named, in grey': async (page) => {
+      const reason = await page.evaluate(() => {
+        const { codes, betaCount, reasons, points } = window.stead.maps[0];
+        const row = codes.findIndex((code) => code >= 16);
+        const [column, beta] = [Math.floor(row / betaCount), row % betaCount];
+        window.stead.set({ case: 0, t: points[column], chosen: { column, beta } });
+        return reasons[codes[row] - 16];
+      });
+      await frame(page);
+      assert.match(await text(page, 'refusal'), new RegExp(`^Not allowed at point .*: ${reasonText(reason)}$`));
+      assert.equal(await page.locator('.view.refused').count(), 1);
+      await page.evaluate(() => window.stead.set({ chosen: null }));
+      await frame(page);
+      assert.equal(await page.locator('#refusal').isVisible(), false);
+    },
+
+    'the worst points are those of the table and lead there': async (page) => {
+      await page.evaluate(() => window.stead.set({ case: 2, t: 0 }));
+      await frame(page);
+      const worst = plans[2].reduce((most, row) => (+row.score_mm > +most.score_mm ? row : most));
+      const first = page.locator('.worst-points tbody tr').first();
+      assert.ok((await first.textContent()).includes((+worst.score_mm).toFixed(3)));
+      await first.locator('button').click();
+      await page.waitForFunction((point) => document.getElementById('now').textContent.startsWith(`point ${point} `), worst.point);
+      await page.evaluate(() => window.stead.set({ case: 0, t: 0 }));
+    },
+
+    'the setup sheet has the numbers of the summary': async (page) => {
+      const { setup_sheet: sheet } = JSON.parse(readFileSync(join(folder, 'summary.json'), 'utf8'));
+      await page.locator('#setup summary').click();
+      const said = await page.locator('#setup svg').textContent();
+      for (const check of sheet.check_points) {
+        for (const number of check.controller_deg) assert.ok(said.includes(number.toFixed(2)), String(number));
+      }
+      await page.locator('#setup summary').click();
+    },
+
+    'it prints the sheet, both placements, the map and the table': async (page) => {
+      await page.evaluate(() => window.stead.set({ case: 3, t: 7 }));
+      await frame(page);
       await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
       await page.emulateMedia({ media: 'print' });
-      const still = await page
-        .locator('.still')
-        .evaluate((image) => [image.naturalWidth, getComputedStyle(image).display]);
+      await page.waitForFunction(() => [...document.querySelectorAll('.printed img')].every((image) => image.complete));
+      const pictures = await page.locator('.pair img, .charted > img').evaluateAll((all) => all.map((image) => image.naturalWidth));
+      assert.equal(pictures.length, 3);
+      assert.ok(pictures.every((width) => width > 300), String(pictures));
+      const isShown = (name) => page.locator(name).first().isVisible();
+      for (const name of ['#setup svg', '.pair', '#cases']) assert.ok(await isShown(name), name);
+      for (const name of ['#scene', '#play', '.keys', '.search']) assert.ok(!(await isShown(name)), name);
       await page.emulateMedia({ media: 'screen' });
-      assert.ok(still[0] > 300 && still[1] === 'block', String(still));
+      await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+      await frame(page);
+      // What was looked at is there again.
+      await shows(page, plans[3], 7);
+      await page.evaluate(() => window.stead.set({ case: 0, t: 0 }));
     },
   };
 }

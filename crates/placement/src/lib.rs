@@ -5,6 +5,7 @@
 //! - [`search`]: the global search; [`refine`]: gradients from its basins to the optimum; [`settings`]: how hard to
 //!   search.
 //! - [`sensitivity`]: how a result answers to the stiffness of the joints and to errors of the force.
+//! - [`setup_sheet`]: what a fitter needs to set a placement up.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`overview`]: what a run states, before any search.
 //!
 //! The "worst placement" is the one with the largest mean deflection under its best plan.
@@ -36,4 +37,5 @@ pub mod sag;
 pub mod search;
 pub mod sensitivity;
 pub mod settings;
+pub mod setup_sheet;
 mod whole_path;

@@ -3,6 +3,7 @@
 use super::lookup::{Accuracy, Shape};
 use super::sag::Sag;
 use crate::sensitivity::SpringSlope;
+use crate::setup_sheet::SetupSheet;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_cell::Clearance;
@@ -377,6 +378,8 @@ pub struct Outcome {
     pub refinements: Vec<Refinement>,
     /// Deflection maps at the placements ([`Cases::optima`]), where they were made ([`Outcome::map`]).
     pub maps: Option<Vec<DeflectionMap>>,
+    /// What a fitter needs to set the best placement up, where it was made ([`Outcome::make_sheet`]).
+    pub sheet: Option<SetupSheet>,
     /// Placements evaluated.
     pub evaluations: usize,
     /// States (path point, beta, all postures) evaluated.
@@ -404,6 +407,14 @@ impl Outcome {
         if self.maps.is_none() {
             self.warnings.push(left_out("the deflection maps are"));
         }
+    }
+
+    /// Makes the setup sheet of the best placement. A stop may leave out its tolerances, which is then among the
+    /// warnings.
+    pub fn make_sheet(&mut self, problem: &Problem, monitor: &Monitor) {
+        let sheet = SetupSheet::new(problem, &self.cases.best, monitor);
+        self.warnings.extend(sheet.left_out());
+        self.sheet = Some(sheet);
     }
 }
 

@@ -128,6 +128,7 @@ fn place_as_set_up(
         convergence: found.values().into_iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
         maps: None,
+        sheet: None,
         evaluations,
         states: evaluations
             * long.map_or(problem.task.points().len(), |path| path.levels.search.points)

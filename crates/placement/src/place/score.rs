@@ -5,6 +5,7 @@ use super::notes::{self, cancellation};
 use super::plan::{stated, worst_plan};
 use crate::outcome::{Case, Cycle, Plan};
 use crate::refine::planned;
+use crate::setup_sheet::SetupSheet;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::problem::{Placement, Problem};
@@ -24,6 +25,8 @@ pub struct Score {
     pub orientation: Option<String>,
     /// The best and the worst plan.
     pub plans: BySense<Plan>,
+    /// What a fitter needs to set it up, where that was made ([`Score::make_sheet`]).
+    pub sheet: Option<SetupSheet>,
     /// What should be known about the result though nothing is wrong, in sentences.
     pub notes: Vec<String>,
     /// Times of both plans.
@@ -48,6 +51,12 @@ impl Score {
             active_bounds: None,
             objective_by_stiffness: None,
         })
+    }
+
+    /// Makes the setup sheet. A stop may leave out its tolerances, which is then the warning that is returned.
+    pub fn make_sheet(&mut self, problem: &Problem, monitor: &Monitor) -> Option<Warning> {
+        let sheet = SetupSheet::new(problem, &self.cases().best, monitor);
+        self.sheet.insert(sheet).left_out()
     }
 }
 
@@ -79,6 +88,7 @@ pub fn score(
         setup: problem.setup.clone(),
         orientation: problem.orientation().map(|orientation| orientation.name.clone()),
         notes: notes::of(problem, placement, &plans.best, &cycles.best.feed, monitor),
+        sheet: None,
         plans,
         cycles,
         interrupted: monitor.should_stop(),

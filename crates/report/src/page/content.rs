@@ -5,6 +5,7 @@ use super::table::Table;
 use super::{PageError, map_data, removal};
 use crate::Files;
 use crate::document::value;
+use crate::placement::SETUP_SHEET;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -50,7 +51,7 @@ pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     names.extend(kind.plans.iter().enumerate().map(|(number, name)| (*name, number < 2)));
     let optional = ["deflection-map-best.csv", "deflection-map-worst.csv", "deflection-map.csv"];
     names.extend(optional.iter().chain(kind.stability).map(|name| (*name, false)));
-    names.extend(["convergence.csv", CERTIFICATE, OPEN_REGION].map(|name| (name, false)));
+    names.extend(["convergence.csv", CERTIFICATE, OPEN_REGION, SETUP_SHEET].map(|name| (name, false)));
     names
 }
 
@@ -113,6 +114,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         convergence: read("convergence.csv")?.map(|table| table.content(&["search"], None)).transpose()?,
         depths: depths.collect::<Result<_, _>>()?,
         certificate: bytes(CERTIFICATE).map(|found| json_file(CERTIFICATE, found)).transpose()?,
+        setup_sheet_svg: bytes(SETUP_SHEET).map(|found| String::from_utf8_lossy(found).into_owned()),
         open_region: read(OPEN_REGION)?.map(|boxes| open_region(&boxes)).transpose()?,
         data,
     }))
@@ -136,6 +138,9 @@ struct Content {
     /// The certificate.
     #[serde(skip_serializing_if = "Option::is_none")]
     certificate: Option<Value>,
+    /// The setup sheet as it is printed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    setup_sheet_svg: Option<String>,
     /// What it has not excluded.
     #[serde(skip_serializing_if = "Option::is_none")]
     open_region: Option<Regions>,

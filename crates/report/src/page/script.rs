@@ -40,6 +40,7 @@ const MODULES: &[(&str, &str)] = modules![
     "run/header.js",
     "run/kinematics.js",
     "run/linear.js",
+    "run/link.js",
     "run/main.js",
     "run/map.js",
     "run/mesh.js",
@@ -47,10 +48,12 @@ const MODULES: &[(&str, &str)] = modules![
     "run/path-mesh.js",
     "run/path.js",
     "run/play.js",
+    "run/printed.js",
     "run/readings.js",
     "run/scene-card.js",
     "run/scene.js",
     "run/shaders.js",
+    "run/sheet.js",
     "run/small-table.js",
     "run/state.js",
     "run/surroundings.js",
@@ -116,8 +119,10 @@ impl Joiner<'_> {
                     exports.push(declared(declaration).ok_or_else(wrong)?.to_owned());
                     body.push_str(declaration);
                 }
+            } else if is_remark(line) {
+                continue;
             } else {
-                body.push_str(line);
+                body.push_str(line.trim_start());
             }
             body.push('\n');
         }
@@ -138,6 +143,14 @@ impl Joiner<'_> {
             Err(JoinError::UnknownName { module, name, from })
         })
     }
+}
+
+/// Whether a line is nothing but a remark, which a page does without, as without indentation: both are a fifth of the
+/// script.
+fn is_remark(line: &str) -> bool {
+    let line = line.trim();
+    let is_block = ["/**", "* ", "*/"].iter().any(|start| line.starts_with(start)) || line == "*";
+    line.is_empty() || line.starts_with("//") || is_block && line.find("*/").is_none_or(|end| end + 2 == line.len())
 }
 
 /// The names that a line imports, and from where.
@@ -198,6 +211,27 @@ mod tests {
         assert!(places.is_sorted(), "{script}");
         assert_eq!(script.matches("const one = 1;").count(), 1);
         assert!(!script.contains("import") && !script.contains("export"));
+    }
+
+    #[test]
+    fn remarks_and_indentation_are_left_out() {
+        let text = "// Head.\n\n/**\n * A remark.\n */\nexport const one = () => {\n  // Why.\n  return 1 / 2; // half\n};\n";
+        let script = joined(&[("main.js", text)], "main.js").unwrap();
+        assert!(script.contains("const one = () => {\nreturn 1 / 2; // half\n};\n"), "{script}");
+        assert!(!script.contains("Head") && !script.contains("remark") && !script.contains("Why"), "{script}");
+        // What a remark looks like begins no line of a text or of a formula, and block remarks are of whole lines.
+        for (path, text) in MODULES {
+            let is_open = |line: &str| line.trim_start().starts_with("/*") && !line.trim_start().starts_with("/**");
+            assert!(!text.lines().any(is_open), "{path}");
+            let mut inside = false;
+            for line in text.lines().map(str::trim_start) {
+                let is_cast = line.starts_with("/**") && !is_remark(line);
+                inside |= line.starts_with("/**") && !is_cast;
+                assert!(inside || !line.starts_with('*'), "{path}: {line}");
+                assert!(!inside || is_remark(line), "{path}: {line}");
+                inside &= !line.contains("*/");
+            }
+        }
     }
 
     #[test]

@@ -10,6 +10,8 @@ pub(super) type Place = (f64, f64);
 /// A picture being drawn: the SVG document so far.
 pub(super) struct Canvas {
     document: String,
+    /// Whether the document states once for all texts what most of them are: black, from the left, in one family.
+    is_brief: bool,
 }
 
 /// Which end of a text is at its place.
@@ -192,6 +194,13 @@ impl Canvas {
         let weight = if style.is_bold { " font-weight=\"bold\"" } else { "" };
         let turn = if style.runs_upwards { format!(" transform=\"rotate(270, {x}, {y})\"") } else { String::new() };
         let text = escaped(text);
+        if self.is_brief {
+            let anchor = if anchor == "start" { String::new() } else { format!(" text-anchor=\"{anchor}\"") };
+            self.document += &format!(
+                "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" font-size=\"{size}\"{anchor}{weight}{turn}>{text}</text>\n"
+            );
+            return;
+        }
         self.document += &format!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"sans-serif\" \
              font-size=\"{size}\" fill=\"{}\"{weight}{turn}>\n{text}\n</text>\n",
@@ -239,12 +248,21 @@ fn escaped(text: &str) -> String {
 
 /// Draws a picture of the given size in pixels on white and returns the SVG document.
 pub(super) fn picture(size: Pixel, paint: impl FnOnce(&mut Canvas)) -> String {
+    drawn(size, [size.0.to_string(), size.1.to_string()], false, paint)
+}
+
+/// Draws a page of A4, upright, with pixels of a quarter of a millimetre; all its texts are black.
+pub(super) fn paper(paint: impl FnOnce(&mut Canvas)) -> String {
+    drawn((840, 1188), ["210mm".to_owned(), "297mm".to_owned()], true, paint)
+}
+
+fn drawn(size: Pixel, [wide, high]: [String; 2], is_brief: bool, paint: impl FnOnce(&mut Canvas)) -> String {
     let (width, height) = raster(size);
+    let family = if is_brief { " font-family=\"sans-serif\"" } else { "" };
     let document = format!(
-        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\">\n",
-        size.0, size.1
+        "<svg width=\"{wide}\" height=\"{high}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\"{family}>\n"
     );
-    let mut canvas = Canvas { document };
+    let mut canvas = Canvas { document, is_brief };
     canvas.fill((0, 0), size, WHITE);
     paint(&mut canvas);
     canvas.document + "</svg>\n"

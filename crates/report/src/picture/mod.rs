@@ -24,6 +24,7 @@ mod open_region;
 mod path_stability;
 mod plane_view;
 mod polar;
+mod setup_sheet;
 mod study;
 mod surroundings;
 
@@ -42,6 +43,7 @@ pub use open_region::open_region;
 pub use path_stability::path_stability;
 pub(crate) use plane_view::PlaneView;
 pub use polar::polar;
+pub use setup_sheet::{SheetTitle, setup_sheet};
 pub use study::{effects as study_effects, front as study_front, map as study_map};
 pub use surroundings::surroundings;
 

@@ -122,7 +122,7 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
 }
 
 /// The arm as a line: base, axes, flange, tool centre point. m
-fn arm(problem: &Problem, point: &PlanPoint) -> Vec<Vector3<f64>> {
+pub(super) fn arm(problem: &Problem, point: &PlanPoint) -> Vec<Vector3<f64>> {
     let links = problem.robot.link_frames(&point.joints);
     let mut joints = vec![problem.robot.geometry().root_in_base];
     joints.extend(links.iter().map(|link| link.translation));
@@ -132,7 +132,11 @@ fn arm(problem: &Problem, point: &PlanPoint) -> Vec<Vector3<f64>> {
 
 /// Points in the base frame whose hull a shape is, or about is. m
 fn corners(shape: &Shape, poses: &Poses) -> Vec<Vector3<f64>> {
-    let pose: Pose<f64> = poses.of(shape.attached).then(&shape.pose);
+    corners_at(shape, &poses.of(shape.attached).then(&shape.pose))
+}
+
+/// The same with the shape at a pose. m
+pub(super) fn corners_at(shape: &Shape, pose: &Pose<f64>) -> Vec<Vector3<f64>> {
     let ring = |radius: f64, z: f64| {
         (0..CORNERS).map(move |k| {
             let (sine, cosine) = libm::sincos(std::f64::consts::TAU * k as f64 / CORNERS as f64);
@@ -163,7 +167,7 @@ fn corners(shape: &Shape, poses: &Poses) -> Vec<Vector3<f64>> {
 }
 
 /// The corners of the convex hull of points, in order.
-fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+pub(super) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let turn = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     let chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {

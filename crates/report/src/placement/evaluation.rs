@@ -4,6 +4,7 @@ use super::Context;
 use super::case::PlanFigures;
 use super::origins::{self, OriginFigures};
 use super::setup::{SetupFigures, lines};
+use super::sheet::SheetFigures;
 use super::text::least_room;
 use crate::columns::{aligned, line};
 use crate::document::{PlacementExact, PlacementFigures};
@@ -38,6 +39,9 @@ records! {
         worst: Option<PlanFigures> = Some(PlanFigures::of(&score.plans.worst, worst)),
         #[serde(flatten)] setup: Option<SetupFigures> =
             Some(SetupFigures::of(score.orientation.as_ref(), &score.setup, &score.plans.best.axes)),
+        /// What a fitter needs to set it up: the numbers of `setup.svg`, where that is written.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        setup_sheet: Option<SheetFigures> = score.sheet.as_ref().map(Into::into),
         /// Critical depths along both plans, where they were requested.
         #[serde(skip_serializing_if = "Option::is_none")] stability: Option<PathStabilityFigures> =
             context.stability.as_ref().map(|found| PathStabilityFigures::of(found, true)),
@@ -83,6 +87,7 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
         best: None,
         worst: None,
         setup: None,
+        setup_sheet: None,
         stability: None,
         findings: Some(nothing.findings.iter().map(FindingFigures::of).collect()),
         collisions: nothing.collisions.iter().map(CollisionFigures::of).collect(),

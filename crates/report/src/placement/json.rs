@@ -7,6 +7,7 @@ use super::Context;
 use super::case::CaseFigures;
 use super::settings::SettingsFigures;
 use super::setup::TriedFigures;
+use super::sheet::SheetFigures;
 use crate::document::{PlacementExact, PlacementFigures, Timing};
 use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, Plain, ResidualMm, TableError, TimeS, some};
 use crate::names;
@@ -58,6 +59,9 @@ records! {
         /// The cases: the best placement under its best and its worst plan, then the worst placement likewise.
         cases: Vec<CaseFigures> =
             outcome.cases.all().into_iter().map(|case| CaseFigures::of(case, with_points)).collect(),
+        /// What a fitter needs to set the best placement up: the numbers of `setup.svg`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        setup_sheet: Option<SheetFigures> = outcome.sheet.as_ref().map(Into::into),
         /// Placements evaluated.
         evaluations: usize = outcome.evaluations,
         /// States of the arm evaluated.

@@ -7,6 +7,7 @@ mod origins;
 pub(crate) mod plan_row;
 mod settings;
 pub(crate) mod setup;
+mod sheet;
 pub mod tables;
 #[cfg(test)]
 mod tests;
@@ -29,6 +30,7 @@ use stead_numerics::message::Warning;
 use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::place::Score;
 use stead_placement::settings::SearchSettings;
+use stead_placement::setup_sheet::SetupSheet;
 use stead_planning::feasibility::DeflectionMap;
 use stead_planning::problem::Problem;
 use stead_planning::sense::BySense;
@@ -128,6 +130,20 @@ const SCORE_MAP: [&str; 2] = ["deflection-map.csv", "deflection-map.svg"];
 /// The files that are there where the worst placement was looked for.
 const OF_WORST: [&str; 3] = ["worst.csv", "worst-worst-plan.csv", "stability-worst.csv"];
 
+/// The setup sheet of the best, or of the given, placement.
+pub(crate) const SETUP_SHEET: &str = "setup.svg";
+
+/// The setup sheet of a case, where it was made.
+fn setup_sheet(
+    problem: &Problem,
+    case: &Case,
+    sheet: Option<&SetupSheet>,
+    context: &Context,
+) -> Option<(&'static str, Vec<u8>)> {
+    let title = picture::SheetTitle { inputs: &context.inputs, seed: context.search.seed };
+    Some((SETUP_SHEET, picture::setup_sheet(problem, case, sheet?, &title).into_bytes()))
+}
+
 /// The picture of the shapes of the cell.
 const SURROUNDINGS: &str = "surroundings.svg";
 
@@ -150,7 +166,7 @@ fn map_files(
 }
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
-/// `placement.svg`, with shapes of the cell `surroundings.svg`, with the map of the placement `deflection-map.csv` and
+/// `placement.svg`, the setup sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`, with the map of the placement `deflection-map.csv` and
 /// `deflection-map.svg`, and where stability was requested `stability-best-plan.csv`, `stability-worst-plan.csv` and
 /// `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
 ///
@@ -168,6 +184,7 @@ pub fn write_score(
     let folder = beside.as_ref().unwrap_or(folder);
     let outdated = if map.is_none() { &SCORE_MAP[..] } else { &[] };
     let outdated = outdated.iter().copied().chain(problem.scene.is_none().then_some(SURROUNDINGS));
+    let outdated = outdated.chain(score.sheet.is_none().then_some(SETUP_SHEET));
     folder.results(SCORE, &context.inputs).interrupted(score.interrupted).without(outdated).write(&files)
 }
 
@@ -189,6 +206,7 @@ pub fn score_files(
         ("score.json", bytes(&evaluation::score_json(score, context))),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
+    files.extend(setup_sheet(problem, &best, score.sheet.as_ref(), context));
     files.extend(surroundings(problem, &[(&best, "this placement")]));
     if let Some(map) = map {
         files.extend(map_files(problem, map, [&best, &worst], SCORE_MAP, "this placement")?);
@@ -210,8 +228,8 @@ pub fn score_files(
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4; without the worst placement those of it are left out), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, with shapes
-/// of the cell `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv`
+/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, the setup
+/// sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv`
 /// (cases 1 and 3) and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
 /// Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
@@ -230,6 +248,7 @@ pub fn write_placement(
     let outdated = MAPS.into_iter().skip(made).flatten();
     let outdated = outdated.chain(outcome.cases.worst.is_none().then_some(OF_WORST).into_iter().flatten());
     let outdated = outdated.chain(problem.scene.is_none().then_some(SURROUNDINGS));
+    let outdated = outdated.chain(outcome.sheet.is_none().then_some(SETUP_SHEET));
     folder.results(PLACE, &context.inputs).interrupted(outcome.interrupted).without(outdated).write(&files)
 }
 
@@ -256,6 +275,7 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         files.push(("worst.csv", tables::plan(&worst.plan, scene)?));
         files.push(("worst-worst-plan.csv", tables::plan(&worst_worst_plan.plan, scene)?));
     }
+    files.extend(setup_sheet(problem, best, outcome.sheet.as_ref(), context));
     let optima = outcome.cases.optima();
     let shown: Vec<_> = optima.iter().copied().zip(PLACES).collect();
     files.extend(surroundings(problem, &shown));

@@ -22,7 +22,7 @@ pub(crate) fn unit(kind: AxisKind) -> Unit {
 }
 
 /// The name of that unit.
-fn unit_name(kind: AxisKind) -> &'static str {
+pub(crate) fn unit_name(kind: AxisKind) -> &'static str {
     match kind {
         AxisKind::Rail => "mm",
         AxisKind::Turntable => "deg",

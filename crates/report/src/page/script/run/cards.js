@@ -2,11 +2,13 @@
 
 import { chartCard, legendOf } from '../draw/chart.js';
 import { card, el } from '../draw/dom.js';
-import { figures, fixed } from '../draw/scale.js';
+import { fixed } from '../draw/scale.js';
 import { alongPath, limitAt } from './charts.js';
-import { CASES, IS_SCORE, RAW, SHORT_NAMES, singlesOf } from './data.js';
+import { CASES, COUNT, IS_SCORE, RAW, SHORT_NAMES, singlesOf } from './data.js';
 import { originsCard } from './origins.js';
+import { pathPoint } from './path.js';
 import { smallTable } from './small-table.js';
+import { current, onChange, set } from './state.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
 
@@ -40,23 +42,107 @@ export function messages() {
     : null;
 }
 
+/** What is moved, by how much, where a gain is in a unit. @type {Record<string, [number, string]>} */
+const MOVES = {
+  'mm per mm': [100, '100 mm'],
+  'mm per deg': [10, '10°'],
+  'mm per deg/mm': [0.1, '0.1°/mm'],
+  'mm per deg/s': [10, '10°/s'],
+  'mm per 0.01': [1, '0.01'],
+};
+
+/** Names for the keys of the files. @type {Record<string, string>} */
+const BOUND_NAMES = {
+  'cell.x_mm': 'x of the cell',
+  'cell.y_mm': 'y of the cell',
+  'cell.z_mm': 'z of the cell',
+  'cell.yaw_deg': 'yaw of the cell',
+  'constraints.min_inverse_condition': 'conditioning of the arm',
+  'redundancy.max_beta_rate_deg_per_mm': 'turn of the spindle about its axis along the path',
+  'redundancy.max_spindle_turn_deg_per_mm': 'turn of the spindle in space along the path',
+  'redundancy.max_spindle_turn_deg_per_s': 'turn of the spindle in time',
+  'constraints.max_deflection_mm': 'largest deflection of a point',
+  'constraints.min_base_distance_mm': 'distance of the path from axis 1',
+};
+
+/** A bound as a sentence: which it is, and what moving it would do. @param {any} bound @param {boolean} isWorst @returns {[string, string]} */
+function boundWords({ bound, side, gain, unit }, isWorst) {
+  const shapes = bound.match(/^(collision\.clearance_mm|keep_out) of (.*)$/);
+  const name = BOUND_NAMES[bound] ?? (shapes ? `distance of ${shapes[2]}` : bound);
+  const [factor, much] = MOVES[unit] ?? [1, `1 (${unit})`];
+  // What is asked less of moves a lower bound down and an upper one up.
+  const way = side === 'upper' ? 'more' : 'less';
+  const effect = Math.abs(gain * factor);
+  const size = effect < 0.0005 ? 'less than 0.001' : fixed(effect, 3);
+  return [`${side === 'upper' ? 'Upper' : 'Lower'} limit: ${name}`, `would ${isWorst ? 'add' : 'save'} ${size} mm for ${much} ${way}`];
+}
+
 /** What holds the best and the worst placement. */
 function boundsCard() {
   const held = CASES.filter((of) => of.plan === 0 && of.entry.active_bounds?.length);
   if (!held.length) return null;
   const rows = held.flatMap((of) =>
-    of.entry.active_bounds.map((/** @type {any} */ bound) => [
-      of.place ? 'Worst' : 'Best',
-      bound.bound,
-      bound.side,
-      `${figures(bound.gain)} ${bound.unit}`,
-    ]),
+    of.entry.active_bounds.map((/** @type {any} */ bound) => [of.place ? 'Worst' : 'Best', ...boundWords(bound, of.place === 1)]),
   );
   return card(
     'What holds the placements',
-    'what moving a bound would gain',
-    smallTable(['Placement', 'Bound', 'Side', 'Gain'], rows),
+    'to first order; the file has the keys',
+    smallTable(['Placement', 'Held by', 'What moving it would do'], rows),
   );
+}
+
+/** The setups that were searched, the best first. */
+function setupsCard() {
+  const setups = RAW.document.setups;
+  if (!setups?.length) return null;
+  const axes = setups[0].external_axes?.axes ?? [];
+  const hasOrientation = setups.some((/** @type {any} */ one) => one.orientation !== undefined);
+  const mm = (/** @type {number | null} */ value) => (value === null ? '–' : fixed(value, 4));
+  const at = (/** @type {any} */ one, /** @type {number} */ k) => {
+    const all = (one.external_axes?.positions ?? []).map((/** @type {number[]} */ row) => row[k]);
+    const [least, most] = [Math.min(...all), Math.max(...all)].map((end) => fixed(end, 1));
+    return least === most ? least : `${least} … ${most}`;
+  };
+  const sorted = [...setups].sort((a, b) => (a.best_objective_mm ?? Infinity) - (b.best_objective_mm ?? Infinity));
+  const hasWorst = setups.some((/** @type {any} */ one) => one.worst_objective_mm !== null);
+  const rows = sorted.map((one) => [
+    ...(hasOrientation ? [one.orientation ?? '–'] : []),
+    ...axes.map((/** @type {any} */ _, /** @type {number} */ k) => at(one, k)),
+    mm(one.best_objective_mm),
+    ...(hasWorst ? [mm(one.worst_objective_mm)] : []),
+  ]);
+  const heads = [
+    ...(hasOrientation ? ['Part'] : []),
+    ...axes.map((/** @type {any} */ axis) => `${axis.name} ${axis.unit}`),
+    'Best mm',
+    ...(hasWorst ? ['Worst mm'] : []),
+  ];
+  return card('Setups that were searched', 'objective of the best placement in each, the best first', smallTable(heads, rows));
+}
+
+/** The three points of a case that deflect most, away from each other. */
+function worstPointsCard() {
+  const host = el('div.worst-points');
+  const near = Math.max(1, Math.round(COUNT / 30));
+  onChange(({ case: isOther }) => {
+    if (!isOther) return;
+    const { columns } = current();
+    const order = Array.from(columns.score_mm.keys()).sort((a, b) => columns.score_mm[b] - columns.score_mm[a]);
+    /** @type {number[]} */
+    const chosen = [];
+    for (const i of order) {
+      if (chosen.length < 3 && chosen.every((other) => Math.abs(other - i) > near)) chosen.push(i);
+    }
+    const rows = chosen.map((i) => [
+      el('button.chip', { type: 'button', onclick: () => set({ t: i }) }, `point ${pathPoint(i)}`),
+      String(columns.segment[i]),
+      fixed(columns.score_mm[i], 3),
+      fixed(columns.total_mm[i], 3),
+      fixed(Math.hypot(columns.force_x_n[i], columns.force_y_n[i], columns.force_z_n[i]), 0),
+    ]);
+    host.replaceChildren(smallTable(['Go to', 'Segment', 'Scored mm', 'Whole mm', 'Force N'], rows));
+  });
+  return card('Worst points of this case', 'the three that deflect most, apart from each other', host);
 }
 
 /** The genetic searches, generation by generation. */
@@ -71,7 +157,7 @@ function convergenceCard() {
   /** @param {string} search @param {string} color @returns {Series} */
   const line = (search, color) => ({
     name: `${search} so far`,
-    style: 'line',
+    style: search === 'best' ? 'line' : 'dashed',
     x: of(search).map((/** @type {number} */ k) => generation[k]),
     y: of(search).map((/** @type {number} */ k) => best[k]),
     color,
@@ -80,13 +166,15 @@ function convergenceCard() {
   const series = [line('best', '--good'), line('worst', '--bad')].filter((one) => one.y.length);
   const values = series.flatMap((one) => Array.from(one.y)).filter(Number.isFinite);
   if (!values.length) return null;
-  return chartCard({
+  const out = chartCard({
     title: 'Search',
     detail: series.length > 1 ? 'best and worst objective over generations' : 'best objective over generations',
     x: { label: 'generation', is_log: false },
     y: { label: 'objective (mm)', is_log: false, range: [0, Math.max(.../** @type {number[]} */ (values)) * 1.05] },
     series,
   });
+  out.classList.add('search');
+  return out;
 }
 
 /** How far the placements can be from the best and the worst possible. */
@@ -203,7 +291,7 @@ function stabilityCard() {
   /** @type {Series[]} */
   const series = depths.map((/** @type {Float32Array} */ y, /** @type {number} */ k) => ({
     name: names[k],
-    style: 'line',
+    style: k ? 'dashed' : 'line',
     y,
     color: k ? '--bad' : '--good',
     width: 2,
@@ -224,6 +312,8 @@ function stabilityCard() {
 
 export function furtherCards() {
   const cards = [
+    worstPointsCard(),
+    setupsCard(),
     originsCard(),
     heldFeedCard(),
     boundsCard(),
@@ -233,5 +323,13 @@ export function furtherCards() {
     stabilityCard(),
     convergenceCard(),
   ].filter(Boolean);
+  // What scrolls can be reached by keys.
+  onChange(({ size: resized }) => {
+    if (!resized) return;
+    for (const one of /** @type {HTMLElement[]} */ (cards)) {
+      if (one.scrollWidth > one.clientWidth) one.tabIndex = 0;
+      else one.removeAttribute('tabindex');
+    }
+  });
   return cards.length ? el('div.further', {}, .../** @type {HTMLElement[]} */ (cards)) : null;
 }

@@ -38,6 +38,10 @@ function verdict() {
           : ['; the worst was not looked for.']),
       );
   const { document: said } = RAW;
+  // A part that is balanced to little says little of what the tool does.
+  const whole = CASES[0].entry.deflection_mm?.total.mean;
+  if (whole > 5 * CASES[0].mean)
+    out.append(' That is the part that is scored; the whole deflection is ', strong(`${fixed(whole, 3)} mm`), ' in the mean.');
   if (said.interrupted) out.append(' The search was stopped before its end: this is the best result so far.');
   if (RAW.thinned)
     out.append(` Drawn with ${RAW.thinned.shown} of ${RAW.thinned.points} path points; the figures are of all.`);

@@ -9,15 +9,18 @@ import { axesAt, meets } from './external-axes.js';
 import { forcesCard } from './forces.js';
 import { header } from './header.js';
 import { framesOf, jointsAt } from './kinematics.js';
+import { linked } from './link.js';
 import { mapCard } from './map.js';
 import { gauges, tiles } from './readings.js';
+import { printed } from './printed.js';
 import { sceneCard, viewPicture } from './scene-card.js';
+import { sheetCard } from './sheet.js';
 import { set, state, steps } from './state.js';
 import { onKey, transport } from './transport.js';
 
 function footer() {
   const key = (/** @type {string[]} */ names, /** @type {string} */ words) =>
-    el('span', {}, ...names.flatMap((name) => [el('kbd', {}, name), ' ']), words);
+    el('span.keys', {}, ...names.flatMap((name) => [el('kbd', {}, name), ' ']), words);
   const { document: said } = RAW;
   const count = (/** @type {number | undefined} */ n, /** @type {string} */ words) =>
     n ? `, ${n.toLocaleString('en')} ${words}` : '';
@@ -51,8 +54,10 @@ function main() {
     el(
       'main.wrap',
       {},
+      sheetCard(),
       header(),
       messages(),
+      printed(),
       el('div.main', {}, sceneCard(), el('div.right', {}, tiles(), mapCard())),
       transport(),
       chartCards(),
@@ -63,6 +68,7 @@ function main() {
     ),
   );
   addEventListener('keydown', onKey);
+  linked();
   set({}, true);
   const observer = new ResizeObserver(() => set({ size: true }));
   document.querySelectorAll('.view').forEach((host) => observer.observe(host));

@@ -143,6 +143,7 @@ export function mapCard() {
       ])) {
         g.strokeStyle = colour;
         g.lineWidth = width;
+        g.setLineDash(of.plan ? [7, 4] : []);
         g.globalAlpha = of === own ? 1 : 0.75;
         g.beginPath();
         for (const [first, last] of RUNS) {
@@ -154,6 +155,7 @@ export function mapCard() {
         }
         g.stroke();
       }
+      g.setLineDash([]);
       g.globalAlpha = 1;
     }
   };
@@ -166,7 +168,7 @@ export function mapCard() {
     });
     const plans = legendOf([
       { name: 'best plan', color: '--good', style: 'line', y: [] },
-      { name: 'worst plan', color: '--bad', style: 'line', y: [] },
+      { name: 'worst plan', color: '--bad', style: 'dashed', y: [] },
     ]);
     legend.replaceChildren(rampOf(String(SCALE[0]), `${SCALE[1]} mm`), ...plans, ...reasons);
   };
@@ -228,7 +230,7 @@ export function mapCard() {
       if (at) choose(at);
     },
   }));
-  plot.top.style.touchAction = 'none';
+  plot.top.style.touchAction = 'pan-y';
 
   onChange((changed) => {
     if (changed.case) plot.refresh();

@@ -33,11 +33,14 @@ export const EXTENT = [0, 1, 2].map((k) => {
 });
 export const PATH_SIZE = Math.max(Math.hypot(...EXTENT.map(([low, high]) => high - low)), 50);
 
-/** How many times too large the error is drawn: a round number, the same for all cases. */
+/** How many times too large the error is drawn: a round number, the same for all cases, by what 95 of 100 points stay below. */
 export const MAGNIFIED = (() => {
-  const largest = CASES.reduce((most, of) => Math.max(most, of.max), 0);
+  const high = CASES.map(({ columns }) => {
+    const scores = columns.score_mm.slice().sort();
+    return scores[Math.floor(0.95 * (scores.length - 1))];
+  });
   const steps = [1000, 500, 200, 100, 50, 20, 10, 5, 2, 1];
-  return steps.find((step) => step * largest < 0.6 * PATH_SIZE) || 1;
+  return steps.find((step) => step * Math.max(...high) < 0.6 * PATH_SIZE) || 1;
 })();
 
 /** No more tubes than this: a longer path is drawn by every so many points. */
@@ -67,8 +70,10 @@ export function pathMeshes(of, by) {
       }
       const base = curtain.p.length / 3;
       for (const k of [i, next]) {
+        // As high as the tube: in the face of the part both would flicker.
+        const lift = times(TASK.axis[k], radius);
         for (const corner of [tips[k], offs[k]]) {
-          curtain.p.push(...corner);
+          curtain.p.push(...add(corner, lift));
           curtain.n.push(0, 0, 1);
           curtain.c.push(...by.colour(by.at(of, k)));
         }

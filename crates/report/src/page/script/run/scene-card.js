@@ -7,7 +7,8 @@ import { HAS_ILLUSTRATIONS } from './bodies.js';
 import { COLOURINGS } from './colour.js';
 import { AXES } from './external-axes.js';
 import { LAYERS, sceneIn } from './scene.js';
-import { current, onChange, set, state } from './state.js';
+import { reasonText } from './map.js';
+import { chosenState, current, onChange, set, state } from './state.js';
 import { HAS_BLOCK } from './surroundings.js';
 
 /** Gives the view as it is now, as the address of a picture; the card of the scene puts it in. */
@@ -98,11 +99,15 @@ export function sceneCard() {
     const lies = orientation ? `, part “${orientation}”` : '';
     where.textContent = `x ${fixed(x, 1)}  y ${fixed(y, 1)}  z ${fixed(z, 1)} mm, yaw ${fixed(yaw, 1)}°${lies}`;
   });
-  // WebGL is not printed: a picture takes its place.
-  const still = /** @type {HTMLImageElement} */ (el('img.still', { alt: '' }));
-  view.append(still);
-  addEventListener('beforeprint', () => {
-    still.src = viewPicture();
+  // A state that is not allowed: the arm stays where it was, in grey, and the view says why.
+  const refusal = el('div.refusal', { id: 'refusal', hidden: true });
+  host.append(refusal);
+  onChange(() => {
+    const chosen = chosenState();
+    const isRefused = chosen !== null && !chosen.isAllowed;
+    view.classList.toggle('refused', isRefused);
+    refusal.hidden = !isRefused;
+    refusal.textContent = isRefused ? `Not allowed at point ${chosen.point}, β ${fixed(chosen.beta, 1)}°: ${reasonText(chosen.reason)}` : '';
   });
   return host;
 }

@@ -34,10 +34,11 @@ export function transport() {
     button.textContent = isPlaying ? '❚❚' : '▶';
     button.setAttribute('aria-label', isPlaying ? 'Pause' : 'Play');
   });
-  const pace = el('button.chip', { type: 'button', id: 'speed', 'aria-label': 'Speed' }, '1×');
+  const pace = el('button.chip', { type: 'button', id: 'speed', 'aria-label': '1×: speed' }, '1×');
   pace.addEventListener('click', () => {
     const speed = nextSpeed();
     pace.textContent = speed === 0.5 ? '½×' : `${speed}×`;
+    pace.setAttribute('aria-label', `${pace.textContent}: speed`);
   });
   const slider = /** @type {HTMLInputElement} */ (
     el('input', { type: 'range', id: 'slider', min: 0, max: COUNT - 1, step: 1, value: 0, 'aria-label': 'Path point' })

@@ -1,0 +1,262 @@
+//! What a fitter needs to set a placement up and to check it: where the part, the robot and the external axes stand, in
+//! the frame that the pendant shows where that is known; points to drive to; and by how much the part may be off.
+
+mod tolerance;
+
+pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances};
+
+use crate::outcome::{Case, Plan, left_out};
+use nalgebra::Vector3;
+use stead_cell::{Attachment, Solid};
+use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried};
+use stead_model::robot::Pose;
+use stead_numerics::message::Warning;
+use stead_numerics::monitor::Monitor;
+use stead_planning::problem::{Placement, Problem};
+use tolerance::tolerances;
+
+/// The frame in which a sheet states places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SheetFrame {
+    /// The root of the controller, which the pendant shows.
+    Root,
+    /// The base frame of the rows, where the robot file does not say where the controller's root is, or has it at a
+    /// slant.
+    Base,
+    /// The cell frame, of a mounted robot, or of one that external axes carry: then the base frame with all axes at
+    /// zero.
+    Cell,
+}
+
+/// An external axis as it is set up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisSetup {
+    /// Its name.
+    pub name: String,
+    /// How it moves.
+    pub kind: AxisKind,
+    /// What stands on it.
+    pub carries: Carried,
+    /// The least and the largest position along the plan, which are one where it stands still. m or rad
+    pub positions: [f64; 2],
+    /// Its direction in the frame of the sheet, all axes at zero.
+    pub direction: Vector3<f64>,
+    /// A point on it there. m
+    pub point: Vector3<f64>,
+}
+
+/// A point to which the tool is driven to check a setup.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckPoint {
+    /// The path point, from 0.
+    pub point: usize,
+    /// Where the tool centre point is, in the frame of the sheet. m
+    pub place: Vector3<f64>,
+    /// The same in the root of the controller as the robot stands, where that is known and another frame. m
+    pub in_root: Option<Vector3<f64>>,
+    /// Joint angles of the rows. rad
+    pub joints: [f64; 6],
+    /// Joint angles as the controller counts them, where that is known. rad
+    pub controller: Option<[f64; 6]>,
+    /// Positions of the external axes. m or rad
+    pub axes: Vec<f64>,
+}
+
+/// How near a plan comes to a limit of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestLimit {
+    /// The joint, from 0.
+    pub joint: usize,
+    /// Whether it is the upper one.
+    pub is_upper: bool,
+    /// The path point, from 0.
+    pub point: usize,
+    /// How far it stays from the limit of the arm. rad
+    pub distance: f64,
+}
+
+/// What a fitter needs to set a placement up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SetupSheet {
+    /// The frame of all places.
+    pub frame: SheetFrame,
+    /// The part, as its task file has it, in that frame: its origin is the datum. With all external axes at zero.
+    pub part: Pose<f64>,
+    /// The root of the controller, where it is known, else the base frame of the rows, in that frame; where the robot
+    /// stands at the first point of the path.
+    pub robot: Pose<f64>,
+    /// Whether that is the root of the controller.
+    pub is_root: bool,
+    /// The tool frame on the flange.
+    pub flange_from_tool: Pose<f64>,
+    /// Diameter of the cutter, where the run states it. m
+    pub cutter_diameter: Option<f64>,
+    /// Height of the top of the shape named `floor`, where there is one. m
+    pub floor: Option<f64>,
+    /// External axes.
+    pub axes: Vec<AxisSetup>,
+    /// Three points that are far from each other, two where the path is straight, one where it is a point.
+    pub check_points: Vec<CheckPoint>,
+    /// How near the plan comes to a limit of a joint.
+    pub nearest_limit: Option<NearestLimit>,
+    /// By how much the part may be off, or why that is not known.
+    pub tolerances: Result<Tolerances, String>,
+    /// The cell frame in the frame of the sheet: what draws the cell goes through it.
+    pub sheet_from_cell: Pose<f64>,
+}
+
+/// Places that differ by less are one. m
+const SAME: f64 = 1e-3;
+
+/// Why tolerances are not there after a stop.
+const INTERRUPTED: &str = "interrupted";
+
+impl SetupSheet {
+    /// The warning that a stop left the tolerances out.
+    pub fn left_out(&self) -> Option<Warning> {
+        let is_interrupted = self.tolerances.as_ref().is_err_and(|why| why == INTERRUPTED);
+        is_interrupted.then(|| left_out("the tolerances of the setup sheet are"))
+    }
+
+    /// The sheet of a case of a problem, whatever its setup.
+    pub fn new(problem: &Problem, case: &Case, monitor: &Monitor) -> Self {
+        let problem = &*problem.in_setup(&case.setup);
+        Self::of_plan(problem, &case.placement, &case.plan, monitor)
+    }
+
+    fn of_plan(problem: &Problem, placement: &Placement, plan: &Plan, monitor: &Monitor) -> Self {
+        let robot = &problem.robot;
+        let root_from_base = robot.controller().and_then(|controller| controller.root_from_base);
+        let is_carried = problem.external_axes.iter().any(|axis| axis.carries == Carried::Robot);
+        let upright = root_from_base.filter(|root| root.rotation[(2, 2)].abs() > 1.0 - 1e-9);
+        let (frame, sheet_from_cell) = match upright {
+            _ if robot.is_mounted() || is_carried => (SheetFrame::Cell, Pose::identity()),
+            Some(root) => (SheetFrame::Root, root),
+            None => (SheetFrame::Base, Pose::identity()),
+        };
+        let all_at_zero = placement.base_from_workpiece();
+        let part = Pose {
+            rotation: all_at_zero.rotation
+                * problem.orientation().map_or(nalgebra::Matrix3::identity(), |of| of.rotation),
+            ..all_at_zero
+        };
+        let cell_from_base =
+            |point: usize| carried(&problem.external_axes, problem.axis_positions(point), Carried::Robot);
+        let base_from_root = root_from_base.map_or_else(Pose::identity, |root| root.inverse());
+        let stands = cell_from_base(0).then(&robot.cell_from_base()).then(&base_from_root);
+        let check = |point: &usize| {
+            let of = plan.points.get(*point)?;
+            // With a mounted robot positions are in the cell frame, as it is with all axes at zero.
+            let in_cell = cell_from_base(of.point).point(&of.position);
+            let in_root = robot.controller_root_from_cell().filter(|_| frame != SheetFrame::Root);
+            Some(CheckPoint {
+                point: of.point,
+                place: sheet_from_cell.point(&in_cell),
+                in_root: in_root.map(|root| root.point(&of.position)),
+                joints: of.joints,
+                controller: robot.controller().map(|controller| controller.angles(&of.joints)),
+                axes: problem.axis_positions(of.point).to_vec(),
+            })
+        };
+        let tolerances = match monitor.should_stop() {
+            true => Err(INTERRUPTED.to_owned()),
+            false => tolerances(
+                problem,
+                placement,
+                (&plan.postures, plan.objective),
+                sheet_from_cell.rotation.transpose(),
+                monitor,
+            ),
+        };
+        Self {
+            frame,
+            part: sheet_from_cell.then(&part),
+            robot: sheet_from_cell.then(&stands),
+            is_root: root_from_base.is_some(),
+            flange_from_tool: problem.spindle.flange_from_tool,
+            cutter_diameter: problem.segment_moves.tool.as_ref().and_then(|of| Some(2.0 * of.tool().cutter?.radius)),
+            floor: floor(problem).map(|height| sheet_from_cell.point(&Vector3::new(0.0, 0.0, height)).z),
+            axes: axes(problem, plan, &sheet_from_cell),
+            check_points: spread(problem).iter().filter_map(check).collect(),
+            nearest_limit: nearest_limit(problem, plan),
+            tolerances,
+            sheet_from_cell,
+        }
+    }
+}
+
+/// The external axes with the ends of their positions.
+fn axes(problem: &Problem, plan: &Plan, sheet_from_cell: &Pose<f64>) -> Vec<AxisSetup> {
+    let one = |(axis, path): (&ExternalAxis, &stead_planning::setup::AxisPath)| {
+        let end = |of: fn(f64, f64) -> f64| path.positions.iter().copied().reduce(of).unwrap_or(0.0);
+        AxisSetup {
+            name: axis.name.clone(),
+            kind: axis.kind,
+            carries: axis.carries,
+            positions: [end(f64::min), end(f64::max)],
+            direction: sheet_from_cell.rotation * axis.direction,
+            point: sheet_from_cell.point(&axis.point),
+        }
+    };
+    problem.external_axes.iter().zip(&plan.axes).map(one).collect()
+}
+
+/// The height in the cell of the top of a box named `floor` that stands level. m
+fn floor(problem: &Problem) -> Option<f64> {
+    let shapes = problem.scene.as_deref()?.surroundings().shapes();
+    let floor = shapes.iter().find(|shape| shape.name == "floor" && shape.attached == Attachment::Base)?;
+    match &floor.solid {
+        Solid::Box(edges) if floor.pose.rotation[(2, 2)].abs() > 1.0 - 1e-9 => {
+            Some(floor.pose.translation.z + edges.z / 2.0)
+        }
+        _ => None,
+    }
+}
+
+/// Up to three points of the path that are far from each other, ascending: the farthest from its middle, the farthest
+/// from that, and the farthest from the line through both.
+fn spread(problem: &Problem) -> Vec<usize> {
+    let points = problem.task.points();
+    let middle = points.iter().map(|point| point.position).sum::<Vector3<f64>>() / points.len().max(1) as f64;
+    let farthest = |distance: &dyn Fn(&Vector3<f64>) -> f64| {
+        let all = points.iter().enumerate().map(|(number, point)| (number, distance(&point.position)));
+        all.reduce(|most, next| if next.1 > most.1 { next } else { most })
+    };
+    let mut chosen = Vec::new();
+    let Some((first, _)) = farthest(&|place| (place - middle).norm()) else { return chosen };
+    chosen.push(first);
+    let from = points[first].position;
+    if let Some((second, apart)) = farthest(&|place| (place - from).norm())
+        && apart > SAME
+    {
+        chosen.push(second);
+        let along = (points[second].position - from) / apart;
+        if let Some((third, aside)) = farthest(&|place| (place - from).cross(&along).norm())
+            && aside > SAME
+        {
+            chosen.push(third);
+        }
+    }
+    chosen.sort_unstable();
+    chosen
+}
+
+/// The state of a plan that is nearest to a limit of a joint, of the arm itself without the margin of the run.
+fn nearest_limit(problem: &Problem, plan: &Plan) -> Option<NearestLimit> {
+    let robot = problem.robot_to_its_limits();
+    let all = plan.points.iter().flat_map(|of| {
+        let joints = robot.joints().iter().zip(of.joints).enumerate();
+        joints.flat_map(move |(joint, (row, angle))| {
+            [(angle - row.min, false), (row.max - angle, true)].map(|(distance, is_upper)| NearestLimit {
+                joint,
+                is_upper,
+                point: of.point,
+                distance,
+            })
+        })
+    });
+    all.collect::<Vec<_>>().into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance))
+}
+
+#[cfg(test)]
+mod tests;

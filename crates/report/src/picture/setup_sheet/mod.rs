@@ -1,0 +1,149 @@
+//! The setup sheet: one A4 page in black on white for whoever sets a placement up.
+//!
+//! A pixel is a quarter of a millimetre of the paper. What is written is what `setup_sheet` of the document states,
+//! rounded to a tenth of a millimetre and a hundredth of a degree.
+
+mod rows;
+mod views;
+
+use super::canvas::{Canvas, Pixel, TextStyle, paper};
+use super::colour::{BLACK, PALE};
+use crate::units::fixed;
+use stead_disk::input::InputFile;
+use stead_placement::outcome::Case;
+use stead_placement::setup_sheet::{SetupSheet, SheetFrame};
+use stead_planning::problem::Problem;
+
+/// What stands in the title block beside the robot.
+#[derive(Debug, Clone, Copy)]
+pub struct SheetTitle<'a> {
+    /// The files that the run depends on.
+    pub inputs: &'a [InputFile],
+    /// Seed of its random numbers.
+    pub seed: u64,
+}
+
+/// The left and the right edge of what is written.
+const SIDES: [i32; 2] = [44, 796];
+/// The lower edge.
+const BOTTOM: i32 = 1146;
+/// From line to line of a table.
+const LINE: i32 = 16;
+/// Letters of tables and of small print.
+const SIZES: [f64; 2] = [11.5, 9.5];
+
+/// The sheet of a case.
+pub fn setup_sheet(problem: &Problem, case: &Case, sheet: &SetupSheet, title: &SheetTitle<'_>) -> String {
+    let problem = &*problem.in_setup(&case.setup);
+    paper(|canvas| {
+        let [left, right] = SIDES;
+        let run = title.inputs.iter().find(|input| input.role == "config").map_or("run", |input| &input.name);
+        canvas.text("Setup sheet", (left, 54), TextStyle::new(21.0).bold());
+        canvas.text(run, (left + 150, 55), TextStyle::new(15.0));
+        canvas.text("Date, name:", (right - 250, 55), TextStyle::new(SIZES[0]));
+        canvas.line(&[(right - 175, 62), (right, 62)], BLACK, 1);
+        canvas.text(&frame_words(sheet), (left, 80), TextStyle::new(SIZES[0]));
+        views::draw(canvas, problem, case, sheet, 98);
+        let mut table = Table { canvas, y: 528 };
+        rows::places(&mut table, sheet);
+        rows::checks(&mut table, sheet);
+        rows::tolerances(&mut table, sheet);
+        rows::limits(&mut table, case, sheet);
+        title_block(canvas, problem, title);
+    })
+}
+
+/// Which frame the places are in.
+fn frame_words(sheet: &SetupSheet) -> String {
+    let frame = match sheet.frame {
+        SheetFrame::Root => "the robot root frame of the controller, as the pendant shows it",
+        SheetFrame::Base => {
+            if sheet.is_root {
+                "the base frame of the robot file's rows (the controller's root frame is at a slant to it)"
+            } else {
+                "the base frame of the robot file's rows (no [root] is known: the pendant may show another frame)"
+            }
+        }
+        SheetFrame::Cell => "the cell frame, in which the run file states the mount and the external axes",
+    };
+    format!("Places in mm, in {frame}. Angles in deg.")
+}
+
+/// Run, robot, version and digests, in a frame at the foot of the page.
+fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>) {
+    let [left, right] = SIDES;
+    let lines = title.inputs.len() as i32;
+    let top = BOTTOM - 12 * lines - 30;
+    canvas.outline((left, top), (right, BOTTOM), BLACK);
+    let small = TextStyle::new(SIZES[1]);
+    let version = format!("stead {}, seed {}", env!("CARGO_PKG_VERSION"), title.seed);
+    canvas.text(problem.robot.name(), (left + 8, top + 13), TextStyle::new(SIZES[0]).bold());
+    canvas.text(&version, (left + 330, top + 13), TextStyle::new(SIZES[0]));
+    canvas.text("valid for these files alone (SHA-256):", (right - 8, top + 13), small.ending());
+    for (input, line) in title.inputs.iter().zip(0..) {
+        let y = top + 30 + 12 * line;
+        canvas.text(input.role, (left + 8, y), small);
+        canvas.text(&shortened(&input.name, 52), (left + 80, y), small);
+        canvas.text(&input.sha256, (right - 8, y), TextStyle::new(8.5).ending());
+    }
+}
+
+/// The end of a text that is too long.
+fn shortened(text: &str, most: usize) -> String {
+    let count = text.chars().count();
+    if count <= most {
+        return text.to_owned();
+    }
+    format!("..{}", text.chars().skip(count + 2 - most).collect::<String>())
+}
+
+/// A length in mm, to a tenth. From m
+fn mm(length: f64) -> String {
+    fixed(length * 1e3, 1)
+}
+
+/// An angle in deg, to a hundredth. From rad
+fn deg(angle: f64) -> String {
+    fixed(angle.to_degrees(), 2)
+}
+
+/// Lines of cells, from above.
+struct Table<'a> {
+    canvas: &'a mut Canvas,
+    y: i32,
+}
+
+impl Table<'_> {
+    /// A heading with a rule below it.
+    fn heading(&mut self, text: &str) {
+        self.y += 8;
+        self.canvas.text(text, (SIDES[0], self.y), TextStyle::new(12.5).bold());
+        self.y += 9;
+        self.canvas.line(&[(SIDES[0], self.y), (SIDES[1], self.y)], BLACK, 1);
+        self.y += 10;
+    }
+
+    /// Cells that start at, or for a negative number end at, so many pixels from the left edge.
+    fn row<'c>(&mut self, cells: impl IntoIterator<Item = (i32, &'c str)>, is_bold: bool) {
+        for (at, text) in cells {
+            let style = TextStyle::new(SIZES[0]);
+            let style = if at < 0 { style.ending() } else { style };
+            let style = if is_bold { style.bold() } else { style };
+            self.canvas.text(text, (SIDES[0] + at.abs(), self.y), style);
+        }
+        self.y += LINE;
+    }
+
+    /// Small print.
+    fn remark(&mut self, text: &str) {
+        self.canvas.text(text, (SIDES[0], self.y - 2), TextStyle::new(SIZES[1]));
+        self.y += 12;
+    }
+
+    /// A thin line between rows.
+    fn rule(&mut self) {
+        let y = self.y - LINE / 2;
+        let at = |x: i32| -> Pixel { (x, y) };
+        self.canvas.line(&[at(SIDES[0]), at(SIDES[1])], PALE, 1);
+    }
+}
