@@ -29,10 +29,10 @@ pub(super) enum Node {
 /// An affine model of the states around a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AffineModel {
-    /// Value and gradient of m, d1, d2 and the two vertical compliances at the node.
+    /// Value and gradient of m, d1, d2, c_rz, c_tz and c_zz at the node.
     pub values: [[f32; 4]; FUNCTIONS],
-    /// What these leave out: of m, of the length of (d1, d2), and of that of the vertical ones.
-    pub remainder: [f32; 3],
+    /// What these leave out: of m, of the length of (d1, d2), of that of (c_rz, c_tz), and of c_zz.
+    pub remainder: [f32; REMAINDERS],
     /// Whether all the states are sure to be allowed.
     pub sure: bool,
 }
@@ -56,7 +56,9 @@ pub(super) struct Steps {
 }
 
 /// Functions modelled: see [`AffineModel::values`].
-pub(super) const FUNCTIONS: usize = 5;
+pub(super) const FUNCTIONS: usize = 6;
+/// Remainders of them: see [`AffineModel::remainder`].
+pub(super) const REMAINDERS: usize = 4;
 
 /// Neighbouring headings made at once.
 const CHUNK: usize = 16;
@@ -243,23 +245,24 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
     };
     let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
     let sure = y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1);
-    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1]];
+    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
     let values = functions.map(|f| {
         let f = f.middle();
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     });
     let max_second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut remainder = [0.0; 3];
+    let mut remainder = [0.0; REMAINDERS];
     for (p, (i, j)) in PAIR.iter().enumerate() {
         let factor = half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 };
         remainder[0] += max_second(0, p) * factor;
         remainder[1] += libm::hypot(max_second(1, p), max_second(2, p)) * factor;
         remainder[2] += libm::hypot(max_second(3, p), max_second(4, p)) * factor;
+        remainder[3] += max_second(5, p) * factor;
     }
     // And what is lost by writing the values with fewer digits.
     let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
-    let lost = [size(0), size(1) + size(2), size(3) + size(4)];
-    let remainder = [0, 1, 2].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
+    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
+    let remainder = [0, 1, 2, 3].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
     if remainder.iter().all(|r| *r < 1e30) {
         Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure })
     } else {

@@ -49,6 +49,7 @@ mod cost;
 mod enclosure;
 mod interval;
 mod interval_simd;
+mod load;
 mod lower_bound;
 mod minorant;
 mod model;

@@ -1,7 +1,9 @@
 //! Affine functions below what a path point costs, whatever the heading.
 
 use super::arm::Arm;
-use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node};
+use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
+use super::cost::Direction;
+use super::load::{Load, Tangent};
 use super::number::VARIABLES;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
@@ -95,7 +97,7 @@ pub(super) fn collect(
 /// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
 pub(super) struct ModelledRegion {
     values: [[f64; 4]; FUNCTIONS],
-    remainder: [f64; 3],
+    remainder: [f64; REMAINDERS],
     /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
     max_size: [f64; 2],
     moved: [f64; 2],
@@ -119,66 +121,83 @@ impl ModelledRegion {
         let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
         Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], half, r, off }
     }
+
+    /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
+    /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
+    #[inline(always)]
+    fn least(&self, tangent: &Tangent, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
+        let turned = direction.turned(tangent, self.r, [self.half[0], h_chi], first);
+        let [plane, x, y, g, h, axial] = turned.factors;
+        let [length, vertical] = turned.lengths;
+        let [j_value, j_r, j_chi, j_rest] = turned.joint1;
+        let of = |k: usize| {
+            let v = |f: usize| self.values[f][k];
+            plane * v(0) + x * v(1) + y * v(2) + g * v(3) + h * v(4) + axial * v(5)
+        };
+        let [d1, d2, cr, ct] = [1, 2, 3, 4].map(|f| self.values[f][0]);
+        let by_chi = 2.0 * (x * d2 - y * d1) + g * ct - h * cr + j_chi;
+        let remainder = self.remainder[0] * plane.abs() + self.remainder[1] * length + self.remainder[2] * vertical
+            + self.remainder[3] * axial.abs()
+            + h_chi * (2.0 * length * self.moved[0] + vertical * self.moved[1])
+            + h_chi * h_chi * (2.0 * length * self.max_size[0] + 0.5 * vertical * self.max_size[1])
+            + j_rest
+            // The heading is free within its cell.
+            + of(3).abs() * self.half[2];
+        (of(0) + j_value - remainder, [of(1) + j_r, of(2), by_chi])
+    }
+
+    /// The same below the score.
+    #[inline(always)]
+    fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
+        let seen = direction.seen(self.values.map(|value| value[0]), self.r, first);
+        if load.is_linear() {
+            let tangent = load.of_first();
+            // With the sign that the value has.
+            let sign = if tangent.of(&seen) < 0.0 { -1.0 } else { 1.0 };
+            return self.least(&tangent.times(sign), direction, h_chi, first);
+        }
+        let (sharp, of_error) = load.tangents(&seen);
+        let found = self.least(&sharp, direction, h_chi, first);
+        match of_error.map(|tangent| self.least(&tangent, direction, h_chi, first)) {
+            Some(other) if other.0 > found.0 => other,
+            _ => found,
+        }
+    }
 }
 
-/// Below what all of the states cost, for a force and a direction of the feed (sine and cosine) within `half` of the
-/// node.
+/// Below what all of the states cost, for a load and its direction (sine and cosine) within `half` of the node. `space`
+/// is for work.
 pub(super) fn minorant(
     found: &[ModelledRegion],
-    force: [f64; 3],
-    (sine, cosine): (f64, f64),
+    load: &Load,
+    direction: (f64, f64),
     first: f64,
     half: [f64; 3],
+    space: &mut Vec<(f64, [f64; 3])>,
 ) -> Affine {
     if found.is_empty() {
         return EMPTY;
     }
-    let [f1, f2, f3] = force;
-    let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
-    let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
-    let length = libm::hypot(f1, f2);
+    let direction = Direction::of(direction);
     let h_chi = half[2];
-    let model = |s: &ModelledRegion| {
-        let (r, h_r) = (s.r, s.half[0]);
-        let far = r + h_r;
-        let joint1 = first
-            * (0.5 * ((f2 + a).abs() + 2.0 * length * h_chi) * h_r * h_r
-                + 2.0 * far * (b.abs() + 2.0 * length * h_chi) * h_r * h_chi
-                + far * far * (a.abs() + 2.0 * length * h_chi) * h_chi * h_chi);
-        let of = |k: usize| {
-            let v = |f: usize| s.values[f][k];
-            f2 * v(0) - a * v(1) + b * v(2) + f3 * (cosine * v(4) - sine * v(3))
-        };
-        let value = of(0) + first * r * r * 0.5 * (f2 + a);
-        let by_r = of(1) + first * r * (f2 + a);
-        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
-            - f3 * (cosine * s.values[3][0] + sine * s.values[4][0]);
-        let remainder = s.remainder[0] * f2.abs() + s.remainder[1] * length + s.remainder[2] * f3.abs()
-            + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
-            + h_chi * h_chi * (2.0 * length * s.max_size[0] + 0.5 * f3.abs() * s.max_size[1])
-            + joint1
-            // The heading is free within its cell.
-            + of(3).abs() * s.half[2];
-        let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        (value.abs() - remainder, [by_r * sign, of(2) * sign, by_chi * sign])
-    };
+    space.clear();
     let mut lowest = (f64::INFINITY, [0.0; 3]);
-    for s in found {
-        let m = model(s);
-        if m.0 < lowest.0 {
-            lowest = m;
+    for region in found {
+        let least = region.least_score(load, &direction, h_chi, first);
+        if least.0 < lowest.0 {
+            lowest = least;
+            if least.0 <= 0.0 {
+                return ZERO;
+            }
         }
-    }
-    if lowest.0 <= 0.0 {
-        return ZERO;
+        space.push(least);
     }
     let slope = lowest.1;
     let mut value = f64::INFINITY;
-    for s in found {
-        let m = model(s);
+    for (s, (least, slopes)) in found.iter().zip(&*space) {
         let spread = [s.half[0], s.half[1], h_chi];
         let shifted = slope[0] * s.off[0] + slope[1] * s.off[1];
-        value = value.min(m.0 - shifted - (0..3).map(|k| (m.1[k] - slope[k]).abs() * spread[k]).sum::<f64>());
+        value = value.min(least - shifted - (0..3).map(|k| (slopes[k] - slope[k]).abs() * spread[k]).sum::<f64>());
     }
     rounded(value, slope, half)
 }

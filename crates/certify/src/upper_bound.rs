@@ -73,7 +73,7 @@ pub(super) struct BoxBounds<'a> {
     /// Once it asks to stop, what is returned is no bound.
     monitor: &'a Monitor,
     /// `None` for a point that may be near axis 1, so that nothing is known of it.
-    pub points: Vec<Option<PointCost>>,
+    pub points: Vec<Option<PointCost<'a>>>,
     pub level: usize,
 }
 

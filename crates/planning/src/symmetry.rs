@@ -45,12 +45,6 @@ pub enum Unsupported {
         /// The first such path point, from 0.
         point: usize,
     },
-    /// A point is not scored.
-    #[error("point {point} of the task is not scored")]
-    Unscored {
-        /// The first such path point, from 0.
-        point: usize,
-    },
     /// A compliance that must be constant changes with its joint angle.
     #[error("the compliance of joint {joint} changes with its angle")]
     VaryingCompliance {
@@ -68,9 +62,15 @@ pub enum Unsupported {
         /// What.
         what: &'static str,
     },
-    /// Scores cover errors of the force.
-    #[error("scores cover errors of the force (criterion.force_uncertainty)")]
-    UncertainForce,
+    /// Bounds from above do not cover the criterion.
+    #[error(
+        "bounds from above cover the mean of one part of the deflection without force errors, and not this {key}; those \
+         of the best placement do"
+    )]
+    NotFromAbove {
+        /// What is different: a key of the run file.
+        key: &'static str,
+    },
     /// Scores cover errors of the compliances.
     #[error("scores cover errors of the compliances (criterion.confidence)")]
     UncertainCompliances,
@@ -83,6 +83,9 @@ pub enum Unsupported {
         /// Where it may change.
         beta: BetaPlan,
     },
+    /// Scores are those under several sets of stiffness.
+    #[error("scores are those under several sets of stiffness (criterion.robots)")]
+    StiffnessSets,
     /// Something else than the mean deflection normal to the wall is minimised.
     #[error("it covers the mean of the deflection normal to the wall alone, and not another {key}")]
     OtherCriterion {
@@ -188,11 +191,17 @@ pub fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
         Err(Unsupported::OtherCriterion { key: "criterion.robots" })
     } else if *aggregate != Aggregate::Mean {
         Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
-    } else if problem.criterion.joint_travel_weight != 0.0 {
-        Err(Unsupported::JointTravel)
     } else {
-        Ok(())
+        require_no_travel(problem)
     }
+}
+
+/// Requires that joint travel does not count.
+///
+/// # Errors
+/// [`Unsupported::JointTravel`] where it does.
+pub fn require_no_travel(problem: &Problem) -> Result<(), Unsupported> {
+    if problem.criterion.joint_travel_weight == 0.0 { Ok(()) } else { Err(Unsupported::JointTravel) }
 }
 
 /// Requires that beta may change along the path.

@@ -16,6 +16,7 @@
 mod conditioning;
 mod constants;
 mod inverse;
+mod law;
 mod singularity;
 mod vector;
 
@@ -38,6 +39,8 @@ pub(super) struct ArmCompliance<T> {
     pub d2: T,
     /// Compliance between the vertical and the radial, and the vertical and the tangential direction. m/N
     pub vertical: [T; 2],
+    /// Compliance along the vertical. m/N
+    pub axial: T,
     /// What is left to each constraint.
     pub margins: Margins<T>,
     /// Where all but the conditioning was sure to be regular.
@@ -103,7 +106,7 @@ impl Arm {
         if violated.all() {
             return None;
         }
-        let (m, d1, d2, vertical) = self.compliance(&posed);
+        let (m, d1, d2, vertical, axial) = self.compliance(&posed, &mut regular);
         let margins = Margins {
             elbow: elbow.margin,
             joints: elbow.joint_margins,
@@ -111,12 +114,12 @@ impl Arm {
             wrist: wrist.margin,
             conditioning,
         };
-        Some(ArmCompliance { m, d1, d2, vertical, margins, regular, conditioned, violated })
+        Some(ArmCompliance { m, d1, d2, vertical, axial, margins, regular, conditioned, violated })
     }
 
-    /// m, d1, d2, and c_rz with c_tz where some force is along axis 1.
+    /// m, d1, d2, and c_rz, c_tz and c_zz where some force or scored direction is along axis 1.
     #[inline(always)]
-    fn compliance<T: Number>(&self, posed: &Posed<'_, T>) -> (T, T, T, [T; 2]) {
+    fn compliance<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> (T, T, T, [T; 2], T) {
         let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
         let v4 = axis4.cross(lever);
         // s v_5 = (z_4 x z_6) x t = z_6 (z_4 . t) - z_4 (z_6 . t).
@@ -124,22 +127,31 @@ impl Arm {
         let five = |z6: T, z4: T| z6 * along4 - z4.scale(along6);
         let v5 = Vector { x: five(axis6.x, axis4.x), y: five(axis6.y, axis4.y), z: five(axis6.z, axis4.z) };
         let v6 = posed.tool.turned(&self.axis6.cross(&self.lever));
-        let [k2, k3, k4, k5, k6] = self.compliances;
+        let [k4, k5, k6] = self.compliances;
+        let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
         let k5 = posed.wrist.inverse5.scale(k5);
         // The sum over joints 4 to 6 of k_j f(v_j).
         let wrist = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * k5 + f(&v6).scale(k6);
         let [p2, p3] = posed.tips;
         let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
         let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
-        let bending = (p2.up.square().scale(k2) + p3.up.square().scale(k3)).scale(0.5);
+        // Of joints 2 and 3 the sum of k_j f(v_j).
+        let mut upper = |of2: T, of3: T| second.times(of2, angles2, regular) + third.times(of3, angles3, regular);
+        let bending = upper(p2.up.square(), p3.up.square()).scale(0.5);
         let m = bending + wrist(&|v| v.x.square() + v.y.square()).scale(0.5);
         let d1 = bending * cos_twice + wrist(&|v| v.x.square() - v.y.square()).scale(0.5);
         let d2 = bending * sin_twice + wrist(&|v| v.x * v.y);
+        let zero = T::constant(0.0);
         if !self.is_vertical {
-            return (m, d1, d2, [T::constant(0.0); 2]);
+            return (m, d1, d2, [zero; 2], zero);
         }
-        let tilting = -((p2.along * p2.up).scale(k2) + (p3.along * p3.up).scale(k3));
+        let tilting = -upper(p2.along * p2.up, p3.along * p3.up);
         let vertical = [tilting * cos1 + wrist(&|v| v.x * v.z), tilting * sin1 + wrist(&|v| v.y * v.z)];
-        (m, d1, d2, vertical)
+        let axial = if self.is_axial {
+            upper(p2.along.square(), p3.along.square()) + wrist(&|v| v.z.square())
+        } else {
+            zero
+        };
+        (m, d1, d2, vertical, axial)
     }
 }

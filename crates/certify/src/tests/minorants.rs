@@ -16,9 +16,10 @@ pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: S
         table: ComplianceTable::new(Extent { radius, height }, steps, levels),
         points: b.points.clone(),
         segments: b.segments.clone(),
-        rates: b.rates.clone(),
+        changes: b.changes.clone(),
         first: b.first,
         yaws: b.yaws,
+        objective: b.objective,
     }
 }
 
@@ -70,9 +71,10 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
         let along = |v: f64| (v - steps.length, v + steps.length);
         let model = local(setting, along(place[0]), along(place[1]), steps, 1);
         let Some(found) = states(&model, class, mutation) else { continue };
-        let force = model.points[point].force;
+        let load = &model.points[point].load;
         let half = [steps.length, steps.length, turn * mutation.chi];
-        let e = minorant(&found, force, libm::sincos(place[2]), model.first * mutation.joint1, half);
+        let direction = libm::sincos(place[2] + load.turn);
+        let e = minorant(&found, load, direction, model.first * mutation.joint1, half, &mut Vec::new());
         if e == ZERO {
             continue;
         }
@@ -85,7 +87,7 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
                 let heading = PI / steps.headings as f64 * k as f64;
                 let Some(truth) = setting.truth(point, moved, heading, class) else { continue };
                 compared += 1;
-                wrong += usize::from(truth.normal.abs() < below);
+                wrong += usize::from(truth.score < below);
             }
         }
     }
@@ -97,7 +99,7 @@ pub const FINE: Steps = Steps { length: 0.002, headings: 512 };
 
 #[test]
 fn minorants_are_below_the_cost_at_every_heading() {
-    for (name, setting) in Setting::all() {
+    for (name, setting) in Setting::all().into_iter().chain(Setting::criteria()) {
         for steps in [COARSE, FINE] {
             let [wrong, compared] = violations(&setting, steps, &SOUND);
             assert!(wrong == 0 && compared > 500, "{name}: {wrong} of {compared} with {steps:?}");
@@ -149,7 +151,9 @@ fn regions_cut_up_are_below_the_cost_too() {
         cut += usize::from(found.len() > COARSE.headings);
         let turn = TAU / COARSE.headings as f64;
         let half = [COARSE.length, COARSE.length, turn];
-        let e = minorant(&found, model.points[point].force, libm::sincos(place[2]), model.first, half);
+        let load = &model.points[point].load;
+        let direction = libm::sincos(place[2] + load.turn);
+        let e = minorant(&found, load, direction, model.first, half, &mut Vec::new());
         for _ in 0..6 {
             let s = shares(&mut random);
             let off = [s[0] * COARSE.length, s[1] * COARSE.length, s[2] * turn];
@@ -157,7 +161,7 @@ fn regions_cut_up_are_below_the_cost_too() {
             for k in 0..256 {
                 let Some(truth) = setting.truth(point, moved, TAU / 256.0 * k as f64, class) else { continue };
                 compared += 1;
-                assert!(e != EMPTY && truth.normal.abs() >= at(&e, off), "{} {}", truth.normal, at(&e, off));
+                assert!(e != EMPTY && truth.score >= at(&e, off), "{} {}", truth.score, at(&e, off));
             }
         }
     }

@@ -7,6 +7,7 @@ use super::minorants::local;
 use super::*;
 use crate::compliance_table::Steps;
 use stead_numerics::monitor::Monitor;
+use stead_planning::beta_step::BetaStep;
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
 
@@ -69,7 +70,8 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
             let (before, here) = (setting.place(placement, point - 1)[2], setting.place(placement, point)[2]);
             let from = random.random_range(0..count);
             let heading = width * (from as f64 + 0.5 + share(&mut random) * 0.499_999);
-            let step = share(&mut random) * setting.problem.beta_step(point).half;
+            let BetaStep { middle, half } = setting.problem.beta_step(point);
+            let step = setting.rotation_sign * (middle + share(&mut random) * half);
             let heading = heading - before + here + step;
             let to = (heading / width).floor() as isize;
             let steps = to - from as isize;
@@ -81,9 +83,18 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
 
 #[test]
 fn no_step_within_the_rate_is_forbidden_and_broken_steps_are_seen() {
-    for (name, setting) in Setting::all() {
+    let turning = |mut problem: Problem| {
+        (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, Some(9.0));
+        problem
+    };
+    let spindle = [("spindle", five_segments()), ("spindle, hanging", hanging())];
+    let spindle = spindle.map(|(name, problem)| (name, Setting::new(turning(problem))));
+    for (name, setting) in Setting::all().into_iter().chain(spindle) {
         assert_eq!(forbidden(&setting, |low, high| (low, high), true), 0, "{name}");
     }
+    let mut turned = Setting::new(turning(hanging()));
+    turned.model.changes.iter_mut().for_each(|change| change.middle = -change.middle);
+    assert!(forbidden(&turned, |low, high| (low, high), true) > 0, "the spindle turned the other way is not seen");
     let setting = Setting::new(five_segments());
     let mutations: [(&str, Change, bool); 4] = [
         ("one step up too short", |low, high| (low, high - 1), true),
@@ -157,7 +168,7 @@ fn a_broken_sum_is_seen() {
             setting.model.segments.push(again);
         }),
         ("forces a tenth larger", |setting| {
-            setting.model.points.iter_mut().for_each(|p| p.force = p.force.map(|f| 1.1 * f));
+            setting.model.points.iter_mut().for_each(|p| p.load.force = p.load.force.map(|f| 1.1 * f));
         }),
     ];
     for (name, change) in mutations {
