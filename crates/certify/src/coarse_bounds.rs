@@ -178,7 +178,8 @@ impl CoarseBounds {
 fn unit(load: &Load) -> Option<(Load, f64)> {
     let [x, y, z] = load.force;
     let size = (x * x + y * y + z * z).sqrt();
-    let unit = Load { force: load.force.map(|f| f / size), error: load.error / size, turn: 0.0, ..*load };
+    let [force, moment] = [load.force, load.moment].map(|v| v.map(|x| x / size));
+    let unit = Load { force, moment, error: load.error / size, turn: 0.0, ..*load };
     (size > 0.0).then_some((unit, size))
 }
 
@@ -207,6 +208,7 @@ fn same(a: &Load, b: &Load) -> bool {
     let near = |a: &[f64; 3], b: &[f64; 3], size: f64| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-13 * size);
     let long = a.directions.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
     near(&a.force, &b.force, 1.0)
+        && near(&a.moment, &b.moment, 1.0)
         && a.directions.iter().zip(&b.directions).all(|(a, b)| near(a, b, long))
         && (a.error - b.error).abs() <= 1e-13
 }

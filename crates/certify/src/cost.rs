@@ -6,8 +6,12 @@
 
 use super::compliance_table::AffineModel;
 use super::load::{Load, Tangent, Yielding};
+use super::moment::{MOMENTS, MomentModel, MomentPart, TurnedMoment, moved};
 use super::region::{Point, PolarModel, Region};
 use stead_planning::criterion::Aggregate;
+
+/// What a node tells: how it yields to forces and, where some moment acts, to moments.
+pub(super) type Known<'a> = (&'a AffineModel, Option<&'a MomentModel>);
 
 /// The corners of a box.
 pub(super) const CORNERS: usize = 8;
@@ -43,6 +47,8 @@ pub(super) struct Turned {
     pub lengths: [f64; 2],
     /// Joint 1: value, slopes by r and chi, and what they leave out. m
     pub joint1: [f64; 4],
+    /// What it asks of the displacement under a moment, where one acts.
+    pub moment: Option<TurnedMoment>,
 }
 
 impl Direction {
@@ -68,11 +74,17 @@ impl Direction {
         }
     }
 
-    /// A tangent in the radial frame, for radii within `half[0]` of r and directions within `half[1]`; `first` is the
+    /// The displacement under the moment of a load, in the frame of the load: by the functions of [`MomentModel`] in the
+    /// radial frame. m
+    pub fn moved(&self, values: [f64; MOMENTS], load: &Load, r: f64, first: f64) -> [f64; 3] {
+        moved(values, load.moment, (self.sine, self.cosine), r, first)
+    }
+
+    /// A tangent of a load in the radial frame, for radii within `half[0]` of r and directions within `half[1]`; `first` is the
     /// compliance of joint 1 (rad/(N m)).
     #[inline(always)]
-    pub fn turned(&self, tangent: &Tangent, r: f64, half: [f64; 2], first: f64) -> Turned {
-        let Tangent { plane, turning: [q, w], vertical: [v1, v2], axial } = *tangent;
+    pub fn turned(&self, tangent: &Tangent, load: &Load, r: f64, half: [f64; 2], first: f64) -> Turned {
+        let Tangent { plane, turning: [q, w], vertical: [v1, v2], axial, along } = *tangent;
         let Self { sine, cosine, sine2, cosine2 } = *self;
         let (x, y) = (q * cosine2 - w * sine2, q * sine2 + w * cosine2);
         let length = (q * q + w * w).sqrt();
@@ -90,6 +102,9 @@ impl Direction {
             factors: [plane, x, y, vertical[0], vertical[1], axial],
             lengths: [length, (v1 * v1 + v2 * v2).sqrt()],
             joint1,
+            moment: load
+                .has_moment()
+                .then(|| TurnedMoment::new(along, load.moment, (sine, cosine), r, half, first)),
         }
     }
 }
@@ -121,14 +136,14 @@ impl<'a> PointCost<'a> {
         let load = &point.load;
         let direction = Direction::new(placed.chi + load.turn);
         let half = [placed.reach[0], placed.reach[2]];
-        let fixed = load.is_linear().then(|| direction.turned(&load.of_first(), placed.r, half, first));
+        let fixed = load.is_linear().then(|| direction.turned(&load.of_first(), load, placed.r, half, first));
         Self { placed, load, first, direction, fixed }
     }
 
     /// What a node says of a tangent, in a cell of heading of that half width (rad): `off` is where the point is from
     /// the node, in radius and height.
     #[inline(always)]
-    fn model(&self, turned: &Turned, known: &AffineModel, off: [f64; 2], half_cell: f64) -> Linear {
+    fn model(&self, turned: &Turned, (known, moments): Known<'_>, off: [f64; 2], half_cell: f64) -> Linear {
         let p = &self.placed;
         let [h_r, h_z, h_chi] = p.reach;
         let [plane, x, y, g, h, axial] = turned.factors;
@@ -161,6 +176,12 @@ impl<'a> PointCost<'a> {
             remainder += turned.lengths[1] * (remainder_v + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)))
                 + axial.abs() * f64::from(known.remainder[3]);
         }
+        if let (Some(turned), Some(known)) = (&turned.moment, moments) {
+            let part = turned.part(known, off, p.reach, half_cell);
+            let MomentPart { by: [r, z, heading], .. } = part;
+            (value, by_chi, remainder) = (value + part.value, by_chi + part.by_chi, remainder + part.remainder);
+            (by_r, by_z, by_heading) = (by_r + r, by_z + z, by_heading + heading);
+        }
         remainder += by_r.abs() * p.remainder_r + by_chi.abs() * p.remainder_chi;
         let slope =
             [by_r * p.slope_r[0] + by_chi * p.slope_chi[0], by_z, by_r * p.slope_r[1] + by_chi * p.slope_chi[1]];
@@ -173,7 +194,7 @@ impl<'a> PointCost<'a> {
     #[inline]
     pub fn min_cost(
         &self,
-        known: &AffineModel,
+        known: Known<'_>,
         off: [f64; 2],
         half_cell: f64,
         region: &Region,
@@ -203,15 +224,24 @@ impl<'a> PointCost<'a> {
 
     /// The least score in the middle of the box, and its slopes: by the tangents at the middle of box and cell.
     #[inline]
-    fn min_score(&self, known: &AffineModel, off: [f64; 2], half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
+    fn min_score(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
         let p = &self.placed;
-        let at = std::array::from_fn(|f| {
-            let [value, by_r, by_z, _] = known.values[f].map(f64::from);
+        let middle = |entry: &[f32; 4]| {
+            let [value, by_r, by_z, _] = entry.map(f64::from);
             value + by_r * off[0] + by_z * off[1]
-        });
-        let (sharp, of_error) = self.load.tangents(&self.direction.seen(at, p.r, self.first));
+        };
+        let at = std::array::from_fn(|f| middle(&known.0.values[f]));
+        let by_moment = match known.1 {
+            None => [0.0; 3],
+            Some(moments) => {
+                let at = std::array::from_fn(|f| middle(&moments.values[f]));
+                self.direction.moved(at, self.load, p.r, self.first)
+            }
+        };
+        let (sharp, of_error) = self.load.tangents(&self.direction.seen(at, p.r, self.first), by_moment);
         let least = |tangent: &Tangent| {
-            let turned = self.direction.turned(tangent, p.r, [p.reach[0], p.reach[2]], self.first);
+            let half = [p.reach[0], p.reach[2]];
+            let turned = self.direction.turned(tangent, self.load, p.r, half, self.first);
             let Linear { value, by_heading, slope, remainder } = self.model(&turned, known, off, half_cell);
             (value - remainder - by_heading.abs() * half_cell, slope)
         };
@@ -235,7 +265,7 @@ impl<'a> PointCost<'a> {
     #[inline]
     pub fn max_cost(
         &self,
-        known: &AffineModel,
+        known: Known<'_>,
         off: [f64; 2],
         half_cell: f64,
         region: &Region,

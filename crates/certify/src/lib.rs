@@ -53,6 +53,7 @@ mod load;
 mod lower_bound;
 mod minorant;
 mod model;
+mod moment;
 mod number;
 mod region;
 mod relaxed;

@@ -7,7 +7,8 @@
 //! s(C) = max over |u| <= 1, |e| <= r of  u . W C (f + e)
 //! ```
 //!
-//! a maximum of functions linear in C, so convex. Any u and e of these lengths give a lower bound for every state,
+//! (with a moment m the displacement `D m` beside that of the force, [`super::moment`]), a maximum of functions linear
+//! in C and D, so convex. Any u and e of these lengths give a lower bound for every state,
 //! `s(C) >= <C, S>` with S the symmetric part of `W^T u (f + e)^T`: a [`Tangent`]. It is sharp at a compliance where u
 //! and e are the maximisers there, and need not be for the bound to hold. With one scored direction and no errors of
 //! the force, u is +1 or -1 and S the same at every state.
@@ -23,6 +24,8 @@ pub(super) struct Load {
     pub directions: [[f64; 3]; 3],
     /// Force, times what a metre of the score counts. N
     pub force: [f64; 3],
+    /// Moment, times the same. N m
+    pub moment: [f64; 3],
     /// Largest error of the force, times the same. N
     pub error: f64,
     /// The frame of the load against that of the feed, about axis 1. rad
@@ -50,6 +53,8 @@ pub(super) struct Tangent {
     pub vertical: [f64; 2],
     /// S33.
     pub axial: f64,
+    /// W^T u, by which the displacement under a moment counts.
+    pub along: [f64; 3],
 }
 
 /// What a point costs of its score: how bounds of points are put together.
@@ -90,7 +95,7 @@ impl Objective {
 }
 
 /// Rounds of the ascent to the worst error of the force.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 3;
 /// What keeps a unit vector from being longer than that by rounding.
 const NO_LONGER: f64 = 1.0 - 1e-12;
 
@@ -113,7 +118,8 @@ impl Load {
         let factor = objective.factor(problem.point_weight(point));
         let force = &problem.task.wrenches()[point].force;
         let error = problem.criterion.force_uncertainty * force.norm() * factor;
-        let mut load = Self { directions, force: seen(force).map(|f| f * factor), error, turn: 0.0 };
+        let moment = seen(&problem.task.wrenches()[point].moment).map(|m| m * factor);
+        let mut load = Self { directions, force: seen(force).map(|f| f * factor), moment, error, turn: 0.0 };
         let weights = &problem.criterion.weights;
         if weights.surface == 0.0 && weights.feed == weights.wall {
             load.turn_to_force();
@@ -127,12 +133,19 @@ impl Load {
         let [x, y, _] = self.force;
         self.turn = libm::atan2(y, x);
         (self.force[0], self.force[1]) = (libm::hypot(x, y), 0.0);
+        let ((sine, cosine), [mx, my, _]) = (libm::sincos(self.turn), self.moment);
+        (self.moment[0], self.moment[1]) = (mx * cosine + my * sine, my * cosine - mx * sine);
         // A turn of deflections that count alike leaves their norm as it is.
     }
 
     /// Whether the point counts for nothing.
     pub fn is_zero(&self) -> bool {
-        self.force == [0.0; 3]
+        self.force == [0.0; 3] && !self.has_moment()
+    }
+
+    /// Whether a moment acts.
+    pub fn has_moment(&self) -> bool {
+        self.moment != [0.0; 3]
     }
 
     /// Whether one direction is scored, without errors of the force: the score is the absolute value of a linear
@@ -159,14 +172,17 @@ impl Load {
 
     /// The tangents at a compliance: one that is sharp there, and where one direction is scored another one, sharp
     /// where the deflection without an error vanishes, of what errors of the force alone can do.
-    pub fn tangents(&self, at: &Yielding) -> (Tangent, Option<Tangent>) {
-        let moved = at.times(self.force);
+    ///
+    /// `by_moment` is the displacement there under the moment, in the frame of the load (m).
+    pub fn tangents(&self, at: &Yielding, by_moment: [f64; 3]) -> (Tangent, Option<Tangent>) {
+        let moved = added(at.times(self.force), by_moment);
         if self.is_single() {
             let direction = self.directions[0];
             let response = at.times(direction);
             let sign = if dot(direction, moved) < 0.0 { -1.0 } else { 1.0 };
             let sharp = scaled(response, self.error * NO_LONGER / norm(response).max(f64::MIN_POSITIVE));
-            let of_error = Tangent::new(direction, sharp);
+            // The mean of that with u and that with -u: a moment adds nothing to it.
+            let of_error = Tangent { along: [0.0; 3], ..Tangent::new(direction, sharp) };
             return (Tangent::new(direction.map(|x| sign * x), self.force).plus(&of_error), Some(of_error));
         }
         let mut force = self.force;
@@ -176,7 +192,7 @@ impl Load {
                 let response = at.times(along);
                 let step = self.error * NO_LONGER / norm(response).max(f64::MIN_POSITIVE);
                 force = std::array::from_fn(|k| self.force[k] + step * response[k]);
-                along = self.along(at.times(force));
+                along = self.along(added(at.times(force), by_moment));
             }
         }
         (Tangent::new(along, force), None)
@@ -192,8 +208,8 @@ impl Load {
 
     /// The score under a compliance, by the ascent of [`Self::tangents`]: what the first tangent says there.
     #[cfg(test)]
-    pub fn score(&self, at: &Yielding) -> f64 {
-        self.tangents(at).0.of(at)
+    pub fn score(&self, at: &Yielding, by_moment: [f64; 3]) -> f64 {
+        self.tangents(at, by_moment).0.with(at, by_moment)
     }
 }
 
@@ -215,6 +231,7 @@ impl Tangent {
             turning: [a[0] * g[0] - a[1] * g[1], a[0] * g[1] + a[1] * g[0]],
             vertical: [a[0] * g[2] + a[2] * g[0], a[1] * g[2] + a[2] * g[1]],
             axial: a[2] * g[2],
+            along: a,
         }
     }
 
@@ -225,6 +242,7 @@ impl Tangent {
             turning: sum(self.turning, other.turning),
             vertical: sum(self.vertical, other.vertical),
             axial: self.axial + other.axial,
+            along: added(self.along, other.along),
         }
     }
 
@@ -237,7 +255,14 @@ impl Tangent {
             turning: by(self.turning),
             vertical: by(self.vertical),
             axial: self.axial * factor,
+            along: self.along.map(|x| x * factor),
         }
+    }
+
+    /// `<C, S>`, and what the displacement under a moment adds.
+    #[inline(always)]
+    pub fn with(&self, c: &Yielding, by_moment: [f64; 3]) -> f64 {
+        self.of(c) + dot(self.along, by_moment)
     }
 
     /// `<C, S>`.
@@ -260,6 +285,11 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 #[inline(always)]
 fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
+}
+
+#[inline(always)]
+fn added(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 #[inline(always)]

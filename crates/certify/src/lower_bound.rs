@@ -198,10 +198,11 @@ impl<'a> Pass<'a> {
     /// What a point costs at least in a cell; `None` where none of its states is allowed.
     fn cost(&self, answer: Option<&Answer<'_>>, cell: usize, class: PostureClass) -> Option<[f64; CORNERS]> {
         let Some((point, at, off)) = answer else { return Some([0.0; CORNERS]) };
-        match self.model.table.node(&self.model.arm, self.active.level, *at, cell, class) {
+        let (node, moments) = self.model.table.known(&self.model.arm, self.active.level, *at, cell, class);
+        match node {
             Node::Empty => None,
             Node::Unknown => Some([0.0; CORNERS]),
-            Node::Known(known) => Some(point.min_cost(known, *off, 0.5 * self.width, self.region, self.model.objective.aggregate)),
+            Node::Known(known) => Some(point.min_cost((known, moments), *off, 0.5 * self.width, self.region, self.model.objective.aggregate)),
         }
     }
 

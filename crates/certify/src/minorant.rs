@@ -1,9 +1,10 @@
 //! Affine functions below what a path point costs, whatever the heading.
 
 use super::arm::Arm;
-use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
-use super::cost::Direction;
+use super::compliance_table::{ComplianceTable, FUNCTIONS, Node, REMAINDERS};
+use super::cost::{Direction, Known};
 use super::load::{Load, Tangent};
+use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
@@ -67,7 +68,8 @@ pub(super) fn collect(
     out: &mut Vec<ModelledRegion>,
 ) -> bool {
     let finest = level + 1 == table.depth();
-    match table.node(arm, level, at, cell, class) {
+    let (node_at, moments) = table.known(arm, level, at, cell, class);
+    match node_at {
         Node::Empty => return true,
         Node::Unknown if finest => return false,
         Node::Known(known)
@@ -75,7 +77,7 @@ pub(super) fn collect(
         {
             let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
             let place = table.place(level, at);
-            out.push(ModelledRegion::new(known, half, place[0], [place[0] - node[0], place[1] - node[1]]));
+            out.push(ModelledRegion::new((known, moments), half, place[0], [place[0] - node[0], place[1] - node[1]]));
             return true;
         }
         _ => {}
@@ -101,6 +103,8 @@ pub(super) struct ModelledRegion {
     /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
     max_size: [f64; 2],
     moved: [f64; 2],
+    /// How it yields to moments, where some act.
+    moments: Option<MomentModel>,
     half: [f64; 3],
     r: f64,
     /// Radius and height less those of the node. m
@@ -109,7 +113,7 @@ pub(super) struct ModelledRegion {
 
 impl ModelledRegion {
     /// Of a model about a radius, within `half` of its place, which is `off` the node.
-    pub fn new(known: &AffineModel, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+    pub fn new((known, moments): Known<'_>, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
         let values = known.values.map(|v| v.map(f64::from));
         let remainder = known.remainder.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
@@ -119,14 +123,21 @@ impl ModelledRegion {
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
         let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
-        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], half, r, off }
+        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], moments: moments.copied(), half, r, off }
     }
 
     /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
     /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
     #[inline(always)]
-    fn least(&self, tangent: &Tangent, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
-        let turned = direction.turned(tangent, self.r, [self.half[0], h_chi], first);
+    fn least(
+        &self,
+        tangent: &Tangent,
+        load: &Load,
+        direction: &Direction,
+        h_chi: f64,
+        first: f64,
+    ) -> (f64, [f64; 3]) {
+        let turned = direction.turned(tangent, load, self.r, [self.half[0], h_chi], first);
         let [plane, x, y, g, h, axial] = turned.factors;
         let [length, vertical] = turned.lengths;
         let [j_value, j_r, j_chi, j_rest] = turned.joint1;
@@ -140,25 +151,35 @@ impl ModelledRegion {
             + self.remainder[3] * axial.abs()
             + h_chi * (2.0 * length * self.moved[0] + vertical * self.moved[1])
             + h_chi * h_chi * (2.0 * length * self.max_size[0] + 0.5 * vertical * self.max_size[1])
-            + j_rest
-            // The heading is free within its cell.
-            + of(3).abs() * self.half[2];
-        (of(0) + j_value - remainder, [of(1) + j_r, of(2), by_chi])
+            + j_rest;
+        let (value, slopes, by_heading) = (of(0) + j_value - remainder, [of(1) + j_r, of(2), by_chi], of(3));
+        // The heading is free within its cell.
+        let (Some(turned), Some(known)) = (&turned.moment, &self.moments) else {
+            return (value - by_heading.abs() * self.half[2], slopes);
+        };
+        let MomentPart { value: more, by: [r, z, heading], by_chi, remainder } =
+            turned.part(known, [0.0; 2], [self.half[0], self.half[1], h_chi], self.half[2]);
+        let free = (by_heading + heading).abs() * self.half[2];
+        (value + more - remainder - free, [slopes[0] + r, slopes[1] + z, slopes[2] + by_chi])
     }
 
     /// The same below the score.
     #[inline(always)]
     fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
         let seen = direction.seen(self.values.map(|value| value[0]), self.r, first);
+        let by_moment = self.moments.map_or([0.0; 3], |known| {
+            direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, first)
+        });
+        let least = |tangent: &Tangent| self.least(tangent, load, direction, h_chi, first);
         if load.is_linear() {
             let tangent = load.of_first();
             // With the sign that the value has.
-            let sign = if tangent.of(&seen) < 0.0 { -1.0 } else { 1.0 };
-            return self.least(&tangent.times(sign), direction, h_chi, first);
+            let sign = if tangent.with(&seen, by_moment) < 0.0 { -1.0 } else { 1.0 };
+            return least(&tangent.times(sign));
         }
-        let (sharp, of_error) = load.tangents(&seen);
-        let found = self.least(&sharp, direction, h_chi, first);
-        match of_error.map(|tangent| self.least(&tangent, direction, h_chi, first)) {
+        let (sharp, of_error) = load.tangents(&seen, by_moment);
+        let found = least(&sharp);
+        match of_error.map(|tangent| least(&tangent)) {
             Some(other) if other.0 > found.0 => other,
             _ => found,
         }

@@ -9,7 +9,7 @@ use stead_planning::criterion::Aggregate;
 use stead_planning::problem::Problem;
 use stead_planning::symmetry::{
     Unsupported, Upright, require_axial_springs, require_certain_compliances, require_constant, require_free_beta,
-    require_no_moment, require_no_travel,
+    require_no_travel,
 };
 
 /// Whether the best placement of a problem can be certified with tables of at most `memory` bytes when they are empty,
@@ -22,7 +22,6 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
         return Err(Unsupported::Orientations);
     }
     Upright::of(problem)?;
-    require_no_moment(problem)?;
     require_no_travel(problem)?;
     require_free_beta(problem)?;
     if problem.criterion.stiffness.is_some() {

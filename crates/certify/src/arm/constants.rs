@@ -34,6 +34,8 @@ pub(in super::super) struct Arm {
     /// Whether any force or scored direction is along axis 1, and whether both can be.
     pub(super) is_vertical: bool,
     pub(super) is_axial: bool,
+    /// Whether any moment acts.
+    pub(in super::super) has_moments: bool,
 }
 
 /// How the limits of a joint cut its turn.
@@ -73,6 +75,7 @@ impl Arm {
             bend: Bend { limit: limits.in_line },
             is_vertical,
             is_axial,
+            has_moments: problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0),
             lever: root_from_flange * tool_lever(problem),
             axis6: root_from_flange.column(2).into_owned(),
             laws: [1, 2].map(|j| Law::of(joint(j))),

@@ -21,6 +21,7 @@ mod singularity;
 mod vector;
 
 use super::interval_simd::Mask;
+use super::moment::MOMENTS;
 use super::number::Number;
 pub(super) use constants::{Arm, LimitSpan};
 use inverse::{Posed, Signs, Tool};
@@ -41,6 +42,8 @@ pub(super) struct ArmCompliance<T> {
     pub vertical: [T; 2],
     /// Compliance along the vertical. m/N
     pub axial: T,
+    /// The functions of [`super::moment::MomentModel`], where some moment acts. 1/N
+    pub moments: Option<[T; MOMENTS]>,
     /// What is left to each constraint.
     pub margins: Margins<T>,
     /// Where all but the conditioning was sure to be regular.
@@ -107,6 +110,7 @@ impl Arm {
             return None;
         }
         let (m, d1, d2, vertical, axial) = self.compliance(&posed, &mut regular);
+        let moments = self.has_moments.then(|| self.under_moments(&posed, &mut regular));
         let margins = Margins {
             elbow: elbow.margin,
             joints: elbow.joint_margins,
@@ -114,7 +118,7 @@ impl Arm {
             wrist: wrist.margin,
             conditioning,
         };
-        Some(ArmCompliance { m, d1, d2, vertical, axial, margins, regular, conditioned, violated })
+        Some(ArmCompliance { m, d1, d2, vertical, axial, moments, margins, regular, conditioned, violated })
     }
 
     /// m, d1, d2, and c_rz, c_tz and c_zz where some force or scored direction is along axis 1.
@@ -153,5 +157,39 @@ impl Arm {
             zero
         };
         (m, d1, d2, vertical, axial)
+    }
+
+    /// The functions of D = sum k_j v_j z_j^T without joint 1. In the frame of the arm's plane, axes 2 and 3 are
+    /// (sin phi, -cos phi, 0).
+    #[inline(never)]
+    fn under_moments<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> [T; MOMENTS] {
+        let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
+        let crossed = axis4.cross(axis6);
+        let [k4, k5, k6] = self.compliances;
+        let k5 = posed.wrist.inverse5.scale(k5);
+        let [v4, v5, v6] = [axis4.cross(lever), crossed.cross(lever), axis6.cross(lever)];
+        // The sum over joints 4 to 6 of k_j f(v_j) g(z_j).
+        let wrist = |f: fn(&Vector<T>) -> T, g: fn(&Vector<T>) -> T| {
+            (f(&v4) * g(&axis4)).scale(k4) + f(&v5) * g(&crossed) * k5 + (f(&v6) * g(&axis6)).scale(k6)
+        };
+        let (x, y, z): (fn(&Vector<T>) -> T, fn(&Vector<T>) -> T, fn(&Vector<T>) -> T) = (|v| v.x, |v| v.y, |v| v.z);
+        let [rr, rt, tr, tt] = [wrist(x, x), wrist(x, y), wrist(y, x), wrist(y, y)];
+        let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
+        let mut upper = |of2: T, of3: T| second.times(of2, angles2, regular) + third.times(of3, angles3, regular);
+        let [p2, p3] = posed.tips;
+        let (bending, lifting) = (upper(p2.up, p3.up).scale(0.5), upper(p2.along, p3.along));
+        let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
+        let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
+        [
+            (rr + tt).scale(0.5),
+            (tr - rt).scale(0.5) - bending,
+            (rr - tt).scale(0.5) - bending * sin_twice,
+            (rt + tr).scale(0.5) + bending * cos_twice,
+            wrist(x, z),
+            wrist(y, z),
+            wrist(z, x) + lifting * sin1,
+            wrist(z, y) - lifting * cos1,
+            wrist(z, z),
+        ]
     }
 }

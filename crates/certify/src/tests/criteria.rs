@@ -29,7 +29,8 @@ fn load(random: &mut ChaCha8Rng, k: usize) -> Load {
     directions[..=k % 3].iter_mut().for_each(|direction| *direction = vector(random));
     let force = vector(random).map(|f| 100.0 * f);
     let size = Vector3::from(force).norm();
-    Load { directions, force, error: [0.0, 0.1, 0.4][k / 3 % 3] * size, turn: 0.0 }
+    let error = [0.0, 0.1, 0.4][k / 3 % 3] * size;
+    Load { directions, force, moment: [0.0; 3], error, turn: 0.0 }
 }
 
 /// The score by the criterion's own maximum over errors of the force.
@@ -53,7 +54,7 @@ fn violations(change: fn(&mut Load), own: fn(Tangent) -> Tangent) -> (usize, [f6
         let mut changed = load;
         change(&mut changed);
         let at = compliance(&mut random);
-        let (sharp, of_error) = changed.tangents(&seen(&at));
+        let (sharp, of_error) = changed.tangents(&seen(&at), [0.0; 3]);
         let kind = k / 3 % 3;
         let lost = 1.0 - own(sharp).of(&seen(&at)) / score(&load, &at);
         match kind {

@@ -24,7 +24,7 @@ use std::f64::consts::{PI, TAU};
 use stead_model::robot::testing::robot_from;
 use stead_model::robot::{Compliance, Frames, PostureClass, Robot};
 use stead_model::stiffness::displacement;
-use stead_model::task::Task;
+use stead_model::task::{Task, Wrench};
 use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
 use stead_planning::problem::{Interval, Placement, Problem};
@@ -82,7 +82,7 @@ impl Setting {
         let weighed = Weights { feed: 0.3, wall: 1.0, axis: 0.5, surface: 0.7 };
         let plain = Weights { feed: 0.4, axis: 0.9, ..Weights::NONE };
         type Of = (&'static str, fn() -> Problem, Weights, Aggregate, f64);
-        let all: [Of; 10] = [
+        let all: [Of; 14] = [
             ("wall, force errors", slanted, Weights::WALL, Aggregate::Mean, 0.1),
             ("total", hanging_arm, Weights::TOTAL, Aggregate::Mean, 0.0),
             ("total, force errors", odd_arm, Weights::TOTAL, Aggregate::Mean, 0.1),
@@ -92,6 +92,10 @@ impl Setting {
             ("weights", with_normals, weighed, Aggregate::Mean, 0.0),
             ("weights, force errors", slanted, plain, Aggregate::Mean, 0.15),
             ("root of the mean of squares", hanging, Weights::TOTAL, Aggregate::Rms, 0.1),
+            ("total, moments", with_moments, Weights::TOTAL, Aggregate::Mean, 0.0),
+            ("total, moments, force errors", with_moments, Weights::TOTAL, Aggregate::Mean, 0.1),
+            ("wall, moments, force errors", with_moments, Weights::WALL, Aggregate::Mean, 0.1),
+            ("weights, moments", with_moments, plain, Aggregate::Rms, 0.0),
             ("largest", slanted, Weights::TOTAL, Aggregate::Max, 0.1),
         ];
         let setting = |(name, of, weights, aggregate, force_uncertainty): Of| {
@@ -101,7 +105,8 @@ impl Setting {
                 Criterion { weights, aggregate, force_uncertainty, segment_weights, ..Criterion::default() };
             (name, Self::new(problem))
         };
-        all.map(setting).into()
+        let linear = ("wall, moments", Self::new(with_moments()));
+        all.map(setting).into_iter().chain([linear]).collect()
     }
 
     fn side(&self) -> f64 {
@@ -214,6 +219,19 @@ fn with_normals() -> Problem {
     let normal = |k: usize| Vector3::new(libm::sin(k as f64), libm::cos(2.0 * k as f64), 0.6).normalize();
     let path = problem.task.path().clone().with_surface_normals((0..105).map(normal).collect()).unwrap();
     problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem
+}
+
+/// Forces and moments in every direction, on an arm with every offset.
+fn with_moments() -> Problem {
+    let mut problem = odd_arm();
+    let moment = |k: usize| {
+        let at = k as f64;
+        Vector3::new(6.0 * libm::cos(at), 9.0 * libm::sin(0.7 * at), 12.0 * libm::sin(1.3 * at))
+    };
+    let wrenches = problem.task.wrenches().iter().enumerate();
+    let wrenches = wrenches.map(|(k, wrench)| Wrench { moment: moment(k), ..*wrench }).collect();
+    problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
     problem
 }
 

@@ -10,6 +10,7 @@ use stead_numerics::monitor::Monitor;
 use stead_planning::beta_step::BetaStep;
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
+use stead_planning::testing::corners;
 
 #[test]
 fn windows_hold_the_least_of_their_neighbours() {
@@ -87,12 +88,17 @@ fn no_step_within_the_rate_is_forbidden_and_broken_steps_are_seen() {
         (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, Some(9.0));
         problem
     };
-    let spindle = [("spindle", five_segments()), ("spindle, hanging", hanging())];
+    let upside_down = || {
+        let (hanging, mut problem) = (hanging_arm(), corners(0.0));
+        (problem.robot, problem.cell) = (hanging.robot.clone(), hanging.cell);
+        problem
+    };
+    let spindle = [("spindle", corners(0.0)), ("spindle, hanging arm", upside_down())];
     let spindle = spindle.map(|(name, problem)| (name, Setting::new(turning(problem))));
     for (name, setting) in Setting::all().into_iter().chain(spindle) {
         assert_eq!(forbidden(&setting, |low, high| (low, high), true), 0, "{name}");
     }
-    let mut turned = Setting::new(turning(hanging()));
+    let mut turned = Setting::new(turning(upside_down()));
     turned.model.changes.iter_mut().for_each(|change| change.middle = -change.middle);
     assert!(forbidden(&turned, |low, high| (low, high), true) > 0, "the spindle turned the other way is not seen");
     let setting = Setting::new(five_segments());
