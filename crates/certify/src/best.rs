@@ -46,7 +46,16 @@ pub fn best(
         Err(stop) => {
             let open = vec![(whole, 0.0)];
             let Keeps { with_rate, with_turn } = keeps;
-            return Ok(Bound { value, met: None, bound: 0.0, with_rate, with_turn, nodes: 0, status: stop.into(), open });
+            return Ok(Bound {
+                value,
+                met: None,
+                bound: 0.0,
+                with_rate,
+                with_turn,
+                nodes: 0,
+                status: stop.into(),
+                open,
+            });
         }
     };
     let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
@@ -55,7 +64,7 @@ pub fn best(
         start,
         nodes,
         of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling, monitor),
-        used: || model.table.used(),
+        used: || model.used(),
         bytes: |active: &Arc<ActiveCells>| active.bytes(),
     };
     Ok(search.explore(all, monitor, |_| None))

@@ -1,17 +1,18 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
-use super::compliance_table::{Extent, Steps};
-use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
-use super::cost::CORNERS;
+use super::arm::Arm;
+use super::compliance_table::{ComplianceTable, Extent, Steps};
+use super::cost::{CORNERS, joined_sets};
 use super::load::Load;
+use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant, rounded};
 use super::model::Model;
 use super::region::{Point, Region};
 use super::sliding_min::joined;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
-use stead_planning::criterion::Aggregate;
 use stead_numerics::monitor::{Monitor, Stop};
+use stead_planning::criterion::Aggregate;
 
 /// Coarse tables, one for each kind of load, in ever coarser levels.
 #[derive(Debug, Clone)]
@@ -127,8 +128,7 @@ impl CoarseBounds {
                     p.z - self.extent.height.0 - length * j as f64,
                     chi - turn * k as f64,
                 ];
-                let at =
-                    (((i * level.counts[1] + j) * level.counts[2] + k % level.counts[2]) * self.kinds + kind) * 4;
+                let at = (((i * level.counts[1] + j) * level.counts[2] + k % level.counts[2]) * self.kinds + kind) * 4;
                 for class in 0..4 {
                     let e = &level.entries[at + class];
                     let sum = &mut sums[class];
@@ -141,8 +141,11 @@ impl CoarseBounds {
                     let least = size_of_load * f64::from(e.value) + s[0] * off[0] + s[1] * off[1] + s[2] * off[2]
                         - s[0].abs() * p.remainder_r
                         - s[2].abs() * p.remainder_chi;
-                    let slopes =
-                        [s[0] * p.slope_r[0] + s[2] * p.slope_chi[0], s[1], s[0] * p.slope_r[1] + s[2] * p.slope_chi[1]];
+                    let slopes = [
+                        s[0] * p.slope_r[0] + s[2] * p.slope_chi[0],
+                        s[1],
+                        s[0] * p.slope_r[1] + s[2] * p.slope_chi[1],
+                    ];
                     match aggregate {
                         Aggregate::Mean => {
                             sum[0] += least;
@@ -253,7 +256,33 @@ impl Level {
 
 /// All directions and kinds of load, and classes, at one radius and height.
 fn row_of(model: &Model, kinds: &[Load], at: [usize; 2], steps: Steps) -> Vec<Affine> {
-    let (arm, table, first) = (&model.arm, &model.table, model.first);
+    let own = row_of_set((&model.arm, &model.table, model.first), kinds, at, steps);
+    let others = model.others.iter().map(|set| row_of_set((&set.arm, &set.table, set.first), kinds, at, steps));
+    let mut sets: Vec<Vec<Affine>> = std::iter::once(own).chain(others).collect();
+    if sets.len() == 1 {
+        return sets.swap_remove(0);
+    }
+    let joined = |entry: usize| {
+        let mut all = sets.iter().map(|set| set[entry]);
+        if all.clone().any(|e| e == EMPTY) {
+            return EMPTY;
+        }
+        let wide = |e: Affine| (f64::from(e.value), e.slope.map(f64::from));
+        let wide: Vec<_> = all.by_ref().map(wide).collect();
+        let (value, slope) = joined_sets(model.over, wide.into_iter());
+        let half = [steps.length, steps.length, TAU / steps.headings as f64];
+        rounded(value, slope, half)
+    };
+    (0..sets[0].len()).map(joined).collect()
+}
+
+/// The same under one set of stiffness: an arm, its table, and the compliance of its joint 1 (rad/(N m)).
+fn row_of_set(
+    (arm, table, first): (&Arm, &ComplianceTable, f64),
+    kinds: &[Load],
+    at: [usize; 2],
+    steps: Steps,
+) -> Vec<Affine> {
     let node = table.place(0, at);
     let step = TAU / steps.headings as f64;
     let half = [steps.length, steps.length, step];

@@ -349,7 +349,7 @@ mod tests {
         let set_up =
             || table.levels.iter().flat_map(|level| &level.places).filter(|place| place.get().is_some()).count();
         assert_eq!(set_up(), 0);
-        let arm = Arm::new(&problem, &problem.robot.compliances_at(&[0.0; 6]), extent.radius.0);
+        let arm = Arm::new(&problem, &problem.robot, extent.radius.0);
         for cell in [0, 1023] {
             table.known(&arm, 3, [700, 300], cell, PostureClass::ALL[0]);
         }

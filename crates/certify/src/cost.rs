@@ -8,7 +8,7 @@ use super::compliance_table::AffineModel;
 use super::load::{Load, Tangent, Yielding};
 use super::moment::{MOMENTS, MomentModel, MomentPart, TurnedMoment, moved};
 use super::region::{Point, PolarModel, Region};
-use stead_planning::criterion::Aggregate;
+use stead_planning::criterion::{Aggregate, Over};
 
 /// What a node tells: how it yields to forces and, where some moment acts, to moments.
 pub(super) type Known<'a> = (&'a AffineModel, Option<&'a MomentModel>);
@@ -102,9 +102,7 @@ impl Direction {
             factors: [plane, x, y, vertical[0], vertical[1], axial],
             lengths: [length, (v1 * v1 + v2 * v2).sqrt()],
             joint1,
-            moment: load
-                .has_moment()
-                .then(|| TurnedMoment::new(along, load.moment, (sine, cosine), r, half, first)),
+            moment: load.has_moment().then(|| TurnedMoment::new(along, load.moment, (sine, cosine), r, half, first)),
         }
     }
 }
@@ -133,7 +131,10 @@ struct Linear {
 impl<'a> PointCost<'a> {
     /// With the compliance of joint 1 (rad/(N m)).
     pub fn new(point: &'a Point, placed: PolarModel, first: f64) -> Self {
-        let load = &point.load;
+        Self::of(&point.load, placed, first)
+    }
+
+    fn of(load: &'a Load, placed: PolarModel, first: f64) -> Self {
         let direction = Direction::new(placed.chi + load.turn);
         let half = [placed.reach[0], placed.reach[2]];
         let fixed = load.is_linear().then(|| direction.turned(&load.of_first(), load, placed.r, half, first));
@@ -173,7 +174,8 @@ impl<'a> PointCost<'a> {
             let gradient = |k: usize| get(3, k).abs() + get(4, k).abs();
             let remainder_v = f64::from(known.remainder[2]);
             let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * remainder_v;
-            remainder += turned.lengths[1] * (remainder_v + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)))
+            remainder += turned.lengths[1]
+                * (remainder_v + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)))
                 + axial.abs() * f64::from(known.remainder[3]);
         }
         if let (Some(turned), Some(known)) = (&turned.moment, moments) {
@@ -188,9 +190,29 @@ impl<'a> PointCost<'a> {
         Linear { value, by_heading, slope, remainder }
     }
 
-    /// Least costs at the corners of the box, in a cell of heading of that half width (rad): `off` is where the point
-    /// is from the node, in radius and height. For the largest score, its least over the box at every corner. m, for
-    /// the root of the mean of squares m^2
+    /// The same point with another compliance of joint 1 (rad/(N m)).
+    pub fn with_first(&self, first: f64) -> Self {
+        Self::of(self.load, self.placed, first)
+    }
+
+    /// An affine function of the placement below the score, in a cell of heading of that half width (rad): `off` is
+    /// where the point is from the node, in radius and height. Its value in the middle of the box (m), and slopes; zero
+    /// where the score may be.
+    #[inline]
+    pub fn least(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
+        let (min, slope) = match &self.fixed {
+            Some(turned) => {
+                let Linear { value, by_heading, slope, remainder } = self.model(turned, known, off, half_cell);
+                let sign = if value < 0.0 { -1.0 } else { 1.0 };
+                (value.abs() - remainder - by_heading.abs() * half_cell, slope.map(|s| sign * s))
+            }
+            None if self.load.is_zero() => return NOTHING,
+            None => self.min_score(known, off, half_cell, region),
+        };
+        if min <= 0.0 { NOTHING } else { (min, slope) }
+    }
+
+    /// Least costs at the corners of the box, as [`Self::least`] and [`cost_at_corners`].
     #[inline]
     pub fn min_cost(
         &self,
@@ -200,26 +222,7 @@ impl<'a> PointCost<'a> {
         region: &Region,
         aggregate: Aggregate,
     ) -> [f64; CORNERS] {
-        let (min, slope) = match &self.fixed {
-            Some(turned) => {
-                let Linear { value, by_heading, slope, remainder } = self.model(turned, known, off, half_cell);
-                let sign = if value < 0.0 { -1.0 } else { 1.0 };
-                (value.abs() - remainder - by_heading.abs() * half_cell, slope.map(|s| sign * s))
-            }
-            None if self.load.is_zero() => return [0.0; CORNERS],
-            None => self.min_score(known, off, half_cell, region),
-        };
-        if min <= 0.0 {
-            return [0.0; CORNERS];
-        }
-        let sides = std::array::from_fn(|k| slope[k] * region.half[k]);
-        match aggregate {
-            Aggregate::Mean => corners(min, sides),
-            // The tangent of the square, which is above it nowhere.
-            Aggregate::Rms => corners(min * min, sides.map(|side| 2.0 * min * side)),
-            // Of the largest of several affine functions the least need not be at a corner.
-            Aggregate::Max => [(min - sides.iter().map(|side| side.abs()).sum::<f64>()).max(0.0); CORNERS],
-        }
+        cost_at_corners(self.least(known, off, half_cell, region), region, aggregate)
     }
 
     /// The least score in the middle of the box, and its slopes: by the tangents at the middle of box and cell.
@@ -245,9 +248,7 @@ impl<'a> PointCost<'a> {
             let Linear { value, by_heading, slope, remainder } = self.model(&turned, known, off, half_cell);
             (value - remainder - by_heading.abs() * half_cell, slope)
         };
-        let size = |(min, slope): &(f64, [f64; 3])| {
-            min - (0..3).map(|k| slope[k].abs() * region.half[k]).sum::<f64>()
-        };
+        let size = |(min, slope): &(f64, [f64; 3])| min - (0..3).map(|k| slope[k].abs() * region.half[k]).sum::<f64>();
         let found = least(&sharp);
         match of_error.map(|tangent| least(&tangent)) {
             // Of the two the one that is larger where it is least.
@@ -277,6 +278,47 @@ impl<'a> PointCost<'a> {
         let all = corners(value, [0, 1, 2].map(|k| slope[k] * region.half[k]));
         all.map(|c| remainder + if choice { (c.abs() - free).max(0.0) } else { c.abs() + free })
     }
+}
+
+/// Of a score nothing is known but that it is none below zero.
+pub(super) const NOTHING: (f64, [f64; 3]) = (0.0, [0.0; 3]);
+
+/// Costs at the corners of a box of a score that is nowhere below an affine function (its value in the middle, m, and
+/// slopes). For the largest score, the least of it over the box at every corner. m, for the root of the mean of squares
+/// m^2
+#[inline]
+pub(super) fn cost_at_corners((min, slope): (f64, [f64; 3]), region: &Region, aggregate: Aggregate) -> [f64; CORNERS] {
+    if min <= 0.0 {
+        return [0.0; CORNERS];
+    }
+    let sides = std::array::from_fn(|k| slope[k] * region.half[k]);
+    match aggregate {
+        Aggregate::Mean => corners(min, sides),
+        // The tangent of the square, which is above it nowhere.
+        Aggregate::Rms => corners(min * min, sides.map(|side| 2.0 * min * side)),
+        // Of the largest of several affine functions the least need not be at a corner.
+        Aggregate::Max => [(min - sides.iter().map(|side| side.abs()).sum::<f64>()).max(0.0); CORNERS],
+    }
+}
+
+/// An affine function below the score of a point, from such functions below its scores under several sets of stiffness.
+#[inline]
+pub(super) fn joined_sets(over: Over, all: impl ExactSizeIterator<Item = (f64, [f64; 3])>) -> (f64, [f64; 3]) {
+    let share = 1.0 / all.len() as f64;
+    all.reduce(|a, b| match over {
+        Over::Worst => {
+            if b.0 > a.0 {
+                b
+            } else {
+                a
+            }
+        }
+        Over::Mean | Over::Regret => (a.0 + b.0, std::array::from_fn(|k| a.1[k] + b.1[k])),
+    })
+    .map_or(NOTHING, |sum| match over {
+        Over::Worst => sum,
+        Over::Mean | Over::Regret => (sum.0 * share, sum.1.map(|slope| slope * share)),
+    })
 }
 
 /// Values at the corners of a box of an affine function: at the middle, and how much it changes to the upper sides.

@@ -6,16 +6,17 @@
 //! some beta of the one is within the limits on beta of some beta of the other.
 
 use super::active_cells::ActiveCells;
-use super::compliance_table::Node;
-use super::cost::{CORNERS, PointCost};
+use super::arm::Arm;
+use super::compliance_table::{ComplianceTable, Node};
+use super::cost::{CORNERS, NOTHING, PointCost, cost_at_corners, joined_sets};
 use super::model::Model;
 use super::region::Region;
 use super::sliding_min::{INFINITE, SlidingMin, joined, min_into};
 use std::f64::consts::TAU;
-use stead_planning::beta_step::BetaStep;
-use stead_planning::criterion::Aggregate;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Monitor;
+use stead_planning::beta_step::BetaStep;
+use stead_planning::criterion::Aggregate;
 
 /// Steps over more cells than there are.
 const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);
@@ -198,12 +199,25 @@ impl<'a> Pass<'a> {
     /// What a point costs at least in a cell; `None` where none of its states is allowed.
     fn cost(&self, answer: Option<&Answer<'_>>, cell: usize, class: PostureClass) -> Option<[f64; CORNERS]> {
         let Some((point, at, off)) = answer else { return Some([0.0; CORNERS]) };
-        let (node, moments) = self.model.table.known(&self.model.arm, self.active.level, *at, cell, class);
-        match node {
-            Node::Empty => None,
-            Node::Unknown => Some([0.0; CORNERS]),
-            Node::Known(known) => Some(point.min_cost((known, moments), *off, 0.5 * self.width, self.region, self.model.objective.aggregate)),
+        let Model { table, arm, others, over, objective, .. } = self.model;
+        let (level, half, aggregate) = (self.active.level, 0.5 * self.width, objective.aggregate);
+        let least = |table: &ComplianceTable, arm: &Arm, point: &PointCost<'_>| {
+            let (node, moments) = table.known(arm, level, *at, cell, class);
+            match node {
+                Node::Empty => None,
+                Node::Unknown => Some(NOTHING),
+                Node::Known(known) => Some(point.least((known, moments), *off, half, self.region)),
+            }
+        };
+        let own = least(table, arm, point)?;
+        if others.is_empty() {
+            return Some(cost_at_corners(own, self.region, aggregate));
         }
+        let mut all = vec![own];
+        for set in others {
+            all.push(least(&set.table, &set.arm, &point.with_first(set.first))?);
+        }
+        Some(cost_at_corners(joined_sets(*over, all.into_iter()), self.region, aggregate))
     }
 
     /// From the end back: cells through which every way costs `ceiling` or more, with `others` for the other segments,

@@ -46,7 +46,8 @@ pub(super) fn below_all(
     rounded(value, slope, half)
 }
 
-fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
+/// An affine function a little lower, in fewer digits.
+pub(super) fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
     let size = value.abs() + (0..3).map(|k| slope[k].abs() * half[k] * 4.0).sum::<f64>();
     let value = value - 1e-6 * size;
     if value <= 0.0 { ZERO } else { Affine { value: value as f32, slope: slope.map(|s| s as f32) } }
@@ -129,14 +130,7 @@ impl ModelledRegion {
     /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
     /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
     #[inline(always)]
-    fn least(
-        &self,
-        tangent: &Tangent,
-        load: &Load,
-        direction: &Direction,
-        h_chi: f64,
-        first: f64,
-    ) -> (f64, [f64; 3]) {
+    fn least(&self, tangent: &Tangent, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
         let turned = direction.turned(tangent, load, self.r, [self.half[0], h_chi], first);
         let [plane, x, y, g, h, axial] = turned.factors;
         let [length, vertical] = turned.lengths;
@@ -147,7 +141,9 @@ impl ModelledRegion {
         };
         let [d1, d2, cr, ct] = [1, 2, 3, 4].map(|f| self.values[f][0]);
         let by_chi = 2.0 * (x * d2 - y * d1) + g * ct - h * cr + j_chi;
-        let remainder = self.remainder[0] * plane.abs() + self.remainder[1] * length + self.remainder[2] * vertical
+        let remainder = self.remainder[0] * plane.abs()
+            + self.remainder[1] * length
+            + self.remainder[2] * vertical
             + self.remainder[3] * axial.abs()
             + h_chi * (2.0 * length * self.moved[0] + vertical * self.moved[1])
             + h_chi * h_chi * (2.0 * length * self.max_size[0] + 0.5 * vertical * self.max_size[1])

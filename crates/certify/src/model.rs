@@ -8,13 +8,24 @@ use super::cost::PointCost;
 use super::load::Objective;
 use super::region::{Point, PolarModel, Region};
 use std::ops::Range;
+use stead_model::robot::Robot;
 use stead_planning::beta_step::BetaStep;
+use stead_planning::criterion::Over;
 use stead_planning::problem::Problem;
 use stead_planning::symmetry::Upright;
 
 /// Steps of the coarsest tables, and their number.
 pub(super) const STEPS: Steps = Steps { length: 0.025, headings: 128 };
 pub(super) const LEVELS: usize = 4;
+
+/// The arm with another set of stiffness than the first.
+#[derive(Debug)]
+pub(super) struct OtherSet {
+    pub arm: Arm,
+    pub table: ComplianceTable,
+    /// Compliance of joint 1. rad/(N m)
+    pub first: f64,
+}
 
 /// What is to be bounded, prepared.
 #[derive(Debug)]
@@ -28,6 +39,10 @@ pub(super) struct Model {
     pub changes: Vec<BetaStep>,
     /// Compliance of joint 1. rad/(N m)
     pub first: f64,
+    /// The same arm with the other sets of stiffness that a score covers, where there are several.
+    pub others: Vec<OtherSet>,
+    /// How the scores under the sets make up that of a point.
+    pub over: Over,
     pub yaws: Yaws,
     /// How the costs of the points make up the figure that is minimised.
     pub objective: Objective,
@@ -36,8 +51,12 @@ pub(super) struct Model {
 impl Model {
     /// Of a problem, with what is kept of the limits on beta along the path.
     pub fn new(problem: &Problem, keeps: Keeps) -> Self {
-        let compliances = problem.robot.compliances_at(&[0.0; 6]);
         let extent = extent(problem);
+        let arm = |robot: &Robot| Arm::new(problem, robot, extent.radius.0);
+        let table = || ComplianceTable::new(extent, STEPS, LEVELS);
+        let first = |robot: &Robot| robot.compliances_at(&[0.0; 6])[0];
+        let robots = problem.scored_robots();
+        let other = |robot: &Robot| OtherSet { arm: arm(robot), table: table(), first: first(robot) };
         // A growing beta turns the spindle about axis 1 or against it.
         let sign = Upright::of(problem).map_or(1.0, |upright| upright.rotation_sign);
         let change = |point: usize| match problem.redundancy.max_beta_rate {
@@ -51,12 +70,14 @@ impl Model {
         };
         let points = points_of(problem);
         Self {
-            arm: Arm::new(problem, &compliances, extent.radius.0),
-            table: ComplianceTable::new(extent, STEPS, LEVELS),
+            arm: arm(&robots[0]),
+            table: table(),
             changes: (0..points.len()).map(change).collect(),
             points,
             segments: problem.task.segments().to_vec(),
-            first: compliances[0],
+            first: first(&robots[0]),
+            others: robots[1..].iter().map(other).collect(),
+            over: problem.criterion.stiffness.as_ref().map_or(Over::Mean, |sets| sets.over),
             yaws: Yaws::new(problem),
             objective: Objective::of(problem),
         }
@@ -82,6 +103,11 @@ impl Model {
         let nearest = region.middle[0] - region.half[0] - self.points[point].distance;
         let min_r = nearest.max(placed.r - placed.reach[0]);
         if min_r < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
+    }
+
+    /// What the tables take. bytes
+    pub fn used(&self) -> u64 {
+        self.others.iter().map(|set| set.table.used()).sum::<u64>() + self.table.used()
     }
 
     /// Every point over a box, where something is known of it.

@@ -10,8 +10,7 @@ use super::number::VARIABLES;
 pub(super) const MOMENTS: usize = 9;
 
 /// Functions that turn together: the first, their number, and how many times as fast as the frame.
-const GROUPS: [(usize, usize, f64); 6] =
-    [(0, 1, 0.0), (1, 1, 0.0), (2, 2, 2.0), (4, 2, 1.0), (6, 2, 1.0), (8, 1, 0.0)];
+const GROUPS: [(usize, usize, f64); 6] = [(0, 1, 0.0), (1, 1, 0.0), (2, 2, 2.0), (4, 2, 1.0), (6, 2, 1.0), (8, 1, 0.0)];
 
 /// An affine model of D around a node. 1/N
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +24,12 @@ pub(super) struct MomentModel {
 impl MomentModel {
     /// Of values and gradients at a node, second derivatives by pairs of variables (function, pair) and what the pairs
     /// are multiplied by; `None` where they are not finite.
-    pub fn new(values: [[f64; 4]; MOMENTS], half: [f64; 3], of_pair: impl Fn(usize, usize) -> f64, by: [f64; 6]) -> Option<Self> {
+    pub fn new(
+        values: [[f64; 4]; MOMENTS],
+        half: [f64; 3],
+        of_pair: impl Fn(usize, usize) -> f64,
+        by: [f64; 6],
+    ) -> Option<Self> {
         let remainder = GROUPS.map(|(first, count, _)| {
             let all = first..first + count;
             let second = |pair: usize| all.clone().map(|f| of_pair(f, pair).powi(2)).sum::<f64>().sqrt();

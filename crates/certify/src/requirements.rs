@@ -24,9 +24,6 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     Upright::of(problem)?;
     require_no_travel(problem)?;
     require_free_beta(problem)?;
-    if problem.criterion.stiffness.is_some() {
-        return Err(Unsupported::StiffnessSets);
-    }
     require_constant(problem, &[0, 3, 4, 5])?;
     require_certain_compliances(problem)?;
     require_axial_springs(problem)?;
@@ -35,7 +32,9 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
         return Err(Unsupported::Conditioning { needed });
     }
     let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
-    let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS).saturating_add(coarse);
+    let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS)
+        .saturating_mul(problem.scored_robots().len() as u64)
+        .saturating_add(coarse);
     if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) }
 }
 
@@ -49,6 +48,8 @@ pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsu
     let beyond = |key| Err(Unsupported::NotFromAbove { key });
     if problem.criterion.aggregate != Aggregate::Mean {
         beyond("criterion.aggregate")
+    } else if problem.criterion.stiffness.is_some() {
+        beyond("criterion.robots")
     } else if problem.criterion.force_uncertainty != 0.0 {
         beyond("criterion.force_uncertainty")
     } else if !problem.criterion.weights.is_single() {

@@ -60,7 +60,7 @@ pub fn worst(
         start,
         nodes: 0,
         of: |open: &WorstBox| parts(&model, open, ceiling, monitor),
-        used: || model.table.used(),
+        used: || model.used(),
         bytes: |seen: &Option<Arc<Inherited>>| seen.as_ref().map_or(0, |seen| seen.bytes()),
     };
     let mut known = value;

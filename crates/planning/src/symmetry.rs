@@ -8,7 +8,7 @@
 use super::criterion::{Aggregate, Criterion, Weights};
 use super::problem::{BetaPlan, Placement, Problem};
 use nalgebra::Vector3;
-use stead_model::robot::{Compliance, angles::wrap};
+use stead_model::robot::{Compliance, Robot, angles::wrap};
 
 /// Why a problem cannot be treated by means of the symmetry.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -83,9 +83,6 @@ pub enum Unsupported {
         /// Where it may change.
         beta: BetaPlan,
     },
-    /// Scores are those under several sets of stiffness.
-    #[error("scores are those under several sets of stiffness (criterion.robots)")]
-    StiffnessSets,
     /// Something else than the mean deflection normal to the wall is minimised.
     #[error("it covers the mean of the deflection normal to the wall alone, and not another {key}")]
     OtherCriterion {
@@ -175,7 +172,10 @@ pub fn require_no_moment(problem: &Problem) -> Result<(), Unsupported> {
 /// # Errors
 /// [`Unsupported::VaryingCompliance`] for the first that is not.
 pub fn require_constant(problem: &Problem, joints: &[usize]) -> Result<(), Unsupported> {
-    let is_law = |j: &&usize| !matches!(problem.robot.joints()[**j].compliance, Compliance::Constant(_));
+    let is_law = |j: &&usize| {
+        let varies = |robot: &Robot| !matches!(robot.joints()[**j].compliance, Compliance::Constant(_));
+        problem.scored_robots().iter().any(varies)
+    };
     joints.iter().find(is_law).map_or(Ok(()), |joint| Err(Unsupported::VaryingCompliance { joint: joint + 1 }))
 }
 
@@ -243,7 +243,8 @@ pub fn require_axial_springs(problem: &Problem) -> Result<(), Unsupported> {
 /// # Errors
 /// [`Unsupported::UncertainCompliances`] where they cover it.
 pub fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
-    let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
+    let is_covered = problem.criterion.confidence != 0.0
+        && problem.scored_robots().iter().any(|robot| robot.uncertainty().is_some());
     if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
 }
 

@@ -6,7 +6,7 @@ use super::law::Law;
 use super::singularity::{Limits, Needs, tool_lever};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
-use stead_model::robot::{Geometry, angles::ANGLE_ROUNDING};
+use stead_model::robot::{Geometry, Robot, angles::ANGLE_ROUNDING};
 use stead_planning::problem::Problem;
 
 /// What does not change from state to state.
@@ -50,9 +50,10 @@ pub(in super::super) enum LimitSpan {
 }
 
 impl Arm {
-    /// For radii of the tool centre point from `nearest` (m) on.
-    pub fn new(problem: &Problem, compliances: &[f64; 6], nearest: f64) -> Self {
-        let robot = &problem.robot;
+    /// With the stiffness of a robot of the geometry of the problem's, for radii of the tool centre point from `nearest`
+    /// (m) on.
+    pub fn new(problem: &Problem, robot: &Robot, nearest: f64) -> Self {
+        let compliances = robot.compliances_at(&[0.0; 6]);
         let geometry = robot.geometry().clone();
         let side = geometry.base_from_root[(2, 2)];
         let parts = points_of(problem).into_iter().map(|point| point.load.vertical_parts());

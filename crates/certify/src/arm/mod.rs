@@ -151,11 +151,8 @@ impl Arm {
         }
         let tilting = -upper(p2.along * p2.up, p3.along * p3.up);
         let vertical = [tilting * cos1 + wrist(&|v| v.x * v.z), tilting * sin1 + wrist(&|v| v.y * v.z)];
-        let axial = if self.is_axial {
-            upper(p2.along.square(), p3.along.square()) + wrist(&|v| v.z.square())
-        } else {
-            zero
-        };
+        let axial =
+            if self.is_axial { upper(p2.along.square(), p3.along.square()) + wrist(&|v| v.z.square()) } else { zero };
         (m, d1, d2, vertical, axial)
     }
 

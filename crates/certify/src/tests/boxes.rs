@@ -89,7 +89,8 @@ pub struct Mutation {
     cell: f64,
 }
 
-pub const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, moments: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
+pub const SOUND: Mutation =
+    Mutation { name: "sound", known: |_| {}, moments: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
 
 /// Size of a box, half width of the node in radius and height, half width of its cell of heading.
 const SIZES: [[f64; 3]; 5] =
@@ -119,7 +120,13 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
         moments.iter_mut().for_each(mutation.moments);
         (mutation.placed)(&mut placed);
         let one = PointCost::new(&setting.model.points[point], placed, setting.model.first * mutation.joint1);
-        let min = one.min_cost((&known, moments.as_ref()), off, cell * mutation.cell, &region, setting.model.objective.aggregate);
+        let min = one.min_cost(
+            (&known, moments.as_ref()),
+            off,
+            cell * mutation.cell,
+            &region,
+            setting.model.objective.aggregate,
+        );
         for _ in 0..8 {
             let s = shares(&mut random);
             // The affine function that has those values at the corners.
@@ -166,7 +173,11 @@ fn broken_costs_are_seen() {
     let mut problem = slanted();
     (problem.criterion.weights, problem.criterion.force_uncertainty) = (Weights::TOTAL, 0.1);
     let setting = Setting::new(problem);
-    let axial = Mutation { name: "vertical compliance doubled", known: |known| known.values[5] = known.values[5].map(|v| 2.0 * v), ..SOUND };
+    let axial = Mutation {
+        name: "vertical compliance doubled",
+        known: |known| known.values[5] = known.values[5].map(|v| 2.0 * v),
+        ..SOUND
+    };
     // Without joint 1 the arm is stiffer, and the whole deflection smaller.
     let twice = Mutation { name: "joint 1 twice", joint1: 2.0, ..SOUND };
     let others = mutations.iter().filter(|mutation| mutation.joint1 == 1.0);
@@ -175,7 +186,11 @@ fn broken_costs_are_seen() {
     }
     let of_moments = [
         Mutation { name: "remainders of moments zero", moments: |known| known.remainder = [0.0; 6], ..SOUND },
-        Mutation { name: "antisymmetric part", moments: |known| known.values[1] = known.values[1].map(|v| -v), ..SOUND },
+        Mutation {
+            name: "antisymmetric part",
+            moments: |known| known.values[1] = known.values[1].map(|v| -v),
+            ..SOUND
+        },
         Mutation { name: "vertical rows", moments: |known| known.values[6] = known.values[6].map(|v| -v), ..SOUND },
         Mutation { name: "vertical columns", moments: |known| known.values[4] = known.values[4].map(|v| -v), ..SOUND },
         Mutation { name: "turning part", moments: |known| known.values[3] = known.values[3].map(|v| -v), ..SOUND },

@@ -61,7 +61,10 @@ fn the_closed_form_is_the_ordinary_evaluator_at_every_allowed_state() {
 /// Functions of the compliance that count.
 fn functions(setting: &Setting) -> usize {
     let parts = setting.model.points.iter().map(|point| point.load.vertical_parts());
-    3 + parts.fold([0, 0], |all, one| [all[0] | (2 * usize::from(one[0])), all[1] | usize::from(one[1])]).iter().sum::<usize>()
+    3 + parts
+        .fold([0, 0], |all, one| [all[0] | (2 * usize::from(one[0])), all[1] | usize::from(one[1])])
+        .iter()
+        .sum::<usize>()
 }
 
 /// The score by the formula of the certificate.

@@ -17,8 +17,16 @@ use stead_planning::testing::{Beside, with_beside};
 const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
 
 fn proof(problem: &Problem, with_rate: bool) -> Proof {
-    let bound =
-        Bound { value: 1.0, met: None, bound: 1.0, with_rate, with_turn: false, nodes: 1, status: Status::Reached, open: Vec::new() };
+    let bound = Bound {
+        value: 1.0,
+        met: None,
+        bound: 1.0,
+        with_rate,
+        with_turn: false,
+        nodes: 1,
+        status: Status::Reached,
+        open: Vec::new(),
+    };
     Proof::new(problem, Sense::Min, PLACEMENT, bound)
 }
 

@@ -18,6 +18,8 @@ pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: S
         segments: b.segments.clone(),
         changes: b.changes.clone(),
         first: b.first,
+        others: Vec::new(),
+        over: b.over,
         yaws: b.yaws,
         objective: b.objective,
     }

@@ -170,8 +170,7 @@ impl Setting {
         let (rr, tt) = (by_radial.dot(&radial), by_tangential.dot(&tangential));
         let up = Vector3::new(0.0, 0.0, side);
         let (crossed, turned) = (by_radial.dot(&tangential), [by_radial.dot(&up), by_tangential.dot(&up)]);
-        let values =
-            [(rr + tt) / 2.0, (rr - tt) / 2.0, crossed, turned[0], turned[1], moved(&up).dot(&up)];
+        let values = [(rr + tt) / 2.0, (rr - tt) / 2.0, crossed, turned[0], turned[1], moved(&up).dot(&up)];
         let cost = self.problem.point_cost(point, state.score());
         let is_squared = self.problem.criterion.aggregate == Aggregate::Rms;
         Some(Truth { values, cost, score: if is_squared { cost.sqrt() } else { cost } })
