@@ -3,7 +3,7 @@
 use super::arm::Arm;
 use super::compliance_table::{ComplianceTable, Extent, Steps};
 use super::cost::{CORNERS, joined_sets};
-use super::load::Load;
+use super::kind::{Kind, kinds};
 use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant, rounded};
 use super::model::Model;
 use super::region::{Point, Region};
@@ -32,12 +32,8 @@ pub(super) struct Level {
     pub entries: Vec<Affine>,
 }
 
-/// Kinds of load that have a table: those of most weight.
-const MAX_KINDS: usize = 12;
 /// Rows computed between two questions whether to go on.
 const ROWS: usize = 64;
-/// Kinds of load counted: a task may have as many as points.
-const MAX_COUNTED: usize = 1000;
 
 impl CoarseBounds {
     /// Makes them, unless `stop`, called repeatedly, returns a reason to stop before that; `monitor` is checked within
@@ -47,12 +43,7 @@ impl CoarseBounds {
     /// The reason to stop.
     pub fn new(model: &Model, monitor: &Monitor, stop: impl Fn() -> Option<Stop>) -> Result<Self, Stop> {
         let (extent, steps) = model.table.grid();
-        let kinds = kinds(&model.points);
-        let kind_of = |p: &Point| {
-            let (load, size) = unit(&p.load)?;
-            Some((kinds.iter().position(|kind| same(kind, &load))?, size))
-        };
-        let kind_of = model.points.iter().map(kind_of).collect();
+        let (kinds, kind_of) = kinds(&model.points);
         let counts = counts(extent, steps);
         let mut entries = Vec::new();
         let numbers: Vec<usize> = (0..counts[0] * counts[1]).collect();
@@ -85,7 +76,7 @@ impl CoarseBounds {
         // In f64: a cell may be so large that whole numbers overflow.
         let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() + 1.0;
         let nodes = along(extent.radius) * along(extent.height) * steps.headings as f64;
-        (nodes * (4 * kinds(points).len() * size_of::<Affine>()) as f64 * 8.0 / 7.0) as u64
+        (nodes * (4 * kinds(points).0.len() * size_of::<Affine>()) as f64 * 8.0 / 7.0) as u64
     }
 
     /// A lower bound of what all points cost together, the rate of beta dropped; infinite where nothing is feasible.
@@ -177,43 +168,9 @@ impl CoarseBounds {
     }
 }
 
-/// A load of size 1, and how many times as large another one is; `None` of one that counts for nothing.
-fn unit(load: &Load) -> Option<(Load, f64)> {
-    let [x, y, z] = load.force;
-    let size = (x * x + y * y + z * z).sqrt();
-    let [force, moment] = [load.force, load.moment].map(|v| v.map(|x| x / size));
-    let unit = Load { force, moment, error: load.error / size, turn: 0.0, ..*load };
-    (size > 0.0).then_some((unit, size))
-}
-
-/// The kinds of load of most weight, each of size 1.
-fn kinds(points: &[Point]) -> Vec<Load> {
-    let mut loads: Vec<(Load, f64)> = Vec::new();
-    for (load, size) in points.iter().filter_map(|p| unit(&p.load)) {
-        match loads.iter().position(|(kind, _)| same(kind, &load)) {
-            Some(at) => loads[at].1 += size,
-            None if loads.len() < MAX_COUNTED => loads.push((load, size)),
-            None => {}
-        }
-    }
-    loads.sort_by(|a, b| b.1.total_cmp(&a.1));
-    loads.truncate(MAX_KINDS);
-    loads.into_iter().map(|(load, _)| load).collect()
-}
-
 fn counts(extent: Extent, steps: Steps) -> [usize; 3] {
     let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() as usize + 1;
     [along(extent.radius), along(extent.height), steps.headings]
-}
-
-/// Whether two loads of size 1 differ by rounding only.
-fn same(a: &Load, b: &Load) -> bool {
-    let near = |a: &[f64; 3], b: &[f64; 3], size: f64| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-13 * size);
-    let long = a.directions.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
-    near(&a.force, &b.force, 1.0)
-        && near(&a.moment, &b.moment, 1.0)
-        && a.directions.iter().zip(&b.directions).all(|(a, b)| near(a, b, long))
-        && (a.error - b.error).abs() <= 1e-13
 }
 
 impl Level {
@@ -255,7 +212,7 @@ impl Level {
 }
 
 /// All directions and kinds of load, and classes, at one radius and height.
-fn row_of(model: &Model, kinds: &[Load], at: [usize; 2], steps: Steps) -> Vec<Affine> {
+fn row_of(model: &Model, kinds: &[Kind], at: [usize; 2], steps: Steps) -> Vec<Affine> {
     let own = row_of_set((&model.arm, &model.table, model.first), kinds, at, steps);
     let others = model.others.iter().map(|set| row_of_set((&set.arm, &set.table, set.first), kinds, at, steps));
     let mut sets: Vec<Vec<Affine>> = std::iter::once(own).chain(others).collect();
@@ -279,7 +236,7 @@ fn row_of(model: &Model, kinds: &[Load], at: [usize; 2], steps: Steps) -> Vec<Af
 /// The same under one set of stiffness: an arm, its table, and the compliance of its joint 1 (rad/(N m)).
 fn row_of_set(
     (arm, table, first): (&Arm, &ComplianceTable, f64),
-    kinds: &[Load],
+    kinds: &[Kind],
     at: [usize; 2],
     steps: Steps,
 ) -> Vec<Affine> {
@@ -296,14 +253,14 @@ fn row_of_set(
         for cell in 0..steps.headings {
             unknown |= !collect(arm, table, 0, at, cell, node, class, &mut found);
         }
-        for (number, load) in kinds.iter().enumerate() {
+        for (number, kind) in kinds.iter().enumerate() {
             for (k, (sine, cosine)) in directions.iter().enumerate() {
                 let place = (k * kinds.len() + number) * 4 + class.index();
                 if unknown {
                     out[place] = ZERO;
                     continue;
                 }
-                out[place] = minorant(&found, load, (*sine, *cosine), first, half, &mut space);
+                out[place] = minorant(&found, kind, (*sine, *cosine), first, half, &mut space);
             }
         }
     }

@@ -1,8 +1,9 @@
 //! Affine functions below what a path point costs, whatever the heading.
 
 use super::arm::Arm;
-use super::compliance_table::{ComplianceTable, FUNCTIONS, Node, REMAINDERS};
+use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
 use super::cost::{Direction, Known};
+use super::kind::Kind;
 use super::load::{Load, Tangent};
 use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
@@ -56,6 +57,12 @@ pub(super) fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
 /// Second-order parts larger than this share of the compliance are cut up, down to the finest level.
 const COARSE: f64 = 0.3;
 
+/// What the model of a node leaves out, in the plan or of what is vertical.
+fn coarseness(known: &AffineModel) -> f32 {
+    let [m, d, v, zz] = known.remainder;
+    (m + d).max(v + zz)
+}
+
 /// The regions around a node, cut up where their models are coarse; false where nothing is known of one.
 #[expect(clippy::too_many_arguments, reason = "one node and all it is cut from")]
 pub(super) fn collect(
@@ -73,9 +80,7 @@ pub(super) fn collect(
     match node_at {
         Node::Empty => return true,
         Node::Unknown if finest => return false,
-        Node::Known(known)
-            if finest || f64::from(known.remainder[0] + known.remainder[1]) <= COARSE * arm.typical_compliance() =>
-        {
+        Node::Known(known) if finest || f64::from(coarseness(known)) <= COARSE * arm.typical_compliance() => {
             let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
             let place = table.place(level, at);
             out.push(ModelledRegion::new((known, moments), half, place[0], [place[0] - node[0], place[1] - node[1]]));
@@ -159,6 +164,25 @@ impl ModelledRegion {
         (value + more - remainder - free, [slopes[0] + r, slopes[1] + z, slopes[2] + by_chi])
     }
 
+    /// By how much the scores of the loads of a kind can differ from that of its own: what the norms of C and D make of
+    /// the differences in force and moment. m
+    #[inline]
+    fn spread(&self, kind: &Kind, first: f64) -> f64 {
+        if kind.force_spread == 0.0 && kind.moment_spread == 0.0 {
+            return 0.0;
+        }
+        let far = self.r + self.half[0];
+        let up = |f: usize, remainder: f64| {
+            let [value, slopes @ ..] = self.values[f];
+            value.abs() + (0..3).map(|k| slopes[k].abs() * self.half[k]).sum::<f64>() + remainder
+        };
+        let plan = 2.0 * up(0, self.remainder[0]) + first * far * far;
+        let c = plan + 2.0 * self.max_size[1] + up(5, self.remainder[3]);
+        let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + first * far);
+        let scored = kind.load.directions.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        scored * (c * kind.force_spread + d * kind.moment_spread)
+    }
+
     /// The same below the score.
     #[inline(always)]
     fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
@@ -182,11 +206,11 @@ impl ModelledRegion {
     }
 }
 
-/// Below what all of the states cost, for a load and its direction (sine and cosine) within `half` of the node. `space`
+/// Below what all of the states cost, for a kind of load and its direction (sine and cosine) within `half` of the node. `space`
 /// is for work.
 pub(super) fn minorant(
     found: &[ModelledRegion],
-    load: &Load,
+    kind: &Kind,
     direction: (f64, f64),
     first: f64,
     half: [f64; 3],
@@ -200,7 +224,8 @@ pub(super) fn minorant(
     space.clear();
     let mut lowest = (f64::INFINITY, [0.0; 3]);
     for region in found {
-        let least = region.least_score(load, &direction, h_chi, first);
+        let (least, slopes) = region.least_score(&kind.load, &direction, h_chi, first);
+        let least = (least - region.spread(kind, first), slopes);
         if least.0 < lowest.0 {
             lowest = least;
             if least.0 <= 0.0 {

@@ -43,6 +43,18 @@ impl MomentModel {
     }
 }
 
+impl MomentModel {
+    /// The largest that D can be within half widths of the node: the sum of its entries. 1/N
+    pub fn size(&self, half: [f64; 3]) -> f64 {
+        let up = |entry: &[f32; 4]| {
+            let [value, slopes @ ..] = entry.map(f64::from);
+            value.abs() + (0..3).map(|k| slopes[k].abs() * half[k]).sum::<f64>()
+        };
+        // Each function is in two entries at most.
+        2.0 * (self.values.iter().map(up).sum::<f64>() + self.remainder.iter().copied().map(f64::from).sum::<f64>())
+    }
+}
+
 /// What a tangent asks of D, in the radial frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TurnedMoment {
