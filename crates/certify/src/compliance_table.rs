@@ -246,7 +246,7 @@ pub(super) fn known_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], c
 }
 
 /// The closed form over four regions (radius, height, heading).
-fn enclosed(
+pub(super) fn enclosed(
     arm: &Arm,
     place: &[[f64; 3]; WIDTH],
     half: [f64; 3],

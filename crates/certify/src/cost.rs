@@ -213,7 +213,7 @@ impl<'a> PointCost<'a> {
     }
 
     /// Least costs at the corners of the box, as [`Self::least`] and [`cost_at_corners`].
-    #[inline]
+    #[cfg(test)]
     pub fn min_cost(
         &self,
         known: Known<'_>,

@@ -69,6 +69,9 @@ pub(super) struct Margins<T> {
     pub conditioning: T,
 }
 
+/// One of the components of a vector.
+type Component<T> = fn(&Vector<T>) -> T;
+
 impl Arm {
     /// Evaluates one posture class for a tool centre point at a radius and height (m) and a heading; `None` where none
     /// of the lanes is allowed.
@@ -169,7 +172,7 @@ impl Arm {
         let wrist = |f: fn(&Vector<T>) -> T, g: fn(&Vector<T>) -> T| {
             (f(&v4) * g(&axis4)).scale(k4) + f(&v5) * g(&crossed) * k5 + (f(&v6) * g(&axis6)).scale(k6)
         };
-        let (x, y, z): (fn(&Vector<T>) -> T, fn(&Vector<T>) -> T, fn(&Vector<T>) -> T) = (|v| v.x, |v| v.y, |v| v.z);
+        let [x, y, z]: [Component<T>; 3] = [|v| v.x, |v| v.y, |v| v.z];
         let [rr, rt, tr, tt] = [wrist(x, x), wrist(x, y), wrist(y, x), wrist(y, y)];
         let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
         let mut upper = |of2: T, of3: T| second.times(of2, angles2, regular) + third.times(of3, angles3, regular);

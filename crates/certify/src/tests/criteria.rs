@@ -84,7 +84,8 @@ fn tangents_are_below_the_score_everywhere_and_sharp_where_they_were_taken() {
 
 #[test]
 fn broken_tangents_are_seen() {
-    let mutations: [(&str, fn(&mut Load), fn(Tangent) -> Tangent); 6] = [
+    type Mutation = (&'static str, fn(&mut Load), fn(Tangent) -> Tangent);
+    let mutations: [Mutation; 6] = [
         ("errors twice as large", |load| load.error *= 2.0, |tangent| tangent),
         ("force a thousandth larger", |load| load.force = load.force.map(|f| 1.001 * f), |tangent| tangent),
         ("scored directions a thousandth longer", longer, |tangent| tangent),

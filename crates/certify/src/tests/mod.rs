@@ -9,6 +9,7 @@ mod boxes;
 mod cell;
 mod cells;
 mod certificate;
+mod counts;
 mod criteria;
 mod minorants;
 mod planner;

@@ -235,7 +235,8 @@ fn sums_of_every_criterion_are_below_plans_and_close() {
 
 #[test]
 fn a_broken_criterion_is_seen() {
-    let mutations: [(&str, fn(&mut Problem), fn(&mut Setting)); 4] = [
+    type Mutation = (&'static str, fn(&mut Problem), fn(&mut Setting));
+    let mutations: [Mutation; 4] = [
         ("worst of sets for their mean", |p| with_sets(p, Over::Mean), |setting| setting.model.over = Over::Worst),
         (
             "squares as they are",
