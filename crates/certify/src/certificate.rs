@@ -89,7 +89,8 @@ impl Serialize for NoProof {
     }
 }
 
-/// Bounds how far a placement with the mean score `mean` (m) is from the best there is, and the placement
+/// Bounds how far a placement is from the best there is, whose best plan has the objective `objective` (m), and the
+/// placement
 /// `found_worst`, where one was looked for, from the worst, within a common time limit: that of the settings, or the
 /// deadline of the monitor where it comes first.
 ///
@@ -98,7 +99,7 @@ impl Serialize for NoProof {
 pub fn certify(
     problem: &Problem,
     found: &Placement,
-    mean: f64,
+    objective: f64,
     found_worst: Option<&Placement>,
     settings: CertificateSettings,
     monitor: &Monitor,
@@ -134,7 +135,7 @@ pub fn certify(
         };
         Ok(Proof { found: value, ..Proof::new(problem, sense, *placement, bound) })
     };
-    let best = prove(Sense::Min, found, &|| Some(mean));
+    let best = prove(Sense::Min, found, &|| Some(objective));
     let worst = match found_worst {
         Some(found) => prove(Sense::Max, found, &|| relaxed_value(problem, found, &monitor)),
         None => Err(NoProof::NotLookedFor),

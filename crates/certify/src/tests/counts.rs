@@ -54,7 +54,7 @@ fn counted(name: &str, problem: Problem) -> String {
     let setting = Setting::new(problem);
     let (value, _) = found(&setting.problem);
     let settings = CertificateSettings { time_limit: None, ..CertificateSettings::new(0.01) };
-    let until = std::time::Instant::now() + std::time::Duration::from_secs(60);
+    let until = std::time::Instant::now() + std::time::Duration::from_secs(150);
     let monitor = Monitor::silent().with_deadline(Some(until));
     let Bound { bound, mut open, status, .. } = best(&setting.problem, value, &settings, true, &monitor).unwrap();
     let mut text =
