@@ -90,12 +90,12 @@ impl Serialize for NoProof {
 }
 
 /// Bounds how far a placement is from the best there is, whose best plan has the objective `objective` (m), and the
-/// placement
-/// `found_worst`, where one was looked for, from the worst, within a common time limit: that of the settings, or the
-/// deadline of the monitor where it comes first.
+/// placement `found_worst`, where one was looked for, from the worst, within a common time limit: that of the settings,
+/// or the deadline of the monitor where it comes first.
 ///
-/// The lower bound keeps the rate of beta, or the turn of the spindle where no rate is set; the upper bound, like the value it is compared with ([`relaxed_value`]),
-/// does not. The result does not depend on the number of threads, unless the time limit or the caller ends it.
+/// The lower bound keeps the rate of beta, or the turn of the spindle where no rate is set; the upper bound, like the
+/// value it is compared with ([`relaxed_value`]), does not. The result does not depend on the number of threads, unless
+/// the time limit or the caller ends it.
 pub fn certify(
     problem: &Problem,
     found: &Placement,
