@@ -329,7 +329,7 @@ impl Placements {
         let Cases { best, worst, .. } = &self.outcome.cases;
         let worst = worst.as_ref().map(|worst| &worst.best.placement);
         self.certificate =
-            Some(certify::certify(&self.run.problem, &best.placement, best.plan.mean, worst, settings, monitor));
+            Some(certify::certify(&self.run.problem, &best.placement, best.plan.objective, worst, settings, monitor));
         self.certificate.as_ref()
     }
 

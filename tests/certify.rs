@@ -175,17 +175,45 @@ fn memory_used_up_on_the_way_leaves_the_bound_reached() {
 #[test]
 fn what_cannot_be_certified_is_said_and_placed_all_the_same() {
     let bench = bench();
-    bench.replace(RUN, "force_uncertainty = 0.0", "force_uncertainty = 0.1");
+    bench.replace(RUN, "[redundancy]", "[redundancy]\nbeta = \"constant\"");
     bench.write("out/open-region.svg", "of an earlier certificate");
     let ended = place(&bench, &["--certify", "1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    assert!(ended.said().starts_with("warning: no certificate: scores cover errors of the force"), "{}", ended.stderr);
+    assert!(ended.said().starts_with("warning: no certificate: beta stays (redundancy.beta"), "{}", ended.stderr);
     assert_eq!(ended.said().lines().count(), 1);
     let found = certificate(&bench);
     assert_eq!((&found["best"], &found["worst"]), (&Value::Null, &Value::Null));
-    assert!(found["best_reason"].as_str().unwrap().starts_with("scores cover errors of the force"));
+    assert!(found["best_reason"].as_str().unwrap().starts_with("beta stays"));
     assert!(!bench.path("out/open-region.svg").exists() && bench.path("out/best.csv").exists());
-    assert!(ended.stdout.contains("No certificate for the best placement: scores cover"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("No certificate for the best placement: beta stays"), "{}", ended.stdout);
+}
+
+/// The criterion that `stead init` writes, with a point to plunge to, moments, and a joint that yields by its angle.
+#[test]
+fn the_recommended_criterion_is_certified_with_a_plunge_and_moments() {
+    let bench = bench();
+    let mut task = String::from(
+        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n,\
+         moment_x_nm,moment_y_nm,moment_z_nm,scored\n1,0,0,20,1,0,0,0,0,1,0,0,0,0,0,0,0\n",
+    );
+    PATH.lines().skip(1).for_each(|line| task += &format!("{line},2,-3,4,1\n"));
+    bench.write("tasks/five-segments.csv", &task);
+    bench.replace(RUN, "force_uncertainty = 0.0", "direction = \"total\"\nforce_uncertainty = 0.1");
+    bench.replace(RUN, "max_beta_rate_deg_per_mm = 0.9", "max_spindle_turn_deg_per_mm = 0.9");
+    let ended = place(&bench, &["--certify", "2"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let found = certificate(&bench);
+    assert_holds(&found, 0.0..=2.0);
+    assert_eq!((&found["best"]["status"], &found["best"]["with_beta_rate"]), (&"reached".into(), &false.into()));
+    let relaxed = found["best"]["limits_relaxed"].to_string();
+    assert!(!relaxed.contains("spindle") && relaxed.contains("joints 1, 4 and 6"), "{relaxed}");
+    // Bounds from above do not cover it, which is said by itself.
+    let reason = found["worst_reason"].as_str().unwrap();
+    assert!(reason.starts_with("bounds from above cover the mean of one part"), "{reason}");
+    ended.assert_says(&["no certificate for the worst placement: bounds from above cover"]);
+    let words = ended.stdout.replace('\n', " ");
+    let claim = "has a mean total deflection, force errors of 10 % covered, below ";
+    assert!(words.contains(claim) && words.contains("none is better by more than 2 %."), "{words}");
 }
 
 #[test]

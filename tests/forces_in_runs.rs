@@ -141,10 +141,10 @@ fn commands_on_a_plan_follow_the_path_with_the_points_that_were_added() {
     );
     let ended = done(bench.stead(&["compensate", "my/compensate.toml", "--out", "my/corrected", "--json"]));
     assert!(ended.json().to_string().contains("reduction"), "{}", ended.stdout);
-    // Forces of what is removed have moments, which no bound knows of: the workpiece is placed without a certificate.
+    // Forces of what is removed have moments, which bounds count.
     bench.write("my/run.toml", &format!("{}{STOCK}{TOOL}", run("ell.csv", "wall", "[certificate]\ngap_percent = 5\n")));
     let ended = bench.stead(&["place", "my/run.toml", "--out", "my/certified", "--no-page"]);
-    ended.assert_says(&["no certificate: a moment acts on the tool"]);
+    assert!(!ended.stderr.contains("no certificate"), "{}", ended.stderr);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
 use super::model::Model;
@@ -15,11 +15,12 @@ use stead_planning::problem::Problem;
 use stead_planning::sense::Sense;
 use stead_planning::symmetry::Unsupported;
 
-/// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (mean
-/// score, m) by more than the gap of the settings.
+/// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (what
+/// is minimised, m) by more than the gap of the settings.
 ///
-/// Limits between neighbouring points other than the rate of beta, and those of joints 1, 4 and 6, are relaxed; without
-/// `with_rate`, or where none is set, that of beta as well. The result does not depend on the number of threads.
+/// Limits between neighbouring points are relaxed, and those of joints 1, 4 and 6; with `with_limits` the rate of beta
+/// is kept, where one is set, else the turn of the spindle, where that is limited. The result does not depend on the
+/// number of threads.
 ///
 /// # Errors
 /// Why the problem cannot be certified this way.
@@ -27,14 +28,14 @@ pub fn best(
     problem: &Problem,
     value: f64,
     settings: &CertificateSettings,
-    with_rate: bool,
+    with_limits: bool,
     monitor: &Monitor,
 ) -> Result<Bound, Unsupported> {
     let CertificateSettings { gap, memory, .. } = *settings;
     certifiable(problem, memory)?;
-    let with_rate = with_rate && problem.redundancy.max_beta_rate.is_some();
-    let (model, whole) = (Model::new(problem, with_rate), whole(problem));
-    let search = BranchAndBound { sense: Sense::Min, value, gap, with_rate, points: model.points.len(), memory };
+    let keeps = if with_limits { Keeps::of(problem) } else { Keeps::NOTHING };
+    let (model, whole) = (Model::new(problem, keeps), whole(problem));
+    let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective: model.objective, memory };
     // Of no placement anything is known until the tables are made.
     let ceiling = search.ceiling();
     let mut nodes = 0;
@@ -44,7 +45,17 @@ pub fn best(
         Ok(left) => left,
         Err(stop) => {
             let open = vec![(whole, 0.0)];
-            return Ok(Bound { value, met: None, bound: 0.0, with_rate, nodes: 0, status: stop.into(), open });
+            let Keeps { with_rate, with_turn } = keeps;
+            return Ok(Bound {
+                value,
+                met: None,
+                bound: 0.0,
+                with_rate,
+                with_turn,
+                nodes: 0,
+                status: stop.into(),
+                open,
+            });
         }
     };
     let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
@@ -53,7 +64,7 @@ pub fn best(
         start,
         nodes,
         of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling, monitor),
-        used: || model.table.used(),
+        used: || model.used(),
         bytes: |active: &Arc<ActiveCells>| active.bytes(),
     };
     Ok(search.explore(all, monitor, |_| None))

@@ -1,27 +1,31 @@
 //! Boxes of placements, most promising first: the search that bounds from below and from above share.
 
+use super::load::Objective;
 use super::region::Region;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
-use stead_planning::problem::Placement;
+use stead_planning::criterion::Aggregate;
+use stead_planning::problem::{Placement, Problem};
 use stead_planning::sense::Sense;
 
 /// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one
 /// ([`super::worst()`]).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bound {
-    /// The mean score that is compared with. m
+    /// The figure that is compared with. m
     pub value: f64,
     /// The placement of that score, where the search from above met a worse one than it was given.
     pub met: Option<Placement>,
-    /// No placement in the cell, with any posture scheme and any plan of beta, has a mean score below, up to rounding;
-    /// or, of the worst, none with its best plan has a mean score above. m
+    /// No placement in the cell, with any posture scheme and any plan of beta, has a lower one, up to rounding; or, of
+    /// the worst, none with its best plan has a higher one. m
     pub bound: f64,
     /// Whether the rate of beta was kept.
     pub with_rate: bool,
+    /// Whether the limits on the turn of the spindle along the path were kept.
+    pub with_turn: bool,
     /// Boxes bounded.
     pub nodes: usize,
     /// How the search ended.
@@ -86,25 +90,45 @@ pub(super) fn halves(region: &Region) -> Option<[Region; 2]> {
 
 /// A box whose bound is known.
 pub(super) struct Open<T> {
-    /// What the sum over the points does not get past in it. m
+    /// What the points together do not get past in it.
     pub bound: f64,
     pub region: Region,
     /// What else is known of it.
     pub known: T,
 }
 
+/// Which limits on beta along the path a bound keeps. Where both are set, that is the rate of beta alone: the two
+/// together can leave two ranges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Keeps {
+    pub with_rate: bool,
+    pub with_turn: bool,
+}
+
+impl Keeps {
+    pub const NOTHING: Self = Self { with_rate: false, with_turn: false };
+
+    /// What a bound can keep of the limits of a problem.
+    pub fn of(problem: &Problem) -> Self {
+        let limits = &problem.redundancy;
+        let with_rate = limits.max_beta_rate.is_some();
+        let turns = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
+        Self { with_rate, with_turn: turns && !with_rate }
+    }
+}
+
 /// What a search is for.
 pub(super) struct BranchAndBound {
     /// From below, or from above.
     pub sense: Sense,
-    /// The mean score that is compared with. m
+    /// The figure that is compared with. m
     pub value: f64,
     /// What is requested, relative to the value.
     pub gap: f64,
-    /// Whether the rate of beta is kept.
-    pub with_rate: bool,
-    /// Number of path points.
-    pub points: usize,
+    /// What is kept of the limits on beta along the path: its rate, and the turn of the spindle.
+    pub keeps: Keeps,
+    /// How the costs of the points make up the value.
+    pub objective: Objective,
     /// Memory for tables and boxes. Bytes
     pub memory: u64,
 }
@@ -174,10 +198,13 @@ impl BranchAndBound {
         }
     }
 
-    /// What the sum over the points has to get past for a box to be of interest. m
+    /// What the points have to cost together for a box to be of interest.
     pub fn ceiling(&self) -> f64 {
         let sign = self.sign();
-        self.value * self.points as f64 * (1.0 + sign * self.gap) * (1.0 - sign * ROUNDING)
+        let farther = |sum: f64| sum * (1.0 + sign * self.gap) * (1.0 - sign * ROUNDING);
+        let sum = farther(self.objective.sum(self.value));
+        // A sum of squares grows with the square of its root.
+        if self.objective.aggregate == Aggregate::Rms { farther(sum) } else { sum }
     }
 
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, the memory is used up, or
@@ -216,12 +243,14 @@ impl BranchAndBound {
                 None => break monitor.stop().map_or(Status::Exhausted, Status::from),
             }
         };
-        let (sign, count) = (self.sign(), self.points as f64);
+        let sign = self.sign();
         let left = queue.left();
         let farthest = left.iter().map(|queued| queued.rank).fold(sign * self.ceiling(), f64::max);
-        let bound = sign * farthest / count * (1.0 + sign * ROUNDING);
-        let open = left.iter().map(|queued| (queued.open.region, queued.open.bound / count)).collect();
-        Bound { value: self.value, met, bound, with_rate: self.with_rate, nodes, status, open }
+        let bound = self.objective.value(sign * farthest) * (1.0 + sign * ROUNDING);
+        let value = |queued: &Queued<T>| self.objective.value(queued.open.bound);
+        let open = left.iter().map(|queued| (queued.open.region, value(queued))).collect();
+        let Keeps { with_rate, with_turn } = self.keeps;
+        Bound { value: self.value, met, bound, with_rate, with_turn, nodes, status, open }
     }
 
     /// Cuts boxes until none is left, or the bound stays where boxes are that are not to be cut further.
@@ -246,7 +275,7 @@ impl BranchAndBound {
             if queue.stuck.iter().any(|stuck| stuck.rank >= first.rank) {
                 break;
             }
-            let bound = first.open.bound / self.points as f64;
+            let bound = self.objective.value(first.open.bound);
             if let Some(stop) = self.report(monitor, bound, queue.heap.len() + queue.stuck.len(), *nodes) {
                 return Err(stop.into());
             }

@@ -1,10 +1,11 @@
 //! The cell and the task as seen along axis 1: radius, height, yaw less azimuth. For a hanging arm y and z change sign.
 
 use super::compliance_table::Extent;
+use super::load::Load;
 use super::region::{Point, Region};
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::wrap;
-use stead_model::task::{PathPoint, Wrench};
+use stead_model::task::PathPoint;
 use stead_planning::problem::{Cell, Placement, Problem};
 
 /// Which way up the arm stands: +1, or -1 upside down.
@@ -12,24 +13,22 @@ fn side(problem: &Problem) -> f64 {
     problem.robot.geometry().base_from_root[(2, 2)].signum()
 }
 
-/// Path points and their forces.
+/// Path points, what acts on them and what is scored.
 pub(super) fn points_of(problem: &Problem) -> Vec<Point> {
     let side = side(problem);
-    let task = &problem.task;
-    let one = |(p, w): (&PathPoint, &Wrench)| {
+    let one = |(number, p): (usize, &PathPoint)| {
         let (x, y) = (p.position.x, p.position.y * side);
-        let feed = libm::atan2(p.feed.y * side, p.feed.x);
-        let (sine, cosine) = libm::sincos(feed);
-        let (fx, fy) = (w.force.x, w.force.y * side);
+        let along = p.workpiece_from_point().column(0).into_owned();
+        let feed = libm::atan2(along.y * side, along.x);
         Point {
             distance: libm::hypot(x, y),
             direction: libm::atan2(y, x),
             height: p.position.z * side,
             feed,
-            force: [fx * cosine + fy * sine, fy * cosine - fx * sine, w.force.z * side],
+            load: Load::new(problem, number, feed, side),
         }
     };
-    task.points().iter().zip(task.wrenches()).map(one).collect()
+    problem.task.points().iter().enumerate().map(one).collect()
 }
 
 /// The corners of the cell about axis 1, x and y. m

@@ -3,7 +3,7 @@
 use super::branch_and_bound::{Bound, Status};
 use super::region::Region;
 use super::relaxed::relaxed_value;
-use super::requirements::certifiable;
+use super::requirements::{certifiable, certifiable_from_above};
 use super::{best::best, worst::worst};
 use crate::settings::CertificateSettings;
 use serde::{Serialize, Serializer};
@@ -12,7 +12,7 @@ use stead_numerics::digits::{figures, fixed};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_planning::constraints::{ConstraintKind, describe, relaxed};
-use stead_planning::criterion::CANCELLATION;
+use stead_planning::criterion::{Aggregate, CANCELLATION, Criterion, Direction};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::sense::Sense;
 use stead_planning::symmetry::Unsupported;
@@ -50,8 +50,10 @@ pub struct Proof {
     /// The placement that it is compared with: the one found, or for the worst one met on the way that is worse with
     /// constraints relaxed.
     pub placement: Placement,
-    /// The mean score of the placement found, with the same constraints relaxed. m
+    /// What is minimised, of the placement found with the same constraints relaxed. m
     pub found: f64,
+    /// What is minimised, in words.
+    pub figure: String,
     /// What no placement gets past.
     pub bound: Bound,
     /// The constraints of the problem less those that the bound evaluates.
@@ -87,16 +89,17 @@ impl Serialize for NoProof {
     }
 }
 
-/// Bounds how far a placement with the mean score `mean` (m) is from the best there is, and the placement
-/// `found_worst`, where one was looked for, from the worst, within a common time limit: that of the settings, or the
-/// deadline of the monitor where it comes first.
+/// Bounds how far a placement is from the best there is, whose best plan has the objective `objective` (m), and the
+/// placement `found_worst`, where one was looked for, from the worst, within a common time limit: that of the settings,
+/// or the deadline of the monitor where it comes first.
 ///
-/// The lower bound keeps the rate of beta; the upper bound, like the value it is compared with ([`relaxed_value`]),
-/// does not. The result does not depend on the number of threads, unless the time limit or the caller ends it.
+/// The lower bound keeps the rate of beta, or the turn of the spindle where no rate is set; the upper bound, like the
+/// value it is compared with ([`relaxed_value`]), does not. The result does not depend on the number of threads, unless
+/// the time limit or the caller ends it.
 pub fn certify(
     problem: &Problem,
     found: &Placement,
-    mean: f64,
+    objective: f64,
     found_worst: Option<&Placement>,
     settings: CertificateSettings,
     monitor: &Monitor,
@@ -117,7 +120,10 @@ pub fn certify(
         None => Ok(()),
     };
     let prove = |sense: Sense, placement: &Placement, value: &dyn Fn() -> Option<f64>| -> Result<Proof, NoProof> {
-        certifiable(problem, settings.memory)?;
+        match sense {
+            Sense::Min => certifiable(problem, settings.memory)?,
+            Sense::Max => certifiable_from_above(problem, settings.memory)?,
+        }
         ended()?;
         let Some(value) = value() else { return Err(ended().err().unwrap_or(NoProof::NoRelaxedValue)) };
         if value <= CANCELLATION {
@@ -129,7 +135,7 @@ pub fn certify(
         };
         Ok(Proof { found: value, ..Proof::new(problem, sense, *placement, bound) })
     };
-    let best = prove(Sense::Min, found, &|| Some(mean));
+    let best = prove(Sense::Min, found, &|| Some(objective));
     let worst = match found_worst {
         Some(found) => prove(Sense::Max, found, &|| relaxed_value(problem, found, &monitor)),
         None => Err(NoProof::NotLookedFor),
@@ -167,15 +173,43 @@ fn shortfalls(
 }
 
 /// The kinds of constraint that a bound evaluates.
-fn evaluated(problem: &Problem, with_rate: bool) -> Vec<ConstraintKind> {
-    use ConstraintKind::{BetaRate, CellPosition, Conditioning, JointLimit, Reach};
+fn evaluated(problem: &Problem, bound: &Bound) -> Vec<ConstraintKind> {
+    use ConstraintKind::{BetaRate, CellPosition, Conditioning, JointLimit, Reach, SpindleTurn};
     let mut kinds = vec![Reach, JointLimit(2), JointLimit(3), Conditioning, CellPosition];
     // Both flips of the wrist are taken to reach as far as the better one; where the range holds zero, one of them
     // does.
     let fifth = &problem.robot.joints()[4];
     kinds.extend((fifth.min <= 0.0 && fifth.max >= 0.0).then_some(JointLimit(5)));
-    kinds.extend(with_rate.then_some(BetaRate));
+    kinds.extend(bound.with_rate.then_some(BetaRate));
+    kinds.extend(bound.with_turn.then_some(SpindleTurn));
     kinds
+}
+
+/// What a criterion minimises, in words: "mean normal deflection".
+fn figure(criterion: &Criterion) -> String {
+    let aggregate = match criterion.aggregate {
+        Aggregate::Mean => "mean",
+        Aggregate::Rms => "root mean square of the",
+        Aggregate::Max => "largest",
+    };
+    let part = match criterion.direction() {
+        Some(Direction::Wall) => "normal deflection",
+        Some(Direction::Surface) => "deflection normal to the surface",
+        Some(Direction::Axis) => "deflection along the tool axis",
+        Some(Direction::Total) => "total deflection",
+        None => "weighted deflection",
+    };
+    let errors = match criterion.force_uncertainty {
+        0.0 => String::new(),
+        share => format!(", force errors of {} % covered,", short(share * 100.0)),
+    };
+    format!("{aggregate} {part}{errors}")
+}
+
+/// A number to six digits, without zeros at its end.
+fn short(value: f64) -> String {
+    let text = fixed(value, 6);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 impl Certificate {
@@ -191,8 +225,9 @@ impl Certificate {
 impl Proof {
     /// What a bound proves of a placement found, of the score that it is compared with.
     pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound) -> Self {
-        let relaxed = relaxed(problem, &evaluated(problem, bound.with_rate));
-        Self { sense, placement: bound.met.unwrap_or(placement), found: bound.value, bound, relaxed }
+        let relaxed = relaxed(problem, &evaluated(problem, &bound));
+        let (placement, figure) = (bound.met.unwrap_or(placement), figure(&problem.criterion));
+        Self { sense, placement, found: bound.value, figure, bound, relaxed }
     }
 
     /// The relaxed constraints in words.

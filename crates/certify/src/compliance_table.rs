@@ -9,7 +9,8 @@ use super::arm::{Arm, ArmCompliance, LimitSpan};
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::interval_simd::{Lanes, WIDTH};
-use super::number::PAIR;
+use super::moment::{MOMENTS, MomentModel};
+use super::number::{PAIR, PAIRS};
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -29,10 +30,10 @@ pub(super) enum Node {
 /// An affine model of the states around a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AffineModel {
-    /// Value and gradient of m, d1, d2 and the two vertical compliances at the node.
+    /// Value and gradient of m, d1, d2, c_rz, c_tz and c_zz at the node.
     pub values: [[f32; 4]; FUNCTIONS],
-    /// What these leave out: of m, of the length of (d1, d2), and of that of the vertical ones.
-    pub remainder: [f32; 3],
+    /// What these leave out: of m, of the length of (d1, d2), of that of (c_rz, c_tz), and of c_zz.
+    pub remainder: [f32; REMAINDERS],
     /// Whether all the states are sure to be allowed.
     pub sure: bool,
 }
@@ -56,7 +57,9 @@ pub(super) struct Steps {
 }
 
 /// Functions modelled: see [`AffineModel::values`].
-pub(super) const FUNCTIONS: usize = 5;
+pub(super) const FUNCTIONS: usize = 6;
+/// Remainders of them: see [`AffineModel::remainder`].
+pub(super) const REMAINDERS: usize = 4;
 
 /// Neighbouring headings made at once.
 const CHUNK: usize = 16;
@@ -66,12 +69,19 @@ pub(super) struct ComplianceTable {
     extent: Extent,
     steps: Steps,
     levels: Vec<Level>,
-    /// Chunks made so far.
+    /// What the chunks made so far take. bytes
     made: AtomicU64,
 }
 
 /// Nodes that are made when the first of them is needed.
-type Chunk = OnceLock<Box<[Node; CHUNK]>>;
+type Chunk = OnceLock<Box<Nodes>>;
+
+/// Neighbouring nodes, and how they yield to moments, where some act.
+#[derive(Debug)]
+struct Nodes {
+    nodes: [Node; CHUNK],
+    moments: Option<Box<[Option<MomentModel>; CHUNK]>>,
+}
 
 #[derive(Debug)]
 struct Level {
@@ -97,7 +107,7 @@ impl ComplianceTable {
     /// What it takes at most with the nodes made so far. bytes
     pub fn used(&self) -> u64 {
         let empty = Self::bytes(self.extent, self.steps, self.levels.len());
-        empty + self.made.load(Ordering::Relaxed) * size_of::<[Node; CHUNK]>() as u64
+        empty + self.made.load(Ordering::Relaxed)
     }
 
     /// What a table takes at most beside its nodes. bytes
@@ -171,42 +181,72 @@ impl ComplianceTable {
         TAU / self.headings(level) as f64 * (cell as f64 + 0.5)
     }
 
-    /// The node of a cell of heading.
-    #[inline]
+    /// The node of a cell of heading, without what it tells of moments.
+    #[cfg(test)]
     pub fn node(&self, arm: &Arm, level: usize, at: [usize; 2], cell: usize, class: PostureClass) -> &Node {
+        self.known(arm, level, at, cell, class).0
+    }
+
+    /// The node of a cell of heading, and how it yields to moments, where some act.
+    #[inline]
+    pub fn known(
+        &self,
+        arm: &Arm,
+        level: usize,
+        at: [usize; 2],
+        cell: usize,
+        class: PostureClass,
+    ) -> (&Node, Option<&MomentModel>) {
         let stored = &self.levels[level];
         let chunks = stored.places[at[0] * stored.counts[1] + at[1]]
             .get_or_init(|| std::iter::repeat_with(OnceLock::new).take(stored.counts[2] / CHUNK * 4).collect());
         let nodes = chunks[cell / CHUNK * 4 + class.index()].get_or_init(|| {
-            self.made.fetch_add(1, Ordering::Relaxed);
-            let mut nodes = Box::new([Node::Empty; CHUNK]);
+            let moments = arm.has_moments.then(|| Box::new([None; CHUNK]));
+            let mut nodes = Box::new(Nodes { nodes: [Node::Empty; CHUNK], moments });
+            let bytes = size_of::<Nodes>() + nodes.moments.as_deref().map_or(0, size_of_val);
+            self.made.fetch_add(bytes as u64, Ordering::Relaxed);
             let first = cell / CHUNK * CHUNK;
             for start in (0..CHUNK).step_by(WIDTH) {
-                let some: [Node; WIDTH] = self.made(arm, level, self.place(level, at), first + start, class);
-                nodes[start..start + WIDTH].copy_from_slice(&some);
+                let some = self.made(arm, level, self.place(level, at), first + start, class);
+                for (k, (node, moment)) in some.into_iter().enumerate() {
+                    nodes.nodes[start + k] = node;
+                    if let Some(moments) = &mut nodes.moments {
+                        moments[start + k] = moment;
+                    }
+                }
             }
             nodes
         });
-        &nodes[cell % CHUNK]
+        let moments = nodes.moments.as_ref().and_then(|moments| moments[cell % CHUNK].as_ref());
+        (&nodes.nodes[cell % CHUNK], moments)
     }
 
-    fn made(&self, arm: &Arm, level: usize, [r, z]: [f64; 2], cell: usize, class: PostureClass) -> [Node; WIDTH] {
+    fn made(&self, arm: &Arm, level: usize, [r, z]: [f64; 2], cell: usize, class: PostureClass) -> [Made; WIDTH] {
         let half = [self.length(level), self.length(level), PI / self.headings(level) as f64];
         let place: [[f64; 3]; WIDTH] = std::array::from_fn(|k| [r, z, self.heading(level, cell + k)]);
-        nodes_over(arm, &place, half, class)
+        known_over(arm, &place, half, class)
     }
 }
 
-/// What is known of four regions (radius, height, heading) of those half widths.
+/// The same without what is known of moments.
+#[cfg(test)]
 pub(super) fn nodes_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> [Node; WIDTH] {
+    known_over(arm, place, half, class).map(|made| made.0)
+}
+
+/// A node, and how it yields to moments, where some act.
+type Made = (Node, Option<MomentModel>);
+
+/// What is known of four regions (radius, height, heading) of those half widths.
+pub(super) fn known_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> [Made; WIDTH] {
     match enclosed(arm, place, half, class) {
-        None => [Node::Empty; WIDTH],
+        None => [(Node::Empty, None); WIDTH],
         Some(y) => std::array::from_fn(|k| judged(arm, &y, k, half)),
     }
 }
 
 /// The closed form over four regions (radius, height, heading).
-fn enclosed(
+pub(super) fn enclosed(
     arm: &Arm,
     place: &[[f64; 3]; WIDTH],
     half: [f64; 3],
@@ -227,12 +267,12 @@ fn enclosed(
     arm.evaluate(radius, height, sine, cosine, class)
 }
 
-fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> Node {
+fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> Made {
     if y.violated.lane(lane) {
-        return Node::Empty;
+        return (Node::Empty, None);
     }
     if !y.regular.lane(lane) {
-        return Node::Unknown;
+        return (Node::Unknown, None);
     }
     let holds = |margin: &Enclosure| margin.value.low().0[lane] >= 0.0;
     let margins = &y.margins;
@@ -243,27 +283,38 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
     };
     let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
     let sure = y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1);
-    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1]];
-    let values = functions.map(|f| {
+    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
+    let of = |f: &Enclosure| {
         let f = f.middle();
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
-    });
+    };
+    let values = functions.map(of);
     let max_second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut remainder = [0.0; 3];
-    for (p, (i, j)) in PAIR.iter().enumerate() {
-        let factor = half[*i] * half[*j] * if i == j { 0.5 } else { 1.0 };
+    let mut remainder = [0.0; REMAINDERS];
+    let factors: [f64; PAIRS] = std::array::from_fn(|p| {
+        let (i, j) = PAIR[p];
+        half[i] * half[j] * if i == j { 0.5 } else { 1.0 }
+    });
+    for (p, factor) in factors.into_iter().enumerate() {
         remainder[0] += max_second(0, p) * factor;
         remainder[1] += libm::hypot(max_second(1, p), max_second(2, p)) * factor;
         remainder[2] += libm::hypot(max_second(3, p), max_second(4, p)) * factor;
+        remainder[3] += max_second(5, p) * factor;
     }
     // And what is lost by writing the values with fewer digits.
     let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
-    let lost = [size(0), size(1) + size(2), size(3) + size(4)];
-    let remainder = [0, 1, 2].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
-    if remainder.iter().all(|r| *r < 1e30) {
-        Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure })
-    } else {
-        Node::Unknown
+    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
+    let remainder = [0, 1, 2, 3].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
+    if !remainder.iter().all(|r| *r < 1e30) {
+        return (Node::Unknown, None);
+    }
+    let known = Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure });
+    let Some(moments) = &y.moments else { return (known, None) };
+    let values: [[f64; 4]; MOMENTS] = std::array::from_fn(|f| of(&moments[f]));
+    let max_second = |f: usize, p: usize| moments[f].second[p].magnitude().0[lane];
+    match MomentModel::new(values, half, max_second, factors) {
+        Some(moments) => (known, Some(moments)),
+        None => (Node::Unknown, None),
     }
 }
 
@@ -298,10 +349,10 @@ mod tests {
         let set_up =
             || table.levels.iter().flat_map(|level| &level.places).filter(|place| place.get().is_some()).count();
         assert_eq!(set_up(), 0);
-        let arm = Arm::new(&problem, &problem.robot.compliances_at(&[0.0; 6]), extent.radius.0);
+        let arm = Arm::new(&problem, &problem.robot, extent.radius.0);
         for cell in [0, 1023] {
-            table.node(&arm, 3, [700, 300], cell, PostureClass::ALL[0]);
+            table.known(&arm, 3, [700, 300], cell, PostureClass::ALL[0]);
         }
-        assert_eq!((set_up(), table.made.load(Ordering::Relaxed)), (1, 2));
+        assert_eq!((set_up(), table.made.load(Ordering::Relaxed)), (1, 2 * size_of::<Nodes>() as u64));
     }
 }

@@ -222,6 +222,23 @@ impl Number for Enclosure {
         self.through(self.middle.reciprocal(), Interval::between(a.min(b), a.max(b)), first, second)
     }
     #[inline(never)]
+    fn arctangent(self) -> Self {
+        let (low, high) = (self.value.low(), self.value.high());
+        let value = Interval::between(Lanes(low.0.map(libm::atan)), Lanes(high.0.map(libm::atan)));
+        let first = |t: Lanes| Lanes::splat(1.0) / (t * t + 1.0);
+        let (a, b) = (first(low), first(high));
+        let holds = |t: f64| low.at_most(Lanes::splat(t)) & Lanes::splat(t).at_most(high);
+        let steepest = holds(0.0).select(Lanes::splat(1.0), a.max(b));
+        // -2 t / (1 + t^2)^2 is least and largest at 1 / sqrt 3 and at -1 / sqrt 3.
+        let bend = |t: Lanes, first: Lanes| t * first * first * -2.0;
+        let (p, q) = (bend(low, a), bend(high, b));
+        let (turn, most) = (1.0 / 3.0_f64.sqrt(), 0.375 * 3.0_f64.sqrt());
+        let least = holds(turn).select(Lanes::splat(-most), p.min(q));
+        let largest = holds(-turn).select(Lanes::splat(most), p.max(q));
+        let second = Interval::between(least, largest);
+        self.through(self.middle.arctangent(), value, Interval::between(a.min(b), steepest), second)
+    }
+    #[inline(never)]
     fn elbow(self, links: &Links) -> [Self; 3] {
         let [s, alpha, beta] = self.middle.elbow(links);
         let (low, high) = (self.value.low(), self.value.high());

@@ -7,14 +7,15 @@
 //!
 //! 1. `arm` is the closed form, evaluated in two number types: `number` (value and gradient) and `enclosure` (intervals
 //!    for value, gradient and second derivatives; `interval`, `interval_simd`, `continuation`).
-//! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder, or that no state is
-//!    allowed.
-//! 3. `coarse_bounds` minimises over the heading once for all placements: minorants over radius, height and direction
-//!    of the feed (`minorant`).
+//! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder (of how the arm
+//!    yields to moments too, `moment`), or that no state is allowed.
+//! 3. `load` is what acts on a point and what of its deflection is scored, with the lower bound of the score that is
+//!    linear in the compliance; `coarse_bounds` minimises it over the heading once for all placements: minorants over
+//!    radius, height and direction of the load (`minorant`), for kinds of load (`kind`).
 //! 4. `cell` is the cell seen along axis 1, `region` a box of placements, `cost` a bound of a path point's score over
 //!    it.
 //! 5. `model` puts these together. `lower_bound` adds the points up by dynamic programming over cells of heading
-//!    (`active_cells`, `sliding_min`), with the rate of beta, at the corners of a box.
+//!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
 //! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
@@ -49,9 +50,12 @@ mod cost;
 mod enclosure;
 mod interval;
 mod interval_simd;
+mod kind;
+mod load;
 mod lower_bound;
 mod minorant;
 mod model;
+mod moment;
 mod number;
 mod region;
 mod relaxed;

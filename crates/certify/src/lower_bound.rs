@@ -3,24 +3,27 @@
 //!
 //! Every cell costs an affine function of the placement, a way through the cells their sum, the best way the least of
 //! these: a concave function, so its least value over the box is at a corner. Ways are taken from cell to cell where
-//! some beta of the one is within the rate of some beta of the other.
+//! some beta of the one is within the limits on beta of some beta of the other.
 
 use super::active_cells::ActiveCells;
-use super::compliance_table::Node;
-use super::cost::{CORNERS, PointCost};
+use super::arm::Arm;
+use super::compliance_table::{ComplianceTable, Node};
+use super::cost::{CORNERS, NOTHING, PointCost, cost_at_corners, joined_sets};
 use super::model::Model;
 use super::region::Region;
-use super::sliding_min::{INFINITE, SlidingMin, min_into, plus};
+use super::sliding_min::{INFINITE, SlidingMin, joined, min_into};
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Monitor;
+use stead_planning::beta_step::BetaStep;
+use stead_planning::criterion::Aggregate;
 
 /// Steps over more cells than there are.
 const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);
 
 #[derive(Debug, Clone)]
 pub(super) struct LowerBound {
-    /// Least sum of the scores; infinite where nothing is feasible. m
+    /// Least sum of what the points cost (the largest, where that is minimised); infinite where nothing is feasible.
     pub sum: f64,
     /// Cells of heading that some placement of the box may still need.
     pub active: ActiveCells,
@@ -36,7 +39,7 @@ impl Model {
     ///
     /// Once the caller asks to stop, what is returned is no bound.
     pub fn lower_bound(&self, region: &Region, active: &ActiveCells, ceiling: f64, monitor: &Monitor) -> LowerBound {
-        let count = active.count();
+        let (count, aggregate) = (active.count(), self.objective.aggregate);
         let mut pass = Pass {
             model: self,
             monitor,
@@ -59,14 +62,19 @@ impl Model {
             if best[0] == f64::INFINITY {
                 return LowerBound { sum: f64::INFINITY, active: pass.active };
             }
-            totals = plus(&totals, &best);
+            totals = joined(aggregate, &totals, &best);
             bests.push(best);
         }
         let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
         if sum < ceiling {
             for ways in &all {
                 let best = bests[ways.segment];
-                pass.prune(ways, &std::array::from_fn(|k| totals[k] - best[k]), ceiling);
+                let others = match aggregate {
+                    Aggregate::Mean | Aggregate::Rms => std::array::from_fn(|k| totals[k] - best[k]),
+                    // Those of the other segments are below the ceiling by themselves.
+                    Aggregate::Max => [0.0; CORNERS],
+                };
+                pass.prune(ways, &others, ceiling);
             }
         }
         LowerBound { sum, active: pass.active }
@@ -76,7 +84,7 @@ impl Model {
     ///
     /// Beta is the heading less the direction of the feed (or the other way round), both against the azimuth of the
     /// point.
-    pub fn steps(&self, region: &Region, points: &[Option<PointCost>], point: usize, width: f64) -> (isize, isize) {
+    pub fn steps(&self, region: &Region, points: &[Option<PointCost<'_>>], point: usize, width: f64) -> (isize, isize) {
         let (Some(before), Some(here)) = (&points[point - 1], &points[point]) else { return ANYWHERE };
         let (before, here) = (&before.placed, &here.placed);
         let [a, _, g] = region.half;
@@ -84,9 +92,10 @@ impl Model {
             + (here.slope_chi[1] - before.slope_chi[1]).abs() * g
             + here.remainder_chi
             + before.remainder_chi;
-        let turned = here.chi - before.chi;
+        let BetaStep { middle, half } = self.changes[point];
+        let turned = here.chi - before.chi + middle;
         let turned = turned - TAU * (turned / TAU).round();
-        let max_step = (self.rates[point] + unsure) / width + 1.0 + 1e-6;
+        let max_step = (half + unsure) / width + 1.0 + 1e-6;
         if max_step >= 1e6 {
             return ANYWHERE;
         }
@@ -101,7 +110,7 @@ struct Pass<'a> {
     monitor: &'a Monitor,
     region: &'a Region,
     /// `None` for a point of which nothing is known.
-    points: Vec<Option<PointCost>>,
+    points: Vec<Option<PointCost<'a>>>,
     active: ActiveCells,
     neighbours: SlidingMin,
     /// Width of a cell. rad
@@ -127,9 +136,9 @@ struct Row {
 }
 
 /// A point with its node, and how far the point is from it in radius and height (m).
-type Answer = (PointCost, [usize; 2], [f64; 2]);
+type Answer<'a> = (PointCost<'a>, [usize; 2], [f64; 2]);
 
-impl Pass<'_> {
+impl<'a> Pass<'a> {
     /// The ways through a segment from its start; `None`, with all its cells inactive, where there is none.
     fn forward(&mut self, segment: usize, class: PostureClass) -> Option<Ways> {
         let span = self.model.segments[segment].clone();
@@ -169,7 +178,7 @@ impl Pass<'_> {
                 self.active.clear(point, class.index(), cell);
                 continue;
             };
-            let sum = reached.map_or(cost, |sum| plus(&sum, &cost));
+            let sum = reached.map_or(cost, |sum| joined(self.model.objective.aggregate, &sum, &cost));
             row.sums[cell] = sum;
             row.cells.push(cell);
             row.costs.push(cost);
@@ -179,7 +188,7 @@ impl Pass<'_> {
     }
 
     /// The node that answers for a point all over the box, if there is one.
-    fn answer(&self, point: usize) -> Option<Answer> {
+    fn answer(&self, point: usize) -> Option<Answer<'a>> {
         let cost = self.points[point]?;
         let (placed, level, table) = (&cost.placed, self.active.level, &self.model.table);
         let answers = table.answers(level, [placed.reach[0], placed.reach[1]]);
@@ -188,19 +197,33 @@ impl Pass<'_> {
     }
 
     /// What a point costs at least in a cell; `None` where none of its states is allowed.
-    fn cost(&self, answer: Option<&Answer>, cell: usize, class: PostureClass) -> Option<[f64; CORNERS]> {
+    fn cost(&self, answer: Option<&Answer<'_>>, cell: usize, class: PostureClass) -> Option<[f64; CORNERS]> {
         let Some((point, at, off)) = answer else { return Some([0.0; CORNERS]) };
-        match self.model.table.node(&self.model.arm, self.active.level, *at, cell, class) {
-            Node::Empty => None,
-            Node::Unknown => Some([0.0; CORNERS]),
-            Node::Known(known) => Some(point.min_cost(known, *off, 0.5 * self.width, self.region)),
+        let Model { table, arm, others, over, objective, .. } = self.model;
+        let (level, half, aggregate) = (self.active.level, 0.5 * self.width, objective.aggregate);
+        let least = |table: &ComplianceTable, arm: &Arm, point: &PointCost<'_>| {
+            let (node, moments) = table.known(arm, level, *at, cell, class);
+            match node {
+                Node::Empty => None,
+                Node::Unknown => Some(NOTHING),
+                Node::Known(known) => Some(point.least((known, moments), *off, half, self.region)),
+            }
+        };
+        let own = least(table, arm, point)?;
+        if others.is_empty() {
+            return Some(cost_at_corners(own, self.region, aggregate));
         }
+        let mut all = vec![own];
+        for set in others {
+            all.push(least(&set.table, &set.arm, &point.with_first(set.first))?);
+        }
+        Some(cost_at_corners(joined_sets(*over, all.into_iter()), self.region, aggregate))
     }
 
     /// From the end back: cells through which every way costs `ceiling` or more, with `others` for the other segments,
     /// become inactive.
     fn prune(&mut self, ways: &Ways, others: &[f64; CORNERS], ceiling: f64) {
-        let span = &self.model.segments[ways.segment];
+        let (span, aggregate) = (&self.model.segments[ways.segment], self.model.objective.aggregate);
         let mut after = vec![INFINITE; self.active.count()];
         for (place, row) in ways.rows.iter().enumerate().rev() {
             let point = span.start + place;
@@ -213,11 +236,12 @@ impl Pass<'_> {
             for (cell, cost) in row.cells.iter().zip(&row.costs) {
                 let onward = if is_end { [0.0; CORNERS] } else { self.neighbours.out[*cell] };
                 let sum = &row.sums[*cell];
-                let through = (0..CORNERS).map(|k| sum[k] + onward[k] + others[k]).fold(f64::INFINITY, f64::min);
+                let through = joined(aggregate, &joined(aggregate, sum, &onward), others);
+                let through = through.into_iter().fold(f64::INFINITY, f64::min);
                 if through >= ceiling {
                     self.active.clear(point, ways.class, *cell);
                 } else {
-                    after[*cell] = plus(&onward, cost);
+                    after[*cell] = joined(aggregate, &onward, cost);
                 }
             }
         }

@@ -1,7 +1,11 @@
 //! Affine functions below what a path point costs, whatever the heading.
 
 use super::arm::Arm;
-use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node};
+use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
+use super::cost::{Direction, Known};
+use super::kind::Kind;
+use super::load::{Load, Tangent};
+use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
@@ -43,7 +47,8 @@ pub(super) fn below_all(
     rounded(value, slope, half)
 }
 
-fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
+/// An affine function a little lower, in fewer digits.
+pub(super) fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
     let size = value.abs() + (0..3).map(|k| slope[k].abs() * half[k] * 4.0).sum::<f64>();
     let value = value - 1e-6 * size;
     if value <= 0.0 { ZERO } else { Affine { value: value as f32, slope: slope.map(|s| s as f32) } }
@@ -51,6 +56,12 @@ fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
 
 /// Second-order parts larger than this share of the compliance are cut up, down to the finest level.
 const COARSE: f64 = 0.3;
+
+/// What the model of a node leaves out, in the plan or of what is vertical.
+fn coarseness(known: &AffineModel) -> f32 {
+    let [m, d, v, zz] = known.remainder;
+    (m + d).max(v + zz)
+}
 
 /// The regions around a node, cut up where their models are coarse; false where nothing is known of one.
 #[expect(clippy::too_many_arguments, reason = "one node and all it is cut from")]
@@ -65,15 +76,14 @@ pub(super) fn collect(
     out: &mut Vec<ModelledRegion>,
 ) -> bool {
     let finest = level + 1 == table.depth();
-    match table.node(arm, level, at, cell, class) {
+    let (node_at, moments) = table.known(arm, level, at, cell, class);
+    match node_at {
         Node::Empty => return true,
         Node::Unknown if finest => return false,
-        Node::Known(known)
-            if finest || f64::from(known.remainder[0] + known.remainder[1]) <= COARSE * arm.typical_compliance() =>
-        {
+        Node::Known(known) if finest || f64::from(coarseness(known)) <= COARSE * arm.typical_compliance() => {
             let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
             let place = table.place(level, at);
-            out.push(ModelledRegion::new(known, half, place[0], [place[0] - node[0], place[1] - node[1]]));
+            out.push(ModelledRegion::new((known, moments), half, place[0], [place[0] - node[0], place[1] - node[1]]));
             return true;
         }
         _ => {}
@@ -95,10 +105,12 @@ pub(super) fn collect(
 /// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
 pub(super) struct ModelledRegion {
     values: [[f64; 4]; FUNCTIONS],
-    remainder: [f64; 3],
+    remainder: [f64; REMAINDERS],
     /// How long (d1, d2) and the vertical compliances can get, and how far they can move.
     max_size: [f64; 2],
     moved: [f64; 2],
+    /// How it yields to moments, where some act.
+    moments: Option<MomentModel>,
     half: [f64; 3],
     r: f64,
     /// Radius and height less those of the node. m
@@ -107,7 +119,7 @@ pub(super) struct ModelledRegion {
 
 impl ModelledRegion {
     /// Of a model about a radius, within `half` of its place, which is `off` the node.
-    pub fn new(known: &AffineModel, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+    pub fn new((known, moments): Known<'_>, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
         let values = known.values.map(|v| v.map(f64::from));
         let remainder = known.remainder.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
@@ -117,68 +129,117 @@ impl ModelledRegion {
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
         let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
-        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], half, r, off }
+        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], moments: moments.copied(), half, r, off }
+    }
+
+    /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
+    /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
+    #[inline(always)]
+    fn least(&self, tangent: &Tangent, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
+        let turned = direction.turned(tangent, load, self.r, [self.half[0], h_chi], first);
+        let [plane, x, y, g, h, axial] = turned.factors;
+        let [length, vertical] = turned.lengths;
+        let [j_value, j_r, j_chi, j_rest] = turned.joint1;
+        let of = |k: usize| {
+            let v = |f: usize| self.values[f][k];
+            plane * v(0) + x * v(1) + y * v(2) + g * v(3) + h * v(4) + axial * v(5)
+        };
+        let [d1, d2, cr, ct] = [1, 2, 3, 4].map(|f| self.values[f][0]);
+        let by_chi = 2.0 * (x * d2 - y * d1) + g * ct - h * cr + j_chi;
+        let remainder = self.remainder[0] * plane.abs()
+            + self.remainder[1] * length
+            + self.remainder[2] * vertical
+            + self.remainder[3] * axial.abs()
+            + h_chi * (2.0 * length * self.moved[0] + vertical * self.moved[1])
+            + h_chi * h_chi * (2.0 * length * self.max_size[0] + 0.5 * vertical * self.max_size[1])
+            + j_rest;
+        let (value, slopes, by_heading) = (of(0) + j_value - remainder, [of(1) + j_r, of(2), by_chi], of(3));
+        // The heading is free within its cell.
+        let (Some(turned), Some(known)) = (&turned.moment, &self.moments) else {
+            return (value - by_heading.abs() * self.half[2], slopes);
+        };
+        let MomentPart { value: more, by: [r, z, heading], by_chi, remainder } =
+            turned.part(known, [0.0; 2], [self.half[0], self.half[1], h_chi], self.half[2]);
+        let free = (by_heading + heading).abs() * self.half[2];
+        (value + more - remainder - free, [slopes[0] + r, slopes[1] + z, slopes[2] + by_chi])
+    }
+
+    /// By how much the scores of the loads of a kind can differ from that of its own: what the norms of C and D make of
+    /// the differences in force and moment. m
+    #[inline]
+    fn spread(&self, kind: &Kind, first: f64) -> f64 {
+        if kind.force_spread == 0.0 && kind.moment_spread == 0.0 {
+            return 0.0;
+        }
+        let far = self.r + self.half[0];
+        let up = |f: usize, remainder: f64| {
+            let [value, slopes @ ..] = self.values[f];
+            value.abs() + (0..3).map(|k| slopes[k].abs() * self.half[k]).sum::<f64>() + remainder
+        };
+        let plan = 2.0 * up(0, self.remainder[0]) + first * far * far;
+        let c = plan + 2.0 * self.max_size[1] + up(5, self.remainder[3]);
+        let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + first * far);
+        let scored = kind.load.directions.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
+        scored * (c * kind.force_spread + d * kind.moment_spread)
+    }
+
+    /// The same below the score.
+    #[inline(always)]
+    fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
+        let seen = direction.seen(self.values.map(|value| value[0]), self.r, first);
+        let by_moment = self.moments.map_or([0.0; 3], |known| {
+            direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, first)
+        });
+        let least = |tangent: &Tangent| self.least(tangent, load, direction, h_chi, first);
+        if load.is_linear() {
+            let tangent = load.of_first();
+            // With the sign that the value has.
+            let sign = if tangent.with(&seen, by_moment) < 0.0 { -1.0 } else { 1.0 };
+            return least(&tangent.times(sign));
+        }
+        let (sharp, of_error) = load.tangents(&seen, by_moment);
+        let found = least(&sharp);
+        match of_error.map(|tangent| least(&tangent)) {
+            Some(other) if other.0 > found.0 => other,
+            _ => found,
+        }
     }
 }
 
-/// Below what all of the states cost, for a force and a direction of the feed (sine and cosine) within `half` of the
-/// node.
+/// Below what all of the states cost, for a kind of load and its direction (sine and cosine) within `half` of the node. `space`
+/// is for work.
 pub(super) fn minorant(
     found: &[ModelledRegion],
-    force: [f64; 3],
-    (sine, cosine): (f64, f64),
+    kind: &Kind,
+    direction: (f64, f64),
     first: f64,
     half: [f64; 3],
+    space: &mut Vec<(f64, [f64; 3])>,
 ) -> Affine {
     if found.is_empty() {
         return EMPTY;
     }
-    let [f1, f2, f3] = force;
-    let (s2, c2) = (2.0 * sine * cosine, cosine * cosine - sine * sine);
-    let (a, b) = (f2 * c2 + f1 * s2, f1 * c2 - f2 * s2);
-    let length = libm::hypot(f1, f2);
+    let direction = Direction::of(direction);
     let h_chi = half[2];
-    let model = |s: &ModelledRegion| {
-        let (r, h_r) = (s.r, s.half[0]);
-        let far = r + h_r;
-        let joint1 = first
-            * (0.5 * ((f2 + a).abs() + 2.0 * length * h_chi) * h_r * h_r
-                + 2.0 * far * (b.abs() + 2.0 * length * h_chi) * h_r * h_chi
-                + far * far * (a.abs() + 2.0 * length * h_chi) * h_chi * h_chi);
-        let of = |k: usize| {
-            let v = |f: usize| s.values[f][k];
-            f2 * v(0) - a * v(1) + b * v(2) + f3 * (cosine * v(4) - sine * v(3))
-        };
-        let value = of(0) + first * r * r * 0.5 * (f2 + a);
-        let by_r = of(1) + first * r * (f2 + a);
-        let by_chi = -2.0 * b * s.values[1][0] - 2.0 * a * s.values[2][0] + first * r * r * b
-            - f3 * (cosine * s.values[3][0] + sine * s.values[4][0]);
-        let remainder = s.remainder[0] * f2.abs() + s.remainder[1] * length + s.remainder[2] * f3.abs()
-            + h_chi * (2.0 * length * s.moved[0] + f3.abs() * s.moved[1])
-            + h_chi * h_chi * (2.0 * length * s.max_size[0] + 0.5 * f3.abs() * s.max_size[1])
-            + joint1
-            // The heading is free within its cell.
-            + of(3).abs() * s.half[2];
-        let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        (value.abs() - remainder, [by_r * sign, of(2) * sign, by_chi * sign])
-    };
+    space.clear();
     let mut lowest = (f64::INFINITY, [0.0; 3]);
-    for s in found {
-        let m = model(s);
-        if m.0 < lowest.0 {
-            lowest = m;
+    for region in found {
+        let (least, slopes) = region.least_score(&kind.load, &direction, h_chi, first);
+        let least = (least - region.spread(kind, first), slopes);
+        if least.0 < lowest.0 {
+            lowest = least;
+            if least.0 <= 0.0 {
+                return ZERO;
+            }
         }
-    }
-    if lowest.0 <= 0.0 {
-        return ZERO;
+        space.push(least);
     }
     let slope = lowest.1;
     let mut value = f64::INFINITY;
-    for s in found {
-        let m = model(s);
+    for (s, (least, slopes)) in found.iter().zip(&*space) {
         let spread = [s.half[0], s.half[1], h_chi];
         let shifted = slope[0] * s.off[0] + slope[1] * s.off[1];
-        value = value.min(m.0 - shifted - (0..3).map(|k| (m.1[k] - slope[k]).abs() * spread[k]).sum::<f64>());
+        value = value.min(least - shifted - (0..3).map(|k| (slopes[k] - slope[k]).abs() * spread[k]).sum::<f64>());
     }
     rounded(value, slope, half)
 }

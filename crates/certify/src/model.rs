@@ -1,16 +1,31 @@
 //! What bounds are made of: the arm, how it yields all over the cell, and the path points.
 
 use super::arm::Arm;
+use super::branch_and_bound::Keeps;
 use super::cell::{Yaws, extent, points_of};
 use super::compliance_table::{ComplianceTable, Steps};
 use super::cost::PointCost;
+use super::load::Objective;
 use super::region::{Point, PolarModel, Region};
 use std::ops::Range;
+use stead_model::robot::Robot;
+use stead_planning::beta_step::BetaStep;
+use stead_planning::criterion::Over;
 use stead_planning::problem::Problem;
+use stead_planning::symmetry::Upright;
 
 /// Steps of the coarsest tables, and their number.
 pub(super) const STEPS: Steps = Steps { length: 0.025, headings: 128 };
 pub(super) const LEVELS: usize = 4;
+
+/// The arm with another set of stiffness than the first.
+#[derive(Debug)]
+pub(super) struct OtherSet {
+    pub arm: Arm,
+    pub table: ComplianceTable,
+    /// Compliance of joint 1. rad/(N m)
+    pub first: f64,
+}
 
 /// What is to be bounded, prepared.
 #[derive(Debug)]
@@ -19,32 +34,52 @@ pub(super) struct Model {
     pub table: ComplianceTable,
     pub points: Vec<Point>,
     pub segments: Vec<Range<usize>>,
-    /// Largest change of beta from the point before, by its rate alone. rad; infinite without
-    pub rates: Vec<f64>,
+    /// Changes of the heading from the point before, less that of the direction of the feed, that the limits on beta
+    /// allow. rad
+    pub changes: Vec<BetaStep>,
     /// Compliance of joint 1. rad/(N m)
     pub first: f64,
+    /// The same arm with the other sets of stiffness that a score covers, where there are several.
+    pub others: Vec<OtherSet>,
+    /// How the scores under the sets make up that of a point.
+    pub over: Over,
     pub yaws: Yaws,
+    /// How the costs of the points make up the figure that is minimised.
+    pub objective: Objective,
 }
 
 impl Model {
-    /// Of a problem with constant compliances, with the rate of beta, where there is one, or without.
-    pub fn new(problem: &Problem, with_rate: bool) -> Self {
-        let compliances = problem.robot.compliances_at(&[0.0; 6]);
+    /// Of a problem, with what is kept of the limits on beta along the path.
+    pub fn new(problem: &Problem, keeps: Keeps) -> Self {
         let extent = extent(problem);
-        let max_rate = problem.redundancy.max_beta_rate.filter(|_| with_rate);
-        let rate = |point: usize| match max_rate {
-            Some(rate) if point > 0 => rate * problem.step_length(point),
-            _ => f64::INFINITY,
+        let arm = |robot: &Robot| Arm::new(problem, robot, extent.radius.0);
+        let table = || ComplianceTable::new(extent, STEPS, LEVELS);
+        let first = |robot: &Robot| robot.compliances_at(&[0.0; 6])[0];
+        let robots = problem.scored_robots();
+        let other = |robot: &Robot| OtherSet { arm: arm(robot), table: table(), first: first(robot) };
+        // A growing beta turns the spindle about axis 1 or against it.
+        let sign = Upright::of(problem).map_or(1.0, |upright| upright.rotation_sign);
+        let change = |point: usize| match problem.redundancy.max_beta_rate {
+            _ if point == 0 => BetaStep::ANY,
+            Some(rate) if keeps.with_rate => BetaStep { middle: 0.0, half: rate * problem.step_length(point) },
+            None if keeps.with_turn => {
+                let BetaStep { middle, half } = problem.beta_step(point);
+                BetaStep { middle: sign * middle, half }
+            }
+            _ => BetaStep::ANY,
         };
         let points = points_of(problem);
         Self {
-            arm: Arm::new(problem, &compliances, extent.radius.0),
-            table: ComplianceTable::new(extent, STEPS, LEVELS),
-            rates: (0..points.len()).map(rate).collect(),
+            arm: arm(&robots[0]),
+            table: table(),
+            changes: (0..points.len()).map(change).collect(),
             points,
             segments: problem.task.segments().to_vec(),
-            first: compliances[0],
+            first: first(&robots[0]),
+            others: robots[1..].iter().map(other).collect(),
+            over: problem.criterion.stiffness.as_ref().map_or(Over::Mean, |sets| sets.over),
             yaws: Yaws::new(problem),
+            objective: Objective::of(problem),
         }
     }
 
@@ -70,8 +105,13 @@ impl Model {
         if min_r < self.table.grid().0.radius.0 - 1e-9 { None } else { Some(placed) }
     }
 
+    /// What the tables take. bytes
+    pub fn used(&self) -> u64 {
+        self.others.iter().map(|set| set.table.used()).sum::<u64>() + self.table.used()
+    }
+
     /// Every point over a box, where something is known of it.
-    pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost>> {
+    pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost<'_>>> {
         let placed = (0..self.points.len()).map(|point| self.placed(point, region));
         placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.first))).collect()
     }

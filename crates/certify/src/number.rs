@@ -32,6 +32,8 @@ pub(super) trait Number:
     fn inverse_sqrt(self) -> Self;
     /// One over what is above zero, or below.
     fn reciprocal(self) -> Self;
+    /// The angle of which it is the tangent, less than a quarter of a turn.
+    fn arctangent(self) -> Self;
     /// Of the squared distance q of the wrist centre from the shoulder, above zero: the sine of the elbow angle, and
     /// the elbow's components along and across the line between them, alpha and beta of `elbow = alpha S + beta S'`.
     /// Each is a function of q alone.
@@ -150,6 +152,11 @@ impl Number for Slope {
     fn reciprocal(self) -> Self {
         let inverse = Lanes::splat(1.0) / self.value;
         self.through(inverse, -(inverse * inverse))
+    }
+    #[inline(always)]
+    fn arctangent(self) -> Self {
+        let first = Lanes::splat(1.0) / (self.value * self.value + 1.0);
+        self.through(Lanes(self.value.0.map(libm::atan)), first)
     }
     #[inline(always)]
     fn elbow(self, links: &Links) -> [Self; 3] {

@@ -3,6 +3,7 @@
 //! Turning the workpiece and joint 1 together about axis 1 changes nothing but theta_1, so a placement is three
 //! numbers: radius and height of the workpiece origin, and the yaw less its azimuth.
 
+use super::load::Load;
 use super::number::VARIABLES;
 use serde::Serialize;
 
@@ -25,8 +26,8 @@ pub(super) struct Point {
     pub height: f64,
     /// Direction of the feed. rad
     pub feed: f64,
-    /// Force along the feed, to its left, and along axis 1. N
-    pub force: [f64; 3],
+    /// What acts on it, and what is scored.
+    pub load: Load,
 }
 
 /// Radius and azimuth of a path point over a box: value, slopes and what the slopes leave out.

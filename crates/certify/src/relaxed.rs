@@ -11,8 +11,8 @@ const BETAS: usize = 360;
 /// Steps of the golden section: from two grid steps to a billionth of them.
 const NARROWINGS: usize = 43;
 
-/// The mean over the path points of the least score over beta, in the best posture class of each segment; `None` where
-/// some segment has no class that is allowed at all its points, or once the caller asks to stop. m
+/// The mean over the path points of the least score over beta, each of its weight, in the best posture class of each
+/// segment; `None` where some segment has no class that is allowed at all its points, or once the caller asks to stop. m
 ///
 /// What must hold: reach, the limits of joints 2, 3 and 5 (of the last the farther from zero, both ways) and the least
 /// inverse condition. What is relaxed: the rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest
@@ -23,7 +23,8 @@ pub fn relaxed_value(problem: &Problem, placement: &Placement, monitor: &Monitor
     let all: Vec<[f64; 4]> = (0..points)
         .into_par_iter()
         .map(|point| {
-            let minimum = |class| minimum(&|beta| score(problem, placement, point, class, beta));
+            let weight = problem.point_weight(point);
+            let minimum = |class| minimum(&|beta| weighed(weight, score(problem, placement, point, class, beta)));
             if monitor.should_stop() { [f64::INFINITY; 4] } else { PostureClass::ALL.map(minimum) }
         })
         .collect();
@@ -32,7 +33,12 @@ pub fn relaxed_value(problem: &Problem, placement: &Placement, monitor: &Monitor
         let of = |class: usize| all[span.clone()].iter().map(|scores| scores[class]).sum::<f64>();
         sum += (0..4).map(of).fold(f64::INFINITY, f64::min);
     }
-    (sum < f64::INFINITY).then_some(sum / points as f64)
+    (sum < f64::INFINITY).then_some(sum / problem.total_weight())
+}
+
+/// A score that counts so much; infinite stays infinite.
+fn weighed(weight: f64, score: f64) -> f64 {
+    if score.is_finite() { weight * score } else { score }
 }
 
 /// The score of a state; infinite where it is not allowed. m

@@ -5,13 +5,15 @@ use super::cell::{extent, points_of};
 use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
 use super::model::{LEVELS, STEPS};
+use stead_planning::criterion::Aggregate;
 use stead_planning::problem::Problem;
 use stead_planning::symmetry::{
     Unsupported, Upright, require_axial_springs, require_certain_compliances, require_constant, require_free_beta,
-    require_mean_wall, require_no_moment,
+    require_no_travel,
 };
 
-/// Whether a problem can be certified with tables of at most `memory` bytes when they are empty, found without work.
+/// Whether the best placement of a problem can be certified with tables of at most `memory` bytes when they are empty,
+/// found without work.
 ///
 /// # Errors
 /// The first reason why not.
@@ -20,19 +22,9 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
         return Err(Unsupported::Orientations);
     }
     Upright::of(problem)?;
-    require_no_moment(problem)?;
-    require_mean_wall(problem)?;
+    require_no_travel(problem)?;
     require_free_beta(problem)?;
-    if !problem.criterion.segment_weights.is_empty() {
-        return Err(Unsupported::OtherCriterion { key: "weight of a segment" });
-    }
-    if let Some(point) = problem.task.path().first_unscored() {
-        return Err(Unsupported::Unscored { point });
-    }
-    require_constant(problem, &[0, 1, 2, 3, 4, 5])?;
-    if problem.criterion.force_uncertainty != 0.0 {
-        return Err(Unsupported::UncertainForce);
-    }
+    require_constant(problem, &[0, 3, 4, 5])?;
     require_certain_compliances(problem)?;
     require_axial_springs(problem)?;
     let extent = extent(problem);
@@ -40,6 +32,29 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
         return Err(Unsupported::Conditioning { needed });
     }
     let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
-    let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS).saturating_add(coarse);
+    let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS)
+        .saturating_mul(problem.scored_robots().len() as u64)
+        .saturating_add(coarse);
     if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) }
+}
+
+/// Whether the worst placement can be certified too: bounds from above are those of the mean of scores that are the
+/// absolute value of one part of the deflection.
+///
+/// # Errors
+/// The first reason why not.
+pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
+    certifiable(problem, memory)?;
+    let beyond = |key| Err(Unsupported::NotFromAbove { key });
+    if problem.criterion.aggregate != Aggregate::Mean {
+        beyond("criterion.aggregate")
+    } else if problem.criterion.stiffness.is_some() {
+        beyond("criterion.robots")
+    } else if problem.criterion.force_uncertainty != 0.0 {
+        beyond("criterion.force_uncertainty")
+    } else if !problem.criterion.weights.is_single() {
+        beyond("criterion.direction")
+    } else {
+        Ok(())
+    }
 }

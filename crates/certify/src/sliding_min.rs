@@ -1,6 +1,7 @@
 //! Sums at the corners of a box, and the least of neighbouring ones.
 
 use super::cost::CORNERS;
+use stead_planning::criterion::Aggregate;
 
 /// No way.
 pub(super) const INFINITE: [f64; CORNERS] = [f64::INFINITY; CORNERS];
@@ -9,6 +10,15 @@ pub(super) const INFINITE: [f64; CORNERS] = [f64::INFINITY; CORNERS];
 #[inline]
 pub(super) fn plus(a: &[f64; CORNERS], b: &[f64; CORNERS]) -> [f64; CORNERS] {
     std::array::from_fn(|k| a[k] + b[k])
+}
+
+/// Corner by corner what two parts of a way cost together.
+#[inline]
+pub(super) fn joined(aggregate: Aggregate, a: &[f64; CORNERS], b: &[f64; CORNERS]) -> [f64; CORNERS] {
+    match aggregate {
+        Aggregate::Mean | Aggregate::Rms => plus(a, b),
+        Aggregate::Max => std::array::from_fn(|k| a[k].max(b[k])),
+    }
 }
 
 /// Corner by corner the lesser, into the first.

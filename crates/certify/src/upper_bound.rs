@@ -73,7 +73,7 @@ pub(super) struct BoxBounds<'a> {
     /// Once it asks to stop, what is returned is no bound.
     monitor: &'a Monitor,
     /// `None` for a point that may be near axis 1, so that nothing is known of it.
-    pub points: Vec<Option<PointCost>>,
+    pub points: Vec<Option<PointCost<'a>>>,
     pub level: usize,
 }
 
@@ -98,11 +98,12 @@ impl<'a> BoxBounds<'a> {
         };
         let mut min_size = f64::INFINITY;
         for cell in cells {
-            match table.node(arm, self.level, at, cell, class) {
+            let (node, moments) = table.known(arm, self.level, at, cell, class);
+            match node {
                 Node::Empty => {}
                 Node::Unknown => bounds.max = ANYTHING,
                 Node::Known(known) => {
-                    let of = |choice: bool| pointwise.max_cost(known, off, half_cell, self.region, choice);
+                    let of = |choice: bool| pointwise.max_cost((known, moments), off, half_cell, self.region, choice);
                     if known.sure {
                         let costs = of(true);
                         let size: f64 = costs.iter().sum();

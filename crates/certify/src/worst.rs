@@ -3,13 +3,13 @@
 //! Dropping limits lowers the objective of a placement, so this is no upper bound of values with the rate of beta or
 //! joint steps.
 
-use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, halves, widest};
 use super::cell::{placement_in, whole};
 use super::compliance_table::{ComplianceTable, Steps};
 use super::model::Model;
 use super::region::Region;
 use super::relaxed::relaxed_value;
-use super::requirements::certifiable;
+use super::requirements::certifiable_from_above;
 use super::upper_bound::{BoxBounds, Inherited};
 use crate::settings::CertificateSettings;
 use std::sync::Arc;
@@ -49,9 +49,10 @@ pub fn worst(
     monitor: &Monitor,
 ) -> Result<Bound, Unsupported> {
     let CertificateSettings { gap, memory, .. } = *settings;
-    certifiable(problem, memory)?;
+    certifiable_from_above(problem, memory)?;
     let model = without_rate(problem);
-    let search = BranchAndBound { sense: Sense::Max, value, gap, with_rate: false, points: model.points.len(), memory };
+    let objective = model.objective;
+    let search = BranchAndBound { sense: Sense::Max, value, gap, keeps: Keeps::NOTHING, objective, memory };
     let ceiling = search.ceiling();
     let unknown = |region| Open { bound: f64::INFINITY, region, known: None };
     let start = first(&model, whole(problem), monitor).into_iter().map(unknown).collect();
@@ -59,7 +60,7 @@ pub fn worst(
         start,
         nodes: 0,
         of: |open: &WorstBox| parts(&model, open, ceiling, monitor),
-        used: || model.table.used(),
+        used: || model.used(),
         bytes: |seen: &Option<Arc<Inherited>>| seen.as_ref().map_or(0, |seen| seen.bytes()),
     };
     let mut known = value;
@@ -86,7 +87,7 @@ fn worse(problem: &Problem, known: f64, regions: &[Region], monitor: &Monitor) -
 
 /// What is bounded from above: without the rate of beta, and with tables of one level more.
 fn without_rate(problem: &Problem) -> Model {
-    let model = Model::new(problem, false);
+    let model = Model::new(problem, Keeps::NOTHING);
     let (extent, _) = model.table.grid();
     Model { table: ComplianceTable::new(extent, STEPS, LEVELS), ..model }
 }

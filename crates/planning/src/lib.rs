@@ -41,7 +41,7 @@
 //! # Ok::<(), stead_planning::problem::ProblemError>(())
 //! ```
 
-mod beta_step;
+pub mod beta_step;
 pub mod candidate;
 pub mod cell;
 pub mod collision;

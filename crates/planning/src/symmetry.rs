@@ -8,7 +8,7 @@
 use super::criterion::{Aggregate, Criterion, Weights};
 use super::problem::{BetaPlan, Placement, Problem};
 use nalgebra::Vector3;
-use stead_model::robot::{Compliance, angles::wrap};
+use stead_model::robot::{Compliance, Robot, angles::wrap};
 
 /// Why a problem cannot be treated by means of the symmetry.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,12 +45,6 @@ pub enum Unsupported {
         /// The first such path point, from 0.
         point: usize,
     },
-    /// A point is not scored.
-    #[error("point {point} of the task is not scored")]
-    Unscored {
-        /// The first such path point, from 0.
-        point: usize,
-    },
     /// A compliance that must be constant changes with its joint angle.
     #[error("the compliance of joint {joint} changes with its angle")]
     VaryingCompliance {
@@ -68,9 +62,15 @@ pub enum Unsupported {
         /// What.
         what: &'static str,
     },
-    /// Scores cover errors of the force.
-    #[error("scores cover errors of the force (criterion.force_uncertainty)")]
-    UncertainForce,
+    /// Bounds from above do not cover the criterion.
+    #[error(
+        "bounds from above cover the mean of one part of the deflection without force errors, and not this {key}; those \
+         of the best placement do"
+    )]
+    NotFromAbove {
+        /// What is different: a key of the run file.
+        key: &'static str,
+    },
     /// Scores cover errors of the compliances.
     #[error("scores cover errors of the compliances (criterion.confidence)")]
     UncertainCompliances,
@@ -172,7 +172,10 @@ pub fn require_no_moment(problem: &Problem) -> Result<(), Unsupported> {
 /// # Errors
 /// [`Unsupported::VaryingCompliance`] for the first that is not.
 pub fn require_constant(problem: &Problem, joints: &[usize]) -> Result<(), Unsupported> {
-    let is_law = |j: &&usize| !matches!(problem.robot.joints()[**j].compliance, Compliance::Constant(_));
+    let is_law = |j: &&usize| {
+        let varies = |robot: &Robot| !matches!(robot.joints()[**j].compliance, Compliance::Constant(_));
+        problem.scored_robots().iter().any(varies)
+    };
     joints.iter().find(is_law).map_or(Ok(()), |joint| Err(Unsupported::VaryingCompliance { joint: joint + 1 }))
 }
 
@@ -188,11 +191,17 @@ pub fn require_mean_wall(problem: &Problem) -> Result<(), Unsupported> {
         Err(Unsupported::OtherCriterion { key: "criterion.robots" })
     } else if *aggregate != Aggregate::Mean {
         Err(Unsupported::OtherCriterion { key: "criterion.aggregate" })
-    } else if problem.criterion.joint_travel_weight != 0.0 {
-        Err(Unsupported::JointTravel)
     } else {
-        Ok(())
+        require_no_travel(problem)
     }
+}
+
+/// Requires that joint travel does not count.
+///
+/// # Errors
+/// [`Unsupported::JointTravel`] where it does.
+pub fn require_no_travel(problem: &Problem) -> Result<(), Unsupported> {
+    if problem.criterion.joint_travel_weight == 0.0 { Ok(()) } else { Err(Unsupported::JointTravel) }
 }
 
 /// Requires that beta may change along the path.
@@ -234,7 +243,8 @@ pub fn require_axial_springs(problem: &Problem) -> Result<(), Unsupported> {
 /// # Errors
 /// [`Unsupported::UncertainCompliances`] where they cover it.
 pub fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
-    let is_covered = problem.criterion.confidence != 0.0 && problem.robot.uncertainty().is_some();
+    let is_covered = problem.criterion.confidence != 0.0
+        && problem.scored_robots().iter().any(|robot| robot.uncertainty().is_some());
     if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
 }
 

@@ -1,10 +1,12 @@
 //! What the closed form of an arm takes from the problem.
 
+use super::super::cell::points_of;
 use super::super::continuation::{Bend, Links};
+use super::law::Law;
 use super::singularity::{Limits, Needs, tool_lever};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
-use stead_model::robot::{Geometry, angles::ANGLE_ROUNDING};
+use stead_model::robot::{Geometry, Robot, angles::ANGLE_ROUNDING};
 use stead_planning::problem::Problem;
 
 /// What does not change from state to state.
@@ -15,8 +17,11 @@ pub(in super::super) struct Arm {
     pub(super) lever: Vector3<f64>,
     /// Axis 6 with heading zero.
     pub(super) axis6: Vector3<f64>,
-    /// Compliances k_2 to k_6. rad/(N m)
-    pub(super) compliances: [f64; 5],
+    /// Compliances of joints 2 and 3, and what they are like. rad/(N m)
+    pub(super) laws: [Law; 2],
+    typical: f64,
+    /// Compliances k_4 to k_6. rad/(N m)
+    pub(super) compliances: [f64; 3],
     /// Limits of joints 2 and 3, rounding included. rad
     limits: [(f64, f64); 2],
     /// Smallest cosine of theta_5.
@@ -26,8 +31,11 @@ pub(in super::super) struct Arm {
     pub(super) needs: Needs,
     pub(super) links: Links,
     pub(super) bend: Bend,
-    /// Whether any force is along axis 1.
+    /// Whether any force or scored direction is along axis 1, and whether both can be.
     pub(super) is_vertical: bool,
+    pub(super) is_axial: bool,
+    /// Whether any moment acts.
+    pub(in super::super) has_moments: bool,
 }
 
 /// How the limits of a joint cut its turn.
@@ -42,11 +50,14 @@ pub(in super::super) enum LimitSpan {
 }
 
 impl Arm {
-    /// For radii of the tool centre point from `nearest` (m) on.
-    pub fn new(problem: &Problem, compliances: &[f64; 6], nearest: f64) -> Self {
-        let robot = &problem.robot;
+    /// With the stiffness of a robot of the geometry of the problem's, for radii of the tool centre point from `nearest`
+    /// (m) on.
+    pub fn new(problem: &Problem, robot: &Robot, nearest: f64) -> Self {
+        let compliances = robot.compliances_at(&[0.0; 6]);
         let geometry = robot.geometry().clone();
         let side = geometry.base_from_root[(2, 2)];
+        let parts = points_of(problem).into_iter().map(|point| point.load.vertical_parts());
+        let [is_vertical, is_axial] = parts.fold([false; 2], |all, one| [all[0] || one[0], all[1] || one[1]]);
         let axis = problem.task.points().first().map_or(1.0, |p| p.axis.z) * side;
         // With heading zero: feed along x, axis up or down, then eq. 10 with beta zero.
         let root_from_flange = Matrix3::from_diagonal(&Vector3::new(1.0, axis, axis))
@@ -63,10 +74,14 @@ impl Arm {
             needs: limits.needs,
             links: Links { upper_arm, forearm, limits: distances2 },
             bend: Bend { limit: limits.in_line },
-            is_vertical: problem.task.wrenches().iter().any(|w| w.force.z != 0.0),
+            is_vertical,
+            is_axial,
+            has_moments: problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0),
             lever: root_from_flange * tool_lever(problem),
             axis6: root_from_flange.column(2).into_owned(),
-            compliances: std::array::from_fn(|k| compliances[k + 1]),
+            laws: [1, 2].map(|j| Law::of(joint(j))),
+            typical: compliances[1].max(compliances[2]) / 3.0,
+            compliances: std::array::from_fn(|k| compliances[k + 3]),
             limits: [1, 2].map(|j| (joint(j).min - ANGLE_ROUNDING, joint(j).max + ANGLE_ROUNDING)),
             min_cosine5: if widest5 >= PI { -1.0 } else { libm::cos(widest5) },
             min_inverse_condition: problem.constraints.min_inverse_condition,
@@ -76,7 +91,7 @@ impl Arm {
 
     /// How large a compliance of the arm is: that of its upper joints at a lever of a metre. m/N
     pub fn typical_compliance(&self) -> f64 {
-        self.compliances[0].max(self.compliances[1]) / 3.0
+        self.typical
     }
 
     /// Limits of joint 2 (0) or 3 (1), rounding included. rad

@@ -91,6 +91,8 @@ pub(super) struct Elbow<T> {
     /// Elbow from the shoulder: along the arm, and up times `lift`. m
     elbow: [T; 2],
     pub sin_delta: T,
+    /// Sines and cosines of joints 2 and 3.
+    pub angles: [[T; 2]; 2],
     /// Not negative where the bound on conditioning allows the elbow.
     pub margin: T,
     /// sin(theta - min), sin(max - theta) of joints 2 and 3.
@@ -184,7 +186,8 @@ impl Arm {
         let joint_margins = [self.limit_margins(0, sin2, cos2), self.limit_margins(1, sin3, cos3)];
         let outside = self.is_outside(0, joint_margins[0]) | self.is_outside(1, joint_margins[1]);
         let violated = margin.is_negative() & defined | outside & *regular;
-        Elbow { from_shoulder: InPlane { along: u, up }, elbow, sin_delta, margin, joint_margins, violated }
+        let angles = [[sin2, cos2], [sin3, cos3]];
+        Elbow { from_shoulder: InPlane { along: u, up }, elbow, sin_delta, angles, margin, joint_margins, violated }
     }
 
     /// sin(theta - min) and sin(max - theta) of joint 2 (0) or 3 (1).

@@ -16,10 +16,12 @@
 mod conditioning;
 mod constants;
 mod inverse;
+mod law;
 mod singularity;
 mod vector;
 
 use super::interval_simd::Mask;
+use super::moment::MOMENTS;
 use super::number::Number;
 pub(super) use constants::{Arm, LimitSpan};
 use inverse::{Posed, Signs, Tool};
@@ -38,6 +40,10 @@ pub(super) struct ArmCompliance<T> {
     pub d2: T,
     /// Compliance between the vertical and the radial, and the vertical and the tangential direction. m/N
     pub vertical: [T; 2],
+    /// Compliance along the vertical. m/N
+    pub axial: T,
+    /// The functions of [`super::moment::MomentModel`], where some moment acts. 1/N
+    pub moments: Option<[T; MOMENTS]>,
     /// What is left to each constraint.
     pub margins: Margins<T>,
     /// Where all but the conditioning was sure to be regular.
@@ -62,6 +68,9 @@ pub(super) struct Margins<T> {
     /// Conditioning.
     pub conditioning: T,
 }
+
+/// One of the components of a vector.
+type Component<T> = fn(&Vector<T>) -> T;
 
 impl Arm {
     /// Evaluates one posture class for a tool centre point at a radius and height (m) and a heading; `None` where none
@@ -103,7 +112,8 @@ impl Arm {
         if violated.all() {
             return None;
         }
-        let (m, d1, d2, vertical) = self.compliance(&posed);
+        let (m, d1, d2, vertical, axial) = self.compliance(&posed, &mut regular);
+        let moments = self.has_moments.then(|| self.under_moments(&posed, &mut regular));
         let margins = Margins {
             elbow: elbow.margin,
             joints: elbow.joint_margins,
@@ -111,12 +121,12 @@ impl Arm {
             wrist: wrist.margin,
             conditioning,
         };
-        Some(ArmCompliance { m, d1, d2, vertical, margins, regular, conditioned, violated })
+        Some(ArmCompliance { m, d1, d2, vertical, axial, moments, margins, regular, conditioned, violated })
     }
 
-    /// m, d1, d2, and c_rz with c_tz where some force is along axis 1.
+    /// m, d1, d2, and c_rz, c_tz and c_zz where some force or scored direction is along axis 1.
     #[inline(always)]
-    fn compliance<T: Number>(&self, posed: &Posed<'_, T>) -> (T, T, T, [T; 2]) {
+    fn compliance<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> (T, T, T, [T; 2], T) {
         let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
         let v4 = axis4.cross(lever);
         // s v_5 = (z_4 x z_6) x t = z_6 (z_4 . t) - z_4 (z_6 . t).
@@ -124,22 +134,62 @@ impl Arm {
         let five = |z6: T, z4: T| z6 * along4 - z4.scale(along6);
         let v5 = Vector { x: five(axis6.x, axis4.x), y: five(axis6.y, axis4.y), z: five(axis6.z, axis4.z) };
         let v6 = posed.tool.turned(&self.axis6.cross(&self.lever));
-        let [k2, k3, k4, k5, k6] = self.compliances;
+        let [k4, k5, k6] = self.compliances;
+        let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
         let k5 = posed.wrist.inverse5.scale(k5);
         // The sum over joints 4 to 6 of k_j f(v_j).
         let wrist = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * k5 + f(&v6).scale(k6);
         let [p2, p3] = posed.tips;
         let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
         let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
-        let bending = (p2.up.square().scale(k2) + p3.up.square().scale(k3)).scale(0.5);
+        // Of joints 2 and 3 the sum of k_j f(v_j).
+        let mut upper = |of2: T, of3: T| second.times(of2, angles2, regular) + third.times(of3, angles3, regular);
+        let bending = upper(p2.up.square(), p3.up.square()).scale(0.5);
         let m = bending + wrist(&|v| v.x.square() + v.y.square()).scale(0.5);
         let d1 = bending * cos_twice + wrist(&|v| v.x.square() - v.y.square()).scale(0.5);
         let d2 = bending * sin_twice + wrist(&|v| v.x * v.y);
+        let zero = T::constant(0.0);
         if !self.is_vertical {
-            return (m, d1, d2, [T::constant(0.0); 2]);
+            return (m, d1, d2, [zero; 2], zero);
         }
-        let tilting = -((p2.along * p2.up).scale(k2) + (p3.along * p3.up).scale(k3));
+        let tilting = -upper(p2.along * p2.up, p3.along * p3.up);
         let vertical = [tilting * cos1 + wrist(&|v| v.x * v.z), tilting * sin1 + wrist(&|v| v.y * v.z)];
-        (m, d1, d2, vertical)
+        let axial =
+            if self.is_axial { upper(p2.along.square(), p3.along.square()) + wrist(&|v| v.z.square()) } else { zero };
+        (m, d1, d2, vertical, axial)
+    }
+
+    /// The functions of D = sum k_j v_j z_j^T without joint 1. In the frame of the arm's plane, axes 2 and 3 are
+    /// (sin phi, -cos phi, 0).
+    #[inline(never)]
+    fn under_moments<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> [T; MOMENTS] {
+        let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
+        let crossed = axis4.cross(axis6);
+        let [k4, k5, k6] = self.compliances;
+        let k5 = posed.wrist.inverse5.scale(k5);
+        let [v4, v5, v6] = [axis4.cross(lever), crossed.cross(lever), axis6.cross(lever)];
+        // The sum over joints 4 to 6 of k_j f(v_j) g(z_j).
+        let wrist = |f: fn(&Vector<T>) -> T, g: fn(&Vector<T>) -> T| {
+            (f(&v4) * g(&axis4)).scale(k4) + f(&v5) * g(&crossed) * k5 + (f(&v6) * g(&axis6)).scale(k6)
+        };
+        let [x, y, z]: [Component<T>; 3] = [|v| v.x, |v| v.y, |v| v.z];
+        let [rr, rt, tr, tt] = [wrist(x, x), wrist(x, y), wrist(y, x), wrist(y, y)];
+        let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
+        let mut upper = |of2: T, of3: T| second.times(of2, angles2, regular) + third.times(of3, angles3, regular);
+        let [p2, p3] = posed.tips;
+        let (bending, lifting) = (upper(p2.up, p3.up).scale(0.5), upper(p2.along, p3.along));
+        let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
+        let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
+        [
+            (rr + tt).scale(0.5),
+            (tr - rt).scale(0.5) - bending,
+            (rr - tt).scale(0.5) - bending * sin_twice,
+            (rt + tr).scale(0.5) + bending * cos_twice,
+            wrist(x, z),
+            wrist(y, z),
+            wrist(z, x) + lifting * sin1,
+            wrist(z, y) - lifting * cos1,
+            wrist(z, z),
+        ]
     }
 }

@@ -1,8 +1,9 @@
 //! Boxes of placements: where they put a point, and what it costs over them.
 
-use super::super::compliance_table::{AffineModel, Node, nodes_over};
+use super::super::compliance_table::{AffineModel, Node, REMAINDERS, known_over};
 use super::super::cost::PointCost;
 use super::super::interval_simd::WIDTH;
+use super::super::moment::MomentModel;
 use super::super::region::PolarModel;
 use super::*;
 
@@ -82,12 +83,14 @@ fn points_are_where_boxes_put_them_and_broken_rests_are_seen() {
 pub struct Mutation {
     name: &'static str,
     known: fn(&mut AffineModel),
+    moments: fn(&mut MomentModel),
     placed: fn(&mut PolarModel),
     joint1: f64,
     cell: f64,
 }
 
-pub const SOUND: Mutation = Mutation { name: "sound", known: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
+pub const SOUND: Mutation =
+    Mutation { name: "sound", known: |_| {}, moments: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
 
 /// Size of a box, half width of the node in radius and height, half width of its cell of heading.
 const SIZES: [[f64; 3]; 5] =
@@ -111,12 +114,19 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
         }
         let off = [share(&mut random) * room, share(&mut random) * room];
         let place = [placed.r - off[0], placed.z - off[1], heading];
-        let [node, ..] = nodes_over(&setting.model.arm, &[place; WIDTH], [length, length, cell], class);
+        let [(node, mut moments), ..] = known_over(&setting.model.arm, &[place; WIDTH], [length, length, cell], class);
         let Node::Known(mut known) = node else { continue };
         (mutation.known)(&mut known);
+        moments.iter_mut().for_each(mutation.moments);
         (mutation.placed)(&mut placed);
         let one = PointCost::new(&setting.model.points[point], placed, setting.model.first * mutation.joint1);
-        let min = one.min_cost(&known, off, cell * mutation.cell, &region);
+        let min = one.min_cost(
+            (&known, moments.as_ref()),
+            off,
+            cell * mutation.cell,
+            &region,
+            setting.model.objective.aggregate,
+        );
         for _ in 0..8 {
             let s = shares(&mut random);
             // The affine function that has those values at the corners.
@@ -127,7 +137,7 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
             let at = setting.place(inside(&region, s), point);
             let Some(truth) = setting.truth(point, at, heading + share(&mut random) * cell, class) else { continue };
             compared += 1;
-            wrong += usize::from(truth.normal.abs() < below - 1e-12 * truth.normal.abs());
+            wrong += usize::from(truth.cost < below - 1e-12 * truth.cost);
         }
     }
     [wrong, compared]
@@ -135,7 +145,7 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
 
 #[test]
 fn points_cost_at_least_what_is_said_anywhere_in_the_box() {
-    for (name, setting) in Setting::all() {
+    for (name, setting) in Setting::all().into_iter().chain(Setting::criteria()) {
         let [wrong, compared] = violations(&setting, &SOUND);
         assert!(wrong == 0 && compared > 3000, "{name}: {wrong} of {compared}");
     }
@@ -144,7 +154,7 @@ fn points_cost_at_least_what_is_said_anywhere_in_the_box() {
 #[test]
 fn broken_costs_are_seen() {
     let mutations = [
-        Mutation { name: "remainders zero", known: |known| known.remainder = [0.0; 3], ..SOUND },
+        Mutation { name: "remainders zero", known: |known| known.remainder = [0.0; REMAINDERS], ..SOUND },
         Mutation {
             name: "remainders times 0.3",
             known: |known| known.remainder = known.remainder.map(|r| 0.3 * r),
@@ -157,6 +167,36 @@ fn broken_costs_are_seen() {
     ];
     let setting = Setting::new(slanted());
     for mutation in &mutations {
+        assert!(violations(&setting, mutation)[0] > 0, "{} is not seen", mutation.name);
+    }
+    // And where the whole deflection is scored, with errors of the force.
+    let mut problem = slanted();
+    (problem.criterion.weights, problem.criterion.force_uncertainty) = (Weights::TOTAL, 0.1);
+    let setting = Setting::new(problem);
+    let axial = Mutation {
+        name: "vertical compliance doubled",
+        known: |known| known.values[5] = known.values[5].map(|v| 2.0 * v),
+        ..SOUND
+    };
+    // Without joint 1 the arm is stiffer, and the whole deflection smaller.
+    let twice = Mutation { name: "joint 1 twice", joint1: 2.0, ..SOUND };
+    let others = mutations.iter().filter(|mutation| mutation.joint1 == 1.0);
+    for mutation in others.chain([&axial, &twice]) {
+        assert!(violations(&setting, mutation)[0] > 0, "{} is not seen in the whole deflection", mutation.name);
+    }
+    let of_moments = [
+        Mutation { name: "remainders of moments zero", moments: |known| known.remainder = [0.0; 6], ..SOUND },
+        Mutation {
+            name: "antisymmetric part",
+            moments: |known| known.values[1] = known.values[1].map(|v| -v),
+            ..SOUND
+        },
+        Mutation { name: "vertical rows", moments: |known| known.values[6] = known.values[6].map(|v| -v), ..SOUND },
+        Mutation { name: "vertical columns", moments: |known| known.values[4] = known.values[4].map(|v| -v), ..SOUND },
+        Mutation { name: "turning part", moments: |known| known.values[3] = known.values[3].map(|v| -v), ..SOUND },
+    ];
+    let (_, setting) = Setting::criteria().into_iter().find(|(name, _)| *name == "wall, moments").unwrap();
+    for mutation in &of_moments {
         assert!(violations(&setting, mutation)[0] > 0, "{} is not seen", mutation.name);
     }
 }

@@ -8,7 +8,7 @@ use crate::settings::CertificateSettings;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
 use stead_planning::constraints::ConstraintKind;
-use stead_planning::problem::Placement;
+use stead_planning::problem::{BetaPlan, Placement};
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
 use stead_planning::symmetry::Unsupported;
@@ -17,8 +17,16 @@ use stead_planning::testing::{Beside, with_beside};
 const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
 
 fn proof(problem: &Problem, with_rate: bool) -> Proof {
-    let bound =
-        Bound { value: 1.0, met: None, bound: 1.0, with_rate, nodes: 1, status: Status::Reached, open: Vec::new() };
+    let bound = Bound {
+        value: 1.0,
+        met: None,
+        bound: 1.0,
+        with_rate,
+        with_turn: false,
+        nodes: 1,
+        status: Status::Reached,
+        open: Vec::new(),
+    };
     Proof::new(problem, Sense::Min, PLACEMENT, bound)
 }
 
@@ -68,10 +76,10 @@ fn why_there_is_no_bound_is_told() {
     // A placement that was not looked for is no shortfall.
     let alone = certify(&problem, &PLACEMENT, 0.0, None, settings, &Monitor::silent());
     assert_eq!((alone.worst.unwrap_err(), alone.warnings.len()), (NoProof::NotLookedFor, 1));
-    let mut robust = problem;
-    robust.criterion.force_uncertainty = 0.1;
-    let reason = || NoProof::Unsupported(Unsupported::UncertainForce);
-    assert_eq!(run(&robust, 1e-4, settings, &Monitor::silent()), (reason(), reason(), vec!["no-certificate"]));
+    let mut still = problem;
+    still.redundancy.beta = BetaPlan::Constant;
+    let reason = || NoProof::Unsupported(Unsupported::ConstantBeta { beta: BetaPlan::Constant });
+    assert_eq!(run(&still, 1e-4, settings, &Monitor::silent()), (reason(), reason(), vec!["no-certificate"]));
 }
 
 #[test]

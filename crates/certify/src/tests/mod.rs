@@ -9,9 +9,12 @@ mod boxes;
 mod cell;
 mod cells;
 mod certificate;
+mod counts;
+mod criteria;
 mod minorants;
 mod planner;
 
+use super::branch_and_bound::Keeps;
 use super::cell::whole;
 use super::model::Model;
 use super::region::{Point, Region};
@@ -20,11 +23,13 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::testing::robot_from;
-use stead_model::robot::{Frames, PostureClass, Robot};
+use stead_model::robot::{Compliance, Frames, PostureClass, Robot};
 use stead_model::stiffness::displacement;
+use stead_model::task::{Task, Wrench};
+use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
 use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::testing::{five_segments, hanging, slanted};
+use stead_planning::testing::{compensated, five_segments, hanging, slanted, with_laws};
 
 /// What is broken on purpose, and how.
 type Breaking<T> = (&'static str, fn(&mut T));
@@ -40,15 +45,17 @@ pub struct Setting {
 
 /// How the arm yields at an allowed state: by the ordinary inverse kinematics, limits, conditioning and displacement.
 pub struct Truth {
-    /// m, d1, d2, vertical to radial and to tangential, without joint 1. m/N
-    pub values: [f64; 5],
-    /// Normal part under the force of the point. m
-    pub normal: f64,
+    /// m, d1, d2, vertical to radial, to tangential and to itself, without joint 1. m/N
+    pub values: [f64; 6],
+    /// What the point adds to the figure that is minimised. m, for the root of the mean of squares m^2
+    pub cost: f64,
+    /// The score as bounds have it: of the load of the point, which has its weight in it. m
+    pub score: f64,
 }
 
 impl Setting {
     pub fn new(problem: Problem) -> Self {
-        let (model, whole) = (Model::new(&problem, true), whole(&problem));
+        let (model, whole) = (Model::new(&problem, Keeps::of(&problem)), whole(&problem));
         let turned = |beta: f64| problem.at(&Placement::from([0.0; 4])).base_from_flange(0, beta).rotation;
         let turn = turned(0.1) * turned(0.0).transpose();
         let side = problem.robot.geometry().base_from_root[(2, 2)].signum();
@@ -64,9 +71,43 @@ impl Setting {
             ("hanging workpiece", hanging()),
             ("hanging arm", hanging_arm()),
             ("odd arm", odd_arm()),
+            ("compliances that change", changing()),
+            ("compensator", with_laws(slanted(), &[(1, compensated(0.2, 1e-6 / 3.32))])),
         ]
         .map(|(name, problem)| (name, Self::new(problem)))
         .into()
+    }
+
+    /// Criteria of every kind, with forces in every direction.
+    pub fn criteria() -> Vec<(&'static str, Self)> {
+        let weighed = Weights { feed: 0.3, wall: 1.0, axis: 0.5, surface: 0.7 };
+        let plain = Weights { feed: 0.4, axis: 0.9, ..Weights::NONE };
+        type Of = (&'static str, fn() -> Problem, Weights, Aggregate, f64);
+        let all: [Of; 14] = [
+            ("wall, force errors", slanted, Weights::WALL, Aggregate::Mean, 0.1),
+            ("total", hanging_arm, Weights::TOTAL, Aggregate::Mean, 0.0),
+            ("total, force errors", odd_arm, Weights::TOTAL, Aggregate::Mean, 0.1),
+            ("axis", odd_arm, Weights::AXIS, Aggregate::Mean, 0.0),
+            ("surface", with_normals, Weights::SURFACE, Aggregate::Mean, 0.0),
+            ("surface, force errors", with_normals, Weights::SURFACE, Aggregate::Rms, 0.2),
+            ("weights", with_normals, weighed, Aggregate::Mean, 0.0),
+            ("weights, force errors", slanted, plain, Aggregate::Mean, 0.15),
+            ("root of the mean of squares", hanging, Weights::TOTAL, Aggregate::Rms, 0.1),
+            ("total, moments", with_moments, Weights::TOTAL, Aggregate::Mean, 0.0),
+            ("total, moments, force errors", with_moments, Weights::TOTAL, Aggregate::Mean, 0.1),
+            ("wall, moments, force errors", with_moments, Weights::WALL, Aggregate::Mean, 0.1),
+            ("weights, moments", with_moments, plain, Aggregate::Rms, 0.0),
+            ("largest", slanted, Weights::TOTAL, Aggregate::Max, 0.1),
+        ];
+        let setting = |(name, of, weights, aggregate, force_uncertainty): Of| {
+            let mut problem = of();
+            let segment_weights = vec![1.0, 0.5, 2.0, 1.0, 0.7];
+            problem.criterion =
+                Criterion { weights, aggregate, force_uncertainty, segment_weights, ..Criterion::default() };
+            (name, Self::new(problem))
+        };
+        let linear = ("wall, moments", Self::new(with_moments()));
+        all.map(setting).into_iter().chain([linear]).collect()
     }
 
     fn side(&self) -> f64 {
@@ -121,7 +162,7 @@ impl Setting {
         let (side, root) = (self.side(), self.problem.robot.geometry().root_in_base);
         let (sine, cosine) = libm::sincos(azimuth);
         let tip = Vector3::new(at[0] * cosine, side * at[0] * sine, side * at[1]) + root;
-        let mut compliances = self.problem.robot.constant_compliances().unwrap();
+        let mut compliances = self.problem.robot.compliances_at(&state.joints);
         compliances[0] = 0.0;
         let radial = Vector3::new(cosine, side * sine, 0.0);
         let tangential = Vector3::new(-sine, side * cosine, 0.0);
@@ -129,11 +170,11 @@ impl Setting {
         let (by_radial, by_tangential) = (moved(&radial), moved(&tangential));
         let (rr, tt) = (by_radial.dot(&radial), by_tangential.dot(&tangential));
         let up = Vector3::new(0.0, 0.0, side);
-        let values =
-            [(rr + tt) / 2.0, (rr - tt) / 2.0, by_radial.dot(&tangential), by_radial.dot(&up), by_tangential.dot(&up)];
-        // The left of the feed is seen along axis 1, where the evaluator sees it along the tool.
-        let axis = self.problem.task.points()[point].axis.z * side;
-        Some(Truth { values, normal: state.normal_part * axis })
+        let (crossed, turned) = (by_radial.dot(&tangential), [by_radial.dot(&up), by_tangential.dot(&up)]);
+        let values = [(rr + tt) / 2.0, (rr - tt) / 2.0, crossed, turned[0], turned[1], moved(&up).dot(&up)];
+        let cost = self.problem.point_cost(point, state.score());
+        let is_squared = self.problem.criterion.aggregate == Aggregate::Rms;
+        Some(Truth { values, cost, score: if is_squared { cost.sqrt() } else { cost } })
     }
 
     /// The class, and a heading of a random allowed state at a placement.
@@ -172,6 +213,28 @@ pub fn anywhere(setting: &Setting, random: &mut ChaCha8Rng) -> (usize, [f64; 3])
     (point, setting.place(placement, point))
 }
 
+/// Forces in every direction, and a surface that lies anyhow.
+fn with_normals() -> Problem {
+    let mut problem = slanted();
+    let normal = |k: usize| Vector3::new(libm::sin(k as f64), libm::cos(2.0 * k as f64), 0.6).normalize();
+    let path = problem.task.path().clone().with_surface_normals((0..105).map(normal).collect()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem
+}
+
+/// Forces and moments in every direction, on an arm with every offset.
+fn with_moments() -> Problem {
+    let mut problem = odd_arm();
+    let moment = |k: usize| {
+        let at = k as f64;
+        Vector3::new(6.0 * libm::cos(at), 9.0 * libm::sin(0.7 * at), 12.0 * libm::sin(1.3 * at))
+    };
+    let wrenches = problem.task.wrenches().iter().enumerate();
+    let wrenches = wrenches.map(|(k, wrench)| Wrench { moment: moment(k), ..*wrench }).collect();
+    problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
+    problem
+}
+
 /// The arm hangs, the tool is upright.
 fn hanging_arm() -> Problem {
     let mut problem = slanted();
@@ -180,6 +243,12 @@ fn hanging_arm() -> Problem {
     problem.robot = Robot::new("hanging", joints).unwrap();
     problem.cell.position[2] = Interval { min: -1.4, max: -1.0 };
     problem
+}
+
+/// Joints 2 and 3 yield by their angles, far more than those of any arm do.
+fn changing() -> Problem {
+    let range = |at_min, at_max| Compliance::Range { at_min, at_max };
+    with_laws(slanted(), &[(1, range(6e-7, 1e-7)), (2, range(1e-7, 9e-7))])
 }
 
 /// An arm with offsets at shoulder, elbow and side, and joints 2 and 3 that turn by more than half a turn.

@@ -6,9 +6,13 @@ use super::super::sliding_min::{INFINITE, SlidingMin};
 use super::minorants::local;
 use super::*;
 use crate::compliance_table::Steps;
+use stead_model::task::{PathPoint, ToolPath};
 use stead_numerics::monitor::Monitor;
+use stead_planning::beta_step::BetaStep;
+use stead_planning::criterion::{Over, StiffnessSets};
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
+use stead_planning::testing::corners;
 
 #[test]
 fn windows_hold_the_least_of_their_neighbours() {
@@ -69,7 +73,8 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
             let (before, here) = (setting.place(placement, point - 1)[2], setting.place(placement, point)[2]);
             let from = random.random_range(0..count);
             let heading = width * (from as f64 + 0.5 + share(&mut random) * 0.499_999);
-            let step = share(&mut random) * setting.problem.beta_step(point).half;
+            let BetaStep { middle, half } = setting.problem.beta_step(point);
+            let step = setting.rotation_sign * (middle + share(&mut random) * half);
             let heading = heading - before + here + step;
             let to = (heading / width).floor() as isize;
             let steps = to - from as isize;
@@ -81,9 +86,23 @@ fn forbidden(setting: &Setting, change: Change, is_unsure: bool) -> usize {
 
 #[test]
 fn no_step_within_the_rate_is_forbidden_and_broken_steps_are_seen() {
-    for (name, setting) in Setting::all() {
+    let turning = |mut problem: Problem| {
+        (problem.redundancy.max_beta_rate, problem.redundancy.max_spindle_turn) = (None, Some(9.0));
+        problem
+    };
+    let upside_down = || {
+        let (hanging, mut problem) = (hanging_arm(), corners(0.0));
+        (problem.robot, problem.cell) = (hanging.robot.clone(), hanging.cell);
+        problem
+    };
+    let spindle = [("spindle", corners(0.0)), ("spindle, hanging arm", upside_down())];
+    let spindle = spindle.map(|(name, problem)| (name, Setting::new(turning(problem))));
+    for (name, setting) in Setting::all().into_iter().chain(spindle) {
         assert_eq!(forbidden(&setting, |low, high| (low, high), true), 0, "{name}");
     }
+    let mut turned = Setting::new(turning(upside_down()));
+    turned.model.changes.iter_mut().for_each(|change| change.middle = -change.middle);
+    assert!(forbidden(&turned, |low, high| (low, high), true) > 0, "the spindle turned the other way is not seen");
     let setting = Setting::new(five_segments());
     let mutations: [(&str, Change, bool); 4] = [
         ("one step up too short", |low, high| (low, high - 1), true),
@@ -111,7 +130,7 @@ fn bound_and_value(setting: &Setting, half: [f64; 3]) -> (f64, f64, ActiveCells)
         let s = shares(&mut random);
         let inside = std::array::from_fn(|k| region.middle[k] + s[k] * half[k]);
         if let Some(mean) = planner.objective(&setting.pose(inside, -PI / 2.0), Sense::Min, None, &mut space).mean() {
-            value = value.min(105.0 * mean);
+            value = value.min(model.objective.sum(mean));
         }
     }
     let level = model.level(&region).unwrap();
@@ -157,7 +176,7 @@ fn a_broken_sum_is_seen() {
             setting.model.segments.push(again);
         }),
         ("forces a tenth larger", |setting| {
-            setting.model.points.iter_mut().for_each(|p| p.force = p.force.map(|f| 1.1 * f));
+            setting.model.points.iter_mut().for_each(|p| p.load.force = p.load.force.map(|f| 1.1 * f));
         }),
     ];
     for (name, change) in mutations {
@@ -165,6 +184,80 @@ fn a_broken_sum_is_seen() {
         change(&mut setting);
         let (bound, value, _) = bound_and_value(&setting, half);
         assert!(bound > value, "{name} is not seen: {bound} {value}");
+    }
+}
+
+/// The recommended criterion, and one figure or another, on the path of the paper.
+fn with_criterion(change: &dyn Fn(&mut Problem)) -> Setting {
+    let mut problem = five_segments();
+    let limits = &mut problem.redundancy;
+    (limits.max_beta_rate, limits.max_spindle_turn) = (None, Some(0.9_f64.to_radians() * 1e3));
+    let criterion = &mut problem.criterion;
+    (criterion.weights, criterion.force_uncertainty) = (Weights::TOTAL, 0.1);
+    change(&mut problem);
+    Setting::new(problem)
+}
+
+/// Two sets of stiffness, the second with joints 1 and 3 twice as soft.
+fn with_sets(problem: &mut Problem, over: Over) {
+    let mut soft = problem.robot.compliances_at(&[0.0; 6]);
+    (soft[0], soft[2]) = (2.0 * soft[0], 2.0 * soft[2]);
+    let robots = vec![problem.robot.clone(), problem.robot.with_compliances(soft).unwrap()];
+    problem.criterion.stiffness = Some(StiffnessSets { robots, over });
+}
+
+/// Every third point counts for nothing.
+fn partly_scored(problem: &mut Problem) {
+    let path = problem.task.path();
+    let point = |(k, point): (usize, &PathPoint)| (path.segment_of(k) as u32 + 1, *point, k % 3 != 0);
+    let path = ToolPath::partly_scored(path.points().iter().enumerate().map(point).collect::<Vec<_>>()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+}
+
+#[test]
+fn sums_of_every_criterion_are_below_plans_and_close() {
+    type Of = (&'static str, fn(&mut Problem), f64);
+    let all: [Of; 7] = [
+        ("total with force errors", |_| {}, 0.97),
+        ("root of the mean of squares", |problem| problem.criterion.aggregate = Aggregate::Rms, 0.95),
+        ("largest", |problem| problem.criterion.aggregate = Aggregate::Max, 0.95),
+        ("weights of segments", |problem| problem.criterion.segment_weights = vec![1.0, 3.0, 0.5, 1.0, 2.0], 0.97),
+        ("mean over sets", |problem| with_sets(problem, Over::Mean), 0.97),
+        ("worst of sets", |problem| with_sets(problem, Over::Worst), 0.97),
+        ("points that are not scored", partly_scored, 0.97),
+    ];
+    for (name, change, close) in all {
+        let (bound, value, _) = bound_and_value(&with_criterion(&change), [1e-4; 3]);
+        assert!(value.is_finite() && bound <= value, "{name}: {bound} {value}");
+        assert!(bound >= close * value, "{name}, no power: {bound} of {value}");
+    }
+}
+
+#[test]
+fn a_broken_criterion_is_seen() {
+    type Mutation = (&'static str, fn(&mut Problem), fn(&mut Setting));
+    let mutations: [Mutation; 4] = [
+        ("worst of sets for their mean", |p| with_sets(p, Over::Mean), |setting| setting.model.over = Over::Worst),
+        (
+            "squares as they are",
+            |p| p.criterion.aggregate = Aggregate::Rms,
+            |setting| {
+                setting.model.objective.weight = 1.0;
+                setting.model.objective.aggregate = Aggregate::Mean;
+            },
+        ),
+        ("errors twice as large", |_| {}, |s| s.model.points.iter_mut().for_each(|p| p.load.error *= 2.0)),
+        ("points that are not scored scored", partly_scored, |setting| {
+            let load = setting.model.points[1].load;
+            setting.model.points.iter_mut().for_each(|point| point.load = load);
+        }),
+    ];
+    for (name, change, broken) in mutations {
+        let mut setting = with_criterion(&change);
+        let truth = bound_and_value(&setting, [1e-4; 3]).1;
+        broken(&mut setting);
+        let bound = bound_and_value(&setting, [1e-4; 3]).0;
+        assert!(bound > truth, "{name} is not seen: {bound} {truth}");
     }
 }
 

@@ -39,9 +39,9 @@ records! {
     pub struct ProofFigures from proof: &Proof {
         /// The placement that it is compared with.
         placement: PlacementFigures = (&proof.placement).into(),
-        /// Mean score of the placement found, with the same constraints relaxed.
+        /// Figure that is minimised, of the placement found, with the same constraints relaxed.
         found_mm: DeflectionMm = proof.found.into(),
-        /// Mean score that the bound is compared with.
+        /// Figure that the bound is compared with.
         value_mm: DeflectionMm = proof.bound.value.into(),
         /// No placement is better, or worse, than this. mm
         bound_mm: f64 = proof.bound_mm(),

@@ -10,7 +10,8 @@ use stead_planning::sense::Sense;
 fn proof(sense: Sense, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {
     let (value, bound) = (value_mm / 1e3, bound_mm / 1e3);
     let status = if open.is_empty() { Status::Reached } else { Status::TimeLimit };
-    let bound = Bound { value, met: None, bound, with_rate: sense == Sense::Min, nodes: 7, status, open };
+    let bound =
+        Bound { value, met: None, bound, with_rate: sense == Sense::Min, with_turn: false, nodes: 7, status, open };
     Proof::new(problem(), sense, outcome().cases.best.placement, bound)
 }
 

@@ -25,15 +25,15 @@ pub fn certificate_text(certificate: &Certificate) -> String {
 fn stated(proof: &Proof) -> String {
     let bound = fixed(proof.bound_mm(), Unit::DEFLECTION_MM.decimals);
     let value = Unit::DEFLECTION_MM.text(proof.bound.value);
-    let gap = proof.gap_words();
+    let (gap, figure) = (proof.gap_words(), &proof.figure);
     if !proof.is_of_use() {
         let name = names::sense(proof.sense);
         return format!("Certificate, {name} placement: it ended before there was any bound of use; nothing is known.");
     }
     let claim = match proof.sense {
         Sense::Min => format!(
-            "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a mean \
-             normal deflection below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
+            "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a \
+             {figure} below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
         ),
         Sense::Max => {
             let found = Unit::DEFLECTION_MM.text(proof.found);
@@ -50,7 +50,7 @@ fn stated(proof: &Proof) -> String {
             };
             format!(
                 "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has \
-                 under its best redundancy plan a mean normal deflection above {bound} mm; {compared}. With these limits kept \
+                 under its best redundancy plan a {figure} above {bound} mm; {compared}. With these limits kept \
                  this is no bound: worse ones are possible then."
             )
         }

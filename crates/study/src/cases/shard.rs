@@ -216,7 +216,7 @@ fn do_case(
     let certificate = read.certificate.map(|settings| {
         let cases = &placed.outcome.cases;
         let worst = cases.worst.as_ref().map(|worst| &worst.best.placement);
-        certify(&read.problem, &cases.best.placement, cases.best.plan.mean, worst, settings, monitor)
+        certify(&read.problem, &cases.best.placement, cases.best.plan.objective, worst, settings, monitor)
     });
     if monitor.should_stop() {
         return Ok(None);
