@@ -272,8 +272,10 @@ class IdentifiedRobot(Result):
     """Joint compliances with their covariance; the robot file that states them is `files["robot-identified.toml"]`."""
 
     robot: str
+    model: str | None
     compliances: list[Record]
     arm: list[Record]
+    springs: list[Record] | None
     compensator: Record | None
     configurations: int
     readings: int
@@ -286,6 +288,7 @@ class IdentifiedRobot(Result):
     outliers: list[Record]
     outliers_searched: bool
     held: list[Record]
+    held_springs: list[str] | None
     law_probability: float | None
     setup: Record
 

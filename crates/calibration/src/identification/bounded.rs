@@ -2,8 +2,8 @@
 //!
 //! A compliance that the readings hardly tell may come out below zero by chance, and no robot file can have it so. The
 //! nearest estimates with compliances that can be split among the springs at or above their lowest values, in the
-//! metric of the covariance, are a least-squares problem with unknowns at or above zero (Lawson and Hanson 1974, chapter
-//! 23).
+//! metric of the covariance, are a least-squares problem with unknowns at or above zero (Lawson and Hanson 1974,
+//! chapter 23).
 
 use nalgebra::{DMatrix, DVector};
 

@@ -99,9 +99,9 @@ fn asked_for(model: FitModel, size: Option<usize>) -> Option<String> {
     let usual = (model == FitModel::Full).then_some(usual(model))?;
     match size {
         None => Some(format!(
-            "plan.configurations is not given: {usual} are planned and not {}, since springs normal to the axes move the \
-             reference points little and would be known a third to a half less well",
-            self::usual(FitModel::Axes)
+            "plan.configurations is not given: {usual} are planned and not {few}, since springs normal to the axes move the \
+             reference points little, and with {few} their standard deviations are 1.7 times as large or more",
+            few = self::usual(FitModel::Axes)
         )),
         Some(size) if size < usual => Some(format!(
             "plan.configurations = {size} is few for springs about three directions of every joint: {usual} are advised, since \

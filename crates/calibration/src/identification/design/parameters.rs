@@ -1,9 +1,10 @@
 //! The parameters of the arm in a design, and the information matrix of a configuration over them.
 //!
 //! There are at most eight for springs about the joint axes alone, and twenty for all: one compliance for each spring,
-//! or, for the joint beside a compensator, the stiffnesses K_theta, K_GC and s_0 K_GC, in which the joint's stiffness is
-//! linear (Klimchik et al. 2017, eq. 22). At an angle q with compliance c and row r(q) of that equation, `dc = -c^2 r(q) d(K_theta, K_GC, s_0 K_GC)`: so the compliance at
-//! any angle, a level of the plan or not, follows from the law that `fit` uses.
+//! or, for the joint beside a compensator, the stiffnesses K_theta, K_GC and s_0 K_GC, in which the joint's stiffness
+//! is linear (Klimchik et al. 2017, eq. 22). At an angle q with compliance c and row r(q) of that equation,
+//! `dc = -c^2 r(q) d(K_theta, K_GC, s_0 K_GC)`: so the compliance at any angle, a level of the plan or not, follows
+//! from the law that `fit` uses.
 
 use super::super::elastic::Elastic;
 use super::super::law::Law;

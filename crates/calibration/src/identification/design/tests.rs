@@ -393,7 +393,8 @@ fn a_plan_for_all_springs_expects_what_a_full_fit_reports() {
         // The plan takes the arm as it is without the load.
         assert!((estimate.deviation / bar.deviation.unwrap() - 1.0).abs() < 0.02, "{bar:?} {estimate:?}");
         assert!((bar.by_law / bar.deviation.unwrap() - 1.0).abs() < 1e-6, "{bar:?}");
-        assert!((estimate.value / bar.value - 1.0).abs() < 1e-3, "{bar:?} {estimate:?}");
+        // Turns of joints 4 and 5 commute to first order only: some hundredths of a standard deviation.
+        assert!((estimate.value - bar.value).abs() < 0.1 * estimate.deviation, "{bar:?} {estimate:?}");
     }
     // With all of joint 5 held there is nothing that cannot be told apart but by joint 4 and 6 alone.
     let held =
