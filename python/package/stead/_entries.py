@@ -141,6 +141,7 @@ class PlanEntries(Record):
     p50_mm: float
     p95_mm: float
     postures: list[int]
+    sag_mm: Record | None
     unfollowed_moves: list[UnfollowedMove]
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {
         "at_held_feed": HeldFeed,
@@ -228,6 +229,7 @@ class CaseEntries(Record):
     placement: Placement
     placement_exact: Placement
     postures: list[int]
+    sag_mm: Record | None
     transfers: list[Transfer]
     unfollowed_moves: list[UnfollowedMove]
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {

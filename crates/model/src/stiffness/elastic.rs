@@ -1,12 +1,12 @@
 //! A whole arm as a finite chain of elastic coordinates: where it rests under a load and under its weight.
 //!
 //! Behind the drive's turn of every joint come, all in its bearing and in this order, elastic turns about z, x and y of
-//! the frame of its row; before joint 1 the base yields in three shifts and three turns at its point, behind joint 6 the
-//! mount of the spindle likewise at the origin of the flange, and at the tool centre point holder and tool in three
-//! shifts. Shifts of a matrix come first, then its turns about x, y and z in this order. With q the coordinates, C their
-//! compliance and tau the torques and forces on them, the arm rests where `q = C tau(q)`. Forces and moments keep their
-//! directions in space and act on the displaced points. Coordinates are scaled, `q = S x` with `S S^T = C`, so that
-//! rigid ones need no case of their own.
+//! the frame of its row; before joint 1 the base yields in three shifts and three turns at its point, behind joint 6
+//! the mount of the spindle likewise at the origin of the flange, and at the tool centre point holder and tool in three
+//! shifts. Shifts of a matrix come first, then its turns about x, y and z in this order. With q the coordinates, C
+//! their compliance and tau the torques and forces on them, the arm rests where `q = C tau(q)`. Forces and moments keep
+//! their directions in space and act on the displaced points. Coordinates are scaled, `q = S x` with `S S^T = C`, so
+//! that rigid ones need no case of their own.
 //!
 //! [`super::whole`] is the slope of all this at zero load, [`super::equilibrium`] the same for springs about the axes
 //! alone.
@@ -54,7 +54,8 @@ impl ToolLoad {
 pub struct ElasticArm<'a> {
     robot: &'a Robot,
     spindle: &'a Spindle,
-    /// Coordinates per scaled coordinate, but for the joints about their axes, whose compliance may depend on the angle.
+    /// Coordinates per scaled coordinate, but for the joints about their axes, whose compliance may depend on the
+    /// angle.
     scale: Box<Square>,
     bearings: [f64; 6],
     /// Acceleration of free fall in the frame of the arm, where weight counts. m/s^2

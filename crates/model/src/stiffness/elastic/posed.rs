@@ -167,7 +167,8 @@ impl Posed {
     }
 
     /// The derivative of [`Posed::torques`] by the coordinates, row by row. As in
-    /// [`load_hessian`](crate::stiffness::loaded::load_hessian), a moment that keeps its direction makes it unsymmetric.
+    /// [`load_hessian`](crate::stiffness::loaded::load_hessian), a moment that keeps its direction makes it
+    /// unsymmetric.
     pub fn hessian(&self, applied: &[Applied]) -> Square {
         let mut hessian = Square::zeros();
         for j in 0..COUNT {
