@@ -111,8 +111,7 @@ class HeldFeed(Record):
 
 
 class ByOrigin(Record):
-    """What each thing that yields adds to the scored part, under the robot's own compliances and without what force
-    errors or deviations add: the sum is the size of that part. A part below 0 takes from the others."""
+    """What each thing that yields adds to the scored part; one below 0 takes from the others."""
 
     axes_mm: float
     base_mm: float

@@ -12,8 +12,7 @@ use stead_planning::feasibility::Explanation;
 use stead_planning::problem::{Placement, Problem};
 
 records! {
-    /// What each thing that yields adds to the scored part, under the robot's own compliances and without what force
-    /// errors or deviations add: the sum is the size of that part. A part below 0 takes from the others.
+    /// What each thing that yields adds to the scored part; one below 0 takes from the others.
     pub struct OriginFigures from origins: &ScoredByOrigin {
         let ByOrigin { axes, normal, base, mount, tip } = origins.arm;
     } with {
