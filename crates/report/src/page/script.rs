@@ -213,7 +213,8 @@ mod tests {
 
     #[test]
     fn remarks_and_indentation_are_left_out() {
-        let text = "// Head.\n\n/**\n * A remark.\n */\nexport const one = () => {\n  // Why.\n  return 1 / 2; // half\n};\n";
+        let text =
+            "// Head.\n\n/**\n * A remark.\n */\nexport const one = () => {\n  // Why.\n  return 1 / 2; // half\n};\n";
         let script = joined(&[("main.js", text)], "main.js").unwrap();
         assert!(script.contains("const one = () => {\nreturn 1 / 2; // half\n};\n"), "{script}");
         assert!(!script.contains("Head") && !script.contains("remark") && !script.contains("Why"), "{script}");
