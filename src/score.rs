@@ -51,8 +51,8 @@ impl PlacementScore {
         self.score.interrupted |= monitor.should_stop();
     }
 
-    /// Makes the setup sheet of the placement, to be written with the plans; does nothing where the run leaves no page. A
-    /// stop that the monitor asks for leaves out its tolerances.
+    /// Makes the setup sheet of the placement, to be written with the plans; does nothing where the run leaves no page.
+    /// A stop that the monitor asks for leaves out its tolerances.
     pub fn make_sheet(&mut self, monitor: &Monitor) {
         if !self.run.page {
             return;

@@ -23,7 +23,9 @@ fn numbers(value: &Value, found: &mut Vec<f64>) {
 
 /// The texts of a picture.
 fn texts(svg: &str) -> Vec<&str> {
-    let ends = |text: &'static str| svg.split("<text ").skip(1).filter_map(move |part| part.split_once('>')?.1.split_once(text));
+    let ends = |text: &'static str| {
+        svg.split("<text ").skip(1).filter_map(move |part| part.split_once('>')?.1.split_once(text))
+    };
     ends("</text>").map(|(text, _)| text.trim()).collect()
 }
 

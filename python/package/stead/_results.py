@@ -192,6 +192,7 @@ class Placements(Result):
     path_levels: Record | None
     stiffness_sets: Record | None
     sensitivity: Record | None
+    setup_sheet: Record | None
     stability: Record | None
     certificate: Certificate | None
     _made = {**Result._made, "certificate": Certificate}
@@ -230,6 +231,7 @@ class PlacementScore(Result):
     placement_exact: Placement
     feasible: bool
     interrupted: bool
+    setup_sheet: Record | None
     stability: Record | None
     orientation: str | None
     external_axes: Record | None

@@ -19,15 +19,13 @@ fn sheet(problem: &Problem, monitor: &Monitor) -> SetupSheet {
 
 /// A path of these places, all fed along x with the tool upright.
 fn path_through(places: &[[f64; 3]]) -> Problem {
-    let point =
-        |place: &[f64; 3]| PathPoint { position: (*place).into(), feed: Vector3::x(), axis: Vector3::z() };
+    let point = |place: &[f64; 3]| PathPoint { position: (*place).into(), feed: Vector3::x(), axis: Vector3::z() };
     let path = ToolPath::new(places.iter().map(|place| (1, point(place)))).unwrap();
     let wrenches = vec![Wrench { force: Vector3::x(), moment: Vector3::zeros() }; places.len()];
     five_segments().with(|parts| parts.task = Task::new(path, wrenches).unwrap())
 }
 
-/// At every offset that is stated a plan as fine as those of results keeps the rise, and a little farther one of the two
-/// ends of the search does not.
+/// At every offset that is stated a plan as fine as those of results keeps the rise, and a quarter farther it does not.
 #[test]
 fn stated_offsets_keep_the_rise_and_those_a_quarter_farther_do_not() {
     let problem = five_segments();

@@ -33,8 +33,8 @@ const FINENESS: f64 = 0.2;
 const LAST: f64 = 1e-3;
 /// Most plans for a direction.
 const MOST: usize = 14;
-/// Where the objective on the grid of the run is farther above the stated one than this (relative), trials are planned on
-/// the finer grid.
+/// Where the objective on the grid of the run is farther above the stated one than this (relative), trials are planned
+/// on the finer grid.
 const AGREEMENT: f64 = 2e-3;
 /// Path points that stand for a long path, beside one for every segment; paths of fewer than twice as many are planned
 /// whole.

@@ -166,9 +166,10 @@ fn map_files(
 }
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
-/// `placement.svg`, the setup sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`, with the map of the placement `deflection-map.csv` and
-/// `deflection-map.svg`, and where stability was requested `stability-best-plan.csv`, `stability-worst-plan.csv` and
-/// `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
+/// `placement.svg`, the setup sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`, with the
+/// map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was requested
+/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without,
+/// `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -229,8 +230,9 @@ pub fn score_files(
 /// `worst-worst-plan.csv` (cases 1 to 4; without the worst placement those of it are left out), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, the setup
-/// sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv`
-/// (cases 1 and 3) and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
+/// sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`; and where stability was requested,
+/// `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does without,
+/// `page-data.json`, `report.html` and `cell.glb`.
 /// Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
