@@ -227,7 +227,7 @@ fn with_moments() -> Problem {
     let mut problem = odd_arm();
     let moment = |k: usize| {
         let at = k as f64;
-        Vector3::new(6.0 * libm::cos(at), 9.0 * libm::sin(0.7 * at), 12.0 * libm::sin(1.3 * at))
+        Vector3::new(60.0 * libm::cos(at), 90.0 * libm::sin(0.7 * at), 120.0 * libm::sin(1.3 * at))
     };
     let wrenches = problem.task.wrenches().iter().enumerate();
     let wrenches = wrenches.map(|(k, wrench)| Wrench { moment: moment(k), ..*wrench }).collect();
