@@ -143,7 +143,7 @@ impl<'a> ElasticArm<'a> {
         let scale = self.scale_at(compliances);
         let posed = self.posed(theta, &Coordinates::zeros());
         let applied = self.applied(&posed, load, 1.0);
-        let softening = scale.tr_mul(&posed.hessian(&applied)) * &scale;
+        let softening = scale.tr_mul(&posed.hessian(&applied)) * scale;
         let inverse = inverse_tangent(&softening).ok_or_else(|| {
             if softening.iter().any(|entry| !entry.is_finite()) {
                 return Buckled { share: 0.0 };
