@@ -56,10 +56,17 @@
 /// The most threads that a job is given: more are a slip, and a machine that starts them may stop responding.
 pub const MAX_THREADS: usize = 1024;
 
+// The command line names the library as every other user of it does.
+#[cfg(feature = "cli")]
+extern crate self as stead;
+
 pub mod assessment;
 mod builder;
 mod check;
 pub mod circularity;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 pub mod compensation;
 mod error;
 pub mod files;

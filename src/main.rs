@@ -1,9 +1,7 @@
 //! Starts the command line and returns its exit code.
 
-mod cli;
-
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::main()
+    ExitCode::from(stead::cli::run(std::env::args_os()))
 }

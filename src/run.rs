@@ -177,7 +177,7 @@ impl Run {
     }
 
     /// The files that were read.
-    pub(crate) fn inputs(&self) -> &[stead_disk::input::InputFile] {
+    pub fn inputs(&self) -> &[crate::files::InputFile] {
         &self.run.inputs
     }
 
@@ -250,8 +250,10 @@ impl Run {
     /// ([`Run::set_up_as_in`]). A stop that the monitor asks for leaves out the critical depths.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] with the constraint that fails at which points.
+    /// [`Error::Infeasible`] with the constraint that fails at which points; [`Error::Argument`] for a placement that is
+    /// not of finite numbers.
     pub fn score(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
+        finite(placement)?;
         let run = self.set_up_at(placement, monitor);
         let Scored { score, stability, notes } = study::score(&run, placement, monitor)?;
         let mut context = Context { stability, ..Context::new(&self.run, self.run.search) };
@@ -264,8 +266,9 @@ impl Run {
     /// What each of the eight postures gives at a path point (from 0) and a free angle beta (rad).
     ///
     /// # Errors
-    /// [`Error::Argument`] for a point that the path does not have.
+    /// [`Error::Argument`] for a point that the path does not have, and for a placement that is not of finite numbers.
     pub fn explain(&self, placement: &Placement, point: usize, beta: f64) -> Result<Explanations, Error> {
+        finite(placement)?;
         let last = self.problem().task.points().len() - 1;
         if point > last {
             return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
@@ -277,6 +280,14 @@ impl Run {
         context.notes.extend(feasibility::unscored(self.problem(), point));
         Ok(Explanations { placement: *placement, point, beta, postures, context })
     }
+}
+
+/// Refuses a placement that is not of finite numbers.
+fn finite(&Placement { x, y, z, yaw }: &Placement) -> Result<(), Error> {
+    if [x, y, z, yaw].into_iter().all(f64::is_finite) {
+        return Ok(());
+    }
+    Err(Error::Argument(format!("no such placement, found {x}, {y}, {z} m, {yaw} rad; allowed: finite numbers")))
 }
 
 /// The best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III.

@@ -3,7 +3,7 @@
 pub use stead_runs::study::{AxisValue, StudyCase};
 pub use stead_study::analysis::{Analysis as StudyAnalysis, Question as StudyQuestion, SEARCH_NOISE};
 pub use stead_study::cases::{
-    Cell, Column, Finished, Kind as ColumnKind, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table,
+    Column, ColumnKind, Finished, PlannedCase, Shard, ShardStatus, StudyError, StudyStatus, Table, TableCell,
     slurm_script,
 };
 

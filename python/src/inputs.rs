@@ -59,20 +59,29 @@ impl Run {
     fn read(
         py: Python<'_>,
         file: PathBuf,
+        values: Vec<String>,
         certify: Option<f64>,
         seed: Option<u64>,
         sensitivity: bool,
         options: Options,
     ) -> PyResult<(Option<Self>, bool)> {
+        let values = values.iter().map(|value| stead::files::FieldOverride::parse(value));
+        let values = values.collect::<Result<Vec<_>, _>>();
+        let values = values.map_err(|problem| raised(py, Error::Argument(format!("set: {problem}"))))?;
         let read = move |monitor: &stead::Monitor| {
             let gap = certify.map(stead::Run::gap).transpose()?;
-            let run = stead::Run::read_with(&file, Vec::new(), monitor)?;
+            let run = stead::Run::read_with(&file, values, monitor)?;
             let run = if let Some(gap) = gap { run.with_certificate(gap) } else { run };
             let run = if let Some(seed) = seed { run.with_seed(seed) } else { run };
             Ok(if sensitivity { run.with_sensitivity(stead::Run::FORCE_ERROR) } else { run })
         };
         let (result, was_stopped) = run_stoppable(py, &options, read)?;
         read_or_stopped(py, result.map(Self), was_stopped)
+    }
+
+    /// Name and digest of each file that was read.
+    fn inputs(&self) -> Vec<(String, String)> {
+        self.0.inputs().iter().map(|input| (input.name.clone(), input.sha256.clone())).collect()
     }
 
     fn with_seed(&self, seed: u64) -> Self {

@@ -12,6 +12,7 @@ mod study;
 
 use errors::raised;
 use pyo3::prelude::*;
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Writes a commented starter set of files for a command and returns their paths, the one to begin with first.
@@ -42,6 +43,12 @@ fn schema(py: Python<'_>, kind: &str) -> PyResult<String> {
     stead::files::schema(kind).map_err(|error| raised(py, stead::Error::Argument(error.to_string())))
 }
 
+/// Runs a command line, the first argument of which is the program itself, and returns its exit code.
+#[pyfunction]
+fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| stead::cli::run(arguments))
+}
+
 /// The native classes and functions, see `_stead.pyi`.
 #[pymodule]
 fn _stead(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -59,5 +66,6 @@ fn _stead(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<results::Outcome>()?;
     module.add_class::<results::Folder>()?;
     module.add_function(wrap_pyfunction!(init, module)?)?;
-    module.add_function(wrap_pyfunction!(schema, module)?)
+    module.add_function(wrap_pyfunction!(schema, module)?)?;
+    module.add_function(wrap_pyfunction!(run_command, module)?)
 }

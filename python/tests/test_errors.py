@@ -61,7 +61,11 @@ def test_arguments_out_of_range() -> None:
     wrong_calls: list[tuple[Callable[[], object], str]] = [
         (lambda: run.place(threads=0), "threads, found 0; allowed: 1 to 1024"),
         (lambda: run.place(threads=2**40), "threads, found 1099511627776; allowed: 1 to 1024"),
+        (lambda: run.place(threads=2.5), "threads, found 2.5; allowed: a whole number from 1 to 1024"),  # type: ignore[arg-type]
+        (lambda: run.place(threads=True), "threads, found True; allowed: a whole number"),
         (lambda: run.place(time_limit_s=-1.0), "time limit, found -1 s"),
+        (lambda: run.place(time_limit_s=float("nan")), "time limit, found NaN s"),
+        (lambda: run.score(stead.Placement(0.0, float("nan"), 0.0, 0.0)), "placement"),
         (lambda: run.with_seed(-1), "seed, found -1"),
         (lambda: run.explain(stead.Placement(0.0, -1640.0, -214.0, 79.0), 105, 0.0), "found 105; allowed: 0 to 104"),
         (lambda: run.explain(stead.Placement(0.0, -1640.0, -214.0, 79.0), -1, 0.0), "found -1; allowed: 0 to 104"),

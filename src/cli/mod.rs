@@ -34,10 +34,10 @@ mod values;
 use arguments::{Arguments, Command};
 use clap::{CommandFactory, FromArgMatches};
 use serde::Serialize;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use stead::monitor::Warning;
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
@@ -94,10 +94,13 @@ fn command() -> clap::Command {
     ))
 }
 
-/// Parses the command line, runs the command, and says how it went.
-pub fn main() -> ExitCode {
+/// Parses a command line, the first argument of which is the program itself, runs the command, says how it went, and
+/// returns the exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     outlive_file_limits();
-    let matches = command().try_get_matches();
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let program = arguments.first().map(PathBuf::from).unwrap_or_default();
+    let matches = command().try_get_matches_from(arguments);
     let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
         Err(shown) => return show_usage(&shown),
@@ -108,7 +111,7 @@ pub fn main() -> ExitCode {
         Command::Explain(options) => explain::run(&options),
         Command::Export(options) => export::run(&options),
         Command::Page(options) => page::run(&options),
-        Command::Study(command) => study::run(&command),
+        Command::Study(command) => study::run(&command, &program),
         Command::Assess(options) => assess::run(&options),
         Command::Compensate(options) => compensate::run(&options),
         Command::Forces(options) => forces::run(&options),
@@ -126,11 +129,11 @@ pub fn main() -> ExitCode {
         Command::Man(options) => man::run(&options),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure @ Failure::Interrupted) => ExitCode::from(failure.exit_code()),
+        Ok(()) => 0,
+        Err(failure @ Failure::Interrupted) => failure.exit_code(),
         Err(failure) => {
             say(&format!("error: {failure}"));
-            ExitCode::from(failure.exit_code())
+            failure.exit_code()
         }
     }
 }
@@ -145,14 +148,14 @@ fn outlive_file_limits() {
 }
 
 /// Shows the help or the version that was requested, or what is wrong with the command line.
-fn show_usage(shown: &clap::Error) -> ExitCode {
+fn show_usage(shown: &clap::Error) -> u8 {
     let code = u8::try_from(shown.exit_code()).unwrap_or(2);
     match shown.print() {
         Err(error) if code == 0 && error.kind() != ErrorKind::BrokenPipe => {
             say(&format!("error: the result cannot be written to standard output: {error}"));
-            ExitCode::from(1)
+            1
         }
-        _ => ExitCode::from(code),
+        _ => code,
     }
 }
 

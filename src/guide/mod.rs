@@ -23,6 +23,7 @@
 //! | What do forces and surface look like over time? | [`simulate`] |
 //! | How round is a measured profile? | [`circularity`] |
 //! | How do I use stead from Rust, from Python? | [`library`], [`python`] |
+//! | How is a wheel, a binary or a crate made of it? | [`release`] |
 //! | Which direction is positive? | [`conventions`] |
 //! | What stands in which file? | [`files`], [`run_file`], [`surroundings`], [`robot_file`], [`tables`], results [`columns`], [`assessment_file`], [`identification_file`], [`compensation_file`], [`simulation_file`], [`forces_file`] |
 //! | How does it work, and how far can it be trusted? | [`method`], [`validation`] |
@@ -80,6 +81,8 @@ pub mod page {}
 pub mod place {}
 #[doc = include_str!("python.md")]
 pub mod python {}
+#[doc = include_str!("release.md")]
+pub mod release {}
 #[doc = include_str!("robot_file.md")]
 pub mod robot_file {}
 #[doc = include_str!("robots.md")]

@@ -6,10 +6,10 @@ use stead_disk::input::InputError;
 /// What the name of a shipped arm begins with where a file is requested.
 pub const PREFIX: &str = "name:";
 
-/// A shipped arm by its name: the file of that name in `configs/robots`.
+/// A shipped arm by its name: the file of that name in `robots`, a link to `configs/robots`.
 macro_rules! arm {
     ($name:literal) => {
-        ($name, include_str!(concat!("../../../configs/robots/", $name, ".toml")))
+        ($name, include_str!(concat!("../robots/", $name, ".toml")))
     };
 }
 

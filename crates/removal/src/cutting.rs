@@ -2,7 +2,7 @@
 
 use crate::moves::Move;
 use crate::operation::EndMill;
-use crate::piece::{Piece, Surface};
+use crate::piece::{EdgePoint, Piece, Surface};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use stead_model::cutting::{Coefficients, Cutter};
@@ -34,15 +34,6 @@ const DEAD_CENTRE: f64 = 0.15;
 /// How far from the axis 1 / r is taken as it is at the mean over a cell, in cells: of a cutter that moves along its
 /// axis, whose lines stay at their radius, and of one that moves across it, whose lines pass at every radius.
 const TIP: [f64; 2] = [0.28, 0.08];
-
-/// A point of the edge of a cutter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EdgePoint {
-    /// Height above the tool centre point. m
-    pub height: f64,
-    /// Radial and axial part of the normal out of the surface.
-    pub normal: [f64; 2],
-}
 
 /// What a bit of removed volume adds.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,10 +5,11 @@ use crate::moves::PathMoves;
 use crate::operation::{EndMill, ForcesProblem, Operation};
 use crate::outcome::{ForcesDifference, RemovalForces};
 use crate::points::{Loads, added_points};
-use crate::removal::{Asked, Found, Workpiece};
+use crate::removal::Workpiece;
 use crate::solid_lines::Body;
+use crate::sums::{Found, Requested};
 use crate::surface::{Surface, surface};
-use crate::warnings::warnings;
+use crate::warnings::{place, warnings};
 use nalgebra::Vector3;
 use stead_cell::Solid;
 use stead_model::task::TaskError;
@@ -77,12 +78,6 @@ const TILE_BYTES: f64 = 1024.0 * 16.0 + 200.0;
 /// More lines than this share that are no body's are refused.
 const UNSOUND: f64 = 1e-6;
 
-/// A place for a message.
-pub(crate) fn place(at: &Vector3<f64>) -> String {
-    let [x, y, z] = [at.x, at.y, at.z].map(|value| (value * 1e6).round() / 1e3);
-    format!("({x}, {y}, {z}) mm")
-}
-
 /// Mean force and moment over a turn at every point of the path of an operation.
 ///
 /// # Errors
@@ -106,7 +101,8 @@ pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForce
     let cell = match problem.cell {
         Some(cell) => cell,
         None => {
-            let run = Run::new(problem, diameter / FIRST, None, Asked::Forces, "cutting, to choose the cell", monitor)?;
+            let run =
+                Run::new(problem, diameter / FIRST, None, Requested::Forces, "cutting, to choose the cell", monitor)?;
             let cell = run.cell_for(operation);
             first = Some(run);
             cell
@@ -118,11 +114,16 @@ pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForce
     // Of that its sums alone are kept.
     let Run { path, found, .. } = match known {
         Some(run) => run,
-        None => {
-            Run::new(problem, 2.0 * cell, Some(window), Asked::Forces, "cutting with cells twice as large", monitor)?
-        }
+        None => Run::new(
+            problem,
+            2.0 * cell,
+            Some(window),
+            Requested::Forces,
+            "cutting with cells twice as large",
+            monitor,
+        )?,
     };
-    let fine = Run::new(problem, cell, Some(window), Asked::Turns, "cutting", monitor)?;
+    let fine = Run::new(problem, cell, Some(window), Requested::Turns, "cutting", monitor)?;
     fine.outcome(problem, &Loads { path: &path, found: &found })
 }
 
@@ -148,7 +149,7 @@ impl Run {
         problem: &ForcesProblem,
         cell: f64,
         window: Option<f64>,
-        asked: Asked,
+        requested: Requested,
         stage: &'static str,
         monitor: &Monitor,
     ) -> Result<Self, ForcesError> {
@@ -164,14 +165,14 @@ impl Run {
         let window = window.unwrap_or(window_for(cell));
         for before in &problem.before {
             let path = PathMoves::new(before, window);
-            workpiece.cut(&tool(&before.mill), &path, Asked::Removal, "cutting what is cut before", monitor)?;
+            workpiece.cut(&tool(&before.mill), &path, Requested::Removal, "cutting what is cut before", monitor)?;
         }
-        let (before, removed_before) = match asked {
-            Asked::Turns => (surface(&workpiece), workpiece.removed(2)),
-            Asked::Removal | Asked::Forces => Default::default(),
+        let (before, removed_before) = match requested {
+            Requested::Turns => (surface(&workpiece), workpiece.removed(2)),
+            Requested::Removal | Requested::Forces => Default::default(),
         };
         let (tool, path) = (tool(&problem.operation.mill), PathMoves::new(&problem.operation, window));
-        let found = workpiece.cut(&tool, &path, asked, stage, monitor)?;
+        let found = workpiece.cut(&tool, &path, requested, stage, monitor)?;
         let unsound = workpiece.unsound().filter(|(share, _)| *share > UNSOUND);
         if let Some((share, at)) = unsound {
             return Err(ForcesError::Open { share, at });

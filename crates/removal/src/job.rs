@@ -2,11 +2,11 @@
 
 use crate::cutting::{Moving, Tool};
 use crate::lattice::{TILE, TileKey, others, place};
-use crate::moves::{Kind, Move};
+use crate::moves::{Move, MoveKind};
 use crate::piece::Piece;
 use crate::quadrature::Quadrature;
-use crate::removal::{Asked, Event, GOUGE, Sums, tile_of};
-use crate::solid_lines::Body;
+use crate::solid_lines::{Body, tile_of};
+use crate::sums::{Event, GOUGE, Requested, Sums};
 use crate::tile::{NANO, Tile};
 use crate::turn::{Arcs, TurnGrid};
 use nalgebra::Vector3;
@@ -61,7 +61,7 @@ pub struct Job<'j> {
     pub part: Option<&'j Body>,
     pub cell: f64,
     pub quadrature: &'j Quadrature,
-    pub asked: Asked,
+    pub requested: Requested,
     pub grid: &'j TurnGrid,
 }
 
@@ -128,7 +128,7 @@ impl Job<'_> {
         for index in indices {
             let (one, reach) = (&self.moves[*index as usize], &self.reaches[*index as usize]);
             let moving = Moving::new(self.tool, one, cell);
-            let is_counted = self.asked != Asked::Removal && !self.tool.cuts_along(one, axis);
+            let is_counted = self.requested != Requested::Removal && !self.tool.cuts_along(one, axis);
             if !reach.is_empty() {
                 let along = reach.0[axis].map(nano);
                 lines(reach, &mut |number, o| {
@@ -164,7 +164,7 @@ impl Job<'_> {
             }
             // Shank and holder cut nothing: one grid of lines tells whether they are in the stock.
             let Some(held) = self.held.get(*index as usize).filter(|held| !held.is_empty()) else { continue };
-            if self.asked == Asked::Removal || axis != one.axis.iamax() {
+            if self.requested == Requested::Removal || axis != one.axis.iamax() {
                 continue;
             }
             let along = held.0[axis].map(nano);
@@ -198,11 +198,11 @@ impl Job<'_> {
             let Some(bit) = moving.bit(&point, axis, cell * cell * (high - low) * weight) else { continue };
             let mut event = |event: Event| *of_tile.events.entry((event, one.point)).or_default() += bit.volume;
             match one.kind {
-                Kind::Rapid => event(Event::Rapid),
-                Kind::InPlace => event(Event::InPlace),
-                Kind::Start => event(Event::Before),
-                Kind::Feed if bit.when < 0.0 => event(Event::Before),
-                Kind::Feed => {
+                MoveKind::Rapid => event(Event::Rapid),
+                MoveKind::InPlace => event(Event::InPlace),
+                MoveKind::Start => event(Event::Before),
+                MoveKind::Feed if bit.when < 0.0 => event(Event::Before),
+                MoveKind::Feed => {
                     if bit.height > self.tool.flute_length {
                         event(Event::AboveFlutes);
                     }
@@ -225,7 +225,7 @@ impl Job<'_> {
                             sums.add(&of_bit, part);
                         }
                     }
-                    if self.asked == Asked::Turns {
+                    if self.requested == Requested::Turns {
                         let field = self.grid.field(moving, &bit);
                         let (node, part) = at(one.turns);
                         for (node, part) in [(node, 1.0 - part), (node + 1, part)] {

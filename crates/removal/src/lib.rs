@@ -17,6 +17,7 @@ pub mod profile;
 pub mod quadrature;
 pub mod removal;
 pub mod solid_lines;
+pub mod sums;
 pub mod surface;
 pub mod tile;
 pub mod turn;

@@ -10,7 +10,7 @@ use stead_model::task::{PathPoint, ToolPath};
 
 /// Whether a move cuts or should not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum MoveKind {
     /// A move of the path along which the tool centre point moves.
     Feed,
     /// A turn of the tool in place.
@@ -33,7 +33,7 @@ pub struct Move {
     /// By how much the axis turns, as a rotation vector. rad
     pub turn: Vector3<f64>,
     /// What it is for.
-    pub kind: Kind,
+    pub kind: MoveKind,
     /// Feed per turn of the spindle. m
     pub feed_per_turn: f64,
     /// The point of the path at which it ends, or, of a rapid move, to which it leads.
@@ -138,14 +138,14 @@ impl PathMoves {
     fn rapid(&mut self, way: impl Iterator<Item = AirPoint>, point: usize) {
         let places: Vec<AirPoint> = way.collect();
         for pair in places.windows(2) {
-            self.straight([pair[0], pair[1]], |part| Move { kind: Kind::Rapid, point: point as u32, ..part });
+            self.straight([pair[0], pair[1]], |part| Move { kind: MoveKind::Rapid, point: point as u32, ..part });
         }
     }
 
     /// Puts the cutter down: what it then stands in is none of what the segment cuts.
     fn start(&mut self, at: AirPoint, point: usize) {
         let above = AirPoint { position: at.position + at.axis * PUT_DOWN, ..at };
-        self.straight([above, at], |part| Move { kind: Kind::Start, point: point as u32, ..part });
+        self.straight([above, at], |part| Move { kind: MoveKind::Start, point: point as u32, ..part });
     }
 
     /// Adds a leg, or a turn in place, from a point on; where it ends.
@@ -154,7 +154,7 @@ impl PathMoves {
         let at = |point: usize| place_of(path, point);
         let way = |to: usize| path.points()[to].position - path.points()[to - 1].position;
         if way(from + 1).norm() < NO_WAY {
-            let kind = Kind::InPlace;
+            let kind = MoveKind::InPlace;
             self.straight([at(from), at(from + 1)], |part| Move { kind, point: from as u32 + 1, ..part });
             return from + 1;
         }
@@ -188,7 +188,7 @@ impl PathMoves {
             };
             let feed_per_turn = feed(to) / operation.spindle_speed;
             self.straight([at(to - 1), at(to)], |part| Move {
-                kind: Kind::Feed,
+                kind: MoveKind::Feed,
                 point: to as u32,
                 feed_per_turn,
                 nodes: part.nodes.map(|share| place(share, nodes)),
@@ -218,7 +218,7 @@ impl PathMoves {
                 axis: axis((part + 0.5) / parts),
                 by,
                 turn: about * (angle / parts),
-                kind: Kind::Feed,
+                kind: MoveKind::Feed,
                 feed_per_turn: 0.0,
                 point: 0,
                 nodes: [part / parts, (part + 1.0) / parts],

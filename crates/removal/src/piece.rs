@@ -9,8 +9,16 @@
 //! in l; swept, `y = w + l d - m u`, one in l and m. A piece and what it sweeps are convex, so that each has one
 //! interval on a line.
 
-use crate::cutting::EdgePoint;
 use nalgebra::Vector3;
+
+/// A point of the edge of a cutter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgePoint {
+    /// Height above the tool centre point. m
+    pub height: f64,
+    /// Radial and axial part of the normal out of the surface.
+    pub normal: [f64; 2],
+}
 
 /// A convex piece about the tool axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

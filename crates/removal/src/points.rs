@@ -2,7 +2,7 @@
 
 use crate::moves::{LegPlace, PathMoves};
 use crate::outcome::PointForces;
-use crate::removal::{Found, Sums};
+use crate::sums::{Found, Sums};
 use crate::turn::Turn;
 use nalgebra::Vector3;
 use stead_model::task::{PathPoint, TaskError, ToolPath, Wrench};

@@ -14,12 +14,13 @@
 //! A bit of line along an axis counts with the square of the normal's part along it: the weights of the three grids add
 //! up to one.
 
-use crate::cutting::{Bit, Tool};
+use crate::cutting::Tool;
 use crate::job::{Job, OfTile, Reach, Size};
-use crate::lattice::{self, TILE, TileKey, others, place};
+use crate::lattice::{self, TILE, TileKey, others};
 use crate::moves::PathMoves;
 use crate::quadrature::Quadrature;
-use crate::solid_lines::Body;
+use crate::solid_lines::{Body, origin, tile_of};
+use crate::sums::{Found, Requested, Sums};
 use crate::tile::{NANO, Tile};
 use crate::turn::{Arcs, Turn, TurnGrid};
 use nalgebra::Vector3;
@@ -27,113 +28,10 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
 
-/// Sums of what is removed about a node of the path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sums {
-    /// Removed volume. m3
-    pub volume: f64,
-    /// Integral of the chip part of the mean force over the path. N m
-    pub chip_force: Vector3<f64>,
-    /// Of its moment about the tool centre point. N m2
-    pub chip_moment: Vector3<f64>,
-    /// Integral of the edge part of the mean force over the path. N m
-    pub edge_force: Vector3<f64>,
-    /// Of its moment about the tool centre point. N m2
-    pub edge_moment: Vector3<f64>,
-    /// Lowest and highest height that cuts. m
-    pub heights: [f64; 2],
-    /// Thickest chip. m
-    pub chip: f64,
-}
-
-impl Default for Sums {
-    fn default() -> Self {
-        let zero = Vector3::zeros();
-        Self {
-            volume: 0.0,
-            chip_force: zero,
-            chip_moment: zero,
-            edge_force: zero,
-            edge_moment: zero,
-            heights: [f64::INFINITY, f64::NEG_INFINITY],
-            chip: 0.0,
-        }
-    }
-}
-
-impl Sums {
-    /// Adds a share of other sums.
-    pub fn add(&mut self, other: &Self, share: f64) {
-        self.volume += other.volume * share;
-        self.chip_force += other.chip_force * share;
-        self.chip_moment += other.chip_moment * share;
-        self.edge_force += other.edge_force * share;
-        self.edge_moment += other.edge_moment * share;
-        self.heights = [self.heights[0].min(other.heights[0]), self.heights[1].max(other.heights[1])];
-        self.chip = self.chip.max(other.chip);
-    }
-
-    /// Those of one bit, with the thickness of its chip (m).
-    pub fn of(bit: &Bit, chip: f64) -> Self {
-        Self {
-            volume: bit.volume,
-            chip_force: bit.chip_force,
-            chip_moment: bit.chip_moment,
-            edge_force: bit.edge_force,
-            edge_moment: bit.edge_moment,
-            heights: [bit.height; 2],
-            chip,
-        }
-    }
-}
-
-/// What happens that should not, or that gives no force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Event {
-    /// A rapid move through the stock.
-    Rapid,
-    /// The tool turns in place in the stock.
-    InPlace,
-    /// A segment begins with the cutter in the stock.
-    Before,
-    /// Something is cut above the flutes.
-    AboveFlutes,
-    /// The middle of a cutter that is not centre-cutting is in the stock.
-    DeadCentre,
-    /// Shank or holder is in the stock.
-    Holder,
-    /// The finished part is cut into.
-    Gouge,
-}
-
-/// What is asked of a run through the moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
-    /// Only that the stock is cut.
-    Removal,
-    /// Forces.
-    Forces,
-    /// Forces, and what goes on in a turn of the spindle.
-    Turns,
-}
-
-/// What a run through the moves finds.
-#[derive(Debug, Clone, Default)]
-pub struct Found {
-    /// By node of the sums.
-    pub sums: Vec<Sums>,
-    /// By node of the turns.
-    pub turns: Vec<Turn>,
-    /// Volume (m3) by event and point of the path.
-    pub events: BTreeMap<(Event, u32), f64>,
-}
-
 /// Moves that all tiles go through before the next ones.
 const CHUNK: usize = 4096;
 /// Nodes of turns that they reach over, at most.
 const CHUNK_TURNS: f64 = 128.0;
-/// A cut into the finished part is one from this depth on. m
-pub const GOUGE: f64 = 50e-6;
 
 /// The stock while it is cut.
 #[derive(Debug, Clone)]
@@ -168,15 +66,15 @@ impl Workpiece {
         &mut self,
         tool: &Tool,
         path: &PathMoves,
-        asked: Asked,
+        requested: Requested,
         stage: &'static str,
         monitor: &Monitor,
     ) -> Result<Found, Stop> {
-        let wanted = asked != Asked::Removal;
+        let wanted = requested != Requested::Removal;
         let [nodes, turns] = path.counts;
         let mut found = Found {
             sums: if wanted { vec![Sums::default(); nodes + 1] } else { Vec::new() },
-            turns: if asked == Asked::Turns { vec![Turn::default(); turns + 1] } else { Vec::new() },
+            turns: if requested == Requested::Turns { vec![Turn::default(); turns + 1] } else { Vec::new() },
             events: BTreeMap::new(),
         };
         let quadrature = Quadrature::default();
@@ -226,7 +124,7 @@ impl Workpiece {
                 part: self.part.as_ref(),
                 cell: self.cell,
                 quadrature: &quadrature,
-                asked,
+                requested,
                 grid: &grid,
             };
             let done: Vec<(TileKey, Tile, OfTile)> = jobs
@@ -306,38 +204,4 @@ impl Workpiece {
             }
         }
     }
-}
-
-/// Where a line of a tile begins, at the lower end of the extent.
-fn origin(extent: &[Vector3<f64>; 2], cell: f64, (axis, i, j): TileKey, line: usize) -> Vector3<f64> {
-    let [a, b] = others(axis);
-    let line = line as i64;
-    let at = place(i * TILE + line / TILE, j * TILE + line % TILE);
-    let mut o = Vector3::zeros();
-    (o[a], o[b], o[axis]) = (at[0] * cell, at[1] * cell, extent[0][axis]);
-    o
-}
-
-/// The lines of a tile inside a body, from the lower end of an extent.
-pub(crate) fn tile_of(body: &Body, extent: &[Vector3<f64>; 2], cell: f64, key: TileKey) -> Tile {
-    let axis = key.0;
-    let length = (extent[1][axis] - extent[0][axis]) * NANO;
-    let nano = |end: f64| (end * NANO).round().clamp(0.0, length.round()) as u32;
-    let [a, b] = others(axis);
-    let mut tile = Tile::empty();
-    for line in 0..(TILE * TILE) as usize {
-        let o = origin(extent, cell, key, line);
-        if o[a] < body.extent[0][a] || o[a] > body.extent[1][a] || o[b] < body.extent[0][b] || o[b] > body.extent[1][b]
-        {
-            continue;
-        }
-        let inside = body.line(key, &o);
-        let intervals: Vec<[u32; 2]> =
-            inside.intervals.iter().map(|ends| ends.map(nano)).filter(|[from, to]| to > from).collect();
-        tile.set(line, &intervals);
-        if !inside.is_sound {
-            tile.unsound.push(line);
-        }
-    }
-    tile
 }

@@ -1,6 +1,7 @@
 //! Where lines along the axes run inside a body: the stock before it is cut, and the finished part.
 
-use crate::lattice::{TILE, TileKey, others};
+use crate::lattice::{TILE, TileKey, others, place};
+use crate::tile::{NANO, Tile};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -194,4 +195,38 @@ impl Facets {
 /// The least and the most of three numbers.
 fn ends(values: [f64; 3]) -> [f64; 2] {
     values.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// Where a line of a tile begins, at the lower end of the extent.
+pub(crate) fn origin(extent: &[Vector3<f64>; 2], cell: f64, (axis, i, j): TileKey, line: usize) -> Vector3<f64> {
+    let [a, b] = others(axis);
+    let line = line as i64;
+    let at = place(i * TILE + line / TILE, j * TILE + line % TILE);
+    let mut o = Vector3::zeros();
+    (o[a], o[b], o[axis]) = (at[0] * cell, at[1] * cell, extent[0][axis]);
+    o
+}
+
+/// The lines of a tile inside a body, from the lower end of an extent.
+pub(crate) fn tile_of(body: &Body, extent: &[Vector3<f64>; 2], cell: f64, key: TileKey) -> Tile {
+    let axis = key.0;
+    let length = (extent[1][axis] - extent[0][axis]) * NANO;
+    let nano = |end: f64| (end * NANO).round().clamp(0.0, length.round()) as u32;
+    let [a, b] = others(axis);
+    let mut tile = Tile::empty();
+    for line in 0..(TILE * TILE) as usize {
+        let o = origin(extent, cell, key, line);
+        if o[a] < body.extent[0][a] || o[a] > body.extent[1][a] || o[b] < body.extent[0][b] || o[b] > body.extent[1][b]
+        {
+            continue;
+        }
+        let inside = body.line(key, &o);
+        let intervals: Vec<[u32; 2]> =
+            inside.intervals.iter().map(|ends| ends.map(nano)).filter(|[from, to]| to > from).collect();
+        tile.set(line, &intervals);
+        if !inside.is_sound {
+            tile.unsound.push(line);
+        }
+    }
+    tile
 }

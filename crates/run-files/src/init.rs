@@ -10,6 +10,7 @@ pub use run_for::init_run;
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::InputError;
+use stead_format::shipped;
 use stead_format::toml_file::without_schema;
 
 /// What a starter set is for.
@@ -49,11 +50,11 @@ impl StarterSet {
             Self::Identify => vec![
                 ("identify.toml", include_str!("init/identify.toml")),
                 ROBOT,
-                ("sheet.csv", include_str!("../../../tasks/identify-example.csv")),
+                ("sheet.csv", include_str!("init/sheet.csv")),
             ],
             Self::Simulate => vec![
                 ("simulate.toml", include_str!("init/simulate.toml")),
-                ("robot.toml", without_schema(include_str!("../../../configs/robots/staubli-tx200.toml"))),
+                ("robot.toml", without_schema(shipped::by_name("staubli-tx200").unwrap_or_default())),
             ],
             Self::Study => [&[("study.toml", include_str!("init/study.toml"))][..], &PLACE].concat(),
             Self::Forces => {

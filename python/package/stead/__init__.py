@@ -11,7 +11,8 @@
     out.pictures["cell"]            # shown by a notebook
     out.write("results/mine")       # byte for byte what `stead place` leaves
 
-There is one class for each kind of input file, with `read` and a method for each command, and one for each kind of result. Files,
+There is one class for each kind of input file, with `read` and a method for each job, and one for each kind of result; `stead.command`
+runs any command of the terminal, as `export`, `import path` or `check`. Files,
 conventions and methods are explained in the user guide (`src/guide/` of the repository, `python.md` first).
 """
 
@@ -22,6 +23,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from . import _stead
+from ._command import CommandError, Completed, command
 from ._errors import ArgumentError, Error, Infeasible, InputError, Interrupted, Locked, NotCompensated, OutputError
 from ._inputs import (
     AssessmentRun,
@@ -90,8 +92,10 @@ __all__ = [
     "Case",
     "Certificate",
     "Circularity",
+    "CommandError",
     "CompensatedPath",
     "CompensationRun",
+    "Completed",
     "DesignRun",
     "Error",
     "Explanations",
@@ -127,6 +131,7 @@ __all__ = [
     "StudyStatus",
     "Table",
     "Warning",
+    "command",
     "init",
     "schema",
 ]

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
 from os import PathLike
 from typing import TypeVar
@@ -26,8 +27,8 @@ _N = TypeVar("_N")
 def options_of(
     progress: Progress | None = None, threads: int | None = None, time_limit_s: float | None = None
 ) -> _stead._Options:
-    if threads is not None and not 1 <= threads <= _stead.MAX_THREADS:
-        raise ArgumentError(f"no such number of threads, found {threads}; allowed: 1 to {_stead.MAX_THREADS}")
+    if threads is not None:
+        threads = checked_integer("number of threads", threads, 1, _stead.MAX_THREADS)
     return {"progress": progress, "threads": threads, "time_limit_s": time_limit_s}
 
 
@@ -48,7 +49,17 @@ def read_done(done: tuple[_N | None, bool]) -> _N:
     return native
 
 
+def checked_integer(name: str, value: int, least: int, most: int) -> int:
+    """A whole number in a range; what only looks like one, as 2.0 or a truth value, is none."""
+    try:
+        whole = None if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        whole = None
+    if whole is None or not least <= whole <= most:
+        kind = "a whole number from " if whole is None else ""
+        raise ArgumentError(f"no such {name}, found {value!r}; allowed: {kind}{least} to {most}")
+    return whole
+
+
 def checked_seed(seed: int | None) -> int | None:
-    if seed is not None and not 0 <= seed < 2**63:
-        raise ArgumentError(f"no such seed, found {seed}; allowed: a whole number from 0 to {2**63 - 1}")
-    return seed
+    return None if seed is None else checked_integer("seed", seed, 0, 2**63 - 1)

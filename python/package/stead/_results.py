@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -59,8 +60,49 @@ class Folder:
         self.release()
 
 
+@dataclass(frozen=True)
+class _Kept:
+    """What is left of a result that was pickled: all that it says, without what made it."""
+
+    document: str
+    printed: str
+    noted: list[str]
+    warned: list[tuple[str, str]]
+    named: list[tuple[str, bytes]]
+
+    @classmethod
+    def of(cls, native: _stead.Outcome) -> _Kept:
+        return cls(native.json(), native.text(), native.notes(), native.warnings(), native.files())
+
+    def json(self) -> str:
+        return self.document
+
+    def text(self) -> str:
+        return self.printed
+
+    def notes(self) -> list[str]:
+        return self.noted
+
+    def warnings(self) -> list[tuple[str, str]]:
+        return self.warned
+
+    def files(self) -> list[tuple[str, bytes]]:
+        return self.named
+
+
+def _whole(native: _stead.Outcome | _Kept) -> _stead.Outcome:
+    if isinstance(native, _Kept):
+        raise ArgumentError(
+            "a result that was pickled keeps what it says and the contents of its files (`files`); allowed: to write it, "
+            "certify it or make its map in the process that made it"
+        )
+    return native
+
+
 class Result(Record):
     """A result: `str()` is the text that the command prints, attributes are the keys of its JSON document.
+
+    A result can be pickled. What comes out has the same document, text, tables and files, but cannot be written as a results folder.
 
     Attributes:
         inputs: The files that it came from.
@@ -73,8 +115,13 @@ class Result(Record):
     format: int
     _made: ClassVar[Mapping[str, Callable[[Any], Any]]] = {"inputs": Input}
 
-    def __init__(self, native: _stead.Outcome) -> None:
+    def __init__(self, native: _stead.Outcome | _Kept) -> None:
         self._native = native
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        native = self._native
+        kept = native if isinstance(native, _Kept) else _Kept.of(native)
+        return type(self), (kept,)
 
     @cached_property
     def _entries(self) -> Mapping[str, Any]:  # type: ignore[override]
@@ -95,8 +142,8 @@ class Result(Record):
             OutputError: The folder or a file cannot be written, or another run writes to it.
         """
         if isinstance(folder, Folder):
-            return self._native.write_in(folder._native)
-        return self._native.write(Path(folder))
+            return _whole(self._native).write_in(folder._native)
+        return _whole(self._native).write(Path(folder))
 
     @property
     def notes(self) -> list[str]:

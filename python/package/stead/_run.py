@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from . import _stead
-from ._errors import ArgumentError
-from ._jobs import File, Progress, checked_seed, finished, options_of, read_done
+from ._errors import ArgumentError, InputError
+from ._jobs import File, Progress, checked_integer, checked_seed, finished, options_of, read_done
 from ._records import Placement
-from ._results import Explanations, PlacementScore, Placements, Warning
+from ._results import Explanations, PlacementScore, Placements, Warning, _whole
 
 
 def _place(placement: Placement) -> _stead._Place:
@@ -17,16 +19,26 @@ def _place(placement: Placement) -> _stead._Place:
 
 
 class Run:
-    """A run file with the robot and the task that it names: `stead place`, `stead score`, `stead explain`."""
+    """A run file with the robot and the task that it names: `stead place`, `stead score`, `stead explain`.
 
-    def __init__(self, native: _stead.Run) -> None:
+    A run can be pickled, for the workers of `multiprocessing` or Ray. It is read again there, from the same files: where one of them has changed
+    since, that is an `InputError`.
+    """
+
+    def __init__(self, native: _stead.Run, made: tuple[Any, ...] = ()) -> None:
         self._native = native
+        # How it was read and changed, for pickle.
+        self._made = made
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _read_again, (self._made, self._native.inputs())
 
     @classmethod
     def read(
         cls,
         file: File,
         *,
+        set: Mapping[str, object] | Sequence[str] = (),
         certify: float | None = None,
         seed: int | None = None,
         sensitivity: bool = False,
@@ -38,6 +50,8 @@ class Run:
 
         Args:
             file: The run file (TOML).
+            set: Values in the place of those of the file or of the files that it names, by their keys, as `--set` of the command:
+                `{"cell.z_mm": [-602, -402], "robot.joints[1].stiffness_mnm_per_rad": 0.8}`.
             certify: Gap of a certificate in per cent, whatever the file says of one.
             seed: Seed of the random numbers, instead of the file's.
             sensitivity: Refine once more for force errors of 10 %, and say how far the best placement moves.
@@ -51,20 +65,24 @@ class Run:
             Interrupted: at Ctrl-C, without a result.
         """
         options = options_of(progress, threads, time_limit_s)
-        return cls(read_done(_stead.Run.read(Path(file), certify, checked_seed(seed), sensitivity, options)))
+        how = (Path(file), _assignments(set), certify, checked_seed(seed), sensitivity)
+        return cls(read_done(_stead.Run.read(*how, options)), (how,))
 
     def with_seed(self, seed: int) -> Run:
         """The same run with another seed of the random numbers."""
-        checked_seed(seed)
-        return Run(self._native.with_seed(seed))
+        seed = checked_integer("seed", seed, 0, 2**63 - 1)
+        return self._changed("with_seed", seed)
 
     def with_sensitivity(self, force_error: float) -> Run:
         """The same run, refined once more where scores have to cover force errors of this relative size (0.1 for 10 %)."""
-        return Run(self._native.with_sensitivity(force_error))
+        return self._changed("with_sensitivity", force_error)
 
     def without_worst(self) -> Run:
         """The same run without a search for the worst placement, which takes half of the time."""
-        return Run(self._native.without_worst())
+        return self._changed("without_worst")
+
+    def _changed(self, change: str, *arguments: Any) -> Run:
+        return Run(getattr(self._native, change)(*arguments), (*self._made, (change, *arguments)))
 
     @property
     def notes(self) -> list[str]:
@@ -129,7 +147,7 @@ class Run:
         time_limit_s: float | None = None,
     ) -> Placements:
         """These placements with the certificate that their run asks for: bounds how far they are from the best and the worst possible."""
-        done = placements._native.certified(options_of(progress, threads, time_limit_s))
+        done = _whole(placements._native).certified(options_of(progress, threads, time_limit_s))
         return finished(Placements, done)
 
     def score(
@@ -159,7 +177,7 @@ class Run:
             score = finished(PlacementScore, self._native.score(_place(placement), options))
         else:
             score = finished(PlacementScore, self._native.score_of(Path(placement), case, options))
-        return finished(PlacementScore, score._native.mapped(options)) if deflection_map else score
+        return finished(PlacementScore, _whole(score._native).mapped(options)) if deflection_map else score
 
     def explain(
         self, placement: Placement | File, point: int, beta_deg: float, case: Literal[1, 3] = 1
@@ -175,8 +193,36 @@ class Run:
         Raises:
             ArgumentError: for a point that the path does not have.
         """
-        if point < 0:
-            raise ArgumentError(f"no such path point, found {point}; allowed: 0 to {self.point_count - 1}")
+        point = checked_integer("path point", point, 0, self.point_count - 1)
         if isinstance(placement, Placement):
             return Explanations(self._native.explain(_place(placement), point, beta_deg))
         return Explanations(self._native.explain_of(Path(placement), case, point, beta_deg))
+
+
+def _assignments(values: Mapping[str, object] | Sequence[str]) -> list[str]:
+    """`key=value` with the value as TOML has it."""
+    return [f"{key}={_toml(value)}" for key, value in values.items()] if isinstance(values, Mapping) else list(values)
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    raise ArgumentError(f"no value of a file, found {value!r}; allowed: numbers, texts, true, false and lists of them")
+
+
+def _read_again(made: tuple[Any, ...], inputs: list[tuple[str, str]]) -> Run:
+    (how, *changes) = made
+    run = Run(read_done(_stead.Run.read(*how, options_of())), (how,))
+    for name, digest in inputs:
+        if (name, digest) not in run._native.inputs():
+            problem = "has changed since the run that names it was pickled"
+            raise InputError(f"{name}: {problem}", file=name, problem=problem)
+    for change, *arguments in changes:
+        run = run._changed(change, *arguments)
+    return run

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict, final
 
-__all__ = ["__version__", "MAX_THREADS", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema"]
+__all__ = ["__version__", "MAX_THREADS", "Outcome", "Folder", "Run", "AssessmentRun", "FitRun", "DesignRun", "CompensationRun", "SimulationRun", "StabilityRun", "Profile", "Study", "init", "schema", "run_command"]
 
 __version__: str
 MAX_THREADS: int
@@ -69,8 +69,14 @@ class Folder:
 class Run:
     @staticmethod
     def read(
-        file: Path, certify: float | None, seed: int | None, sensitivity: bool, options: _Options
+        file: Path,
+        values: Sequence[str],
+        certify: float | None,
+        seed: int | None,
+        sensitivity: bool,
+        options: _Options,
     ) -> tuple[Run | None, bool]: ...
+    def inputs(self) -> list[tuple[str, str]]: ...
     def with_seed(self, seed: int) -> Run: ...
     def with_sensitivity(self, force_error: float) -> Run: ...
     def without_worst(self) -> Run: ...
@@ -160,3 +166,4 @@ class Study:
 
 def init(kind: str, folder: Path, force: bool) -> list[Path]: ...
 def schema(kind: str) -> str: ...
+def run_command(arguments: Sequence[str]) -> int: ...

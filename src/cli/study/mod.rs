@@ -24,10 +24,10 @@ pub(super) enum StudyCommand {
     Report(report::StudyReportOptions),
 }
 
-pub(super) fn run(command: &StudyCommand) -> Result<(), Failure> {
+pub(super) fn run(command: &StudyCommand, program: &Path) -> Result<(), Failure> {
     match command {
         StudyCommand::Run(options) => run::run(options),
-        StudyCommand::Slurm(options) => slurm::run(options),
+        StudyCommand::Slurm(options) => slurm::run(options, program),
         StudyCommand::Status(options) => status::run(options),
         StudyCommand::Report(options) => report::run(options),
     }

@@ -33,12 +33,15 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
     ..Manual::NEW
 };
 
-pub(super) fn run(options: &StudySlurmOptions) -> Result<(), Failure> {
+pub(super) fn run(options: &StudySlurmOptions, program: &Path) -> Result<(), Failure> {
     // What is wrong in the study is better said here than by every element.
     read(&options.config, None, &Terminal::start(None))?;
-    // Where this program lies, for all nodes.
-    let stead = std::env::current_exe().unwrap_or_else(|_| "stead".into());
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    // Where this program lies, for all nodes. The one that runs may be an interpreter of Python.
+    let stead = match program.components().count() {
+        0 | 1 => std::env::current_exe().unwrap_or_else(|_| "stead".into()),
+        _ => absolute(program),
+    };
     let folder = folder(options.out.as_deref(), &options.config);
     let script = slurm_script(&stead, &absolute(&options.config), &absolute(&folder), options.shards, options.threads);
     print(script.as_bytes())

@@ -33,7 +33,7 @@ mod shape;
 
 pub use accuracy::Accuracy;
 pub use objective::{CollisionEffort, Workspace};
-pub use shape::{Axis, Parts, Shape};
+pub use shape::{Parts, Shape, TableAxis};
 
 use nalgebra::{Matrix3, Matrix6};
 use polar::WorkpiecePoint;

@@ -14,7 +14,7 @@ const HEADING_COUNTS: (usize, usize) = (90, 180);
 
 /// Evenly spaced values. m
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Axis {
+pub struct TableAxis {
     /// The first of them.
     pub first: f64,
     /// From one to the next.
@@ -27,9 +27,9 @@ pub struct Axis {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// Distance of the tool centre point from axis 1.
-    pub radius: Axis,
+    pub radius: TableAxis,
     /// Its height in the root frame.
-    pub height: Axis,
+    pub height: TableAxis,
     /// Headings of the spindle against the azimuth of the point, over a full turn.
     pub headings: usize,
     /// What is in it beside the in-plane compliance and the room left.
@@ -56,7 +56,7 @@ pub(super) fn cubic(t: f64) -> [f32; 4] {
     [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0].map(|weight| weight as f32)
 }
 
-impl Axis {
+impl TableAxis {
     /// An axis on which every value between two has two nodes on either side.
     fn around(min: f64, max: f64, step: f64) -> Self {
         Self { first: min - step, step, count: (((max - min) / step).ceil() as usize).saturating_add(4) }
@@ -115,8 +115,8 @@ impl Shape {
         let bottom = heights[0].min(heights[1]).clamp(below, above);
         let top = heights[0].max(heights[1]).clamp(below, above);
         Self {
-            radius: Axis::around(min, max, STEP),
-            height: Axis::around(bottom, top, STEP),
+            radius: TableAxis::around(min, max, STEP),
+            height: TableAxis::around(bottom, top, STEP),
             headings: headings(problem.redundancy.beta_count),
             parts,
         }
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn a_cubic_is_interpolated_exactly_anywhere_on_an_axis() {
         let f = |x: f64| 1.0 + x * (0.3 + x * (-0.7 + 0.2 * x));
-        let axis = Axis::around(-0.4, 1.3, 0.17);
+        let axis = TableAxis::around(-0.4, 1.3, 0.17);
         for value in [-0.4, -0.39, 0.0, 0.731, 1.29, 1.3] {
             let (first, weights) = axis.stencil(value).unwrap();
             let sum: f64 = (0..4).map(|k| f64::from(weights[k]) * f(axis.node(first + k))).sum();

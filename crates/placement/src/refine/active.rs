@@ -8,7 +8,7 @@ use super::ascent::touching;
 use super::linearise::{Curvature, linearise};
 use super::programme::pose_bounds;
 use super::slacks::{NEAR_STEPS, Slack};
-use super::subproblem::{Step, StepRequest, solve};
+use super::subproblem::{StepRequest, SubproblemStep, solve};
 use super::{LENGTH_UNIT, Solution, UNITS, planned};
 use nalgebra::{DMatrix, Vector4};
 use stead_model::robot::Posture;
@@ -33,7 +33,7 @@ pub fn active_bounds(problem: &Problem, solution: &Solution) -> Option<Vec<Activ
     let answers = [true, false].into_iter().filter_map(|curved| {
         solve(problem, solution, &locals, StepRequest { trust: NEIGHBOURHOOD, curved, pose_stays: false }).ok()
     });
-    let Step { multipliers: mut gains, .. } = { answers }.next()?;
+    let SubproblemStep { multipliers: mut gains, .. } = { answers }.next()?;
     gains.iter_mut().for_each(|(side, point, _)| side.limit = behind(problem, *side, *point));
     // The gains of all points that one bound holds add up.
     gains.sort_by_key(|(side, point, _)| (*side, *point));

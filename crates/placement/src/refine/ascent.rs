@@ -8,7 +8,7 @@ use super::super::outcome::RefinementStatus;
 use super::linearise::{Curvature, linearise};
 use super::programme::{pose_bounds, pose_step, shortest};
 use super::slacks::{NEAR_STAYING, Slack, placement_rooms};
-use super::solver::Run;
+use super::solver::SolverRun;
 use super::subproblem::{StepRequest, solve};
 use super::{Solution, UNITS, planned};
 use nalgebra::{Matrix4, Vector4};
@@ -34,11 +34,11 @@ pub fn run(
     scheme: Option<&[Posture]>,
     workspace: &mut Workspace,
     monitor: &Monitor,
-) -> Run {
+) -> SolverRun {
     let problem = planner.problem();
     let mut best = start.clone();
     let mut iterations = 0;
-    let ended = |solution, iterations, status| Run { solution, iterations, status };
+    let ended = |solution, iterations, status| SolverRun { solution, iterations, status };
     let Some(mut gradient) = pose_gradient(problem, &best) else {
         return ended(best, iterations, RefinementStatus::SubproblemFailed);
     };

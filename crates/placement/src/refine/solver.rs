@@ -58,7 +58,7 @@ pub struct SequentialConvex<'a> {
 
 /// What a run returns.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub struct SolverRun {
     /// Never worse than the start.
     pub solution: Solution,
     /// How it ended.
@@ -68,20 +68,20 @@ pub struct Run {
 }
 
 /// Runs the programme from a solution until its end or until the caller asks to stop.
-pub fn run(problem: &Problem, start: &Solution, ending: Ending, monitor: &Monitor) -> Run {
+pub fn run(problem: &Problem, start: &Solution, ending: Ending, monitor: &Monitor) -> SolverRun {
     let monitor = monitor.clone();
     let solver = SequentialConvex { problem, ending, trust: FIRST_TRUST, lazy: 0, status: None, monitor };
     let executor = Executor::new((), solver)
         .configure(|state| state.param(start.clone()).max_iters(ending.max_iterations))
         .timer(false);
     match executor.run() {
-        Ok(mut result) => Run {
+        Ok(mut result) => SolverRun {
             solution: result.state.take_param().unwrap_or_else(|| start.clone()),
             status: result.solver.status.unwrap_or(RefinementStatus::MaxIterations),
             iterations: result.state.get_iter() as usize,
         },
         // No step of ours fails.
-        Err(_) => Run { solution: start.clone(), status: RefinementStatus::SubproblemFailed, iterations: 0 },
+        Err(_) => SolverRun { solution: start.clone(), status: RefinementStatus::SubproblemFailed, iterations: 0 },
     }
 }
 

@@ -36,7 +36,7 @@ pub struct StepRequest {
 
 /// What it answers.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Step {
+pub struct SubproblemStep {
     /// Step of x, y, z (m) and yaw (rad).
     pub placement: [f64; 4],
     /// Steps of all betas. rad
@@ -59,7 +59,7 @@ pub fn solve<'p>(
     solution: &'p Solution,
     locals: &'p [Local],
     request: StepRequest,
-) -> Result<Step, Unsolved> {
+) -> Result<SubproblemStep, Unsolved> {
     let vectors = |(i, local): (usize, &'p Local)| {
         let sets = local.sets.iter().enumerate();
         sets.flat_map(move |(set, of)| [&of.changes[..], &of.parts[..]].map(|vector| ((i, set), vector)))
@@ -349,7 +349,7 @@ impl Build<'_> {
     }
 
     /// Minimises the objective: of the mean square half of it, so that its slopes are those of its root.
-    fn answered(self, cones: &[SupportedConeT<f64>]) -> Result<Step, Unsolved> {
+    fn answered(self, cones: &[SupportedConeT<f64>]) -> Result<SubproblemStep, Unsolved> {
         let (n, unit, request) = (self.locals.len(), self.unit, self.request);
         let variables = self.variables();
         let mut linear = vec![0.0; variables];
@@ -388,7 +388,7 @@ impl Build<'_> {
                 pose_gradient[k] = -found.z[k] * unit;
             }
         }
-        Ok(Step {
+        Ok(SubproblemStep {
             placement: pose,
             betas: self.betas.iter().map(|column| found.x[*column]).collect(),
             promised: ((1.0 - value) * unit).max(0.0),

@@ -126,7 +126,7 @@ fn the_same_path_in_other_moves_removes_the_same() {
             &ForcesProblem { operation, ..problem },
             0.5e-3,
             Some(1e-3),
-            Asked::Forces,
+            Requested::Forces,
             "",
             &Monitor::silent(),
         );
@@ -258,14 +258,14 @@ fn many_points() {
         ..shoulder([-30.0, 30.0], &along_x(5.0))
     };
     let start = std::time::Instant::now();
-    let run = |cell: f64, asked| {
+    let run = |cell: f64, requested| {
         let start = std::time::Instant::now();
-        let run = Run::new(&problem, cell, Some(1e-3), asked, "", &Monitor::silent()).unwrap();
+        let run = Run::new(&problem, cell, Some(1e-3), requested, "", &Monitor::silent()).unwrap();
         println!("cell {cell}: {:?}, {} tiles", start.elapsed(), run.workpiece.tile_count());
     };
-    run(1e-3, Asked::Forces);
-    run(0.5e-3, Asked::Forces);
-    run(0.5e-3, Asked::Turns);
+    run(1e-3, Requested::Forces);
+    run(0.5e-3, Requested::Forces);
+    run(0.5e-3, Requested::Turns);
     println!("{} points: {:?}", path.len(), start.elapsed());
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     println!("{:?}", status.lines().find(|line| line.starts_with("VmHWM")));

@@ -15,7 +15,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 use stead_disk::input::InputFile;
-use stead_placement::lookup::Axis;
 use stead_placement::outcome::{
     ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome,
 };
@@ -164,7 +163,7 @@ pub enum TableFigures {
 
 records! {
     /// The nodes of an axis of a lookup table.
-    pub struct TableAxis from axis: &Axis {
+    pub struct TableAxis from axis: &stead_placement::lookup::TableAxis {
         /// The first node.
         first_mm: PlaceMm = axis.first.into(),
         /// From one to the next.

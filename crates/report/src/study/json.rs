@@ -10,7 +10,7 @@ use stead_disk::input::InputFile;
 use stead_study::analysis::{
     self, Analysis, AxisEffect, Effects, Failures, Front, Layout, Layouts, Measure, Ranked, Ranking, TaskRanking,
 };
-use stead_study::cases::Cell;
+use stead_study::cases::TableCell;
 
 records! {
     /// A study that was analysed. Numbers of results have the nine digits that are more than rounding.
@@ -66,13 +66,13 @@ enum CellValue {
     None(()),
 }
 
-impl From<&Cell> for CellValue {
-    fn from(cell: &Cell) -> Self {
+impl From<&TableCell> for CellValue {
+    fn from(cell: &TableCell) -> Self {
         match cell {
-            Cell::Number(number) => Self::Number(*number),
-            Cell::Count(count) => Self::Count(*count),
-            Cell::Text(text) => Self::Text(text.clone()),
-            Cell::None => Self::None(()),
+            TableCell::Number(number) => Self::Number(*number),
+            TableCell::Count(count) => Self::Count(*count),
+            TableCell::Text(text) => Self::Text(text.clone()),
+            TableCell::None => Self::None(()),
         }
     }
 }

@@ -1,15 +1,15 @@
 //! A small study for the tests of its report.
 
 use stead_study::analysis::{Analysis, Question};
-use stead_study::cases::{Cell, Column, Kind, Table};
+use stead_study::cases::{Column, ColumnKind, Table, TableCell};
 
 /// Two robots at two heights, case 4 without a placement: objectives 1, 2, 4 mm, cycles 9, 5, 6 s.
 pub(crate) fn table() -> Table {
     let texts = ["id", "task", "robot", "status", "reason"];
     let kind = |name: &str| match name {
-        "case" => Kind::Count,
-        name if texts.contains(&name) => Kind::Text,
-        _ => Kind::Number,
+        "case" => ColumnKind::Count,
+        name if texts.contains(&name) => ColumnKind::Text,
+        _ => ColumnKind::Number,
     };
     let names = [
         "case",
@@ -24,21 +24,33 @@ pub(crate) fn table() -> Table {
         "best_mean_total_mm",
         "cycle_s",
     ];
-    let words = |text: &str| Cell::Text(text.to_owned());
+    let words = |text: &str| TableCell::Text(text.to_owned());
     let row = |case, robot, height, figures: Option<[f64; 2]>| {
-        let mut row =
-            vec![Cell::Count(case), words("id"), words("t.csv"), Cell::Number(1.0), words(robot), Cell::Number(height)];
+        let mut row = vec![
+            TableCell::Count(case),
+            words("id"),
+            words("t.csv"),
+            TableCell::Number(1.0),
+            words(robot),
+            TableCell::Number(height),
+        ];
         match figures {
             Some([objective, cycle]) => {
                 row.extend([
                     words("placed"),
-                    Cell::None,
-                    Cell::Number(objective),
-                    Cell::Number(objective),
-                    Cell::Number(cycle),
+                    TableCell::None,
+                    TableCell::Number(objective),
+                    TableCell::Number(objective),
+                    TableCell::Number(cycle),
                 ]);
             }
-            None => row.extend([words("infeasible"), words("joint 2 at 7.0 deg"), Cell::None, Cell::None, Cell::None]),
+            None => row.extend([
+                words("infeasible"),
+                words("joint 2 at 7.0 deg"),
+                TableCell::None,
+                TableCell::None,
+                TableCell::None,
+            ]),
         }
         row
     };

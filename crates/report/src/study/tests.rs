@@ -1,7 +1,7 @@
 use super::testing::{analysis, table};
 use super::*;
 use stead_study::analysis::{AnalysisError, Question};
-use stead_study::cases::{Cell, Table};
+use stead_study::cases::{Table, TableCell};
 
 fn lines(csv: Vec<u8>) -> Vec<String> {
     String::from_utf8(csv).unwrap().lines().map(str::to_owned).collect()
@@ -64,9 +64,10 @@ fn an_axis_that_the_best_layout_is_an_exception_of_is_named() {
     let mut table = table();
     let [case, height, objective] = ["case", "height", "objective_mm"].map(|name| table.column(name).unwrap());
     let mut last = table.rows[2].clone();
-    (last[case], last[height], last[objective]) = (Cell::Count(4), Cell::Number(200.0), Cell::Number(4.0));
+    (last[case], last[height], last[objective]) =
+        (TableCell::Count(4), TableCell::Number(200.0), TableCell::Number(4.0));
     table.rows[3] = last;
-    table.rows[2][objective] = Cell::Number(9.0);
+    table.rows[2][objective] = TableCell::Number(9.0);
     let text = study_text("cells", &Analysis::of(&table, &Question::default()).unwrap());
     assert!(text.contains("\nheight: 200 is best on average, but the best layout has 100\n"), "{text}");
     assert!(!text.contains("\nrobot: "), "{text}");
@@ -118,8 +119,8 @@ fn a_study_without_any_placement_says_why() {
     for row in &mut table.rows {
         *row = [
             &row[..6],
-            &[Cell::Text("infeasible".to_owned()), Cell::Text("out of reach".to_owned())],
-            &[const { Cell::None }; 3],
+            &[TableCell::Text("infeasible".to_owned()), TableCell::Text("out of reach".to_owned())],
+            &[const { TableCell::None }; 3],
         ]
         .concat();
     }
@@ -145,7 +146,8 @@ fn tasks_with_placements_of_their_own_are_joined() {
     for (row, (name, heavy)) in
         table.rows.iter_mut().zip([("s.csv", 1.0), ("t.csv", 3.0), ("s.csv", 1.0), ("t.csv", 3.0)])
     {
-        (row[task], row[weight], row[height]) = (Cell::Text(name.to_owned()), Cell::Number(heavy), Cell::Number(1.0));
+        (row[task], row[weight], row[height]) =
+            (TableCell::Text(name.to_owned()), TableCell::Number(heavy), TableCell::Number(1.0));
     }
     let analysis = Analysis::of(&table, &Question::default()).unwrap();
     assert_eq!((analysis.layouts.all.len(), analysis.tasks.len()), (2, 2));

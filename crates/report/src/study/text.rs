@@ -5,7 +5,7 @@ use crate::columns::{aligned, line};
 use crate::units::{figures, fixed};
 use stead_planning::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Failures, Front, Layouts, Measure, Method, Ranking};
-use stead_study::cases::Cell;
+use stead_study::cases::TableCell;
 
 /// Most rows of a table; the files have all.
 const ROWS: usize = 10;
@@ -85,8 +85,8 @@ fn beside(layouts: &Layouts, index: usize) -> String {
     let value = |name: &str| {
         let column = layouts.columns.iter().position(|column| column.name == name)?;
         match layouts.all[index].row.get(column)? {
-            Cell::None => None,
-            Cell::Number(number) => Some(figures(*number)),
+            TableCell::None => None,
+            TableCell::Number(number) => Some(figures(*number)),
             cell => Some(cell.written()),
         }
     };

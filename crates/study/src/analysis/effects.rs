@@ -7,7 +7,7 @@
 use super::layouts::{Layouts, text};
 use super::least_squares::LinearModel;
 use super::measure::Measure;
-use crate::cases::Cell;
+use crate::cases::TableCell;
 use stead_planning::sense::Sense;
 
 /// How an effect was computed.
@@ -146,22 +146,22 @@ impl Effects {
 
 impl Factor {
     fn of(layouts: &Layouts, axis: usize, rows: &[usize]) -> Self {
-        let cells: Vec<&Cell> = rows.iter().map(|row| &layouts.all[*row].row[axis]).collect();
+        let cells: Vec<&TableCell> = rows.iter().map(|row| &layouts.all[*row].row[axis]).collect();
         let numbers: Option<Vec<f64>> =
-            cells.iter().map(|cell| if let Cell::Number(number) = cell { Some(*number) } else { None }).collect();
-        let mut distinct: Vec<&Cell> = Vec::new();
+            cells.iter().map(|cell| if let TableCell::Number(number) = cell { Some(*number) } else { None }).collect();
+        let mut distinct: Vec<&TableCell> = Vec::new();
         for cell in &cells {
             if !distinct.contains(cell) {
                 distinct.push(cell);
             }
         }
         if numbers.is_some() {
-            let number = |cell: &Cell| if let Cell::Number(number) = cell { *number } else { 0.0 };
+            let number = |cell: &TableCell| if let TableCell::Number(number) = cell { *number } else { 0.0 };
             distinct.sort_by(|a, b| number(a).total_cmp(&number(b)));
         }
         let count = distinct.len();
         let is_line = numbers.is_some() && (count > MAX_NUMBERS || 3 * count > 2 * cells.len()) && count > 2;
-        let level = |cell: &&Cell| distinct.iter().position(|other| other == cell).unwrap_or(0);
+        let level = |cell: &&TableCell| distinct.iter().position(|other| other == cell).unwrap_or(0);
         let levels = cells.iter().map(level).collect();
         Self { axis, labels: distinct.iter().map(|cell| text(cell)).collect(), numbers, levels, is_line }
     }

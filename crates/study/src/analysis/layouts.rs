@@ -5,7 +5,7 @@
 
 use super::AnalysisError;
 use super::measure::{Measure, nearest};
-use crate::cases::{CaseStatus, Cell, Column, Kind, Table};
+use crate::cases::{CaseStatus, Column, ColumnKind, Table, TableCell};
 use std::collections::HashMap;
 
 /// One layout.
@@ -14,7 +14,7 @@ pub struct Layout {
     /// The numbers of its cases.
     pub cases: Vec<i64>,
     /// Its values, under the columns of the study.
-    pub row: Vec<Cell>,
+    pub row: Vec<TableCell>,
 }
 
 /// All layouts of a study.
@@ -78,7 +78,7 @@ impl Layouts {
         cases
     }
 
-    fn single(table: &Table, is_meant: impl Fn(&[Cell]) -> bool) -> Self {
+    fn single(table: &Table, is_meant: impl Fn(&[TableCell]) -> bool) -> Self {
         let fixed = Fixed::of(&table.columns);
         let rows = table.rows.iter().filter(|row| is_meant(row));
         let all = rows.map(|row| Layout { cases: vec![case(&row[fixed.case])], row: row.clone() }).collect();
@@ -117,7 +117,7 @@ impl Layouts {
     pub fn valued(&self, measure: &Measure) -> impl Iterator<Item = (usize, f64)> {
         let fixed = Fixed::of(&self.columns);
         let is_placed =
-            move |row: &[Cell]| row.get(fixed.status).is_some_and(|cell| text(cell) == CaseStatus::Placed.word());
+            move |row: &[TableCell]| row.get(fixed.status).is_some_and(|cell| text(cell) == CaseStatus::Placed.word());
         let value = move |layout: &Layout| if is_placed(&layout.row) { measure.value(&layout.row) } else { None };
         self.all.iter().enumerate().filter_map(move |(index, layout)| Some((index, value(layout)?)))
     }
@@ -156,12 +156,12 @@ impl Layouts {
 }
 
 /// A value as it stands in `study.csv`.
-pub(super) fn text(cell: &Cell) -> String {
+pub(super) fn text(cell: &TableCell) -> String {
     cell.written()
 }
 
-fn case(cell: &Cell) -> i64 {
-    if let Cell::Count(number) = cell { *number } else { 0 }
+fn case(cell: &TableCell) -> i64 {
+    if let TableCell::Count(number) = cell { *number } else { 0 }
 }
 
 /// The tasks, in the order in which they come.
@@ -176,9 +176,9 @@ fn tasks(table: &Table, fixed: &Fixed) -> Vec<String> {
 }
 
 /// The rows with the same value on every axis, in the order in which they come.
-fn groups<'t>(table: &'t Table, axes: &[usize]) -> Vec<Vec<&'t Vec<Cell>>> {
+fn groups<'t>(table: &'t Table, axes: &[usize]) -> Vec<Vec<&'t Vec<TableCell>>> {
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
-    let mut groups: Vec<Vec<&Vec<Cell>>> = Vec::new();
+    let mut groups: Vec<Vec<&Vec<TableCell>>> = Vec::new();
     for row in &table.rows {
         let key = axes.iter().map(|axis| text(&row[*axis])).collect();
         let place = *places.entry(key).or_insert(groups.len());
@@ -191,46 +191,46 @@ fn groups<'t>(table: &'t Table, axes: &[usize]) -> Vec<Vec<&'t Vec<Cell>>> {
 }
 
 /// One layout out of its cases, one for each task.
-fn joined(table: &Table, fixed: &Fixed, rows: &[&Vec<Cell>], tasks: usize) -> Layout {
+fn joined(table: &Table, fixed: &Fixed, rows: &[&Vec<TableCell>], tasks: usize) -> Layout {
     let cases = rows.iter().map(|row| case(&row[fixed.case])).collect();
     let mut row = rows[0].clone();
-    row[fixed.task] = Cell::None;
-    row[fixed.weight] = Cell::None;
+    row[fixed.task] = TableCell::None;
+    row[fixed.weight] = TableCell::None;
     let failed = rows.iter().find(|row| text(&row[fixed.status]) != CaseStatus::Placed.word());
     let (status, reason) = match failed {
         Some(failed) => {
             let reason = format!("{}: {}", text(&failed[fixed.task]), text(&failed[fixed.reason]));
-            (failed[fixed.status].clone(), Cell::Text(reason))
+            (failed[fixed.status].clone(), TableCell::Text(reason))
         }
         None if rows.len() < tasks => {
             let reason = format!("the study places {} of its {tasks} tasks", rows.len());
-            (Cell::Text(CaseStatus::Failed.word().to_owned()), Cell::Text(reason))
+            (TableCell::Text(CaseStatus::Failed.word().to_owned()), TableCell::Text(reason))
         }
-        None => (row[fixed.status].clone(), Cell::None),
+        None => (row[fixed.status].clone(), TableCell::None),
     };
     let is_whole = failed.is_none() && rows.len() == tasks;
     (row[fixed.status], row[fixed.reason]) = (status, reason);
     for column in fixed.reason + 1..table.columns.len() {
-        row[column] = if is_whole { joined_cell(table, fixed, rows, column) } else { Cell::None };
+        row[column] = if is_whole { joined_cell(table, fixed, rows, column) } else { TableCell::None };
     }
     Layout { cases, row }
 }
 
 /// The figure of a layout: the smallest of margins and feeds, means of the others by the weights of the tasks; none of
 /// texts and placements, which belong to one task.
-fn joined_cell(table: &Table, fixed: &Fixed, rows: &[&Vec<Cell>], column: usize) -> Cell {
+fn joined_cell(table: &Table, fixed: &Fixed, rows: &[&Vec<TableCell>], column: usize) -> TableCell {
     const OF_ONE_TASK: [&str; 5] = ["x_mm", "y_mm", "z_mm", "q4", "yaw_deg"];
     let Column { name, kind } = &table.columns[column];
-    if *kind != Kind::Number || OF_ONE_TASK.contains(&name.as_str()) {
-        return Cell::None;
+    if *kind != ColumnKind::Number || OF_ONE_TASK.contains(&name.as_str()) {
+        return TableCell::None;
     }
-    let number = |cell: &Cell| if let Cell::Number(number) = cell { Some(*number) } else { None };
+    let number = |cell: &TableCell| if let TableCell::Number(number) = cell { Some(*number) } else { None };
     let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[column])).collect();
-    let Some(values) = values else { return Cell::None };
+    let Some(values) = values else { return TableCell::None };
     if name.starts_with("min_") || name.starts_with("max_feed") {
-        return Cell::number(values.into_iter().reduce(f64::min));
+        return TableCell::number(values.into_iter().reduce(f64::min));
     }
     let weights = rows.iter().map(|row| number(&row[fixed.weight]).unwrap_or(1.0));
     let (sum, all) = values.iter().zip(weights).fold((0.0, 0.0), |(sum, all), (v, w)| (sum + v * w, all + w));
-    Cell::number(Some(sum / all))
+    TableCell::number(Some(sum / all))
 }

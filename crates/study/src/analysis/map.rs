@@ -2,7 +2,7 @@
 
 use super::layouts::{Layouts, text};
 use super::measure::Measure;
-use crate::cases::Cell;
+use crate::cases::TableCell;
 
 /// A column over two axes: means over all others.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,9 +50,9 @@ pub fn map(layouts: &Layouts, measure: &Measure, axes: [usize; 2]) -> Option<Map
 
 impl Side {
     fn of(layouts: &Layouts, axis: usize) -> Self {
-        let cells: Vec<&Cell> = layouts.all.iter().map(|layout| &layout.row[axis]).collect();
+        let cells: Vec<&TableCell> = layouts.all.iter().map(|layout| &layout.row[axis]).collect();
         let numbers: Option<Vec<f64>> =
-            cells.iter().map(|cell| if let Cell::Number(number) = cell { Some(*number) } else { None }).collect();
+            cells.iter().map(|cell| if let TableCell::Number(number) = cell { Some(*number) } else { None }).collect();
         let mut labels: Vec<String> = Vec::new();
         for label in cells.iter().map(|cell| text(cell)) {
             if !labels.contains(&label) {
@@ -68,8 +68,8 @@ impl Side {
         Self::by_label(labels, &cells)
     }
 
-    fn by_label(labels: Vec<String>, cells: &[&Cell]) -> Self {
-        let place = |cell: &&Cell| labels.iter().position(|label| *label == text(cell)).unwrap_or(0);
+    fn by_label(labels: Vec<String>, cells: &[&TableCell]) -> Self {
+        let place = |cell: &&TableCell| labels.iter().position(|label| *label == text(cell)).unwrap_or(0);
         let places = cells.iter().map(place).collect();
         Self { labels, places }
     }

@@ -1,7 +1,7 @@
 //! A column that layouts are compared by.
 
 use super::AnalysisError;
-use crate::cases::{Cell, Column, Kind};
+use crate::cases::{Column, ColumnKind, TableCell};
 use stead_planning::sense::Sense;
 
 /// Figures of searches are not distinguished below this, in the unit of their column: means of 1e-6 mm are the same
@@ -39,7 +39,7 @@ impl Measure {
             allowed: "a column of study.csv with numbers, and :min or :max behind it".to_owned(),
         })?;
         let name = columns[column].name.clone();
-        if columns[column].kind == Kind::Text {
+        if columns[column].kind == ColumnKind::Text {
             return Err(AnalysisError::NoNumbers(name));
         }
         let sense = sense.unwrap_or(usual_sense(&name));
@@ -48,11 +48,11 @@ impl Measure {
     }
 
     /// The value of a row.
-    pub fn value(&self, row: &[Cell]) -> Option<f64> {
+    pub fn value(&self, row: &[TableCell]) -> Option<f64> {
         match row.get(self.column)? {
-            Cell::Number(number) => Some(*number),
-            Cell::Count(count) => Some(*count as f64),
-            Cell::None | Cell::Text(_) => None,
+            TableCell::Number(number) => Some(*number),
+            TableCell::Count(count) => Some(*count as f64),
+            TableCell::None | TableCell::Text(_) => None,
         }
     }
 

@@ -2,35 +2,37 @@
 
 use super::layouts::Layouts;
 use super::measure::Measure;
-use crate::cases::{Cell, Column, Kind, Table};
+use crate::cases::{Column, ColumnKind, Table, TableCell};
 use stead_planning::sense::Sense;
 
 /// A table with axes and columns of figures: for each case the texts of its axes (numbers where all are), and its
 /// figures. A case without figures is infeasible.
 pub(super) fn table(axes: &[&str], names: &[&str], cases: &[(Vec<&str>, Option<Vec<f64>>)]) -> Table {
     let mut columns = vec![
-        Column::new("case", Kind::Count),
-        Column::new("id", Kind::Text),
-        Column::new("task", Kind::Text),
-        Column::new("task_weight", Kind::Number),
+        Column::new("case", ColumnKind::Count),
+        Column::new("id", ColumnKind::Text),
+        Column::new("task", ColumnKind::Text),
+        Column::new("task_weight", ColumnKind::Number),
     ];
     let is_number = |axis: usize| cases.iter().all(|(values, _)| values[axis].parse::<f64>().is_ok());
-    let kind = |axis: usize| if is_number(axis) { Kind::Number } else { Kind::Text };
+    let kind = |axis: usize| if is_number(axis) { ColumnKind::Number } else { ColumnKind::Text };
     columns.extend(axes.iter().enumerate().map(|(axis, name)| Column::new(*name, kind(axis))));
-    columns.extend([Column::new("status", Kind::Text), Column::new("reason", Kind::Text)]);
-    columns.extend(names.iter().map(|name| Column::new(*name, Kind::Number)));
-    let words = |text: &str| Cell::Text(text.to_owned());
+    columns.extend([Column::new("status", ColumnKind::Text), Column::new("reason", ColumnKind::Text)]);
+    columns.extend(names.iter().map(|name| Column::new(*name, ColumnKind::Number)));
+    let words = |text: &str| TableCell::Text(text.to_owned());
     let rows = (1..).zip(cases).map(|(number, (values, figures))| {
-        let mut row = vec![Cell::Count(number), words("id"), words("t.csv"), Cell::Number(1.0)];
+        let mut row = vec![TableCell::Count(number), words("id"), words("t.csv"), TableCell::Number(1.0)];
         row.extend(values.iter().enumerate().map(|(axis, text)| match kind(axis) {
-            Kind::Number => Cell::Number(text.parse().unwrap()),
+            ColumnKind::Number => TableCell::Number(text.parse().unwrap()),
             _ => words(text),
         }));
         row.extend(match figures {
-            Some(_) => [words("placed"), Cell::None],
+            Some(_) => [words("placed"), TableCell::None],
             None => [words("infeasible"), words("out of reach")],
         });
-        row.extend((0..names.len()).map(|k| figures.as_ref().map_or(Cell::None, |figures| Cell::Number(figures[k]))));
+        row.extend(
+            (0..names.len()).map(|k| figures.as_ref().map_or(TableCell::None, |figures| TableCell::Number(figures[k]))),
+        );
         row
     });
     Table { columns, rows: rows.collect() }

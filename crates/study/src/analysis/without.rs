@@ -117,7 +117,7 @@ fn without_numbers(reason: &str) -> String {
 mod tests {
     use super::super::testing::table;
     use super::*;
-    use crate::cases::Cell;
+    use crate::cases::TableCell;
 
     #[test]
     fn reasons_are_counted_and_values_without_any_placement_are_named() {
@@ -133,7 +133,7 @@ mod tests {
         let mut table = table(&["robot", "height"], &["figure_mm"], &cases);
         let reason = table.column("reason").unwrap();
         for (row, words) in [(1, "joint 2 at -12.5 deg"), (3, "joint 2 at 7 deg"), (5, "out of reach")] {
-            table.rows[row][reason] = Cell::Text(words.to_owned());
+            table.rows[row][reason] = TableCell::Text(words.to_owned());
         }
         let found = failures(&table);
         assert_eq!((found.cases, found.infeasible, found.failed), (6, 3, 0));

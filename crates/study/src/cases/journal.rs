@@ -2,7 +2,7 @@
 //! told.
 
 use super::StudyError;
-use super::table::{Cell, Column};
+use super::table::{Column, TableCell};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{Seek, Write};
@@ -16,7 +16,7 @@ pub(super) struct Entry {
     /// The digest of the case.
     pub id: String,
     /// Its row of results.
-    pub row: Vec<Cell>,
+    pub row: Vec<TableCell>,
     /// Where and how long it was computed, which is no result.
     pub timing: Timing,
 }
@@ -47,7 +47,7 @@ impl Entry {
     fn line(&self) -> Result<String, StudyError> {
         let line = Line {
             id: self.id.clone(),
-            row: self.row.iter().map(Cell::written).collect(),
+            row: self.row.iter().map(TableCell::written).collect(),
             timing: self.timing.clone(),
         };
         let entry = serde_json::to_string(&line).map_err(|cause| StudyError::format("the journal", &cause))?;
@@ -66,7 +66,8 @@ impl Entry {
         if row.len() != columns.len() {
             return None;
         }
-        let row = row.iter().zip(columns).map(|(text, column)| Cell::read(text, column.kind)).collect::<Option<_>>()?;
+        let row =
+            row.iter().zip(columns).map(|(text, column)| TableCell::read(text, column.kind)).collect::<Option<_>>()?;
         Some(Self { id, row, timing })
     }
 }

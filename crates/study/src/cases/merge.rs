@@ -5,7 +5,7 @@ use super::keeping::Keeping;
 use super::plan::Plan;
 use super::row::result_columns;
 use super::store::{Rows, Store};
-use super::table::{Cell, Column, Kind, Table};
+use super::table::{Column, ColumnKind, Table, TableCell};
 use std::path::Path;
 
 /// The table of results, one row for each case in the order of their numbers; nothing as long as cases are missing.
@@ -48,8 +48,8 @@ fn table(plan: &Plan, rows: &Rows) -> Option<Table> {
 pub(super) fn best(plan: &Plan, folder: &Path, count: usize) -> Result<Vec<usize>, StudyError> {
     let Some(table) = merged(plan, folder)? else { return Ok(Vec::new()) };
     let Some(objective) = table.column("objective_mm") else { return Ok(Vec::new()) };
-    let figure = |(row, case): (&Vec<Cell>, usize)| match row[objective] {
-        Cell::Number(objective) => Some((objective, case)),
+    let figure = |(row, case): (&Vec<TableCell>, usize)| match row[objective] {
+        TableCell::Number(objective) => Some((objective, case)),
         _ => None,
     };
     let mut placed: Vec<(f64, usize)> = table.rows.iter().zip(1..).filter_map(figure).collect();
@@ -60,14 +60,19 @@ pub(super) fn best(plan: &Plan, folder: &Path, count: usize) -> Result<Vec<usize
 /// How long each case took, where, on how many threads.
 fn timing(plan: &Plan, store: &Store) -> Result<Table, StudyError> {
     let timings = store.timings()?;
-    let kinds = [("case", Kind::Count), ("seconds", Kind::Number), ("threads", Kind::Count), ("host", Kind::Text)];
+    let kinds = [
+        ("case", ColumnKind::Count),
+        ("seconds", ColumnKind::Number),
+        ("threads", ColumnKind::Count),
+        ("host", ColumnKind::Text),
+    ];
     let rows = plan.cases.iter().map(|case| {
         let timing = timings.get(&case.id).cloned().unwrap_or_default();
         vec![
-            Cell::Count(case.case.number as i64),
-            Cell::Number(timing.seconds),
-            Cell::Count(timing.threads as i64),
-            Cell::Text(timing.host),
+            TableCell::Count(case.case.number as i64),
+            TableCell::Number(timing.seconds),
+            TableCell::Count(timing.threads as i64),
+            TableCell::Text(timing.host),
         ]
     });
     let rows = rows.collect();

@@ -29,7 +29,7 @@ pub use row::{CaseStatus, result_columns};
 pub use shard::{Finished, RunSettings, run};
 pub use slurm::slurm_script;
 pub use store::Shard;
-pub use table::{Cell, Column, Kind, Table};
+pub use table::{Column, ColumnKind, Table, TableCell};
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};

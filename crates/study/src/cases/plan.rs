@@ -2,7 +2,7 @@
 
 use super::StudyError;
 use super::row::result_columns;
-use super::table::{Cell, Column, Kind};
+use super::table::{Column, ColumnKind, TableCell};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -83,29 +83,29 @@ impl Plan {
         let mut columns = fixed_columns();
         for (index, name) in self.study.axes.iter().enumerate().filter(|(_, name)| *name != TASK) {
             let is_number = |case: &PlannedCase| matches!(case.case.values[index], AxisValue::Number(_));
-            let kind = if self.cases.iter().all(is_number) { Kind::Number } else { Kind::Text };
+            let kind = if self.cases.iter().all(is_number) { ColumnKind::Number } else { ColumnKind::Text };
             columns.push(Column::new(name, kind));
         }
         columns
     }
 
     /// The values under [`Plan::columns`].
-    pub(super) fn cells(&self, planned: &PlannedCase, columns: &[Column]) -> Vec<Cell> {
+    pub(super) fn cells(&self, planned: &PlannedCase, columns: &[Column]) -> Vec<TableCell> {
         let PlannedCase { case, id, task } = planned;
         let mut cells = vec![
-            Cell::Count(case.number as i64),
-            Cell::Text(id.clone()),
-            Cell::Text(task.clone()),
-            Cell::Number(case.weight),
+            TableCell::Count(case.number as i64),
+            TableCell::Text(id.clone()),
+            TableCell::Text(task.clone()),
+            TableCell::Number(case.weight),
         ];
         let values = self.study.axes.iter().zip(&case.values).filter(|(name, _)| *name != TASK);
         let kinds = columns[cells.len()..].iter().map(|column| column.kind);
-        let values: Vec<Cell> = values
+        let values: Vec<TableCell> = values
             .zip(kinds)
             .map(|((_, value), kind)| match (value, kind) {
-                (AxisValue::Number(number), Kind::Number) => Cell::Number(*number),
-                (AxisValue::Number(number), _) => Cell::Text(number.to_string()),
-                (AxisValue::Text(text), _) => Cell::Text(text.clone()),
+                (AxisValue::Number(number), ColumnKind::Number) => TableCell::Number(*number),
+                (AxisValue::Number(number), _) => TableCell::Text(number.to_string()),
+                (AxisValue::Text(text), _) => TableCell::Text(text.clone()),
             })
             .collect();
         cells.extend(values);
@@ -132,9 +132,9 @@ const TASK: &str = "task";
 /// The columns that every table of results begins with.
 fn fixed_columns() -> Vec<Column> {
     vec![
-        Column::new("case", Kind::Count),
-        Column::new("id", Kind::Text),
-        Column::new(TASK, Kind::Text),
-        Column::new("task_weight", Kind::Number),
+        Column::new("case", ColumnKind::Count),
+        Column::new("id", ColumnKind::Text),
+        Column::new(TASK, ColumnKind::Text),
+        Column::new("task_weight", ColumnKind::Number),
     ]
 }

@@ -5,7 +5,7 @@ use super::lock::Lock;
 use super::plan::Plan;
 use super::row::CaseStatus;
 use super::store::{Rows, Shard, Store};
-use super::table::Cell;
+use super::table::TableCell;
 use std::path::Path;
 
 /// How far a shard is.
@@ -69,7 +69,7 @@ pub fn status(plan: &Plan, folder: &Path) -> Result<StudyStatus, StudyError> {
 }
 
 fn has(rows: &Rows, id: &str, status: CaseStatus) -> bool {
-    rows.get(id).is_some_and(|row| matches!(&row[0], Cell::Text(word) if word == status.word()))
+    rows.get(id).is_some_and(|row| matches!(&row[0], TableCell::Text(word) if word == status.word()))
 }
 
 fn status_of(plan: &Plan, store: &Store, rows: &Rows, shard: Shard) -> ShardStatus {

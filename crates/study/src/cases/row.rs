@@ -1,6 +1,6 @@
 //! What is known of a case once it is done: one row of the table of results.
 
-use super::table::{Cell, Column, Kind};
+use super::table::{Column, ColumnKind, TableCell};
 use crate::run::{Placed, RunError};
 use std::collections::BTreeSet;
 use stead_certify::{Certificate, Proof, Status};
@@ -36,38 +36,38 @@ impl CaseStatus {
 const CASES: [&str; 4] = ["best", "best_worst_plan", "worst", "worst_worst_plan"];
 
 /// Columns of what is found, behind the figures of the four cases.
-const FIGURES: [(&str, Kind); 23] = [
-    ("objective_mm", Kind::Number),
-    ("cycle_s", Kind::Number),
-    ("min_inverse_condition", Kind::Number),
-    ("min_joint_margin_deg", Kind::Number),
-    ("min_base_distance_mm", Kind::Number),
-    ("min_clearance_mm", Kind::Number),
-    ("nearest_pair", Kind::Text),
-    ("max_feed_mm_per_s", Kind::Number),
-    ("x_mm", Kind::Number),
-    ("y_mm", Kind::Number),
-    ("z_mm", Kind::Number),
-    ("yaw_deg", Kind::Number),
-    ("q4", Kind::Number),
-    ("postures", Kind::Count),
-    ("active_bounds", Kind::Text),
-    ("payload_kg", Kind::Number),
-    ("price_eur", Kind::Number),
-    ("certificate_best_mm", Kind::Number),
-    ("certificate_best_gap_percent", Kind::Number),
-    ("certificate_best_status", Kind::Text),
-    ("certificate_worst_mm", Kind::Number),
-    ("certificate_worst_gap_percent", Kind::Number),
-    ("certificate_worst_status", Kind::Text),
+const FIGURES: [(&str, ColumnKind); 23] = [
+    ("objective_mm", ColumnKind::Number),
+    ("cycle_s", ColumnKind::Number),
+    ("min_inverse_condition", ColumnKind::Number),
+    ("min_joint_margin_deg", ColumnKind::Number),
+    ("min_base_distance_mm", ColumnKind::Number),
+    ("min_clearance_mm", ColumnKind::Number),
+    ("nearest_pair", ColumnKind::Text),
+    ("max_feed_mm_per_s", ColumnKind::Number),
+    ("x_mm", ColumnKind::Number),
+    ("y_mm", ColumnKind::Number),
+    ("z_mm", ColumnKind::Number),
+    ("yaw_deg", ColumnKind::Number),
+    ("q4", ColumnKind::Number),
+    ("postures", ColumnKind::Count),
+    ("active_bounds", ColumnKind::Text),
+    ("payload_kg", ColumnKind::Number),
+    ("price_eur", ColumnKind::Number),
+    ("certificate_best_mm", ColumnKind::Number),
+    ("certificate_best_gap_percent", ColumnKind::Number),
+    ("certificate_best_status", ColumnKind::Text),
+    ("certificate_worst_mm", ColumnKind::Number),
+    ("certificate_worst_gap_percent", ColumnKind::Number),
+    ("certificate_worst_status", ColumnKind::Text),
 ];
 
 /// The columns of what is found: status, reason, figures.
 pub fn result_columns() -> Vec<Column> {
-    let mut columns = vec![Column::new("status", Kind::Text), Column::new("reason", Kind::Text)];
+    let mut columns = vec![Column::new("status", ColumnKind::Text), Column::new("reason", ColumnKind::Text)];
     for case in CASES {
         for part in ["wall", "axis", "total"] {
-            columns.extend(["mean", "max"].map(|of| Column::new(format!("{case}_{of}_{part}_mm"), Kind::Number)));
+            columns.extend(["mean", "max"].map(|of| Column::new(format!("{case}_{of}_{part}_mm"), ColumnKind::Number)));
         }
     }
     columns.extend(FIGURES.map(|(name, kind)| Column::new(name, kind)));
@@ -75,21 +75,21 @@ pub fn result_columns() -> Vec<Column> {
 }
 
 /// The row of a case without a placement.
-pub(super) fn row_without(error: &RunError) -> Vec<Cell> {
+pub(super) fn row_without(error: &RunError) -> Vec<TableCell> {
     let status = match error {
         RunError::Infeasible(_) => CaseStatus::Infeasible,
         RunError::Stability(_) => CaseStatus::Failed,
     };
     let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    let mut row = vec![Cell::Text(status.word().to_owned()), Cell::Text(reason)];
-    row.resize(result_columns().len(), Cell::None);
+    let mut row = vec![TableCell::Text(status.word().to_owned()), TableCell::Text(reason)];
+    row.resize(result_columns().len(), TableCell::None);
     row
 }
 
 /// The row of a case with its placement.
-pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Certificate>) -> Vec<Cell> {
+pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Certificate>) -> Vec<TableCell> {
     let cases = &placed.outcome.cases;
-    let mut row = vec![Cell::Text(CaseStatus::Placed.word().to_owned()), Cell::None];
+    let mut row = vec![TableCell::Text(CaseStatus::Placed.word().to_owned()), TableCell::None];
     for case in cases.all() {
         let DeflectionFigures { wall, axis, total, .. } = case.plan.deflection;
         row.extend(
@@ -99,7 +99,7 @@ pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Ce
         );
     }
     // Where the worst placement was not looked for there are no figures of it.
-    row.resize(result_columns().len() - FIGURES.len(), Cell::None);
+    row.resize(result_columns().len() - FIGURES.len(), TableCell::None);
     row.extend(figures(problem, &cases.best));
     row.extend(bound(certificate.map(|certificate| certificate.best.as_ref().map_err(ToString::to_string))));
     row.extend(bound(certificate.map(|certificate| certificate.worst.as_ref().map_err(ToString::to_string))));
@@ -107,7 +107,7 @@ pub(super) fn row_of(problem: &Problem, placed: &Placed, certificate: Option<&Ce
 }
 
 /// What is found of the best placement with its best plan.
-fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
+fn figures(problem: &Problem, best: &Case) -> Vec<TableCell> {
     let Case { placement, plan, cycle, .. } = best;
     let postures: BTreeSet<Posture> = plan.postures.iter().copied().collect();
     let bounds = best.active_bounds.iter().flatten().map(|ActiveBound { side, .. }| name_of(*side));
@@ -127,17 +127,17 @@ fn figures(problem: &Problem, best: &Case) -> Vec<Cell> {
         number(Unit::ANGLE_DEG, smallest(&mut joint_margins(problem, plan))),
         number(Unit::PLACE_MM, base_distance),
         number(Unit::PLACE_MM, plan.clearance.as_ref().map(|clearance| clearance.distance)),
-        plan.clearance.as_ref().map_or(Cell::None, |clearance| Cell::Text(clearance.names.join(" and "))),
+        plan.clearance.as_ref().map_or(TableCell::None, |clearance| TableCell::Text(clearance.names.join(" and "))),
         number(Unit::SPEED_MM_PER_S, cycle.feed.highest().map(|limit| limit.feed)),
         number(Unit::PLACE_MM, Some(placement.x)),
         number(Unit::PLACE_MM, Some(placement.y)),
         number(Unit::PLACE_MM, Some(placement.z)),
         number(Unit::ANGLE_DEG, Some(placement.yaw)),
         number(Unit::PLAIN, Some(placement.q4())),
-        Cell::Count(postures.len() as i64),
-        if bounds.is_empty() { Cell::None } else { Cell::Text(bounds) },
-        Cell::number(problem.robot.data_sheet().payload),
-        Cell::number(problem.robot.data_sheet().price),
+        TableCell::Count(postures.len() as i64),
+        if bounds.is_empty() { TableCell::None } else { TableCell::Text(bounds) },
+        TableCell::number(problem.robot.data_sheet().payload),
+        TableCell::number(problem.robot.data_sheet().price),
     ]
 }
 
@@ -150,14 +150,14 @@ fn joint_margins<'p>(problem: &'p Problem, plan: &'p Plan) -> impl Iterator<Item
 }
 
 /// Bound, gap and status of one side of a certificate.
-fn bound(proof: Option<Result<&Proof, String>>) -> [Cell; 3] {
+fn bound(proof: Option<Result<&Proof, String>>) -> [TableCell; 3] {
     match proof {
-        None => [Cell::None, Cell::None, Cell::None],
-        Some(Err(reason)) => [Cell::None, Cell::None, Cell::Text(reason)],
+        None => [TableCell::None, TableCell::None, TableCell::None],
+        Some(Err(reason)) => [TableCell::None, TableCell::None, TableCell::Text(reason)],
         Some(Ok(proof)) => [
-            Cell::number(Some(proof.bound_mm())),
-            Cell::number(Some(proof.gap_percent()).filter(|_| proof.is_of_use())),
-            Cell::Text(status_of(proof.bound.status).to_owned()),
+            TableCell::number(Some(proof.bound_mm())),
+            TableCell::number(Some(proof.gap_percent()).filter(|_| proof.is_of_use())),
+            TableCell::Text(status_of(proof.bound.status).to_owned()),
         ],
     }
 }
@@ -174,8 +174,8 @@ fn status_of(status: Status) -> &'static str {
 }
 
 /// A number in the unit and with the decimals of the results files.
-fn number(unit: Unit, value: Option<f64>) -> Cell {
-    Cell::number(value.map(|value| unit.number(value)))
+fn number(unit: Unit, value: Option<f64>) -> TableCell {
+    TableCell::number(value.map(|value| unit.number(value)))
 }
 
 /// The name of a bound: `z_max`, `joint_2_min`.

@@ -7,7 +7,7 @@ use super::merge::{best, merge};
 use super::plan::{Plan, PlannedCase};
 use super::row::{CaseStatus, result_columns, row_of, row_without};
 use super::store::{Rows, Shard, Store};
-use super::table::Cell;
+use super::table::TableCell;
 use crate::run::{RunError, place};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -108,8 +108,8 @@ fn unique<'p>(cases: impl Iterator<Item = &'p PlannedCase>) -> Vec<&'p PlannedCa
     cases.filter(|case| seen.insert(case.id.as_str())).collect()
 }
 
-fn is_placed(row: &[Cell]) -> bool {
-    row.first() == Some(&Cell::Text(CaseStatus::Placed.word().to_owned()))
+fn is_placed(row: &[TableCell]) -> bool {
+    row.first() == Some(&TableCell::Text(CaseStatus::Placed.word().to_owned()))
 }
 
 /// How long a shard waits before it looks again whether another one has done the best cases.
@@ -201,7 +201,7 @@ fn do_case(
     case: &PlannedCase,
     keeping: Option<&dyn Keeping>,
     monitor: &Monitor,
-) -> Result<Option<Vec<Cell>>, StudyError> {
+) -> Result<Option<Vec<TableCell>>, StudyError> {
     let mut read = match plan.study.case(&case.case, monitor) {
         Err(ReadError::Stopped(_)) => return Ok(None),
         read => read?.run,

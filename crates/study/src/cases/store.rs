@@ -5,7 +5,7 @@ use super::journal::{self, Entry, Timing};
 use super::lock::Lock;
 use super::plan::Plan;
 use super::row::result_columns;
-use super::table::{Cell, Column, Kind, Table};
+use super::table::{Column, ColumnKind, Table, TableCell};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -190,7 +190,7 @@ impl Store {
         if path.exists() {
             match Table::from_parquet(&path, &shard_columns()) {
                 Ok(table) => rows.extend(table.rows.into_iter().filter_map(|mut row| match row.remove(0) {
-                    Cell::Text(id) => Some((id, row)),
+                    TableCell::Text(id) => Some((id, row)),
                     _ => None,
                 })),
                 Err(problem) => problems.push(format!(
@@ -217,7 +217,7 @@ impl Store {
     pub fn close(&self, shard: Shard, entries: Vec<Entry>) -> Result<(), StudyError> {
         let timing = self.of_shard(shard, "-timing.csv");
         write(&timing, &timing_table(&entries).to_csv()?, &shard.temporary())?;
-        let row = |entry: Entry| std::iter::once(Cell::Text(entry.id)).chain(entry.row).collect();
+        let row = |entry: Entry| std::iter::once(TableCell::Text(entry.id)).chain(entry.row).collect();
         let table = Table { columns: shard_columns(), rows: entries.into_iter().map(row).collect() };
         write(&self.of_shard(shard, ".parquet"), &table.to_parquet()?, &shard.temporary())?;
         let journal = self.of_shard(shard, ".jsonl");
@@ -246,21 +246,26 @@ impl Store {
 }
 
 /// Rows of results by the digests of their cases.
-pub(super) type Rows = HashMap<String, Vec<Cell>>;
+pub(super) type Rows = HashMap<String, Vec<TableCell>>;
 
 /// The columns of the file of a shard.
 fn shard_columns() -> Vec<Column> {
-    std::iter::once(Column::new("id", Kind::Text)).chain(result_columns()).collect()
+    std::iter::once(Column::new("id", ColumnKind::Text)).chain(result_columns()).collect()
 }
 
 fn timing_table(entries: &[Entry]) -> Table {
-    let kinds = [("id", Kind::Text), ("seconds", Kind::Number), ("threads", Kind::Count), ("host", Kind::Text)];
+    let kinds = [
+        ("id", ColumnKind::Text),
+        ("seconds", ColumnKind::Number),
+        ("threads", ColumnKind::Count),
+        ("host", ColumnKind::Text),
+    ];
     let row = |entry: &Entry| {
         vec![
-            Cell::Text(entry.id.clone()),
-            Cell::Number(entry.timing.seconds),
-            Cell::Count(entry.timing.threads as i64),
-            Cell::Text(entry.timing.host.clone()),
+            TableCell::Text(entry.id.clone()),
+            TableCell::Number(entry.timing.seconds),
+            TableCell::Count(entry.timing.threads as i64),
+            TableCell::Text(entry.timing.host.clone()),
         ]
     };
     let columns = kinds.map(|(name, kind)| Column::new(name, kind)).to_vec();

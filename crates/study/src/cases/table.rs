@@ -26,7 +26,7 @@ const MAX_HEAD: usize = 8;
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnKind {
     /// Texts.
     Text,
     /// Numbers.
@@ -41,19 +41,19 @@ pub struct Column {
     /// Its name, with the unit.
     pub name: String,
     /// What it holds.
-    pub kind: Kind,
+    pub kind: ColumnKind,
 }
 
 impl Column {
     /// A column of a name.
-    pub fn new(name: impl Into<String>, kind: Kind) -> Self {
+    pub fn new(name: impl Into<String>, kind: ColumnKind) -> Self {
         Self { name: name.into(), kind }
     }
 }
 
 /// One value of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
+pub enum TableCell {
     /// No value.
     None,
     /// A text.
@@ -64,7 +64,7 @@ pub enum Cell {
     Count(i64),
 }
 
-impl Cell {
+impl TableCell {
     /// A number, where there is one that is finite.
     pub fn number(value: Option<f64>) -> Self {
         value.filter(|value| value.is_finite()).map_or(Self::None, Self::Number)
@@ -82,12 +82,12 @@ impl Cell {
     }
 
     /// The value of a field of a CSV file, in a column of this kind.
-    pub fn read(text: &str, kind: Kind) -> Option<Self> {
+    pub fn read(text: &str, kind: ColumnKind) -> Option<Self> {
         Some(match kind {
             _ if text.is_empty() => Self::None,
-            Kind::Text => Self::Text(text.to_owned()),
-            Kind::Number => Self::Number(text.parse().ok()?),
-            Kind::Count => Self::Count(text.parse().ok()?),
+            ColumnKind::Text => Self::Text(text.to_owned()),
+            ColumnKind::Number => Self::Number(text.parse().ok()?),
+            ColumnKind::Count => Self::Count(text.parse().ok()?),
         })
     }
 }
@@ -98,7 +98,7 @@ pub struct Table {
     /// The columns.
     pub columns: Vec<Column>,
     /// The rows, each with a value for each column.
-    pub rows: Vec<Vec<Cell>>,
+    pub rows: Vec<Vec<TableCell>>,
 }
 
 impl Table {
@@ -111,7 +111,7 @@ impl Table {
         let fail = |cause: csv::Error| StudyError::format("the table", &cause);
         writer.write_record(self.columns.iter().map(|column| &column.name)).map_err(fail)?;
         for row in &self.rows {
-            writer.write_record(row.iter().map(Cell::written)).map_err(fail)?;
+            writer.write_record(row.iter().map(TableCell::written)).map_err(fail)?;
         }
         writer.into_inner().map_err(|cause| StudyError::format("the table", &cause))
     }
@@ -134,21 +134,23 @@ impl Table {
         let mut index = 0;
         while let Some(mut column) = group.next_column().map_err(fail)? {
             let cells = || self.rows.iter().map(|row| &row[index]);
-            let levels: Vec<i16> = cells().map(|cell| i16::from(*cell != Cell::None)).collect();
+            let levels: Vec<i16> = cells().map(|cell| i16::from(*cell != TableCell::None)).collect();
             match column.untyped() {
                 ColumnWriter::ByteArrayColumnWriter(writer) => {
                     let texts: Vec<ByteArray> = cells()
-                        .filter(|cell| **cell != Cell::None)
+                        .filter(|cell| **cell != TableCell::None)
                         .map(|cell| ByteArray::from(cell.written().into_bytes()))
                         .collect();
                     writer.write_batch(&texts, Some(&levels), None).map_err(fail)?;
                 }
                 ColumnWriter::DoubleColumnWriter(writer) => {
-                    let numbers = cells().filter_map(|cell| if let Cell::Number(n) = cell { Some(*n) } else { None });
+                    let numbers =
+                        cells().filter_map(|cell| if let TableCell::Number(n) = cell { Some(*n) } else { None });
                     writer.write_batch(&numbers.collect::<Vec<_>>(), Some(&levels), None).map_err(fail)?;
                 }
                 ColumnWriter::Int64ColumnWriter(writer) => {
-                    let counts = cells().filter_map(|cell| if let Cell::Count(n) = cell { Some(*n) } else { None });
+                    let counts =
+                        cells().filter_map(|cell| if let TableCell::Count(n) = cell { Some(*n) } else { None });
                     writer.write_batch(&counts.collect::<Vec<_>>(), Some(&levels), None).map_err(fail)?;
                 }
                 _ => return Err(StudyError::format("the Parquet file", &"a column of an unknown kind")),
@@ -168,9 +170,9 @@ impl Table {
     fn schema(&self) -> Result<Type, ParquetError> {
         let column = |column: &Column| {
             let (physical, logical) = match column.kind {
-                Kind::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
-                Kind::Number => (PhysicalType::DOUBLE, None),
-                Kind::Count => (PhysicalType::INT64, None),
+                ColumnKind::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
+                ColumnKind::Number => (PhysicalType::DOUBLE, None),
+                ColumnKind::Count => (PhysicalType::INT64, None),
             };
             let builder = Type::primitive_type_builder(&column.name, physical);
             builder.with_repetition(Repetition::OPTIONAL).with_logical_type(logical).build().map(Arc::new)
@@ -230,12 +232,12 @@ fn is_as_written(mut bytes: Vec<u8>) -> bool {
     sha256(&bytes).as_bytes() == stated
 }
 
-fn cell(field: &Field) -> Result<Cell, String> {
+fn cell(field: &Field) -> Result<TableCell, String> {
     match field {
-        Field::Null => Ok(Cell::None),
-        Field::Str(text) => Ok(Cell::Text(text.clone())),
-        Field::Double(number) => Ok(Cell::Number(*number)),
-        Field::Long(count) => Ok(Cell::Count(*count)),
+        Field::Null => Ok(TableCell::None),
+        Field::Str(text) => Ok(TableCell::Text(text.clone())),
+        Field::Double(number) => Ok(TableCell::Number(*number)),
+        Field::Long(count) => Ok(TableCell::Count(*count)),
         _ => Err("has a value of an unknown kind".to_owned()),
     }
 }

@@ -1,18 +1,22 @@
 //! Journals and tables: what is written comes back, what was torn does not.
 
 use super::journal::{self, Entry, Journal, Timing};
-use super::table::{Cell, Column, Kind, Table};
+use super::table::{Column, ColumnKind, Table, TableCell};
 use super::{Shard, result_columns};
 
 fn columns() -> Vec<Column> {
-    vec![Column::new("a.b[1]", Kind::Text), Column::new("x & y", Kind::Number), Column::new("n", Kind::Count)]
+    vec![
+        Column::new("a.b[1]", ColumnKind::Text),
+        Column::new("x & y", ColumnKind::Number),
+        Column::new("n", ColumnKind::Count),
+    ]
 }
 
 fn table() -> Table {
     let rows = vec![
-        vec![Cell::Text("a,\"b\"".to_owned()), Cell::Number(0.1 + 0.2), Cell::Count(-3)],
-        vec![Cell::None, Cell::None, Cell::None],
-        vec![Cell::Text("\u{e4}".to_owned()), Cell::Number(-0.0625), Cell::Count(i64::MAX)],
+        vec![TableCell::Text("a,\"b\"".to_owned()), TableCell::Number(0.1 + 0.2), TableCell::Count(-3)],
+        vec![TableCell::None, TableCell::None, TableCell::None],
+        vec![TableCell::Text("\u{e4}".to_owned()), TableCell::Number(-0.0625), TableCell::Count(i64::MAX)],
     ];
     Table { columns: columns(), rows }
 }
