@@ -8,16 +8,18 @@ const PLACE: [&str; 8] = ["--x-mm", "0", "--y-mm", "-1640", "--z-mm", "-214", "-
 /// What of a whole arm adds to a deflection, in the words of tables.
 const ORIGINS: [&str; 6] = ["axes", "normal", "base", "mount", "tip", "part"];
 
+/// Adds lines to all rows of a robot file.
+fn in_all_rows(bench: &Bench, robot: &str, lines: &str) {
+    let text = bench.read(robot).replace("[[joints]]\n", &format!("[[joints]]\n{lines}\n"));
+    bench.write(robot, &text);
+}
+
 /// The arm of the run with springs normal to its axes, on a base that yields, with holder and part that yield.
 fn whole() -> Bench {
     let bench = Bench::new();
     let robot = "configs/robots/kuka-kr270-2.toml";
     bench.replace(robot, "\"axes\"", "\"full\"");
-    bench.replace(
-        robot,
-        "[[joints]]\n",
-        "[[joints]]\northogonal_compliance_urad_per_nm = [0.2, 0.3]\nbearing_mm = 20.0\n",
-    );
+    in_all_rows(&bench, robot, "orthogonal_compliance_urad_per_nm = [0.2, 0.3]\nbearing_mm = 20.0");
     bench.replace(RUN, "[spindle]", "[spindle]\ntip_um_per_n = [[0.05, 0, 0], [0, 0.05, 0], [0, 0, 0.01]]");
     let tables = "[base_compliance]\nmatrix = [[0.03, 0, 0, 0, 0.01, 0], [0, 0.02, 0, -0.01, 0, 0], [0, 0, 0.01, 0, 0, 0], \
                   [0, -0.01, 0, 0.05, 0, 0], [0.01, 0, 0, 0, 0.07, 0], [0, 0, 0, 0, 0, 0.04]]\n\n\
@@ -118,7 +120,7 @@ fn a_run_says_that_a_robot_file_does_not_state_what_its_stiffness_stands_for() {
     bench.replace(robot, "stiffness_model = \"axes\"\n", "");
     assert!(says(&bench));
     // Springs that are stated and left out have a note of their own.
-    bench.replace(robot, "[[joints]]\n", "[[joints]]\northogonal_compliance_urad_per_nm = 0.2\n");
+    in_all_rows(&bench, robot, "orthogonal_compliance_urad_per_nm = 0.2");
     assert!(!says(&bench));
     let ended = bench.stead(&[&["score", RUN], &PLACE[..]].concat());
     assert!(ended.said().contains("scores leave them out"), "{}", ended.said());
