@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// What a placement leaves.
-pub const FILES: [&str; 19] = [
+pub const FILES: [&str; 20] = [
     "best-worst-plan.csv",
     "best.csv",
     "cell.glb",
@@ -23,6 +23,7 @@ pub const FILES: [&str; 19] = [
     "placements.csv",
     "refinements.csv",
     "report.html",
+    "setup.svg",
     "summary.json",
     "transfers.csv",
     "worst-worst-plan.csv",

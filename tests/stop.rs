@@ -9,7 +9,7 @@ const MAPS: [&str; 4] =
     ["deflection-map-best.csv", "deflection-map-best.svg", "deflection-map-worst.csv", "deflection-map-worst.svg"];
 
 /// What a score leaves, its map apart.
-const SCORE_FILES: [&str; 8] = [
+const SCORE_FILES: [&str; 9] = [
     "best-plan.csv",
     "cell.glb",
     "manifest.json",
@@ -17,6 +17,7 @@ const SCORE_FILES: [&str; 8] = [
     "placement.svg",
     "report.html",
     "score.json",
+    "setup.svg",
     "worst-plan.csv",
 ];
 
@@ -65,7 +66,7 @@ fn without_maps_the_rest_is_as_before_and_maps_of_an_earlier_run_go() {
     assert_eq!(bench.names("out"), files_without_maps());
     for (name, bytes) in bench.tree("out") {
         // These state the run file's digest, or have the maps in them.
-        let differs = ["manifest.json", "page-data.json", "report.html", "summary.json"];
+        let differs = ["manifest.json", "page-data.json", "report.html", "setup.svg", "summary.json"];
         assert!(differs.contains(&name.as_str()) || bytes == before[&name], "{name}");
     }
     assert!(MAPS.iter().all(|map| before.contains_key(*map)));
@@ -99,6 +100,7 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
         "placement.svg",
         "report.html",
         "score.json",
+        "setup.svg",
         "worst-plan.csv",
     ];
     assert_eq!(bench.names("scored"), files);
@@ -381,7 +383,9 @@ mod interrupt {
         let arguments = [&["score", RUN, "--out", "out", "--json"], &place[..]].concat();
         let ended = interrupted(started(&bench, &arguments), Duration::from_millis(400));
         assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-        assert_eq!(ended.said(), format!("{STOPPED}warning: interrupted: the deflection map is left out\n"));
+        let left_out = ["the deflection map is", "the tolerances of the setup sheet are"]
+            .map(|what| format!("warning: interrupted: {what} left out\n"));
+        assert_eq!(ended.said(), format!("{STOPPED}{}", left_out.concat()));
         let document = ended.json();
         assert_eq!(document["interrupted"], true);
         assert!(document["best"]["mean_mm"].as_f64() < document["worst"]["mean_mm"].as_f64(), "{document:#}");
