@@ -142,7 +142,10 @@ fn commands_on_a_plan_follow_the_path_with_the_points_that_were_added() {
     let ended = done(bench.stead(&["compensate", "my/compensate.toml", "--out", "my/corrected", "--json"]));
     assert!(ended.json().to_string().contains("reduction"), "{}", ended.stdout);
     // Forces of what is removed have moments, which bounds count.
-    bench.write("my/run.toml", &format!("{}{STOCK}{TOOL}", run("ell.csv", "wall", "[certificate]\ngap_percent = 5\ntime_limit_s = 5\n")));
+    bench.write(
+        "my/run.toml",
+        &format!("{}{STOCK}{TOOL}", run("ell.csv", "wall", "[certificate]\ngap_percent = 5\ntime_limit_s = 5\n")),
+    );
     let ended = bench.stead(&["place", "my/run.toml", "--out", "my/certified", "--no-page"]);
     assert!(!ended.stderr.contains("no certificate"), "{}", ended.stderr);
 }

@@ -226,7 +226,8 @@ impl<'a> PointCost<'a> {
     }
 
     /// The least score in the middle of the box, and its slopes: by the tangents at the middle of box and cell.
-    #[inline]
+    // Out of line: it would crowd the loop over cells of scores whose tangent is fixed.
+    #[inline(never)]
     fn min_score(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
         let p = &self.placed;
         let middle = |entry: &[f32; 4]| {
