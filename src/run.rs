@@ -254,8 +254,8 @@ impl Run {
     /// ([`Run::set_up_as_in`]). A stop that the monitor asks for leaves out the critical depths.
     ///
     /// # Errors
-    /// [`Error::Infeasible`] with the constraint that fails at which points; [`Error::Argument`] for a placement that is
-    /// not of finite numbers.
+    /// [`Error::Infeasible`] with the constraint that fails at which points; [`Error::Argument`] for a placement that
+    /// is not of finite numbers.
     pub fn score(&self, placement: &Placement, monitor: &Monitor) -> Result<PlacementScore, Error> {
         finite(placement)?;
         let run = self.set_up_at(placement, monitor);

@@ -74,14 +74,14 @@ impl Direction {
         }
     }
 
-    /// The displacement under the moment of a load, in the frame of the load: by the functions of [`MomentModel`] in the
-    /// radial frame. m
+    /// The displacement under the moment of a load, in the frame of the load: by the functions of [`MomentModel`] in
+    /// the radial frame. m
     pub fn moved(&self, values: [f64; MOMENTS], load: &Load, r: f64, first: f64) -> [f64; 3] {
         moved(values, load.moment, (self.sine, self.cosine), r, first)
     }
 
-    /// A tangent of a load in the radial frame, for radii within `half[0]` of r and directions within `half[1]`; `first` is the
-    /// compliance of joint 1 (rad/(N m)).
+    /// A tangent of a load in the radial frame, for radii within `half[0]` of r and directions within `half[1]`;
+    /// `first` is the compliance of joint 1 (rad/(N m)).
     #[inline(always)]
     pub fn turned(&self, tangent: &Tangent, load: &Load, r: f64, half: [f64; 2], first: f64) -> Turned {
         let Tangent { plane, turning: [q, w], vertical: [v1, v2], axial, along } = *tangent;

@@ -206,8 +206,8 @@ impl ModelledRegion {
     }
 }
 
-/// Below what all of the states cost, for a kind of load and its direction (sine and cosine) within `half` of the node. `space`
-/// is for work.
+/// Below what all of the states cost, for a kind of load and its direction (sine and cosine) within `half` of the node.
+/// `space` is for work.
 pub(super) fn minorant(
     found: &[ModelledRegion],
     kind: &Kind,

@@ -12,7 +12,8 @@ const BETAS: usize = 360;
 const NARROWINGS: usize = 43;
 
 /// The mean over the path points of the least score over beta, each of its weight, in the best posture class of each
-/// segment; `None` where some segment has no class that is allowed at all its points, or once the caller asks to stop. m
+/// segment; `None` where some segment has no class that is allowed at all its points, or once the caller asks to stop.
+/// m
 ///
 /// What must hold: reach, the limits of joints 2, 3 and 5 (of the last the farther from zero, both ways) and the least
 /// inverse condition. What is relaxed: the rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest

@@ -30,8 +30,8 @@ pub struct SpindleTable {
     pub rpy_deg: Option<Vector<Deg>>,
     /// The same as ABB's quaternion.
     pub quaternion_wxyz: Option<Quaternion>,
-    /// Mass of all that the flange carries: spindle, holder and tool. With it results state how far the weight moves the
-    /// tool. Needed where motion or stability is computed.
+    /// Mass of all that the flange carries: spindle, holder and tool. With it results state how far the weight moves
+    /// the tool. Needed where motion or stability is computed.
     pub mass_kg: Option<Kg<Positive>>,
     /// Centre of mass of all that the flange carries, in the flange frame.
     pub centre_of_mass_mm: Option<Vector<Mm>>,

@@ -2,11 +2,11 @@
 //! the best (or worst) of them. Every placement is scored by the planner's best plan, beta off the grid, and that plan
 //! by the reference evaluator; no lookup table, no genetic search, no derivatives.
 //!
-//! `cargo run --release -p stead-experiments --bin whole-arm [-- RANDOM DESCENTS ARM]` (default 600 6 and all) in the root of
-//! the repository, with three arms along the path of `configs/whole-arm.toml`, each scored by the whole deflection and by
-//! its part normal to the wall: KUKA KR 210-2 and Staubli TX200 with their full sets, and a made-up arm of which
-//! everything yields that can. It prints the best and the worst mean of `place`, with a population of 24 over 8
-//! generations, and of this search, and by how much the search is ahead (below 0: behind).
+//! `cargo run --release -p stead-experiments --bin whole-arm [-- RANDOM DESCENTS ARM]` (default 600 6 and all) in the
+//! root of the repository, with three arms along the path of `configs/whole-arm.toml`, each scored by the whole
+//! deflection and by its part normal to the wall: KUKA KR 210-2 and Staubli TX200 with their full sets, and a made-up
+//! arm of which everything yields that can. It prints the best and the worst mean of `place`, with a population of 24
+//! over 8 generations, and of this search, and by how much the search is ahead (below 0: behind).
 
 #![allow(clippy::print_stdout, reason = "an experiment prints")]
 

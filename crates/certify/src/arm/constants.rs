@@ -50,8 +50,8 @@ pub(in super::super) enum LimitSpan {
 }
 
 impl Arm {
-    /// With the stiffness of a robot of the geometry of the problem's, for radii of the tool centre point from `nearest`
-    /// (m) on.
+    /// With the stiffness of a robot of the geometry of the problem's, for radii of the tool centre point from
+    /// `nearest` (m) on.
     pub fn new(problem: &Problem, robot: &Robot, nearest: f64) -> Self {
         let compliances = robot.compliances_at(&[0.0; 6]);
         let geometry = robot.geometry().clone();

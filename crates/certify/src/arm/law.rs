@@ -15,7 +15,8 @@ const MIN_SHARE: f64 = 1e-3;
 pub(super) enum Law {
     /// The same at every angle. rad/(N m)
     Constant(f64),
-    /// Linear in the angle: its value in the middle of the limits (rad/(N m)), slope, and sine and cosine of the middle.
+    /// Linear in the angle: its value in the middle of the limits (rad/(N m)), slope, and sine and cosine of the
+    /// middle.
     Range { middle: f64, slope: f64, at: (f64, f64) },
     /// Beside a spring: [`Compliance::Compensated`], and sine and cosine of its alpha.
     Compensated { alone: f64, compensator: Compensator, at: (f64, f64) },

@@ -4,7 +4,8 @@
 //! corrected: no complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
 //! `K^-1 w = sum_j J_j (J_j . w) / k_j`. Loads so high that they change the configuration are for [`loaded`] (the
 //! tangent, Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest); what yields beside the
-//! joints about their axes is for [`whole`], with the weight and at rest under a load for [`elastic`]. Rotations are vectors here: [`stead_numerics::rotation`].
+//! joints about their axes is for [`whole`], with the weight and at rest under a load for [`elastic`]. Rotations are
+//! vectors here: [`stead_numerics::rotation`].
 
 pub mod elastic;
 pub mod equilibrium;

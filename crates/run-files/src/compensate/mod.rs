@@ -31,8 +31,9 @@ use stead_runs::plan::plan_from;
 /// # Errors
 /// [`InputError`] with file, line and field: a file that cannot be read or parsed, a missing or unknown key or column,
 /// a value of the wrong kind or out of range, a plan that does not fit the run or that its manifest does not vouch for,
-/// a reality of another geometry than the run's robot, a weight that is to be corrected and not known. [`ReadError::Stopped`] when the monitor asked to stop before the
-/// forces of a run with a table `[stock]` were computed.
+/// a reality of another geometry than the run's robot, a weight that is to be corrected and not known.
+/// [`ReadError::Stopped`] when the monitor asked to stop before the forces of a run with a table `[stock]` were
+/// computed.
 pub fn read_compensation(file: &Path, reality: Option<&Path>, monitor: &Monitor) -> Result<CompensateRun, ReadError> {
     let source = TomlFile::read(file)?;
     let document = source.parse()?;

@@ -193,8 +193,8 @@ impl CriterionTable {
         })
     }
 
-    /// Reads the robot files of the stiffness sets: the robot itself with the compliances of each, the files, and what is
-    /// to be said of them.
+    /// Reads the robot files of the stiffness sets: the robot itself with the compliances of each, the files, and what
+    /// is to be said of them.
     ///
     /// # Errors
     /// [`InputError`] for a file that cannot be read, an arm of another geometry or with other joint limits, an empty
