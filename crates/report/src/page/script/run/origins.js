@@ -56,7 +56,7 @@ export function originsCard() {
       width: 2,
     }));
   const make = () => {
-    const values = series().flatMap(({ y }) => Array.from(y)).filter(Number.isFinite);
+    const values = series().flatMap(({ y }) => Array.from(y, (value) => value ?? NaN)).filter(Number.isFinite);
     const [least, most] = values.reduce(([a, b], value) => [Math.min(a, value), Math.max(b, value)], [0, 0]);
     const range = /** @type {[number, number]} */ ([least, most > least ? most + 0.05 * (most - least) : least + 1]);
     return { y: { label: 'mm', is_log: false, range }, series: series() };
