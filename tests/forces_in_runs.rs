@@ -144,7 +144,8 @@ fn commands_on_a_plan_follow_the_path_with_the_points_that_were_added() {
     // Forces of what is removed have moments, which bounds count.
     bench.write(
         "my/run.toml",
-        &format!("{}{STOCK}{TOOL}", run("ell.csv", "wall", "[certificate]\ngap_percent = 5\ntime_limit_s = 5\n")),
+        &format!("{}{STOCK}{TOOL}", run("ell.csv", "wall", "[certificate]\ngap_percent = 5\ntime_limit_s = 5\n"))
+            .replace("min_inverse_condition = 0.02", "min_inverse_condition = 0.05"),
     );
     let ended = bench.stead(&["place", "my/run.toml", "--out", "my/certified", "--no-page"]);
     assert!(!ended.stderr.contains("no certificate"), "{}", ended.stderr);

@@ -5,7 +5,7 @@ use serde_json::Value;
 use stead::certify::CertificateSettings;
 use stead::model::nalgebra::{Matrix3, Vector3, vector};
 use stead::model::published::Published;
-use stead::model::robot::{Controller, ControllerKind, Joint, Pose, Robot, Spindle, angles::yaw_from_q4};
+use stead::model::robot::{Controller, ControllerKind, Joint, Pose, Robot, Spindle, SpringModel, angles::yaw_from_q4};
 use stead::model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead::placement::criterion::Aggregate;
 use stead::placement::postures::PostureRules;
@@ -41,7 +41,7 @@ fn robot() -> Robot {
         is_j3_level: false,
         root_from_base: Some(Pose { rotation: Matrix3::identity(), translation: vector![0.0, 0.0, 0.75] }),
     };
-    Robot::new("KUKA KR270-2", rows).unwrap().with_controller(controller)
+    Robot::new("KUKA KR270-2", rows).unwrap().with_controller(controller).with_spring_model(Some(SpringModel::Axes))
 }
 
 /// Five segments of 21 points, a staircase down and to the right. Corners in tenths of a millimetre.

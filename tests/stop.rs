@@ -224,8 +224,9 @@ mod interrupt {
         let bench = Bench::new();
         let ended = interrupted(search(&bench, 200), Duration::from_millis(1500));
         assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-        let warning = "warning: interrupted: the results are the best found so far, not the end of the search\n";
-        assert_eq!(ended.said(), format!("{STOPPED}{warning}"));
+        let warnings = "warning: interrupted: the results are the best found so far, not the end of the search\n\
+                        warning: interrupted: the tolerances of the setup sheet are left out\n";
+        assert_eq!(ended.said(), format!("{STOPPED}{warnings}"));
         assert_eq!(bench.names("out"), FILES);
         let document = ended.json();
         assert_eq!(document["interrupted"], true);

@@ -141,7 +141,7 @@ fn a_weight_that_is_not_known_is_not_corrected() {
     assert_eq!(ended.code, Some(2));
     ended.assert_says(&[
         "configs/c.toml:5: compensation.gravity: asks for the weight, but the run does not state what the flange carries",
-        "; found true; allowed: mass_kg and centre_of_mass_mm in [spindle] of the run file, or false",
+        ", found true; allowed: mass_kg and centre_of_mass_mm in [spindle] of the run file, or false",
     ]);
     // A mass without its centre is none, and motion needs the inertia too.
     bench.replace("configs/run.toml", "[spindle]", "[spindle]\nmass_kg = 61.0");

@@ -298,21 +298,21 @@ impl Plan<'_> {
         let load = Loaded { loading, force, moment, axes, normal };
         let score = criterion.score(self.cell, &load);
         if point.is_scored {
-            self.origins(verdict, i, &criterion.by_origin(self.cell, &load));
+            self.origins(verdict, i, &criterion.by_origin(self.cell, &load), slack);
             verdict.close("score (m)", || self.at(i), stated[3], score, slack + OF_DIGITS * score);
         }
         (score, slack + OF_DIGITS * score)
     }
 
-    /// What each thing that yields adds.
-    fn origins(&self, verdict: &mut Verdict, i: usize, found: &[f64; 6]) {
+    /// What each thing that yields adds. Where the whole displacement turns, `slack` is what its digits do to a part.
+    fn origins(&self, verdict: &mut Verdict, i: usize, found: &[f64; 6], slack: f64) {
         let stated = &self.rows[i].origins;
         verdict.holds("columns by what yields", || self.at(i), stated.is_some() == self.cell.yields_beside());
         let Some(stated) = stated else { return };
         let size: f64 = found.iter().map(|part| part.abs()).sum();
         for ((name, found), stated) in ORIGINS.iter().zip(found).zip(stated) {
             let told = || format!("{} from {name}", self.at(i));
-            verdict.close("part by what yields (m)", told, *stated, *found, 0.6e-10 + OF_DIGITS * size);
+            verdict.close("part by what yields (m)", told, *stated, *found, slack + OF_DIGITS * size);
         }
     }
 
