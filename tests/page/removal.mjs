@@ -174,7 +174,7 @@ await check(
 const html = readFileSync(at('out/report.html'), 'utf8');
 for (const [part, test, change] of [
   ['arrows', layers, (script) => script.replace('if (shown.forces) put(program, parts.forces, part);', '')],
-  ['colours', colours, (script) => script.replace('COLOURINGS[state.colouring];\n  const { tube', 'COLOURINGS[0];\n  const { tube')],
+  ['colours', colours, (script) => script.replace(/COLOURINGS\[state\.colouring\](;\s*const \{ tube)/, 'COLOURINGS[0]$1')],
   ['charts', charts, (script) => script.replace("['mean over a turn', SIZES,", "['mean over a turn', of.chip_n,")],
 ]) {
   const file = at(`${part}.html`);
