@@ -16,6 +16,8 @@
 //!     force: vector![120.0, -340.0, 210.0],
 //!     moment: Vector3::zeros(),
 //!     normal: Vector3::y(),
+//!     of_part: Vector3::zeros(),
+//!     free_fall: vector![0.0, 0.0, -9.81],
 //! };
 //! let (reality, points, settings) = (robot.clone(), vec![point], Settings::default());
 //! let job = CompensationProblem { robot, reality, spindle, points, settings };

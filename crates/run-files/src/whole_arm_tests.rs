@@ -133,7 +133,7 @@ fn eighteen_springs_of_the_tx200_yield_as_other_code_has_it() {
 fn full_kr270(folder: &std::path::Path, head: &str) -> std::path::PathBuf {
     let text = std::fs::read_to_string(root().join("configs/robots/kuka-kr270-2.toml")).unwrap();
     let text = text.replace("\n[[joints]]", "\n[[joints]]\northogonal_compliance_urad_per_nm = 0.1");
-    let text = text.replacen("\nname = ", &format!("\n{head}\nname = "), 1);
+    let text = text.replacen("\nstiffness_model = \"axes\"", &format!("\n{head}"), 1);
     let file = folder.join("full.toml");
     std::fs::write(&file, text).unwrap();
     file

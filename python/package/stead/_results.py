@@ -328,6 +328,7 @@ class CompensatedPath(Result):
     normal: Record
     correction: Record
     reduction_percent: float | None
+    gravity: bool | None
     alpha: float
     iterations: int
     max_iterations: int

@@ -201,7 +201,7 @@ fn between(low: Trial, high: Trial, limit: f64, bisects: bool) -> f64 {
         }
         _ => 0.5,
     };
-    low.0 + width * share.max(0.1).min(0.9)
+    low.0 + width * share.clamp(0.1, 0.9)
 }
 
 impl Trials<'_> {
