@@ -96,6 +96,17 @@ pub struct SegmentTable {
     pub weight: Number<PositiveWeight>,
 }
 
+/// Further sets of stiffness of the same arm.
+#[derive(Default)]
+pub(super) struct StiffnessSets {
+    /// The robot itself with the compliances of each.
+    pub robots: Vec<Robot>,
+    /// The files that state them.
+    pub inputs: Vec<InputFile>,
+    /// What is to be said of them.
+    pub notes: Vec<String>,
+}
+
 impl CriterionTable {
     /// The size of force errors to be covered, as a share of the force, and what is to be said of it.
     ///
@@ -193,8 +204,7 @@ impl CriterionTable {
         })
     }
 
-    /// Reads the robot files of the stiffness sets: the robot itself with the compliances of each, the files, and what
-    /// is to be said of them.
+    /// Reads the robot files of the stiffness sets.
     ///
     /// # Errors
     /// [`InputError`] for a file that cannot be read, an arm of another geometry or with other joint limits, an empty
@@ -204,13 +214,13 @@ impl CriterionTable {
         robot: &Robot,
         narrowed: impl Fn(Robot) -> Result<Robot, InputError>,
         root: &Place<'_>,
-    ) -> Result<(Vec<Robot>, Vec<InputFile>, Vec<String>), InputError> {
+    ) -> Result<StiffnessSets, InputError> {
         let at = root.key("criterion").key("robots");
-        let Some(names) = &self.robots else { return Ok((Vec::new(), Vec::new(), Vec::new())) };
+        let Some(names) = &self.robots else { return Ok(StiffnessSets::default()) };
         if names.is_empty() {
             return Err(at.error("is empty", "one robot file or more"));
         }
-        let (mut robots, mut inputs, mut notes) = (Vec::new(), Vec::new(), Vec::new());
+        let StiffnessSets { mut robots, mut inputs, mut notes } = StiffnessSets::default();
         for number in 1..=names.len() {
             let at = at.element(number);
             let file = at.named_file()?;
@@ -247,7 +257,7 @@ impl CriterionTable {
             let allowed = "stiffness_model = \"axes\", \"axial_part\" or \"full\" in each of them, or in none";
             return Err(at.element(unstated + 1).error(problem, allowed));
         }
-        Ok((robots, inputs, notes))
+        Ok(StiffnessSets { robots, inputs, notes })
     }
 }
 
