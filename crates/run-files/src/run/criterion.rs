@@ -98,7 +98,7 @@ pub struct SegmentTable {
 
 /// Further sets of stiffness of the same arm.
 #[derive(Default)]
-pub(super) struct StiffnessSets {
+pub(super) struct ReadSets {
     /// The robot itself with the compliances of each.
     pub robots: Vec<Robot>,
     /// The files that state them.
@@ -214,13 +214,13 @@ impl CriterionTable {
         robot: &Robot,
         narrowed: impl Fn(Robot) -> Result<Robot, InputError>,
         root: &Place<'_>,
-    ) -> Result<StiffnessSets, InputError> {
+    ) -> Result<ReadSets, InputError> {
         let at = root.key("criterion").key("robots");
-        let Some(names) = &self.robots else { return Ok(StiffnessSets::default()) };
+        let Some(names) = &self.robots else { return Ok(ReadSets::default()) };
         if names.is_empty() {
             return Err(at.error("is empty", "one robot file or more"));
         }
-        let StiffnessSets { mut robots, mut inputs, mut notes } = StiffnessSets::default();
+        let ReadSets { mut robots, mut inputs, mut notes } = ReadSets::default();
         for number in 1..=names.len() {
             let at = at.element(number);
             let file = at.named_file()?;
@@ -257,7 +257,7 @@ impl CriterionTable {
             let allowed = "stiffness_model = \"axes\", \"axial_part\" or \"full\" in each of them, or in none";
             return Err(at.element(unstated + 1).error(problem, allowed));
         }
-        Ok(StiffnessSets { robots, inputs, notes })
+        Ok(ReadSets { robots, inputs, notes })
     }
 }
 

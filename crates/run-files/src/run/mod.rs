@@ -32,7 +32,7 @@ use crate::Word;
 use crate::forces::material::Material;
 use crate::forces::{BeforeTable, ReadingTable, RemovalTables};
 use crate::stated::stated;
-use criterion::StiffnessSets;
+use criterion::ReadSets;
 use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
 use notes::{direction_note, override_note, speed_note, tilt_note};
@@ -271,7 +271,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let segments = run.segment.unwrap_or_default();
     let criterion = run.criterion.unwrap_or_default();
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
-    let StiffnessSets { robots: sets, inputs: files, notes: of_sets } = criterion.sets(&robot, narrowed, &at)?;
+    let ReadSets { robots: sets, inputs: files, notes: of_sets } = criterion.sets(&robot, narrowed, &at)?;
     inputs.extend(files);
     inputs.extend(lender);
     let (force_uncertainty, about) = criterion.force_errors(removal.as_deref(), &at.key("criterion"))?;
