@@ -66,6 +66,7 @@ mod check;
 pub mod circularity;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
+#[allow(rustdoc::invalid_html_tags, reason = "comments of options are what the help prints")]
 pub mod cli;
 pub mod compensation;
 mod error;
