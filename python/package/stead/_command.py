@@ -86,7 +86,7 @@ def command(
         for entry in value if isinstance(value, Sequence) and not isinstance(value, str) else [value]:
             call += _option("--" + key.strip("_").replace("_", "-"), entry)
     # What follows is no option, whatever it begins with.
-    call += ["--", *map(fspath, arguments)] if arguments else []
+    call += ["--", *(fspath(argument) for argument in arguments)] if arguments else []
     done = subprocess.run(call, capture_output=True, text=True, encoding="utf-8", check=False)
     messages = done.stderr.splitlines()
     if done.returncode:

@@ -218,7 +218,8 @@ def _toml(value: object) -> str:
 
 def _read_again(made: tuple[Any, ...], inputs: list[tuple[str, str]]) -> Run:
     (how, *changes) = made
-    run = Run(read_done(_stead.Run.read(*how, options_of())), (how,))
+    file, values, certify, seed, sensitivity = how
+    run = Run(read_done(_stead.Run.read(file, values, certify, seed, sensitivity, options_of())), (how,))
     for name, digest in inputs:
         if (name, digest) not in run._native.inputs():
             problem = "has changed since the run that names it was pickled"
