@@ -1,5 +1,6 @@
 use super::testing::{massless, spindle, start, tx200};
 use super::*;
+use nalgebra::Rotation3;
 use proptest::prelude::*;
 use stead_model::robot::chain::GRAVITY;
 
@@ -65,6 +66,30 @@ proptest! {
             prop_assert!((torques[j] - all[3 * j]).abs() < 1e-9, "{} {}", torques[j], all[3 * j]);
             prop_assert!((gravity[j] - all_gravity[3 * j]).abs() < 1e-9);
         }
+    }
+}
+
+/// However the robot is mounted, gravity is that of the cell: as in its own frame the field turned with it.
+#[test]
+fn gravity_is_that_of_the_cell() {
+    let (wall, ceiling) = ([90.0_f64, 0.0, 0.0], [180.0_f64, 0.0, 30.0]);
+    for [roll, pitch, yaw] in [wall, ceiling] {
+        let turn = Rotation3::from_euler_angles(roll.to_radians(), pitch.to_radians(), yaw.to_radians());
+        let mount = Pose { rotation: turn.into_inner(), translation: Vector3::new(0.3, -0.2, 1.9) };
+        let robot = tx200().mounted(&mount);
+        let field = turn.inverse() * Vector3::new(0.0, 0.0, -GRAVITY);
+        let mut upright = six(Variant::Gravity);
+        upright.chain = upright.chain.with_gravity(field);
+        let mounted = Arm::six(&robot, &spindle(), Variant::Gravity, &start()).unwrap();
+        let torques = [&mounted, &upright].map(|arm| arm.chain.at(&start().into()).gravity(&arm.chain));
+        assert!((torques[0] - torques[1]).amax() < 1e-9, "{torques:?}");
+        let on_the_floor = six(Variant::Gravity).chain;
+        assert!((torques[0] - on_the_floor.at(&start().into()).gravity(&on_the_floor)).amax() > 100.0);
+        let mut upright = eighteen(Variant::Orthogonal);
+        upright.chain = upright.chain.with_gravity(field);
+        let mounted = Arm::eighteen(&robot, &spindle(), Variant::Orthogonal, &start()).unwrap();
+        let torques = [&mounted, &upright].map(|arm| arm.chain.at(&Arm::<18>::spread(&start())).gravity(&arm.chain));
+        assert!((torques[0] - torques[1]).amax() < 1e-9, "{torques:?}");
     }
 }
 
