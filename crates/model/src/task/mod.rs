@@ -4,6 +4,7 @@
 
 mod feed_parts;
 mod following;
+pub mod lean;
 mod thinned;
 mod turned;
 
