@@ -5,15 +5,18 @@
 mod feed_parts;
 mod following;
 pub mod lean;
+mod leaned;
 mod thinned;
 mod turned;
 
+pub use leaned::Leaned;
 pub use thinned::KeptPoint;
 
 use crate::stiffness::matrix::{MatrixError, checked};
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// One point of a tool path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,6 +76,7 @@ pub struct ToolPath {
     /// Whether each point is scored, where some are not.
     scored: Option<Vec<bool>>,
     thinned: Option<thinned::Thinned>,
+    leaned: Option<Leaned>,
 }
 
 /// A tool path with the wrench at every point.
@@ -84,6 +88,8 @@ pub struct Task {
     edges: Option<Vec<Wrench>>,
     /// How the part yields at every point, where it does: displacement against force, in the workpiece frame. m/N
     part: Option<Vec<Matrix3<f64>>>,
+    /// The same with the tool axis that the path states, where the tool leans.
+    upright: Option<Arc<Task>>,
 }
 
 /// Why points do not make a task. Points are counted from 0, in the order given.
@@ -220,6 +226,7 @@ impl ToolPath {
             feeds: None,
             scored: None,
             thinned: None,
+            leaned: None,
         };
         let mut all_scored = Vec::new();
         for (index, (segment, point, is_scored)) in points.into_iter().enumerate() {
@@ -331,7 +338,7 @@ impl Task {
         }
         let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
         unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
-        Ok(Self { path, wrenches, edges: None, part: None })
+        Ok(Self { path, wrenches, edges: None, part: None, upright: None })
     }
 
     /// The same task on a part that yields at every point by a matrix in the workpiece frame: displacement (m) of the

@@ -1,6 +1,7 @@
 //! A path thinned to some of its points, which stand for the others.
 
 use super::{SAME_PLACE, Task, ToolPath, Wrench};
+use std::sync::Arc;
 
 /// A point that is kept of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,15 +67,18 @@ impl ToolPath {
                 .map(|normals| kept.iter().map(|kept| normals[kept.point]).collect()),
             feeds,
             scored: self.scored.as_ref().map(|scored| kept.iter().map(|kept| scored[kept.point]).collect()),
+            leaned: self.leaned.as_ref().map(|leaned| leaned.thinned(kept)),
             thinned: Some(Thinned { weights: kept.iter().map(|kept| kept.weight).collect(), steps, turns }),
         }
     }
 
-    /// Distance along the path to a point from the one before, both in one segment. m
+    /// Distance along the path to a point from the one before, both in one segment; of a tool that leans, of its tip
+    /// as the path states it. m
     pub fn step_length(&self, point: usize) -> f64 {
-        match &self.thinned {
-            Some(thinned) => thinned.steps[point],
-            None => (self.points[point].position - self.points[point - 1].position).norm(),
+        match (&self.thinned, &self.leaned) {
+            (Some(thinned), _) => thinned.steps[point],
+            (None, Some(leaned)) => leaned.step(point),
+            (None, None) => (self.points[point].position - self.points[point - 1].position).norm(),
         }
     }
 
@@ -110,6 +114,7 @@ impl Task {
             wrenches: those(&self.wrenches),
             edges: self.edges.as_ref().map(those),
             part: self.part.as_ref().map(|part| kept.iter().map(|kept| part[kept.point]).collect()),
+            upright: self.upright.as_ref().map(|task| Arc::new(task.thinned(kept))),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Task, ToolPath, Wrench};
 use nalgebra::Matrix3;
+use std::sync::Arc;
 
 impl Task {
     /// The same task on the workpiece turned by a rotation about its origin: positions, directions and wrenches in the
@@ -17,6 +18,7 @@ impl Task {
             wrenches: all(&self.wrenches),
             edges: self.edges.as_ref().map(all),
             part: self.part.as_ref().map(part),
+            upright: self.upright.as_ref().map(|task| Arc::new(task.turned(rotation))),
         }
     }
 }
@@ -29,6 +31,7 @@ impl ToolPath {
             point.feed = (rotation * point.feed).normalize();
             point.axis = (rotation * point.axis).normalize();
         }
+        path.leaned.iter_mut().for_each(|leaned| leaned.turn(rotation));
         path.surface_normals.iter_mut().flatten().for_each(|normal| *normal = (rotation * *normal).normalize());
         path
     }
