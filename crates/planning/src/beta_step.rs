@@ -99,6 +99,15 @@ impl Turn {
 }
 
 impl Problem {
+    /// How the tool turns to a path point from the one before, where it leans otherwise at both: with axes (feed, left
+    /// of the feed, tool axis) as columns in place of those of the points.
+    fn turn_between(&self, point: usize, axes: [&Matrix3<f64>; 2]) -> Turn {
+        match self.part_turn(point) {
+            Some(part) => Turn::between(axes[0], &(part * axes[1])),
+            None => Turn::between(axes[0], axes[1]),
+        }
+    }
+
     fn turn(&self, point: usize) -> Turn {
         self.turn_with(point, self.part_turn(point).as_ref())
     }
@@ -144,12 +153,12 @@ impl Problem {
     }
 
     fn turn_limit(&self, point: usize, limits: &Redundancy) -> Option<f64> {
-        self.turn_limit_with(point, limits, self.part_turn(point).as_ref())
+        self.turn_limit_of(point, limits, || self.turn(point))
     }
 
-    fn turn_limit_with(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> Option<f64> {
+    fn turn_limit_of(&self, point: usize, limits: &Redundancy, turn: impl Fn() -> Turn) -> Option<f64> {
         let is_set = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
-        let most = || MAX_TURN.max(self.turn_with(point, part).tilt + BEYOND_AXIS);
+        let most = || MAX_TURN.max(turn().tilt + BEYOND_AXIS);
         if self.task.path().turns_in_place(point) {
             return is_set.then(most);
         }
@@ -194,7 +203,17 @@ impl Problem {
 
     /// The same where the part itself turns in the cell by a rotation, in the frame that is placed.
     pub(crate) fn beta_step_with(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> BetaStep {
-        let free = self.free_beta_step(point, limits, part);
+        self.beta_step_of(point, limits, || self.turn_with(point, part))
+    }
+
+    /// The same where the tool leans otherwise at both points: with axes (feed, left of the feed, tool axis) as columns
+    /// in place of those of the points.
+    pub(crate) fn beta_step_between(&self, point: usize, limits: &Redundancy, axes: [&Matrix3<f64>; 2]) -> BetaStep {
+        self.beta_step_of(point, limits, || self.turn_between(point, axes))
+    }
+
+    fn beta_step_of(&self, point: usize, limits: &Redundancy, turn: impl Fn() -> Turn) -> BetaStep {
+        let free = self.free_beta_step(point, limits, turn);
         match limits.beta {
             BetaPlan::Free => free,
             BetaPlan::ConstantPerSegment | BetaPlan::Constant => {
@@ -204,11 +223,11 @@ impl Problem {
     }
 
     /// The same where beta may change.
-    fn free_beta_step(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> BetaStep {
+    fn free_beta_step(&self, point: usize, limits: &Redundancy, turn: impl Fn() -> Turn) -> BetaStep {
         let rate = limits.max_beta_rate.map_or(f64::INFINITY, |rate| rate * self.step_length(point));
         let by_rate = BetaStep { middle: 0.0, half: rate };
-        let Some(limit) = self.turn_limit_with(point, limits, part) else { return by_rate };
-        let turn = self.turn_with(point, part);
+        let Some(limit) = self.turn_limit_of(point, limits, &turn) else { return by_rate };
+        let turn = turn();
         let half = turn.half(limit);
         if half >= PI {
             return by_rate;

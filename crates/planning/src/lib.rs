@@ -53,6 +53,7 @@ pub mod evaluate;
 pub mod feasibility;
 pub mod feed;
 pub mod joint_travel;
+pub mod lean;
 pub mod limit;
 pub mod objective;
 pub mod postures;

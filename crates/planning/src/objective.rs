@@ -27,11 +27,11 @@ impl Problem {
         self.task.part_yields() || self.scored_robots().iter().any(|robot| yields_elsewhere(robot, &self.spindle))
     }
 
-    /// The directions that are scored at a path point, in the frame in which its axes (feed, left of the feed, tool
-    /// axis) are given as columns.
+    /// The directions that are scored at a path point, in the frame in which its scored axes (feed, left of the feed,
+    /// tool axis of the path) are given as columns.
     pub fn scored_directions<T: Scalar>(&self, point: usize, axes: &Matrix3<T>) -> ScoredDirections<T> {
-        let workpiece_from_point = || self.task.points()[point].workpiece_from_point();
-        let normal = self.task.path().surface_normals().map(|normals| workpiece_from_point().tr_mul(&normals[point]));
+        let path = self.task.path();
+        let normal = path.surface_normals().map(|normals| path.scored_axes(point).tr_mul(&normals[point]));
         ScoredDirections::new(&self.criterion.weights, normal, axes)
     }
 

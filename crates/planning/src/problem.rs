@@ -119,6 +119,9 @@ pub struct PlacedPoint<T: Scalar = f64> {
     pub tip: Vector3<T>,
     /// The point's axes as columns: the feed (made normal to the tool axis), the left of the feed, the tool axis.
     pub axes: Matrix3<T>,
+    /// The axes along which the deflection is scored: the same, but for a tool that leans, where they are those of the
+    /// path.
+    pub scored_axes: Matrix3<T>,
     /// Force on the tool. N
     pub force: Vector3<T>,
     /// Moment on the tool. N m
@@ -311,6 +314,7 @@ impl Problem {
         PlacedPoint {
             tip: workpiece.point(&cast(&path_point.position)),
             axes: workpiece.rotation * path_point.workpiece_from_point().map(T::constant),
+            scored_axes: workpiece.rotation * self.task.path().scored_axes(point).map(T::constant),
             force: workpiece.rotation * cast(&wrench.force),
             moment: workpiece.rotation * cast(&wrench.moment),
         }

@@ -1,5 +1,5 @@
 //! How the cell is set up for a placement: which way up the part lies, and where the external axes stand along the
-//! path.
+//! path, and how the tool leans.
 //!
 //! A [`Problem`](crate::problem::Problem) is always in one setup, and
 //! [`Problem::base_from_workpiece`](crate::problem::Problem::base_from_workpiece) is the one way to where the workpiece
@@ -9,6 +9,7 @@ use nalgebra::Matrix3;
 use std::sync::Arc;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::task::Task;
+use stead_model::task::lean::Lean;
 
 /// A way in which the part may lie: turned before it is placed.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +47,8 @@ pub struct Setup {
     pub orientation: usize,
     /// Where the external axes stand.
     pub positions: AxisPositions,
+    /// How the tool leans at every path point; empty where its axis is that of the path.
+    pub leans: Arc<[Lean]>,
 }
 
 /// The positions of an external axis along a path.
@@ -73,7 +76,7 @@ impl Setup {
     /// The first orientation, and all axes as near to zero as their ranges allow.
     pub fn at_rest(axes: &[ExternalAxis]) -> Self {
         let positions = axes.iter().map(ExternalAxis::nearest_to_zero).collect();
-        Self { orientation: 0, positions: AxisPositions::Same(positions) }
+        Self { positions: AxisPositions::Same(positions), ..Self::default() }
     }
 }
 

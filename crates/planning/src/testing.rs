@@ -41,6 +41,7 @@ pub fn five_segments() -> Problem {
         segment_moves: SegmentMoves::default(),
         orientations: [].into(),
         external_axes: Vec::new(),
+        lean: None,
         setup: Setup::default(),
     };
     parts.build().unwrap()

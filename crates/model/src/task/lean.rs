@@ -15,7 +15,7 @@
 //! `e(n, A) = unit(n - (n . A) A)`, a tool with its tip in P touches the surface in
 //! `C = P + r A - (R - r) e(n, A) - r n`. What stays where it is when the tool leans is a [`ContactRule`].
 
-use super::{PathPoint, ToolPath};
+use super::PathPoint;
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -143,12 +143,12 @@ fn across(normal: &Vector3<f64>, axis: &Vector3<f64>) -> Option<Vector3<f64>> {
 }
 
 /// The angle between two directions. rad
-fn between(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+pub fn between(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
 }
 
 /// The smallest angle to a direction while an axis turns from one to another the short way. rad
-pub fn nearest(from: &Vector3<f64>, to: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
+fn nearest(from: &Vector3<f64>, to: &Vector3<f64>, direction: &Vector3<f64>) -> f64 {
     let ends = between(from, direction).min(between(to, direction));
     let Some(normal) = from.cross(to).try_normalize(1e-12) else { return ends };
     let foot = direction - normal * normal.dot(direction);
@@ -305,12 +305,19 @@ impl LeanRule {
         PathPoint { position: point.position + shift, feed: point.workpiece_from_point().column(0).into_owned(), axis }
     }
 
-    /// Angle of the leaned axis to the normal of the surface (rad); that to the axis of the path where no normal is
-    /// known.
-    pub fn angle_to_normal(&self, path: &ToolPath, point: usize, lean: &Lean) -> f64 {
-        let at = &path.points()[point];
-        let normal = path.surface_normals().map_or(at.axis, |normals| normals[point]);
-        between(&lean.axis(at), &normal)
+    /// How far the contact leaves its line, on a surface with this normal, while tip and axis go evenly from one point
+    /// to the next and the axis turns from one direction to another. m
+    pub fn error_between(&self, normal: &Vector3<f64>, axes: [&Vector3<f64>; 2]) -> f64 {
+        let nearest = nearest(axes[0], axes[1], normal);
+        if self.contact != ContactRule::Plane || self.end.is_ball() {
+            return self.end.path_error(between(axes[0], axes[1]), nearest);
+        }
+        // The plane stays: what counts is how high the tip is over it, half way and where it is lowest.
+        let [from, to] = axes.map(|axis| between(axis, normal));
+        let [start, end] = [from, to].map(|angle| self.end.height(angle));
+        let middle = between(&(axes[0] + axes[1]), normal);
+        let half_way = (self.end.height(middle) - (start + end) / 2.0).abs();
+        half_way.max(start.min(end) - self.end.height(nearest))
     }
 }
 

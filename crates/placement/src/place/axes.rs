@@ -76,7 +76,7 @@ pub(super) fn improved(problem: &Problem, start: &Solution, monitor: &Monitor) -
 
 /// The plan in another setup, where it is better.
 fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Option<Improved> {
-    let setup = Setup { positions, ..known.setup };
+    let setup = Setup { positions, ..known.setup.clone() };
     let set_up = problem.in_setup(&setup);
     let planner = Planner::finer(&set_up);
     let solution = planned(&planner, &known.solution.placement, None, &mut planner.workspace())?;
@@ -176,7 +176,7 @@ fn costs(
     if is_shifted && positions == now.positions(problem, &vec![0.0; by.len()]) {
         return None;
     }
-    let setup = Setup { positions, ..known.setup };
+    let setup = Setup { positions, ..known.setup.clone() };
     let set_up = problem.in_setup(&setup);
     let planner = Planner::new(&set_up);
     Some(planner.segment_costs(placement, &mut planner.workspace()))

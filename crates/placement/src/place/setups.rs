@@ -93,7 +93,7 @@ impl Job<'_> {
                 let mut positions = start.clone();
                 positions[number] = position;
                 let objective =
-                    self.search(&Setup { positions: AxisPositions::Same(positions.clone()), ..setup }, found);
+                    self.search(&Setup { positions: AxisPositions::Same(positions.clone()), ..setup.clone() }, found);
                 if let Some(objective) = objective
                     && least.is_none_or(|least| objective < least)
                 {
@@ -185,7 +185,7 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
             }
             let mut positions = start.clone();
             positions[number] = position;
-            let setup = Setup { positions: AxisPositions::Same(positions), ..best.0 };
+            let setup = Setup { positions: AxisPositions::Same(positions), ..best.0.clone() };
             let known = best.1.as_ref().map_or(f64::INFINITY, |known| known.objective);
             if let Some(found) = at(&setup)
                 && found.objective < known

@@ -55,7 +55,7 @@ fn a_robot_under_the_ceiling_hangs_the_other_way_and_a_rail_changes_nothing() {
     let on = |axis: ExternalAxis, position: f64| {
         floor.clone().with(|parts| {
             parts.external_axes = vec![axis];
-            parts.setup = Setup { orientation: 0, positions: AxisPositions::Same(vec![position]) };
+            parts.setup = Setup { positions: AxisPositions::Same(vec![position]), ..Setup::default() };
         })
     };
     let on_rail = on(axis(AxisKind::Rail, Vector3::x()), 1.5);

@@ -22,7 +22,7 @@ pub struct PointEvaluator<'a, T: Scalar = f64> {
 impl<'a, T: Scalar> PointEvaluator<'a, T> {
     pub(crate) fn of(task: PlacedTask<'a, T>, point: usize) -> Self {
         let (problem, placed) = (task.problem, task.point(point));
-        let directions = problem.scored_directions(point, &placed.axes);
+        let directions = problem.scored_directions(point, &placed.scored_axes);
         let part = problem.task.part_compliance(point).map(|matrix| {
             let rotation = problem.base_from_workpiece(point, task.placement).rotation;
             rotation * matrix.map(T::constant) * rotation.transpose()

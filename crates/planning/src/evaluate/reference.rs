@@ -22,7 +22,7 @@ pub struct State<T: Scalar> {
     pub base_distance: T,
     /// Displacement of the tool centre point in the base frame, `K^-1 w` (eq. 12). m
     pub deflection: Vector3<T>,
-    /// Its part along the feed (made normal to the tool axis). m
+    /// Its part along the feed (made normal to the tool axis), as the path states both however the tool leans. m
     pub feed_part: T,
     /// Its part to the left of the feed, `axis x feed`: normal to the wall. m
     pub normal_part: T,
@@ -73,7 +73,7 @@ impl<T: Scalar> PointEvaluator<'_, T> {
         let problem = self.problem;
         let joints = problem.robot.inverse(&self.base_from_flange(beta), posture)?;
         let arm = PlacedArm::new(self, &joints);
-        let PlacedPoint { tip, axes, .. } = &self.placed;
+        let PlacedPoint { tip, scored_axes: axes, .. } = &self.placed;
         let deflected = arm.under(&problem.robot);
         let (deflection, own) = (deflected.deflection, deflected.score());
         let score = match &problem.criterion.stiffness {

@@ -19,10 +19,16 @@ impl Problem {
             return Cow::Borrowed(self);
         }
         let mut problem = self.clone();
-        if setup.orientation != self.setup.orientation
-            && let Some(orientation) = self.orientations.get(setup.orientation)
-        {
+        let is_turned = setup.orientation != self.setup.orientation;
+        if is_turned && let Some(orientation) = self.orientations.get(setup.orientation) {
             problem.parts.task = (*orientation.task).clone();
+        }
+        if is_turned || setup.leans != self.setup.leans {
+            let task = problem.parts.task.upright();
+            problem.parts.task = match &self.lean {
+                Some(space) if !setup.leans.is_empty() => task.leaned(&space.rule, &setup.leans),
+                _ => task.clone(),
+            };
         }
         problem.parts.setup = setup.clone();
         Cow::Owned(problem)

@@ -2,6 +2,7 @@
 
 use super::{Cell, Constraints, Problem, Redundancy};
 use crate::criterion::Criterion;
+use crate::lean::{LeanSpace, LeanSpaceError};
 use crate::postures::PostureRules;
 use crate::setup::{AxisPositions, Orientation, Setup};
 use std::ops::Deref;
@@ -40,6 +41,8 @@ pub struct ProblemParts {
     pub orientations: Arc<[Orientation]>,
     /// Rails and turntables beside the robot's own axes.
     pub external_axes: Vec<ExternalAxis>,
+    /// How far the tool may lean from the axis of the path; none where it keeps to it.
+    pub lean: Option<Arc<LeanSpace>>,
     /// How part and axes are set up.
     pub setup: Setup,
 }
@@ -111,6 +114,17 @@ pub enum ProblemError {
         /// Its highest position. m or rad
         max: f64,
     },
+    /// Leans for another number of points, or where the tool may not lean.
+    #[error("the setup leans the tool at {found} points; allowed: {expected}, as many as the task has where it may lean")]
+    Leans {
+        /// Leans.
+        found: usize,
+        /// How many there may be.
+        expected: usize,
+    },
+    /// A tool that may lean as it cannot.
+    #[error(transparent)]
+    Lean(#[from] LeanSpaceError),
     /// Weights for another number of segments.
     #[error("the criterion has {found} weights of segments; allowed: none or {expected}, one for each segment")]
     SegmentWeights {
@@ -188,6 +202,7 @@ impl Problem {
             segment_moves: SegmentMoves::default(),
             orientations: [].into(),
             external_axes: Vec::new(),
+            lean: None,
             setup: Setup::default(),
         }
     }
@@ -215,8 +230,10 @@ impl Problem {
     /// The same problem on some points of its path alone, ascending, with what they stand for.
     pub fn on_points(&self, kept: &[KeptPoint]) -> Self {
         let points: Vec<usize> = kept.iter().map(|kept| kept.point).collect();
-        let setup = Setup { positions: self.setup.positions.of_points(&points), ..self.setup };
-        Self { parts: ProblemParts { task: self.task.thinned(kept), setup, ..self.parts.clone() } }
+        let leans = if self.setup.leans.is_empty() { [].into() } else { points.iter().map(|p| self.setup.leans[*p]).collect() };
+        let setup = Setup { positions: self.setup.positions.of_points(&points), leans, ..self.setup };
+        let lean = self.lean.as_ref().map(|space| Arc::new(space.on_points(&points)));
+        Self { parts: ProblemParts { task: self.task.thinned(kept), setup, lean, ..self.parts.clone() } }
     }
 
     /// The same problem with one of its stiffness sets alone.
@@ -331,9 +348,16 @@ impl ProblemParts {
             if found != points {
                 return Err(ProblemError::PointsOfOrientation { name: name(), found, expected: points });
             }
-            if place == number && *orientation.task != self.task {
+            if place == number && *orientation.task != *self.task.upright() {
                 return Err(ProblemError::TaskOfOrientation { name: name() });
             }
+        }
+        let leans = &self.setup.leans;
+        if !leans.is_empty() && (self.lean.is_none() || leans.len() != points) {
+            return Err(ProblemError::Leans { found: leans.len(), expected: self.lean.as_ref().map_or(0, |_| points) });
+        }
+        if let Some(space) = &self.lean {
+            space.check(self.task.upright().path())?;
         }
         let segments = self.task.segments().len();
         let rows: &[Vec<f64>] = match &self.setup.positions {

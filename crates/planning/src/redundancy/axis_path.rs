@@ -66,7 +66,7 @@ impl<'a> AxisGrid<'a> {
         for (row, own) in rows.iter_mut().zip(&self.positions) {
             row[self.axis] = own[number];
         }
-        let setup = Setup { positions: AxisPositions::PerPoint(rows), ..self.problem.setup };
+        let setup = Setup { positions: AxisPositions::PerPoint(rows), ..self.problem.setup.clone() };
         self.problem.in_setup(&setup).into_owned()
     }
 

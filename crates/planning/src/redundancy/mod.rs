@@ -31,6 +31,7 @@ mod joint_turns;
 mod knots;
 mod layered;
 mod obstruction;
+pub mod lean_path;
 pub mod off_grid;
 mod rate_limit;
 #[cfg(test)]

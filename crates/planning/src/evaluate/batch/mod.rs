@@ -239,7 +239,9 @@ impl<'a> BatchEvaluator<'a> {
         let axes = rotation * self.workpiece_from_point[point];
         let flange_axis = |k: usize| Turning::new(&axes, &self.tool_from_flange[k]);
         let tip = root_from_base * (workpiece.point(&path_point.position) - g.root_in_base);
-        let directions = *self.problem.scored_directions(point, &axes).padded();
+        let path = self.problem.task.path();
+        let scored = if path.leans().is_some() { rotation * path.scored_axes(point) } else { axes };
+        let directions = *self.problem.scored_directions(point, &scored).padded();
         let (force, moment) = (rotation * wrench.force, rotation * wrench.moment);
         let fixed = self.fixed.as_ref().map_or_else(FixedParts::default, |fixed| {
             let load = PlacedLoad {

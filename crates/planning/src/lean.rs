@@ -1,0 +1,247 @@
+//! How far the tool may lean from the axis that the path states: in lead and tilt, at every path point.
+
+use crate::cell::Interval;
+use stead_model::task::lean::{ContactRule, Lean, LeanError, LeanRule, between};
+use stead_model::task::{PathPoint, ToolPath};
+
+/// Angles that differ by less are one. rad
+const ROUNDING: f64 = 1e-9;
+/// The tool axis turns by no more than this from one point to the next, where that of the path turns by less. rad
+const MOST_TURN: f64 = std::f64::consts::PI / 12.0;
+
+/// Lead and tilt that a point allows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeanRange {
+    /// Lead. rad
+    pub lead: Interval,
+    /// Tilt. rad
+    pub tilt: Interval,
+}
+
+impl LeanRange {
+    /// The axis of the path alone.
+    pub const NONE: Self = Self { lead: Interval { min: 0.0, max: 0.0 }, tilt: Interval { min: 0.0, max: 0.0 } };
+
+    /// Whether it is the axis of the path alone.
+    pub fn is_none(&self) -> bool {
+        *self == Self::NONE
+    }
+
+    /// Whether a lean is in it, up to rounding.
+    pub fn contains(&self, lean: &Lean) -> bool {
+        let is_in = |range: &Interval, value: f64| value >= range.min - ROUNDING && value <= range.max + ROUNDING;
+        is_in(&self.lead, lean.lead) && is_in(&self.tilt, lean.tilt)
+    }
+
+    /// The nearest lean that is in it, lead and tilt each by itself.
+    pub fn nearest(&self, lean: &Lean) -> Lean {
+        let within = |range: &Interval, value: f64| value.max(range.min).min(range.max);
+        Lean { lead: within(&self.lead, lean.lead), tilt: within(&self.tilt, lean.tilt) }
+    }
+}
+
+/// How far the tool may lean along a path.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeanSpace {
+    /// What stays where it is.
+    pub rule: LeanRule,
+    /// For every path point.
+    pub ranges: Vec<LeanRange>,
+    /// The largest angle between the tool axis and that of the path, where one is set. rad
+    pub max_lean: Option<f64>,
+    /// Steps of lead and tilt that are planned on at first. rad
+    pub steps: [f64; 2],
+    /// Distance between passes side by side, where it is known. m
+    pub step_over: Option<f64>,
+    /// The highest ridge that may be left between passes, where one is set. m
+    pub scallop: Option<f64>,
+    /// How far the contact may leave its line between points. m
+    pub contact_tolerance: f64,
+}
+
+/// A tool that may lean as it cannot.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum LeanSpaceError {
+    /// Ranges for another number of points.
+    #[error("the tool may lean at {found} points; allowed: {expected}, as many as the path has")]
+    Points {
+        /// Ranges.
+        found: usize,
+        /// Points.
+        expected: usize,
+    },
+    /// A lean that the cutter does not allow.
+    #[error("point {point}, lead {lead_deg:.3} deg, tilt {tilt_deg:.3} deg: {error}", point = point + 1)]
+    Refused {
+        /// The path point, from 0.
+        point: usize,
+        /// Lead. deg
+        lead_deg: f64,
+        /// Tilt. deg
+        tilt_deg: f64,
+        /// Why not.
+        error: LeanError,
+    },
+    /// No lean of a point is allowed.
+    #[error(
+        "point {point} allows no lean: {what}; allowed: a wider range, or a limit that leaves some of it", point = point + 1
+    )]
+    Nothing {
+        /// The path point, from 0.
+        point: usize,
+        /// Which limit leaves none.
+        what: &'static str,
+    },
+}
+
+impl LeanSpace {
+    /// Whether the tool keeps to the axis of the path everywhere.
+    pub fn is_closed(&self) -> bool {
+        self.ranges.iter().all(LeanRange::is_none)
+    }
+
+    /// Whether the axis of the path itself is among what is allowed at every point: then a plan is never worse than
+    /// one that keeps to it.
+    pub fn holds_path(&self, path: &ToolPath) -> bool {
+        (0..self.ranges.len()).all(|point| self.allows(path, point, &Lean::NONE))
+    }
+
+    /// For some points of the path alone, ascending.
+    pub(crate) fn on_points(&self, points: &[usize]) -> Self {
+        Self { ranges: points.iter().map(|point| self.ranges[*point]).collect(), ..self.clone() }
+    }
+
+    /// Checks that the cutter can lean over the whole of the ranges of an upright path, which is so where it can at
+    /// their corners.
+    ///
+    /// # Errors
+    /// [`LeanSpaceError`] at the first point where it cannot.
+    pub fn check(&self, path: &ToolPath) -> Result<(), LeanSpaceError> {
+        if self.ranges.len() != path.points().len() {
+            return Err(LeanSpaceError::Points { found: self.ranges.len(), expected: path.points().len() });
+        }
+        for (point, range) in self.ranges.iter().enumerate() {
+            let corners = [range.lead.min, range.lead.max]
+                .into_iter()
+                .flat_map(|lead| [range.tilt.min, range.tilt.max].map(|tilt| Lean { lead, tilt }));
+            for lean in corners.filter(|lean| *lean != Lean::NONE && self.is_within(lean)) {
+                let normal = path.surface_normals().map(|normals| &normals[point]);
+                self.rule.check(&path.points()[point], normal, &lean).map_err(|error| LeanSpaceError::Refused {
+                    point,
+                    lead_deg: lean.lead.to_degrees(),
+                    tilt_deg: lean.tilt.to_degrees(),
+                    error,
+                })?;
+            }
+            if range.is_none() {
+                continue;
+            }
+            if let Some((lean, error)) = self.through_normal(path, point) {
+                let (lead_deg, tilt_deg) = (lean.lead.to_degrees(), lean.tilt.to_degrees());
+                return Err(LeanSpaceError::Refused { point, lead_deg, tilt_deg, error });
+            }
+            let all = self.grid(point, self.half_counts());
+            if !all.iter().any(|lean| self.is_within(lean)) {
+                return Err(LeanSpaceError::Nothing { point, what: "max_lean_deg is below the whole range" });
+            }
+            if !all.iter().any(|lean| self.allows(path, point, lean)) {
+                return Err(LeanSpaceError::Nothing { point, what: "scallop_mm or step_over_mm forbids the whole range" });
+            }
+        }
+        Ok(())
+    }
+
+    /// The lean of a point that is nearest to the normal of the surface, where it is too near for a contact that stays.
+    fn through_normal(&self, path: &ToolPath, point: usize) -> Option<(Lean, LeanError)> {
+        let normal = path.surface_normals()?[point];
+        let (at, range) = (&path.points()[point], &self.ranges[point]);
+        let seen = at.workpiece_from_point().tr_mul(&normal);
+        let lean = Lean { lead: libm::atan2(seen.x, seen.z), tilt: libm::asin(seen.y.max(-1.0).min(1.0)) };
+        let lean = range.nearest(&lean);
+        match self.rule.check(at, Some(&normal), &lean) {
+            Err(error @ LeanError::ThroughNormal { .. }) => Some((lean, error)),
+            _ => None,
+        }
+    }
+
+    /// Whether a lean is within the largest angle.
+    fn is_within(&self, lean: &Lean) -> bool {
+        self.max_lean.is_none_or(|max| lean.angle() <= max + ROUNDING)
+    }
+
+    /// Whether a lean is allowed at a point of an upright path: within its range and the largest angle, with no higher
+    /// ridge and, where a plane stays, with no contact farther aside than half the distance between passes.
+    pub fn allows(&self, path: &ToolPath, point: usize, lean: &Lean) -> bool {
+        if !self.ranges[point].contains(lean) {
+            return false;
+        }
+        *lean == Lean::NONE && self.ranges[point].is_none()
+            || (self.is_within(lean) && self.leaves_no_ridge(lean) && self.keeps_to_its_pass(path, point, lean))
+    }
+
+    fn leaves_no_ridge(&self, lean: &Lean) -> bool {
+        let Some(most) = self.scallop else { return true };
+        self.rule.end.scallop(lean, self.step_over).is_none_or(|height| height <= most * (1.0 + ROUNDING))
+    }
+
+    fn keeps_to_its_pass(&self, path: &ToolPath, point: usize, lean: &Lean) -> bool {
+        let Some(step) = self.step_over.filter(|_| self.rule.contact == ContactRule::Plane) else { return true };
+        let at = &path.points()[point];
+        let normal = path.surface_normals().map_or(at.axis, |normals| normals[point]);
+        let (end, left) = (&self.rule.end, at.normal());
+        let aside = |at: &PathPoint| {
+            let contact = end.contact(&at.position, &at.axis, &normal);
+            contact.map_or(0.0, |contact| (contact - path.points()[point].position).dot(&left))
+        };
+        let shift = aside(&self.rule.leaned(at, Some(&normal), lean)) - aside(at);
+        lean.tilt == 0.0 || shift.abs() <= step / 2.0 + ROUNDING
+    }
+
+    /// Whether the tool axis may go from one lean to another between two points of an upright path, the second of which
+    /// is told: as far as the contact stays near its line between them, and as the axis of the path turns in any case.
+    pub fn allows_step(&self, path: &ToolPath, point: usize, leans: [&Lean; 2]) -> bool {
+        let at = [point - 1, point].map(|point| &path.points()[point]);
+        let [from, to] = [0, 1].map(|k| leans[k].axis(at[k]));
+        let turn = between(&from, &to);
+        if turn <= between(&at[0].axis, &at[1].axis) + ROUNDING {
+            return true;
+        }
+        let normal = |k: usize| path.surface_normals().map_or(at[k].axis, |normals| normals[point - 1 + k]);
+        let error = |k: usize| self.rule.error_between(&normal(k), [&from, &to]);
+        turn <= MOST_TURN + ROUNDING && error(0).max(error(1)) <= self.contact_tolerance * (1.0 + ROUNDING)
+    }
+
+    /// Steps to either side of the middle of lead and tilt, with which none is larger than the given ones.
+    pub fn half_counts(&self) -> [usize; 2] {
+        let half = |of: &dyn Fn(&LeanRange) -> Interval, step: f64| {
+            let reach = |range: Interval| {
+                let holds_zero = range.min <= 0.0 && range.max >= 0.0;
+                if holds_zero { range.max.max(-range.min) } else { (range.max - range.min) / 2.0 }
+            };
+            let most = self.ranges.iter().map(|range| reach(of(range))).fold(0.0, f64::max);
+            (most / step - ROUNDING).ceil().max(0.0) as usize
+        };
+        [half(&|range| range.lead, self.steps[0]), half(&|range| range.tilt, self.steps[1])]
+    }
+
+    /// Values of lead and tilt of a point, so many to either side of the middle: of zero, where it is in the range.
+    pub fn grid(&self, point: usize, half: [usize; 2]) -> Vec<Lean> {
+        let LeanRange { lead, tilt } = self.ranges[point];
+        let tilts = values(&tilt, half[1]);
+        values(&lead, half[0])
+            .into_iter()
+            .flat_map(|lead| tilts.iter().map(move |tilt| Lean { lead, tilt: *tilt }))
+            .collect()
+    }
+}
+
+/// Values of a range, `half` to either side of the middle.
+fn values(range: &Interval, half: usize) -> Vec<f64> {
+    let middle = if range.min <= 0.0 && range.max >= 0.0 { 0.0 } else { (range.min + range.max) / 2.0 };
+    let at = |k: usize| match k.cmp(&half) {
+        std::cmp::Ordering::Equal => middle,
+        std::cmp::Ordering::Less => middle + (range.min - middle) * ((half - k) as f64 / half as f64),
+        std::cmp::Ordering::Greater => middle + (range.max - middle) * ((k - half) as f64 / half as f64),
+    };
+    (0..=2 * half).map(at).collect()
+}

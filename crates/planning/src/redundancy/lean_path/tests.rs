@@ -1,0 +1,198 @@
+//! The plan over (beta, lead, tilt) against a reference: every pair of neighbouring states, with the limits asked one by
+//! one, and every state with the tool leaning there and nowhere else.
+
+use super::*;
+use crate::cell::Interval;
+use crate::lean::LeanRange;
+use crate::problem::ProblemParts;
+use crate::redundancy::joint_turns::is_allowed;
+use crate::testing::five_segments;
+use nalgebra::Vector3;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::sync::Arc;
+use stead_model::robot::angles::wrap;
+use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
+use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+
+const BALL: LeanRule = LeanRule {
+    end: CutterEnd { radius: 0.008, corner: 0.008 },
+    contact: ContactRule::Centre,
+    force: LeanForce::Feed,
+};
+
+fn range(lead: [f64; 2], tilt: [f64; 2]) -> LeanRange {
+    let of = |[min, max]: [f64; 2]| Interval { min: min.to_radians(), max: max.to_radians() };
+    LeanRange { lead: of(lead), tilt: of(tilt) }
+}
+
+/// A short curved path with few values of beta, drawn from a seed, and where its tool may lean.
+fn drawn(seed: u64) -> (Problem, Placement) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let (mut points, mut wrenches) = (Vec::new(), Vec::new());
+    let mut heading: f64 = random.random_range(-3.0..3.0);
+    let mut position = Vector3::new(0.1, 0.05, 0.02);
+    let axis = Vector3::new(random.random_range(-0.2..0.2), random.random_range(-0.2..0.2), 1.0).normalize();
+    for number in 0..7 {
+        let feed = Vector3::new(libm::cos(heading), libm::sin(heading), 0.0);
+        points.push((1, PathPoint { position, feed, axis }, number != 3));
+        let force = Vector3::from_fn(|_, _| random.random_range(-150.0..150.0));
+        let moment = Vector3::from_fn(|_, _| random.random_range(-2.0..2.0));
+        wrenches.push(Wrench { force, moment });
+        heading += random.random_range(-0.3..0.3);
+        position += feed * 0.012;
+    }
+    let task = Task::new(ToolPath::partly_scored(points).unwrap(), wrenches).unwrap();
+    let mut ranges = vec![range([-9.0, 12.0], [-8.0, 8.0]); 7];
+    ranges[3] = LeanRange::NONE;
+    ranges[5] = range([2.0, 9.0], [-8.0, 3.0]);
+    let space = LeanSpace {
+        rule: LeanRule { force: if seed % 2 == 0 { LeanForce::Feed } else { LeanForce::Tool }, ..BALL },
+        ranges,
+        max_lean: Some(11.0_f64.to_radians()),
+        steps: [6.0_f64.to_radians(), 4.0_f64.to_radians()],
+        step_over: None,
+        scallop: None,
+        contact_tolerance: random.random_range(1e-5..1e-4),
+    };
+    let mut parts: ProblemParts = five_segments().into_parts();
+    parts.task = task;
+    parts.redundancy.beta_count = 36;
+    parts.redundancy.max_beta_rate = Some(random.random_range(900.0..2500.0_f64).to_radians());
+    parts.redundancy.max_spindle_turn = (seed % 3 == 0).then_some(1800.0_f64.to_radians());
+    parts.lean = Some(Arc::new(space));
+    parts.constraints.min_inverse_condition = 0.17;
+    let cell = &parts.cell;
+    let within = |range: &Interval, share: f64| range.min + share * (range.max - range.min);
+    let mut share = || random.random_range(0.3..1.0);
+    let [x, y, z] = std::array::from_fn(|k| within(&cell.position[k], share()));
+    let placement = Placement { x, y, z, yaw: share() * 6.0 };
+    (parts.build().unwrap(), placement)
+}
+
+/// Real joints of the class modulo a turn: a step of joint 1 to 3 as it is, of the wrist by the short way.
+fn steps_hold(problem: &Problem, from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
+    (0..6).all(|j| {
+        let joint = &problem.robot.joints()[j];
+        let is_narrow = j < 3 && !stead_model::robot::turns::Range::of(joint).has_turns();
+        let step = if is_narrow { to[j] - from[j] } else { wrap(to[j] - from[j]) };
+        step.abs() <= limits[j] + 1e-9
+    })
+}
+
+/// The cheapest cost in one class, all states and all edges.
+fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Option<f64> {
+    let space = problem.lean.as_deref().unwrap();
+    let (half, path, limits) = (space.half_counts(), problem.task.path(), &problem.redundancy);
+    let posture = class.postures().into_iter().find(|posture| !posture.is_flipped()).unwrap();
+    let mut before: Vec<(f64, Lean, f64, [f64; 6])> = Vec::new();
+    for point in 0..7 {
+        let mut layer = Vec::new();
+        let mut seen = Vec::new();
+        for lean in space.grid(point, half) {
+            if seen.contains(&lean) || !space.ranges[point].contains(&lean) || lean.angle() > 11.0_f64.to_radians() {
+                continue;
+            }
+            seen.push(lean);
+            // The tool leans at this point alone.
+            let mut leans = vec![Lean::NONE; 7];
+            leans[point] = lean;
+            let set_up = problem.in_setup(&Setup { leans: leans.into(), ..Setup::default() });
+            for k in 0..limits.beta_count {
+                let beta = limits.beta(k);
+                let Ok(state) = set_up.at(placement).state(point, beta, posture) else { continue };
+                // Limits of the joints count joint by joint, in either flip of the wrist.
+                let flips: Vec<[f64; 6]> = class
+                    .postures()
+                    .into_iter()
+                    .map(|posture| set_up.at(placement).state(point, beta, posture).unwrap().joints)
+                    .collect();
+                let is_within = |j: usize| {
+                    let (min, max) = (problem.robot.joints()[j].min, problem.robot.joints()[j].max);
+                    let turns = |angle: f64| (-2..=2).map(move |k| angle + f64::from(k) * std::f64::consts::TAU);
+                    flips.iter().any(|flip| turns(flip[j]).any(|angle| angle >= min && angle <= max))
+                };
+                if !is_allowed(&set_up, &state) || !(0..6).all(is_within) {
+                    continue;
+                }
+                layer.push((set_up.point_cost(point, state.score()), lean, beta, state.joints));
+            }
+        }
+        for node in &mut layer {
+            if point == 0 {
+                continue;
+            }
+            let steps = problem.joint_steps(point);
+            let is_edge = |old: &&(f64, Lean, f64, [f64; 6])| {
+                let mut leans = vec![Lean::NONE; 7];
+                (leans[point - 1], leans[point]) = (old.1, node.1);
+                let set_up = problem.in_setup(&Setup { leans: leans.into(), ..Setup::default() });
+                let frames = [(point - 1, old.2), (point, node.2)]
+                    .map(|(point, beta)| set_up.at(placement).base_from_flange(point, beta).rotation);
+                let turned = stead_numerics::rotation::rotation_vector(&(frames[0].transpose() * frames[1])).norm();
+                let length = path.step_length(point);
+                let turns = limits.max_spindle_turn.is_none_or(|limit| turned <= (limit * length).min(1.5708) + 1e-9);
+                let rate = wrap(node.2 - old.2).abs() <= limits.max_beta_rate.unwrap() * length + 1e-9;
+                // A ball leaves its line by r d^2 / 6.
+                let axes = [0, 1].map(|k| set_up.task.points()[point - 1 + k].axis);
+                let d = libm::acos(axes[0].dot(&axes[1]).min(1.0));
+                let contact = d * d * 0.008 / 6.0 <= space.contact_tolerance && d <= 15.0_f64.to_radians() + 1e-9;
+                turns && rate && contact && steps_hold(problem, &old.3, &node.3, &steps)
+            };
+            let least = before.iter().filter(is_edge).map(|old| old.0).fold(f64::INFINITY, f64::min);
+            node.0 += least;
+        }
+        layer.retain(|node| node.0.is_finite());
+        before = layer;
+    }
+    before.iter().map(|node| node.0).reduce(f64::min)
+}
+
+#[test]
+fn the_cheapest_way_is_found_among_all_states_and_steps() {
+    let mut found = 0;
+    for seed in 0..20 {
+        let (problem, placement) = drawn(seed);
+        let grid = LeanGrid::new(&problem).unwrap();
+        let problems = grid.problems();
+        let planner = LeanPlanner::new(&grid, &problems);
+        let ways = planner.segment(&(0..7), &placement, &vec![StateSet::default(); problems.len()]).unwrap_or_default();
+        for class in PostureClass::ALL {
+            let (own, plain) = (ways.iter().find(|way| way.class == class), plain(&problem, &placement, class));
+            assert_eq!(own.is_some(), plain.is_some(), "seed {seed} {class:?}");
+            if let (Some(own), Some(plain)) = (own, plain) {
+                assert!((own.cost / plain - 1.0).abs() < 1e-9, "seed {seed} {class:?}: {} {plain}", own.cost);
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 25, "{found} ways");
+}
+
+/// A wider cone is never worse, and a tool that may not lean is as before.
+#[test]
+fn a_wider_cone_is_never_worse() {
+    let mut gains = 0;
+    for seed in 0..12 {
+        let (problem, placement) = drawn(seed);
+        let mut last: Option<f64> = None;
+        // Nested grids: twice the range in twice the steps.
+        for half in [0, 1, 2, 4] {
+            let mut space = (**problem.lean.as_ref().unwrap()).clone();
+            let reach = 3.0 * f64::from(half);
+            space.ranges = vec![range([-reach, reach], [-reach, reach]); 7];
+            (space.max_lean, space.steps) = (None, [3.0_f64.to_radians(); 2]);
+            let problem = problem.changed(|parts| parts.lean = Some(Arc::new(space))).unwrap();
+            let grid = LeanGrid::new(&problem).unwrap();
+            let problems = grid.problems();
+            let found = LeanPlanner::new(&grid, &problems).path(&placement).map(|path| path.objective);
+            if let Some(last) = last {
+                let found = found.expect("a wider cone has what a narrower one has");
+                assert!(found <= last * (1.0 + 1e-12), "seed {seed}: {found} {last}");
+                gains += usize::from(found < last * 0.99);
+            }
+            last = found.or(last);
+        }
+    }
+    assert!(gains > 10, "{gains}");
+}
