@@ -154,10 +154,10 @@ impl Run {
         Ok((self, placement))
     }
 
-    /// The run with the external axes where a given placement is best, unless they are set up already.
+    /// The run with external axes and leaning tool as a given placement is best, unless they are set up already.
     fn set_up_at(&self, placement: &Placement, monitor: &Monitor) -> Arc<stead_runs::Run> {
         let problem = &self.run.problem;
-        if self.is_set_up || problem.external_axes.is_empty() {
+        if self.is_set_up || (problem.external_axes.is_empty() && problem.lean.is_none()) {
             return Arc::clone(&self.run);
         }
         let problem = problem.in_setup(&setup_at(problem, placement, monitor)).into_owned();

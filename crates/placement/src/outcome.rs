@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 use stead_cell::Clearance;
 use stead_model::robot::Posture;
+use stead_model::task::lean::Lean;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
@@ -61,6 +62,8 @@ pub struct PlanPoint {
     pub by_origin: Option<ScoredByOrigin>,
     /// The pair of shapes with the least room; `None` without a scene, and where nothing is near.
     pub clearance: Option<Clearance>,
+    /// How the tool leans from the axis of the path, where it does along this plan.
+    pub lean: Option<Lean>,
 }
 
 /// How large the deflection is along a path, in each direction and altogether.
@@ -399,6 +402,28 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Of cases that no search came before.
+    pub(crate) fn of_cases(cases: Cases) -> Self {
+        Self {
+            cases,
+            tried_setups: Vec::new(),
+            lookup_summary: None,
+            path_levels: None,
+            convergence: Vec::new(),
+            refinements: Vec::new(),
+            maps: None,
+            sheet: None,
+            evaluations: 0,
+            states: 0,
+            interrupted: false,
+            sensitivity: None,
+            sets: Vec::new(),
+            set_basins: Vec::new(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
     /// Makes the deflection maps at the best and, where it was looked for, at the worst placement. A stop may leave
     /// them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {

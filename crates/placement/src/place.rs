@@ -2,7 +2,7 @@
 //!
 //! `searched` and `basins` are search and refinement, `plan` and `notes` what is stated of what they find, `infeasible`
 //! what blocks a placement that is refused. `long_path` and `long_refinement` do the same by subsets of a long path,
-//! `setups` and `axes` choose among orientations and positions of external axes, `sets` covers several stiffnesses, and
+//! `setups` and `axes` choose among orientations and positions of external axes, `lean` how the tool leans, `sets` covers several stiffnesses, and
 //! `calmer` tells whether a calmer plan costs little.
 
 use super::evaluator::Evaluator;
@@ -13,6 +13,7 @@ use super::search::SearchResult;
 use super::sensitivity::{objective_by_stiffness, objective_with_force_errors};
 use super::settings::SearchSettings;
 use basins::{best_alone, choose, leading, refine_basins};
+use lean::place_leaned;
 use notes::{cancellation, interruption};
 use plan::{StatedPlans, detailed, stated};
 use refined::Refined;
@@ -30,6 +31,7 @@ mod axes;
 mod basins;
 mod calmer;
 mod infeasible;
+mod lean;
 mod long_path;
 mod long_refinement;
 mod notes;
@@ -70,10 +72,12 @@ pub fn place(
     transfer: &TransferSettings,
     monitor: &Monitor,
 ) -> Result<Outcome, Infeasible> {
-    if problem.orientations.len() < 2 && problem.external_axes.is_empty() {
-        return place_as_set_up(problem, settings, transfer, monitor);
-    }
-    place_in_all(problem, settings, transfer, monitor)
+    let found = if problem.orientations.len() < 2 && problem.external_axes.is_empty() {
+        place_as_set_up(problem, settings, transfer, monitor)
+    } else {
+        place_in_all(problem, settings, transfer, monitor)
+    };
+    if problem.lean.is_some() { place_leaned(problem, settings, transfer, monitor, found) } else { found }
 }
 
 /// The job in the setup of the problem.

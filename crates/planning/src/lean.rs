@@ -145,7 +145,10 @@ impl LeanSpace {
                 return Err(LeanSpaceError::Nothing { point, what: "max_lean_deg is below the whole range" });
             }
             if !all.iter().any(|lean| self.allows(path, point, lean)) {
-                return Err(LeanSpaceError::Nothing { point, what: "scallop_mm or step_over_mm forbids the whole range" });
+                return Err(LeanSpaceError::Nothing {
+                    point,
+                    what: "scallop_mm or step_over_mm forbids the whole range",
+                });
             }
         }
         Ok(())

@@ -263,6 +263,7 @@ impl Grid {
             deviation: state.own.deviation,
             by_origin: None,
             clearance: None,
+            lean: None,
         }
     }
 }

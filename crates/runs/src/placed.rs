@@ -10,6 +10,7 @@ use stead_disk::input::{InputError, InputFile};
 use stead_disk::manifest::{self, Unlisted, interruption_note};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::angles::wrap;
+use stead_model::task::lean::Lean;
 use stead_planning::problem::Placement;
 use stead_planning::setup::{AxisPositions, Setup};
 
@@ -64,6 +65,15 @@ pub fn read_setup_of(folder: &Path, case: u8, run: &Run) -> Result<(Placement, S
             _ => None,
         });
         setup.positions = positions.ok_or_else(|| error("external_axes"))?;
+    }
+    if problem.lean.is_some() && !entry["leans_deg"].is_null() {
+        let lean = |row: &Value| match row.as_array()?.as_slice() {
+            [lead, tilt] => Some(Lean { lead: lead.as_f64()?.to_radians(), tilt: tilt.as_f64()?.to_radians() }),
+            _ => None,
+        };
+        let rows = entry["leans_deg"].as_array().and_then(|rows| rows.iter().map(lean).collect::<Option<Vec<Lean>>>());
+        let of_points = rows.filter(|rows| rows.len() == problem.task.points().len());
+        setup.leans = of_points.ok_or_else(|| error("leans_deg"))?.into();
     }
     let notes = interruption_note(&folder.join(SUMMARY)).into_iter().chain(changed);
     Ok((placement, setup, notes.collect()))

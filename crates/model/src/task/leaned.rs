@@ -88,10 +88,9 @@ impl Task {
 /// A wrench with the tip from where the path has it to where the tool that leans has it.
 fn carried(wrench: &Wrench, force: LeanForce, from: &PathPoint, to: &PathPoint) -> Wrench {
     match force {
-        LeanForce::Feed => Wrench {
-            force: wrench.force,
-            moment: wrench.moment + (from.position - to.position).cross(&wrench.force),
-        },
+        LeanForce::Feed => {
+            Wrench { force: wrench.force, moment: wrench.moment + (from.position - to.position).cross(&wrench.force) }
+        }
         LeanForce::Tool => {
             let turn = to.workpiece_from_point() * from.workpiece_from_point().transpose();
             Wrench { force: turn * wrench.force, moment: turn * wrench.moment }

@@ -84,7 +84,7 @@ fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Opti
 }
 
 /// The placement refined with the axes where they stand.
-fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) -> Option<Improved> {
+pub(super) fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) -> Option<Improved> {
     let is_long = problem.task.points().len() > MOST_REFINED;
     if problem.cell.pinned().is_some() || is_long || monitor.should_stop() {
         return None;
@@ -272,23 +272,31 @@ fn around(axis: &ExternalAxis, at: f64, width: f64) -> Vec<f64> {
     positions
 }
 
-/// The points on which the axis is planned: all, or on a dense path so few that axis and beta can take a step of their
-/// grids from one to the next; every segment keeps its ends.
+/// The points on which an axis is planned.
 fn stride(problem: &Problem, axis: &ExternalAxis) -> Vec<usize> {
     let grid = (axis.max - axis.min) / (PATH_GRID - 1) as f64;
+    kept_points(problem, usize::MAX, |time| grid / (axis.max_speed.unwrap_or(f64::INFINITY) * time))
+}
+
+/// Of a path at most so many points, or on a dense path so few that beta and what else is planned can take a step of
+/// their grids from one to the next; `steps` says how many points that takes, by the time from one to the next (s).
+/// Every segment keeps its ends.
+pub(super) fn kept_points(problem: &Problem, most: usize, steps_needed: impl Fn(f64) -> f64) -> Vec<usize> {
+    let count = problem.task.points().len();
+    let least = count.div_ceil(most.max(1)) as f64;
     let mut kept = Vec::new();
     for span in problem.task.segments() {
         let steps = span.len().saturating_sub(1).max(1) as f64;
         let time: f64 =
             span.clone().skip(1).map(|point| problem.step_time(point)).filter(|time| time.is_finite()).sum();
         let length: f64 = span.clone().skip(1).map(|point| problem.step_length(point)).sum();
-        let by_axis = grid / (axis.max_speed.unwrap_or(f64::INFINITY) * time / steps);
+        let by_axis = steps_needed(time / steps);
         let limits = &problem.redundancy;
         let by_length = [limits.max_beta_rate, limits.max_spindle_turn].into_iter().flatten().map(|rate| rate * length);
         let by_time = limits.max_spindle_speed.map(|speed| speed * time);
         let change = by_length.chain(by_time).fold(f64::INFINITY, f64::min) / steps;
         let by_beta = limits.beta_step() / change;
-        let wanted = by_axis.max(by_beta).ceil();
+        let wanted = by_axis.max(by_beta).max(least).ceil();
         let most = (span.len() / KEPT).max(1);
         let stride = if wanted.is_finite() { (wanted.max(1.0) as usize).min(most) } else { most };
         kept.extend(span.clone().step_by(stride));
@@ -301,7 +309,13 @@ fn stride(problem: &Problem, axis: &ExternalAxis) -> Vec<usize> {
 
 /// The positions of all axes at every point, those of one of them in proportion to the time between the points where it
 /// is known.
-fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, kept: &[usize], found: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn between(
+    problem: &Problem,
+    rows: &[Vec<f64>],
+    number: usize,
+    kept: &[usize],
+    found: &[f64],
+) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     for (pair, positions) in kept.windows(2).zip(found.windows(2)) {
         let (first, last) = (pair[0], pair[1]);

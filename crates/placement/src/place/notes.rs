@@ -3,6 +3,7 @@
 use super::calmer::{calmer, swing};
 use crate::outcome::{Cycle, Plan};
 use stead_model::plausibility;
+use stead_model::task::lean::{Lean, LeanForce};
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
@@ -57,6 +58,59 @@ fn weight(problem: &Problem, plan: &Plan) -> Option<String> {
 /// A note that there is no worst placement to compare with.
 pub(super) fn best_alone() -> String {
     "the worst placement was not looked for: there is nothing to compare the best one with".to_owned()
+}
+
+/// Notes on a tool that leans: by how much, what it gains, and what was not looked at.
+pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_worst: bool) -> Vec<String> {
+    let Some(space) = &problem.lean else { return Vec::new() };
+    let mm = |value: f64| figures(value * 1e3);
+    let mut notes = vec![match (problem.task.path().leans(), upright) {
+        (None, _) => "the tool may lean, and the best plan found keeps to the axis of the path".to_owned(),
+        (Some(leans), upright) => {
+            let ends = |of: &dyn Fn(&Lean) -> f64| {
+                let all = || leans.iter().map(|lean| of(lean).to_degrees());
+                let (least, most) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+                format!("{least:.1} to {most:.1} deg")
+            };
+            let [lead, tilt, lean] = [ends(&|lean| lean.lead), ends(&|lean| lean.tilt), ends(&Lean::angle)];
+            let gain = match upright {
+                Some(upright) => {
+                    format!("{} mm in place of {} mm, the best with the axis of the path", mm(leaned), mm(upright))
+                }
+                None => format!("{} mm; with the axis of the path no placement that was tried has a plan", mm(leaned)),
+            };
+            format!("the tool leans from the axis of the path by {lean} (lead {lead}, tilt {tilt}): {gain}")
+        }
+    }];
+    if problem.task.path().leans().is_some() {
+        let most = problem.task.path().leans().into_iter().flatten().map(Lean::angle).fold(0.0, f64::max);
+        let other = 2.0 * libm::sin(most / 2.0) * 100.0;
+        notes.push(match space.rule.force {
+            LeanForce::Feed => format!(
+                "forces keep the directions of feed and wall however the tool leans (lean.force = \"feed\"); if they turned with the tool \
+                 they would differ by up to {other:.0} %"
+            ),
+            LeanForce::Tool => format!(
+                "forces turn with the tool (lean.force = \"tool\"); if they kept the directions of feed and wall they would differ by up to \
+                 {other:.0} %"
+            ),
+        });
+    }
+    let worst = if has_worst {
+        "; the worst placement is the worst with the axis of the path, with the tool leaning as well as it can there"
+    } else {
+        ""
+    };
+    notes.push(format!(
+        "lead and tilt are planned at placements that are good with the axis of the path, and refined by turns with the placement: \
+         a place that is good only with a leaning tool may have been missed{worst}"
+    ));
+    notes
+}
+
+/// Whether a warning is one of [`moves`].
+pub(super) fn is_of_moves(warning: &Warning) -> bool {
+    ["blocked-move", "short-line", "unfollowed-move"].contains(&warning.kind)
 }
 
 /// A note that the arm does not hold the programmed feed.

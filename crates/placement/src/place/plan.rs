@@ -120,6 +120,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 deviation: s.own.deviation,
                 by_origin: problem.yields_beside().then(|| scored_by_origin(problem, point, placement, &s.joints)),
                 clearance: problem.state_clearance(point, placement, &plan.joints[place]),
+                lean: problem.task.path().leans().map(|leans| leans[point]),
             });
         }
     }

@@ -5,6 +5,7 @@
 
 use super::axes::{GRID, improved};
 use super::infeasible::Infeasible;
+use super::lean::leaned_at;
 use super::refined::Refined;
 use super::{notes, place_as_set_up, stated_cases};
 use crate::outcome::{Case, Outcome};
@@ -168,7 +169,7 @@ impl Job<'_> {
 }
 
 /// The setup in which a given placement is best, the part as it lies in the problem's: each axis first on a grid over
-/// its range, then improved. The problem's own where no position that is tried has a plan.
+/// its range, then improved; then the tool leans where it may. The problem's own where no position that is tried has a plan.
 pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Setup {
     let pinned = problem.without_tie_rule().in_cell(Cell::at(placement));
     let at = |setup: &Setup| {
@@ -194,8 +195,10 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
             }
         }
     }
-    let (setup, Some(start)) = best else { return problem.setup.clone() };
-    improved(&pinned.in_setup(&setup), &start, monitor).map_or(setup, |found| found.setup)
+    let (setup, start) = best;
+    let set_up = pinned.in_setup(&setup);
+    let setup = start.and_then(|start| improved(&set_up, &start, monitor)).map_or(setup, |found| found.setup);
+    leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
 }
 
 /// The plans of a case, segment by segment.

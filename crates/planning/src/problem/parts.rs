@@ -115,7 +115,9 @@ pub enum ProblemError {
         max: f64,
     },
     /// Leans for another number of points, or where the tool may not lean.
-    #[error("the setup leans the tool at {found} points; allowed: {expected}, as many as the task has where it may lean")]
+    #[error(
+        "the setup leans the tool at {found} points; allowed: {expected}, as many as the task has where it may lean"
+    )]
     Leans {
         /// Leans.
         found: usize,
@@ -230,7 +232,8 @@ impl Problem {
     /// The same problem on some points of its path alone, ascending, with what they stand for.
     pub fn on_points(&self, kept: &[KeptPoint]) -> Self {
         let points: Vec<usize> = kept.iter().map(|kept| kept.point).collect();
-        let leans = if self.setup.leans.is_empty() { [].into() } else { points.iter().map(|p| self.setup.leans[*p]).collect() };
+        let leans =
+            if self.setup.leans.is_empty() { [].into() } else { points.iter().map(|p| self.setup.leans[*p]).collect() };
         let setup = Setup { positions: self.setup.positions.of_points(&points), leans, ..self.setup };
         let lean = self.lean.as_ref().map(|space| Arc::new(space.on_points(&points)));
         Self { parts: ProblemParts { task: self.task.thinned(kept), setup, lean, ..self.parts.clone() } }

@@ -141,10 +141,8 @@ impl<'a> LeanPlanner<'a> {
     /// Prepares the planning of the [problems](LeanGrid::problems) of a grid.
     pub fn new(grid: &'a LeanGrid<'a>, problems: &'a [Problem]) -> Self {
         let resolution = if grid.problem.task.path().is_thinned() { Resolution::Subset } else { Resolution::Search };
-        let planners: Vec<SegmentPlanner<'a>> = problems
-            .par_iter()
-            .map(|problem| SegmentPlanner::new(problem, problem.redundancy, resolution))
-            .collect();
+        let planners: Vec<SegmentPlanner<'a>> =
+            problems.par_iter().map(|problem| SegmentPlanner::new(problem, problem.redundancy, resolution)).collect();
         let starts: Vec<usize> = grid.problem.task.segments().iter().map(|span| span.start).collect();
         let count = grid.problem.task.points().len();
         let before: Vec<Vec<Vec<Before>>> = (0..count)
@@ -229,9 +227,8 @@ impl<'a> LeanPlanner<'a> {
         let (number, beta_count) = (self.planners.len(), self.grid.problem.redundancy.beta_count);
         let flips = self.planners[0].evaluators[evaluator].flips();
         let rules = &self.grid.problem.postures;
-        let classes = PostureClass::ALL.map(|class| {
-            Posture::ALL.iter().any(|p| p.class() == class && flips.contains(*p) && rules.allows(*p))
-        });
+        let classes = PostureClass::ALL
+            .map(|class| Posture::ALL.iter().any(|p| p.class() == class && flips.contains(*p) && rules.allows(*p)));
         let mut links = vec![Link::default(); span.len() * 4 * number * beta_count];
         let mut before = vec![StateGrid::new(beta_count, self.pad); number];
         let mut now = before.clone();

@@ -30,8 +30,8 @@ mod grid;
 mod joint_turns;
 mod knots;
 mod layered;
-mod obstruction;
 pub mod lean_path;
+mod obstruction;
 pub mod off_grid;
 mod rate_limit;
 #[cfg(test)]

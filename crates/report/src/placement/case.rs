@@ -212,6 +212,10 @@ records! {
         score_mm: DeflectionMm = point.score.into(),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
         #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+        /// Lead of the tool from the axis of the path, where it leans.
+        #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
+        /// Its tilt.
+        #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
     }
 
     /// A move between two segments.

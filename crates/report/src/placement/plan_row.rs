@@ -68,6 +68,10 @@ records! {
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
         #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
         #[serde(flatten)] origins: Option<OriginColumns> = point.by_origin.as_ref().map(|origins| OriginColumns::of(Some(origins))),
+        /// Lead of the tool from the axis of the path, above 0 with the spindle ahead of the tip; where it leans.
+        #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
+        /// Its tilt, above 0 with the spindle to the left of the feed.
+        #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
         #[serde(flatten)] axes: AxisColumns = at_point(&plan.axes, point.point),
         #[serde(flatten)] clearance: Option<ClearanceColumns> =
             scene.map(|scene: &Scene| ClearanceColumns::of(scene, point)),

@@ -84,13 +84,15 @@ fn one_position(axis: &AxisPath) -> Option<f64> {
 }
 
 records! {
-    /// How part and external axes are set up; empty where a run has neither orientations nor axes.
+    /// How part and external axes are set up; empty where a run has neither orientations nor axes, and
+    /// no tool that leans.
     pub struct SetupFigures of (orientation: Option<&String>, setup: &Setup, axes: &[AxisPath]) {
         let exact = |position: f64, kind: AxisKind| match kind {
             AxisKind::Rail => position * 1e3,
             AxisKind::Turntable => position.to_degrees(),
         };
         let row = |row: &Vec<f64>| row.iter().zip(axes).map(|(at, axis)| exact(*at, axis.kind)).collect::<Vec<f64>>();
+        let leans = || setup.leans.iter().map(|lean| [lean.lead, lean.tilt].map(f64::to_degrees)).collect();
         let external_axes = || {
             let (for_each, positions) = match &setup.positions {
                 AxisPositions::Same(one) => ("path", vec![row(one)]),
@@ -105,6 +107,9 @@ records! {
         /// External axes and their positions.
         #[serde(skip_serializing_if = "Option::is_none")]
         external_axes: Option<ExternalAxisFigures> = (!axes.is_empty()).then(external_axes),
+        /// Lead and tilt of the tool from the axis of the path at every point with every digit, where it leans.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        leans_deg: Option<Vec<[f64; 2]>> = (!setup.leans.is_empty()).then(leans),
     }
 }
 

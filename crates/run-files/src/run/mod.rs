@@ -4,6 +4,7 @@ mod certificate;
 mod criterion;
 mod external_axes;
 mod forces;
+pub mod lean;
 mod notes;
 mod orientations;
 mod output;
@@ -35,6 +36,7 @@ use crate::stated::stated;
 use criterion::ReadSets;
 use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
+use lean::LeanTable;
 use notes::{direction_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
@@ -90,6 +92,8 @@ pub struct RunFile {
     /// Rails and turntables that carry the robot or the workpiece, those that carry the same thing on each other in
     /// their order.
     pub external_axis: Option<Vec<ExternalAxisTable>>,
+    /// How far the tool may lean from the axis of the task.
+    pub lean: Option<LeanTable>,
     /// What a placement has to keep to.
     pub constraints: ConstraintsTable,
     /// By what a placement is scored.
@@ -288,6 +292,13 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let segment_moves = transfer_table.segment_moves(&robot, &spindle, scene.as_deref(), task.path(), tool, tool_at)?;
     let orientations = run.cell.orientations(&task, &at.key("cell"))?;
     let task = orientations.first().map_or(task, |first| (*first.task).clone());
+    let lean = match &run.lean {
+        Some(table) => Some(table.space(&task, tool, redundancy.beta_count, &at.key("lean"))?),
+        None => None,
+    };
+    let has_computed_forces = removal.is_some() || run.cut.is_some();
+    notes.extend(run.lean.iter().zip(&lean).flat_map(|(table, space)| table.notes(space, has_computed_forces)));
+    let lean = lean.filter(|space| !space.is_closed());
     let parts = ProblemParts {
         robot,
         spindle,
@@ -300,6 +311,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         scene,
         segment_moves,
         orientations,
+        lean,
         setup: Setup::at_rest(&external_axes),
         external_axes,
     };

@@ -7,6 +7,7 @@ use stead_disk::input::csv_table::{CsvTable, Row, try_each};
 use stead_disk::quote::shorten;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::Posture;
+use stead_model::task::lean::Lean;
 use stead_planning::problem::Problem;
 
 /// One row of a plan, in SI units and radians.
@@ -28,6 +29,8 @@ pub struct PlanRow {
     pub deflection: Option<Vector3<f64>>,
     /// Positions of the external axes of the run. m or rad
     pub axes: Vec<f64>,
+    /// How the tool leans, where the file says so.
+    pub lean: Option<Lean>,
 }
 
 /// Where the columns are that a row is read from.
@@ -41,12 +44,14 @@ struct Columns {
     force: [usize; 3],
     deflection: Option<[usize; 3]>,
     axes: Vec<(usize, AxisKind)>,
+    lean: Option<[usize; 2]>,
 }
 
 pub(super) const POSITION: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 pub(super) const JOINTS: [&str; 6] =
     ["theta1_deg", "theta2_deg", "theta3_deg", "theta4_deg", "theta5_deg", "theta6_deg"];
 pub(super) const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
+const LEAN: [&str; 2] = ["lead_deg", "tilt_deg"];
 const DEFLECTION: [&str; 3] = ["deflection_x_mm", "deflection_y_mm", "deflection_z_mm"];
 
 /// Reads the rows of a plan for the tool path of a problem; columns that are not needed are passed over.
@@ -123,6 +128,7 @@ fn columns(table: &CsvTable<'_>, axes: &[ExternalAxis]) -> Result<Columns, Input
         force: three(FORCE)?,
         deflection: if has_deflection { Some(three(DEFLECTION)?) } else { None },
         axes,
+        lean: if LEAN.iter().any(|name| table.column(name).is_some()) { Some(try_each(LEAN, column)?) } else { None },
     })
 }
 
@@ -148,6 +154,12 @@ fn plan_row(row: &Row<'_>, columns: &Columns) -> Result<PlanRow, InputError> {
         posture: posture.ok_or_else(|| row.fail(columns.posture, "not a posture", "a whole number from 1 to 8"))?,
         joints,
         force: row.vector(columns.force)?,
+        lean: match columns.lean {
+            Some([lead, tilt]) => {
+                Some(Lean { lead: row.number(lead)?.to_radians(), tilt: row.number(tilt)?.to_radians() })
+            }
+            None => None,
+        },
         deflection: columns.deflection.map(|columns| row.vector(columns).map(|mm| mm / 1e3)).transpose()?,
     })
 }

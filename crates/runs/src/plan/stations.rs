@@ -8,10 +8,12 @@
 use super::rows::{FORCE, JOINTS, POSITION, PlanRow};
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
+use std::sync::Arc;
 use stead_calibration::compensation::PathPoint;
 use stead_disk::input::InputError;
 use stead_model::robot::{Frames, Pose, angles::wrap, point_from_tool};
 use stead_model::stiffness::whole::{WholeArm, of_part};
+use stead_model::task::lean::Lean;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::{AxisPositions, Setup};
 
@@ -57,8 +59,11 @@ pub fn set_up(file: &Path, rows: &[PlanRow], problem: &Problem) -> Result<Placed
         [] => problem.setup.positions.clone(),
         _ => AxisPositions::PerPoint(rows.iter().map(|row| row.axes.clone()).collect()),
     };
+    // A run whose tool may not lean is that of another plan, which its positions will tell.
+    let leans = rows.iter().map(|row| row.lean.filter(|_| problem.lean.is_some())).collect::<Option<Vec<_>>>();
+    let leans: Arc<[Lean]> = leans.unwrap_or_default().into();
     let in_orientation = |orientation: usize| {
-        let setup = Setup { orientation, positions: positions.clone() };
+        let setup = Setup { orientation, positions: positions.clone(), leans: Arc::clone(&leans) };
         placed(file, rows, &problem.in_setup(&setup))
     };
     let own = problem.setup.orientation;
@@ -197,7 +202,7 @@ fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow
         moment: base_from_workpiece.rotation * wrench.moment,
         of_part: displacement_of_part(problem, point, &base_from_workpiece.rotation, &force),
         free_fall: problem.free_fall(point),
-        normal: base_from_workpiece.rotation * path_point.normal(),
+        normal: base_from_workpiece.rotation * problem.task.path().scored_axes(point).column(1),
     }
 }
 

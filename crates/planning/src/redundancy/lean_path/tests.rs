@@ -7,7 +7,7 @@ use crate::lean::LeanRange;
 use crate::problem::ProblemParts;
 use crate::redundancy::joint_turns::is_allowed;
 use crate::testing::five_segments;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
@@ -15,11 +15,8 @@ use stead_model::robot::angles::wrap;
 use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 
-const BALL: LeanRule = LeanRule {
-    end: CutterEnd { radius: 0.008, corner: 0.008 },
-    contact: ContactRule::Centre,
-    force: LeanForce::Feed,
-};
+const BALL: LeanRule =
+    LeanRule { end: CutterEnd { radius: 0.008, corner: 0.008 }, contact: ContactRule::Centre, force: LeanForce::Feed };
 
 fn range(lead: [f64; 2], tilt: [f64; 2]) -> LeanRange {
     let of = |[min, max]: [f64; 2]| Interval { min: min.to_radians(), max: max.to_radians() };
@@ -80,12 +77,21 @@ fn steps_hold(problem: &Problem, from: &[f64; 6], to: &[f64; 6], limits: &[f64; 
     })
 }
 
+/// A state with the tool leaning at its point.
+struct Node {
+    cost: f64,
+    beta: f64,
+    joints: [f64; 6],
+    axis: Vector3<f64>,
+    flange: Matrix3<f64>,
+}
+
 /// The cheapest cost in one class, all states and all edges.
 fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Option<f64> {
     let space = problem.lean.as_deref().unwrap();
     let (half, path, limits) = (space.half_counts(), problem.task.path(), &problem.redundancy);
     let posture = class.postures().into_iter().find(|posture| !posture.is_flipped()).unwrap();
-    let mut before: Vec<(f64, Lean, f64, [f64; 6])> = Vec::new();
+    let mut before: Vec<Node> = Vec::new();
     for point in 0..7 {
         let mut layer = Vec::new();
         let mut seen = Vec::new();
@@ -115,7 +121,13 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
                 if !is_allowed(&set_up, &state) || !(0..6).all(is_within) {
                     continue;
                 }
-                layer.push((set_up.point_cost(point, state.score()), lean, beta, state.joints));
+                layer.push(Node {
+                    cost: set_up.point_cost(point, state.score()),
+                    beta,
+                    joints: state.joints,
+                    axis: set_up.task.points()[point].axis,
+                    flange: set_up.at(placement).base_from_flange(point, beta).rotation,
+                });
             }
         }
         for node in &mut layer {
@@ -123,29 +135,23 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
                 continue;
             }
             let steps = problem.joint_steps(point);
-            let is_edge = |old: &&(f64, Lean, f64, [f64; 6])| {
-                let mut leans = vec![Lean::NONE; 7];
-                (leans[point - 1], leans[point]) = (old.1, node.1);
-                let set_up = problem.in_setup(&Setup { leans: leans.into(), ..Setup::default() });
-                let frames = [(point - 1, old.2), (point, node.2)]
-                    .map(|(point, beta)| set_up.at(placement).base_from_flange(point, beta).rotation);
-                let turned = stead_numerics::rotation::rotation_vector(&(frames[0].transpose() * frames[1])).norm();
+            let is_edge = |old: &&Node| {
+                let turned = stead_numerics::rotation::rotation_vector(&(old.flange.transpose() * node.flange)).norm();
                 let length = path.step_length(point);
                 let turns = limits.max_spindle_turn.is_none_or(|limit| turned <= (limit * length).min(1.5708) + 1e-9);
-                let rate = wrap(node.2 - old.2).abs() <= limits.max_beta_rate.unwrap() * length + 1e-9;
+                let rate = wrap(node.beta - old.beta).abs() <= limits.max_beta_rate.unwrap() * length + 1e-9;
                 // A ball leaves its line by r d^2 / 6.
-                let axes = [0, 1].map(|k| set_up.task.points()[point - 1 + k].axis);
-                let d = libm::acos(axes[0].dot(&axes[1]).min(1.0));
+                let d = libm::acos(old.axis.dot(&node.axis).min(1.0));
                 let contact = d * d * 0.008 / 6.0 <= space.contact_tolerance && d <= 15.0_f64.to_radians() + 1e-9;
-                turns && rate && contact && steps_hold(problem, &old.3, &node.3, &steps)
+                rate && contact && turns && steps_hold(problem, &old.joints, &node.joints, &steps)
             };
-            let least = before.iter().filter(is_edge).map(|old| old.0).fold(f64::INFINITY, f64::min);
-            node.0 += least;
+            let least = before.iter().filter(is_edge).map(|old| old.cost).fold(f64::INFINITY, f64::min);
+            node.cost += least;
         }
-        layer.retain(|node| node.0.is_finite());
+        layer.retain(|node| node.cost.is_finite());
         before = layer;
     }
-    before.iter().map(|node| node.0).reduce(f64::min)
+    before.iter().map(|node| node.cost).reduce(f64::min)
 }
 
 #[test]

@@ -1,0 +1,274 @@
+//! How the tool leans along the path, at placements that are promising.
+//!
+//! The search knows the axis of the path alone. From the best placements that it finds, or where it finds none from
+//! placements drawn over the cell, lead and tilt are planned together with beta
+//! ([`LeanPlanner`](stead_planning::redundancy::lean_path::LeanPlanner)), first over their whole ranges, then off that
+//! grid; the placement is refined with the tool leaning so, and lead and tilt are planned anew, by turns. A step is only
+//! taken to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
+
+use super::axes::{Improved, between, kept_points, refined};
+use super::infeasible::Infeasible;
+use super::refined::Refined;
+use super::{notes, stated_cases};
+use crate::outcome::{Case, Cases, Outcome, left_out};
+use crate::path_subset::PathSubset;
+use crate::refine::planned;
+use crate::settings::SearchSettings;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use stead_model::robot::angles::wrap;
+use stead_model::task::lean::Lean;
+use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::lean::LeanSpace;
+use stead_planning::problem::{Interval, Placement, Problem};
+use stead_planning::redundancy::Planner;
+use stead_planning::redundancy::lean_path::{LeanGrid, LeanPath, LeanPlanner};
+use stead_planning::sense::Sense;
+use stead_planning::setup::Setup;
+use stead_planning::transfer::TransferSettings;
+
+/// Placements from which the tool is led along the path.
+const STARTS: usize = 4;
+/// Two of them are no nearer than this in one coordinate (m, rad).
+const APART: [f64; 2] = [0.05, 0.2];
+/// Rounds of leans and placement.
+const ROUNDS: usize = 4;
+/// A round that gains less (relative) is the last.
+const GAIN: f64 = 1e-4;
+/// How often the steps of lead and tilt are halved.
+const HALVINGS: usize = 6;
+/// Steps to either side in a halving.
+const NEAR: i32 = 1;
+/// Points on which lead and tilt are planned, at the most.
+const MOST_POINTS: usize = 400;
+/// Placements drawn where none has a plan with the axis of the path, and the points on which they are told apart.
+const DRAWN: (usize, usize) = (48, 60);
+
+/// What is leaned.
+struct Job<'a> {
+    problem: &'a Problem,
+    space: &'a LeanSpace,
+    monitor: &'a Monitor,
+}
+
+/// How the tool leans best at a placement, with the plan; none where no lean that was tried has one.
+pub(super) fn leaned_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<Improved> {
+    let space = problem.lean.as_deref()?;
+    Job { problem, space, monitor }.at(&problem.setup, placement, None)
+}
+
+impl Job<'_> {
+    /// The plan with the tool leaning so.
+    fn planned(&self, setup: &Setup, placement: &Placement, leans: Vec<Lean>) -> Option<Improved> {
+        let setup = Setup { leans: leans.into(), ..setup.clone() };
+        let set_up = self.problem.in_setup(&setup);
+        let planner = Planner::finer(&set_up);
+        let solution = planned(&planner, placement, None, &mut planner.workspace())?;
+        Some(Improved { setup, solution })
+    }
+
+    /// The upright plan, where the axis of the path is allowed everywhere.
+    fn upright(&self, setup: &Setup, placement: &Placement) -> Option<Improved> {
+        let is_allowed = self.space.holds_path(self.problem.task.upright().path());
+        is_allowed.then(|| self.planned(setup, placement, Vec::new()))?
+    }
+
+    /// The best lean at a placement, in the setup given but for its leans, no worse than what is known there.
+    fn at(&self, setup: &Setup, placement: &Placement, known: Option<Improved>) -> Option<Improved> {
+        let mut best = known.or_else(|| self.upright(setup, placement));
+        let upright = self.problem.in_setup(&Setup { leans: [].into(), ..setup.clone() });
+        let step = self.space.steps[0].max(self.space.steps[1]);
+        let kept =
+            kept_points(&upright, MOST_POINTS, |time| slowest(&upright).map_or(0.0, |speed| step / (speed * time)));
+        let thinned =
+            (kept.len() < upright.task.points().len()).then(|| PathSubset::of_points(kept.clone()).of(&upright));
+        let coarse = thinned.as_ref().unwrap_or(&upright);
+        let of_grid = |grid: LeanGrid<'_>| -> Option<LeanPath> {
+            let problems = grid.problems();
+            LeanPlanner::new(&grid, &problems).path(placement)
+        };
+        let mut way = LeanGrid::new(coarse).and_then(of_grid).map(|path| path.leans);
+        let mut steps = self.space.steps;
+        for _ in 0..=HALVINGS {
+            let Some(leans) = way.take().filter(|_| best.is_none() || !self.monitor.should_stop()) else { break };
+            let candidate = self.planned(setup, placement, self.spread(&upright, &kept, &leans));
+            if let Some(candidate) = candidate
+                && best.as_ref().is_none_or(|best| candidate.solution.objective < best.solution.objective)
+            {
+                best = Some(candidate);
+            }
+            steps = steps.map(|step| step / 2.0);
+            way = LeanGrid::near(coarse, &leans, steps, NEAR).and_then(of_grid).map(|path| path.leans);
+        }
+        best
+    }
+
+    /// Leans at every point, from those at some of them.
+    fn spread(&self, upright: &Problem, kept: &[usize], leans: &[Lean]) -> Vec<Lean> {
+        let path = upright.task.path();
+        let mut rows = vec![vec![0.0; 2]; path.points().len()];
+        for (number, values) in
+            [leans.iter().map(|lean| lean.lead).collect(), leans.iter().map(|lean| lean.tilt).collect()]
+                .into_iter()
+                .enumerate()
+        {
+            let values: Vec<f64> = values;
+            rows = between(upright, &rows, number, kept, &values);
+        }
+        let lean = |(point, row): (usize, Vec<f64>)| {
+            let lean = self.space.ranges[point].nearest(&Lean { lead: row[0], tilt: row[1] });
+            if self.space.allows(path, point, &lean) { lean } else { self.space.ranges[point].nearest(&Lean::NONE) }
+        };
+        rows.into_iter().enumerate().map(lean).collect()
+    }
+
+    /// Leans and placement by turns, from a placement.
+    fn improved(&self, setup: &Setup, placement: &Placement) -> Option<Improved> {
+        let mut best = self.at(setup, placement, None)?;
+        for _ in 0..ROUNDS {
+            let before = best.solution.objective;
+            if self.monitor.should_stop() {
+                break;
+            }
+            let Some(moved) = refined(self.problem, &best, self.monitor) else { break };
+            let placement = moved.solution.placement;
+            best = self.at(&moved.setup.clone(), &placement, Some(moved)).unwrap_or(best);
+            if before - best.solution.objective < GAIN * before {
+                break;
+            }
+        }
+        Some(best)
+    }
+
+    /// The best placements with the axis of the path, each with its setup, or drawn ones where there are none.
+    fn starts(&self, closed: Result<&Outcome, &Infeasible>, seed: u64) -> Vec<(Setup, Placement)> {
+        let Ok(outcome) = closed else { return self.drawn(seed) };
+        let best = &outcome.cases.best;
+        let mut starts = vec![(best.setup.clone(), best.placement)];
+        let mut others: Vec<_> = outcome.refinements.iter().filter(|one| one.sense == Sense::Min).collect();
+        others.sort_by(|a, b| a.end_mean.total_cmp(&b.end_mean));
+        for other in others {
+            if starts.len() < STARTS && starts.iter().all(|start| is_apart(&start.1, &other.end)) {
+                starts.push((best.setup.clone(), other.end));
+            }
+        }
+        starts
+    }
+
+    /// Of placements drawn over the cell those with the best ways on some points of the path.
+    fn drawn(&self, seed: u64) -> Vec<(Setup, Placement)> {
+        let setup = Setup { leans: [].into(), ..self.problem.setup.clone() };
+        let upright = self.problem.in_setup(&setup);
+        let coarse = PathSubset::new(&upright.task, DRAWN.1).of(&upright);
+        let Some(grid) = LeanGrid::new(&coarse) else { return Vec::new() };
+        let problems = grid.problems();
+        let planner = LeanPlanner::new(&grid, &problems);
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut found: Vec<(f64, Placement)> = Vec::new();
+        for number in 0..DRAWN.0 {
+            let within = |ends: &Interval, share: f64| ends.min + (ends.max - ends.min) * share;
+            let [x, y, z] =
+                std::array::from_fn(|k| within(&self.problem.cell.position[k], random.random_range(0.0..1.0)));
+            let placement = Placement { x, y, z, yaw: within(&self.problem.cell.yaw, random.random_range(0.0..1.0)) };
+            if self.monitor.should_stop() {
+                break;
+            }
+            self.monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: DRAWN.0 });
+            found.extend(planner.path(&placement).map(|path| (path.objective, placement)));
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.truncate(STARTS);
+        found.into_iter().map(|(_, placement)| (setup.clone(), placement)).collect()
+    }
+}
+
+/// Whether two placements are apart in some coordinate.
+fn is_apart(a: &Placement, b: &Placement) -> bool {
+    let shift = [a.x - b.x, a.y - b.y, a.z - b.z];
+    shift.iter().any(|by| by.abs() > APART[0]) || wrap(a.yaw - b.yaw).abs() > APART[1]
+}
+
+/// The speed of the slowest joint, where one is known. rad/s
+fn slowest(problem: &Problem) -> Option<f64> {
+    problem.robot.joints().iter().filter_map(|joint| joint.max_speed).reduce(f64::min)
+}
+
+/// The best and the worst placement where the tool may lean, from what was found with the axis of the path.
+///
+/// # Errors
+/// [`Infeasible`] where no placement that was tried has a plan.
+pub(super) fn place_leaned(
+    problem: &Problem,
+    settings: &SearchSettings,
+    transfer: &TransferSettings,
+    monitor: &Monitor,
+    closed: Result<Outcome, Infeasible>,
+) -> Result<Outcome, Infeasible> {
+    let Some(space) = problem.lean.as_deref() else { return closed };
+    let without_tie_rule = problem.without_tie_rule();
+    let job = Job { problem: &without_tie_rule, space, monitor };
+    let starts = job.starts(closed.as_ref(), settings.seed);
+    let mut best: Option<Improved> = None;
+    for (number, (setup, placement)) in starts.iter().enumerate() {
+        if best.is_some() && monitor.should_stop() {
+            break;
+        }
+        monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: starts.len() });
+        let found = job.improved(setup, placement);
+        let known = best.as_ref().map_or(f64::INFINITY, |best| best.solution.objective);
+        best = found.filter(|found| found.solution.objective < known).or(best);
+    }
+    let Some(best) = best else {
+        return Err(closed.err().unwrap_or_else(|| Infeasible {
+            placement: starts[0].1,
+            searched: true,
+            findings: Vec::new(),
+            collisions: Vec::new(),
+            interrupted: monitor.should_stop(),
+        }));
+    };
+    let cases = |found: Improved, sense: Sense| {
+        let set_up = problem.in_setup(&found.setup);
+        let without_tie_rule = set_up.without_tie_rule();
+        let refined = Refined { solution: found.solution, scheme: None };
+        stated_cases(&set_up, &Planner::finer(&without_tie_rule), transfer, sense, &refined, monitor)
+    };
+    let of_best = cases(best, Sense::Min);
+    let upright = closed.as_ref().ok().map(|outcome| outcome.cases.best.plan.objective);
+    // The worst placement is the one with the axis of the path, with the tool leaning as well as it can there.
+    let worst = closed.as_ref().ok().and_then(|outcome| outcome.cases.worst.as_ref()).map(|worst| {
+        let known = &worst.best;
+        let found = (!monitor.should_stop()).then(|| job.at(&known.setup, &known.placement, None)).flatten();
+        found.map_or_else(|| worst.clone(), |found| cases(found, Sense::Max))
+    });
+    let mut outcome = match closed {
+        Ok(outcome) => outcome,
+        Err(_) => {
+            Outcome::of_cases(Cases { best: of_best.best.clone(), best_worst_plan: of_best.worst.clone(), worst: None })
+        }
+    };
+    outcome.cases = Cases { best: of_best.best, best_worst_plan: of_best.worst, worst };
+    let set_up = problem.in_setup(&outcome.cases.best.setup);
+    let Case { placement, plan, cycle, .. } = &outcome.cases.best;
+    let mut notes = notes::of(&set_up, placement, plan, &cycle.feed, monitor);
+    notes.extend((!settings.worst).then(notes::best_alone));
+    notes.extend(notes::of_lean(&set_up, upright, plan.objective, outcome.cases.worst.is_some()));
+    if outcome.sensitivity.take().is_some() {
+        outcome.warnings.push(left_out("how far force errors move the best placement is"));
+    }
+    if !outcome.sets.is_empty() {
+        outcome.sets.clear();
+        outcome.set_basins.clear();
+        notes.push("what each stiffness set makes of the best placement is not stated where the tool leans".to_owned());
+    }
+    outcome.notes = notes;
+    let named = outcome.cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
+    let moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>());
+    outcome.warnings.retain(|warning| !notes::is_of_moves(warning));
+    outcome.warnings.extend(moves);
+    if monitor.should_stop() && !outcome.interrupted {
+        outcome.interrupted = true;
+        outcome.warnings.push(notes::interruption());
+    }
+    Ok(outcome)
+}

@@ -1,0 +1,206 @@
+//! The table `[lean]`: how far the tool may lean from the axis of the path.
+
+use crate::Word;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::ops::Bound::{Excluded, Included};
+use std::sync::Arc;
+use stead_disk::input::InputError;
+use stead_format::place::Place;
+use stead_format::quantity::Quantity;
+use stead_format::scalars::{Whole, words};
+use stead_format::shapes::Interval;
+use stead_format::tool::ToolTable;
+use stead_format::units::{Deg, Mm, Positive, ranges};
+use stead_model::task::Task;
+use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
+use stead_planning::lean::{LeanRange, LeanSpace};
+use stead_planning::problem;
+
+words!(ContactRule: "centre" => ContactRule::Centre, "contact" => ContactRule::Contact, "plane" => ContactRule::Plane);
+words!(LeanForce: "feed" => LeanForce::Feed, "tool" => LeanForce::Tool);
+
+ranges! {
+    /// An angle by which a tool may lean. deg
+    LeanAngle: Included(-60.0), Included(60.0);
+    /// The largest angle by which it may. deg
+    LargestLean: Excluded(0.0), Included(60.0);
+    /// A step of such an angle. deg
+    LeanStep: Included(0.1), Included(30.0);
+}
+
+/// Steps of lead and tilt where none are stated. deg
+const STEP_DEG: f64 = 2.5;
+/// How far the contact may leave its line where nothing is stated. mm
+const TOLERANCE_MM: f64 = 0.005;
+/// Leans of a point at the most.
+const MOST_LEANS: usize = 1681;
+/// Memory for the states of a path at the most. Bytes
+const MOST_MEMORY: f64 = 4e9;
+/// Points on which leans are planned at the most, whatever the path.
+const MOST_POINTS: usize = 400;
+
+/// How far the tool may lean from the axis that the task states. Without lead and tilt it keeps to that axis.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LeanTable {
+    /// Range `[min, max]` of the lead, in the direction of travel: above 0 the spindle is ahead of the tip; `[0, 0]`
+    /// where left out.
+    pub lead_deg: Option<Interval<Deg<LeanAngle>>>,
+    /// Range `[min, max]` of the tilt, across the direction of travel: above 0 the spindle is to the left of the feed;
+    /// `[0, 0]` where left out.
+    pub tilt_deg: Option<Interval<Deg<LeanAngle>>>,
+    /// Largest angle between the tool axis and that of the task; no limit beside the two ranges where left out.
+    pub max_lean_deg: Option<Deg<LargestLean>>,
+    /// Step of the lead that is planned on at first; 2.5 where left out. The plan leaves that grid in the end.
+    pub lead_step_deg: Option<Deg<LeanStep>>,
+    /// The same of the tilt.
+    pub tilt_step_deg: Option<Deg<LeanStep>>,
+    /// What stays where it is: the `centre` of a ball, the `contact` of a bull or flat cutter on a surface of which the
+    /// task states the normals, or the `plane` that the cutter touches. Where left out: centre for a ball, else
+    /// contact, or plane where the task states no normals.
+    pub rule: Option<Word<ContactRule>>,
+    /// What forces do: `feed` keeps the directions of feed and wall, `tool` turns them with the tool; feed where left
+    /// out.
+    pub force: Option<Word<LeanForce>>,
+    /// Distance between passes side by side.
+    pub step_over_mm: Option<Mm<Positive>>,
+    /// Highest ridge that may be left between passes; no limit where left out.
+    pub scallop_mm: Option<Mm<Positive>>,
+    /// How far the contact may leave its line between two points; 0.005 where left out.
+    pub contact_tolerance_mm: Option<Mm<Positive>>,
+    /// Segments in which the tool may lean otherwise.
+    pub segment: Option<Vec<LeanSegmentTable>>,
+}
+
+/// A segment of the task in which the tool may lean otherwise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LeanSegmentTable {
+    /// Its number in the task, from 1.
+    pub number: Whole<1, 4294967295>,
+    /// Range `[min, max]` of the lead; that of `[lean]` where left out.
+    pub lead_deg: Option<Interval<Deg<LeanAngle>>>,
+    /// Range `[min, max]` of the tilt; that of `[lean]` where left out.
+    pub tilt_deg: Option<Interval<Deg<LeanAngle>>>,
+}
+
+impl LeanTable {
+    /// Where the tool may lean along a task, with values of beta over a turn.
+    ///
+    /// # Errors
+    /// [`InputError`] with file, line and field: a cutter that is not described, a lean that it does not allow, a
+    /// segment that is not there, more states than memory holds.
+    pub(super) fn space(
+        &self,
+        task: &Task,
+        tool: Option<&ToolTable>,
+        beta_count: usize,
+        at: &Place<'_>,
+    ) -> Result<Arc<LeanSpace>, InputError> {
+        let Some(tool) = tool else {
+            let allowed =
+                "a table [tool] with cutter_diameter_mm and corner_radius_mm: how a tool leans depends on its end";
+            return Err(at.error("is there without the cutter that leans", allowed));
+        };
+        let radius = tool.cutter_diameter_mm.si() / 2.0;
+        let corner = tool.corner_radius_mm.map_or(0.0, Quantity::si);
+        if corner > radius * (1.0 + 1e-9) {
+            let allowed = format!("at most {}, half of tool.cutter_diameter_mm", radius * 1e3);
+            return Err(
+                at.error("leans a cutter whose corner is larger than its radius (tool.corner_radius_mm)", allowed)
+            );
+        }
+        if tool.taper_deg.is_some_and(|taper| taper.si() > 0.0) {
+            return Err(at.error("leans a tapered cutter", "a ball, bull nose or flat cutter with straight sides"));
+        }
+        let end = CutterEnd { radius, corner };
+        let has_normals = task.path().surface_normals().is_some();
+        let contact = match self.rule {
+            Some(word) => word.0,
+            None if end.is_ball() => ContactRule::Centre,
+            None if has_normals => ContactRule::Contact,
+            None => ContactRule::Plane,
+        };
+        let interval = |ends: Option<Interval<Deg<LeanAngle>>>| {
+            let [min, max] = ends.map_or([0.0; 2], Interval::si);
+            problem::Interval { min, max }
+        };
+        let all = LeanRange { lead: interval(self.lead_deg), tilt: interval(self.tilt_deg) };
+        let mut segments = vec![all; task.segments().len()];
+        for (table, number) in self.segment.iter().flatten().zip(1..) {
+            let at = at.key("segment").element(number);
+            let index = table.number.get() as usize - 1;
+            let Some(range) = segments.get_mut(index) else {
+                let allowed = format!("1 to {}, the segments of the task", task.segments().len());
+                return Err(at.key("number").error("is no segment of the task", allowed));
+            };
+            if let Some(lead) = table.lead_deg {
+                range.lead = interval(Some(lead));
+            }
+            if let Some(tilt) = table.tilt_deg {
+                range.tilt = interval(Some(tilt));
+            }
+        }
+        let path = task.path();
+        let range = |point: usize| {
+            if path.is_scored(point) { segments[path.segment_of(point)] } else { LeanRange::NONE }
+        };
+        let step = |step: Option<Deg<LeanStep>>| step.map_or(STEP_DEG.to_radians(), Quantity::si);
+        let space = LeanSpace {
+            rule: LeanRule { end, contact, force: self.force.map_or_else(LeanForce::default, |word| word.0) },
+            ranges: (0..path.points().len()).map(range).collect(),
+            max_lean: self.max_lean_deg.map(Quantity::si),
+            steps: [step(self.lead_step_deg), step(self.tilt_step_deg)],
+            step_over: self.step_over_mm.map(Quantity::si),
+            scallop: self.scallop_mm.map(Quantity::si),
+            contact_tolerance: self.contact_tolerance_mm.map_or(TOLERANCE_MM / 1e3, Quantity::si),
+        };
+        space.check(path).map_err(|error| at.error(format!("cannot be: {error}"), "leans that the cutter allows"))?;
+        let [lead, tilt] = space.half_counts().map(|half| 2 * half + 1);
+        let leans = lead * tilt;
+        // A number for each state of a path, and sines and cosines of two points in rows that are continued.
+        let memory = (MOST_POINTS.min(path.points().len()) * 4 * leans * beta_count * 4) as f64
+            + (2 * leans * 4 * 13 * 3 * beta_count * 8) as f64;
+        if leans > MOST_LEANS || memory > MOST_MEMORY {
+            let key = if lead > tilt { "lead_step_deg" } else { "tilt_step_deg" };
+            let problem =
+                format!("makes {leans} leans a point with {beta_count} values of beta ({:.1} GB)", memory / 1e9);
+            let allowed = format!("a wider step, {MOST_LEANS} leans and {} GB at the most", MOST_MEMORY / 1e9);
+            return Err(at.key(key).error(problem, allowed));
+        }
+        Ok(Arc::new(space))
+    }
+
+    /// What the user should know of a tool that leans.
+    pub(super) fn notes(&self, space: &LeanSpace, has_computed_forces: bool) -> Vec<String> {
+        if space.is_closed() {
+            return vec!["[lean] leaves neither lead nor tilt: the tool keeps to the axis of the task".to_owned()];
+        }
+        let mut notes = Vec::new();
+        if has_computed_forces {
+            notes.push(
+                "forces are computed with the tool axis of the task: what a leaning tool removes is not computed anew"
+                    .to_owned(),
+            );
+        }
+        if space.rule.contact == ContactRule::Plane && !space.rule.end.is_ball() {
+            let aside = if space.step_over.is_some() {
+                "by no more than half of lean.step_over_mm aside"
+            } else {
+                "by up to the radius of the cutter; lean.step_over_mm bounds that"
+            };
+            notes.push(format!(
+                "the plane that the cutter touches stays where it is, not the contact, which moves towards the side to which the tool leans, {aside}"
+            ));
+        }
+        if space.scallop.is_none() && !space.rule.end.is_ball() {
+            notes.push(
+                "lean.scallop_mm is not stated: the ridge that a leaning bull or flat cutter leaves between passes is not bounded"
+                    .to_owned(),
+            );
+        }
+        notes.push("unscored points (plunges) keep the axis of the task".to_owned());
+        notes
+    }
+}
