@@ -10,6 +10,7 @@
 //! | What must the robot not hit? | [`surroundings`] |
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | Is the robot on a wall, the part on its side, a rail or a turntable there? | [`cell_setup`] |
+//! | May the tool lean, to cut with less deflection or where the spindle has no room? | [`lean`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
 //! | How do I show it to others? | [`page`] |
 //! | How far is that from the optimum? | [`certify`] |
@@ -69,6 +70,8 @@ pub mod identify {}
 pub mod import_path {}
 #[doc = include_str!("import_robot.md")]
 pub mod import_robot {}
+#[doc = include_str!("lean.md")]
+pub mod lean {}
 #[doc = include_str!("library.md")]
 pub mod library {}
 #[doc = include_str!("method.md")]

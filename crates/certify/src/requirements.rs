@@ -21,6 +21,9 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if problem.orientations.len() > 1 {
         return Err(Unsupported::Orientations);
     }
+    if problem.lean.is_some() {
+        return Err(Unsupported::Lean);
+    }
     Upright::of(problem)?;
     require_no_travel(problem)?;
     require_free_beta(problem)?;

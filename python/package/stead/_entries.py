@@ -133,6 +133,7 @@ class PlanEntries(Record):
     deflection_mm: Deflections
     feed: CutFeed
     joint_travel: JointTravel
+    leans_deg: list[list[float]] | None
     max_mm: float
     mean_mm: float
     mean_std_mm: float | None

@@ -235,6 +235,7 @@ class PlacementScore(Result):
     stability: Record | None
     orientation: str | None
     external_axes: Record | None
+    leans_deg: list[list[float]] | None
     _made = {**Result._made, "placement": Placement._of, "placement_exact": Placement._of}
 
     @cached_property

@@ -10,6 +10,7 @@
 mod arm;
 mod cell;
 pub mod cover;
+mod lean;
 mod moves;
 mod path;
 mod plan;
@@ -49,7 +50,16 @@ fn plan<'a>(cell: &'a Cell, results: &Path, case: &Value) -> Result<Plan<'a>, St
     let place = Vector3::new(exact("x_mm")?, exact("y_mm")?, exact("z_mm")?) * 1e-3;
     let orientation = case.get("orientation").and_then(Value::as_str);
     let placement = cell.placement(place, exact("yaw_deg")?.to_radians(), orientation)?;
-    Ok(Plan { cell, placement, rows: plan::read(&results.join(name), cell)?, name: (*name).to_owned() })
+    let rows = plan::read(&results.join(name), cell)?;
+    let leans: Vec<[f64; 2]> = rows.iter().filter_map(|row| row.lean).collect();
+    let points = match leans.len() {
+        0 => cell.points.clone(),
+        count if count == cell.points.len() => {
+            lean::leaned(&cell.points, &cell.run, &leans).ok_or("a tool leans in a run that does not say how")?
+        }
+        _ => return Err(format!("{name}: some rows have a lean and others none")),
+    };
+    Ok(Plan { cell, placement, points, leans, rows, name: (*name).to_owned() })
 }
 
 /// Holds the folder of a placement against the files of its run.

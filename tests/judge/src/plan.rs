@@ -32,6 +32,8 @@ pub(crate) struct Row {
     pub origins: Option<Vec<f64>>,
     /// Of the external axes.
     pub positions: Vec<f64>,
+    /// Lead and tilt, where the tool leans.
+    pub lean: Option<[f64; 2]>,
     pub clearance: Option<f64>,
     pub nearest: String,
 }
@@ -86,6 +88,7 @@ pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
             parts: [part("normal_mm")?, part("feed_mm")?, part("axial_mm")?, part("score_mm")?, part("total_mm")?],
             origins: ORIGINS.iter().map(|name| Some(maybe(&format!("from_{name}_mm"))? * 1e-3)).collect(),
             positions,
+            lean: maybe("lead_deg").zip(maybe("tilt_deg")).map(|(a, b)| [a.to_radians(), b.to_radians()]),
             clearance: maybe("clearance_mm").map(|mm| mm * 1e-3),
             nearest: cell_of("nearest_pair").unwrap_or_default().to_owned(),
         });
@@ -97,6 +100,9 @@ pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
 pub(crate) struct Plan<'a> {
     pub cell: &'a Cell,
     pub placement: Placement,
+    /// Those of the task, with the tool leaning as the rows have it.
+    pub points: Vec<Point>,
+    pub leans: Vec<[f64; 2]>,
     pub rows: Vec<Row>,
     pub name: String,
 }
@@ -108,7 +114,12 @@ impl Plan<'_> {
     }
 
     fn point(&self, i: usize) -> &Point {
-        &self.cell.points[i]
+        &self.points[i]
+    }
+
+    /// Distance along the task to a point from the one before, however the tool leans. m
+    fn length(&self, i: usize) -> f64 {
+        (self.cell.points[i].place - self.cell.points[i - 1].place).norm()
     }
 
     fn at(&self, i: usize) -> String {
@@ -138,7 +149,7 @@ impl Plan<'_> {
     }
 
     fn is_in_place(&self, i: usize) -> bool {
-        (self.point(i).place - self.point(i - 1).place).norm() < 1e-9
+        self.length(i) < 1e-9
     }
 
     /// Whether the point and the one before it are of one segment.
@@ -167,6 +178,7 @@ impl Plan<'_> {
             self.clear(verdict, i, &stand);
         }
         self.axes(verdict);
+        crate::lean::judge(verdict, &self.name, &self.cell.run, &self.cell.points, &self.leans);
         self.stays(verdict);
         self.cell_bounds(verdict);
         self.figures(verdict, case, &criterion, (&scores, &slacks));
@@ -287,7 +299,7 @@ impl Plan<'_> {
         let moved = loading.moved(self.cell, &self.cell.arm, &force, &moment);
         let slack = 0.6e-10 + OF_DIGITS * moved.norm();
         verdict.within("deflection (m)", || self.at(i), (carrier * moved - row.deflection).amax(), slack);
-        let axes = part.matrix() * point.axes;
+        let axes = part.matrix() * self.cell.points[i].axes;
         let stated = row.parts;
         for (k, column, word) in [(0, 1, "wall"), (1, 0, "feed"), (2, 2, "axis")] {
             let found = axes.column(column).dot(&moved);
@@ -319,7 +331,7 @@ impl Plan<'_> {
     fn step(&self, verdict: &mut Verdict, i: usize) {
         let of = |key: &str| self.cell.setting("redundancy", key);
         let [from, to] = [&self.rows[i - 1], &self.rows[i]];
-        let length = (self.point(i).place - self.point(i - 1).place).norm();
+        let length = self.length(i);
         let feed = self.point(i).speed.or(of("feed_mm_per_s").map(|feed| feed * 1e-3)).unwrap_or(f64::NAN);
         let time = if self.is_in_place(i) { f64::INFINITY } else { length / feed };
         for (j, row) in self.cell.arm.rows.iter().enumerate() {

@@ -379,6 +379,17 @@ impl Writer<'_> {
         if self.of("segment weights") != "none" {
             text.push_str("\n[[segment]]\nnumber = 1\nweight = 2.5\n");
         }
+        match self.of("lean") {
+            "ball" => text.push_str(
+                "\n[lean]\nlead_deg = [-8, 12]\ntilt_deg = [-10, 10]\nmax_lean_deg = 12\nlead_step_deg = 10\ntilt_step_deg = 10\n\
+                 \n[[lean.segment]]\nnumber = 1\nlead_deg = [0, 12]\ntilt_deg = [-4, 10]\n",
+            ),
+            "bull plane" => text.push_str(
+                "\n[lean]\nlead_deg = [2, 8]\ntilt_deg = [-3, 3]\nlead_step_deg = 3\ntilt_step_deg = 3\nrule = \"plane\"\nforce = \"tool\"\n\
+                 step_over_mm = 12\nscallop_mm = 2\ncontact_tolerance_mm = 0.02\n",
+            ),
+            _ => {}
+        }
         text.push_str("\n[redundancy]\nbeta_step_deg = 15.0\nfeed_mm_per_s = 40.0\n");
         let turns = self.of("turns");
         for (word, line) in [

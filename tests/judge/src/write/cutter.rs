@@ -20,6 +20,11 @@ impl Writer<'_> {
                 "teeth = 3\nrotation = \"counterclockwise\"\nkt_mpa = 800.0\nkr = 0.4\nkte_n_per_mm = 20.0\nkre_n_per_mm = 15.0\n",
             );
         }
+        match self.of("lean") {
+            "ball" => text.push_str("corner_radius_mm = 8.0\n"),
+            "bull plane" => text.push_str("corner_radius_mm = 2.0\n"),
+            _ => {}
+        }
         if load == "stock" {
             text.push_str("ka_mpa = 90.0\ncorner_radius_mm = 2.0\ntaper_deg = 3.0\n");
         }
