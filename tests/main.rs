@@ -30,6 +30,7 @@ mod identify;
 mod identify_plan;
 mod import_path;
 mod import_robot;
+mod lean;
 mod looks_wrong;
 mod opw_oracle;
 mod page;

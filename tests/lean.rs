@@ -1,0 +1,61 @@
+//! A tool that leans, from outside: what `place` and `score` plan is never worse than with the axis of the task, the judge
+//! agrees, and what reads the results again finds the same pose.
+
+use crate::common::{Bench, Ended};
+use serde_json::Value;
+
+const RUN: &str = "configs/leaning-tool.toml";
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.copy_all(&[RUN, "configs/robots/kuka-kr500.toml", "tasks/raster.csv"]);
+    let search = "\n[search]\npopulation = 12\ngenerations = 2\nbasins = 1\n";
+    bench.replace(RUN, "max_beta_rate_deg_per_mm = 0.9", &format!("max_beta_rate_deg_per_mm = 0.9\n{search}"));
+    bench.replace(RUN, "beta_step_deg = 6.0", "beta_step_deg = 12.0");
+    bench.replace(RUN, "[lean]  ", "[lean]\nlead_step_deg = 5.0\ntilt_step_deg = 7.5  ");
+    bench
+}
+
+fn ok(bench: &Bench, arguments: &[&str]) -> Ended {
+    let ended = bench.stead(arguments);
+    assert_eq!(ended.code, Some(0), "{arguments:?}: {}", ended.stderr);
+    ended
+}
+
+fn summary(bench: &Bench, folder: &str) -> Value {
+    serde_json::from_str(&bench.read(&format!("{folder}/summary.json"))).unwrap()
+}
+
+fn objective(document: &Value) -> f64 {
+    document["cases"][0]["objective_mm"].as_f64().unwrap()
+}
+
+#[test]
+fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
+    let bench = bench();
+    ok(&bench, &["place", RUN, "--no-page", "--out", "leaned"]);
+    let found = summary(&bench, "leaned");
+    let leaned = objective(&found);
+    let verdict = stead_judge::judge(&bench.path(RUN), &bench.path("leaned")).unwrap();
+    assert!(verdict.disagreements.is_empty(), "{:?}", verdict.disagreements);
+    let header = bench.read("leaned/best.csv").lines().next().unwrap().to_owned();
+    assert!(header.contains(",lead_deg,tilt_deg"), "{header}");
+    let notes = found["notes"].to_string();
+    for note in ["the tool leans from the axis of the path by", "keep the directions of feed and wall", "may have been missed"]
+    {
+        assert!(notes.contains(note), "{note} in {notes}");
+    }
+    // The same search with the axis of the task.
+    let upright = "configs/upright.toml";
+    bench.write(upright, &bench.read(RUN).replace("lead_deg = [-10.0, 15.0]", "").replace("tilt_deg = [-15.0, 15.0]", ""));
+    ok(&bench, &["place", upright, "--no-page", "--out", "upright"]);
+    let upright = objective(&summary(&bench, "upright"));
+    assert!(leaned < 0.99 * upright, "{leaned} {upright}");
+    // The placement read again has its leans; a program of the plan states the orientation at every point.
+    let again = ok(&bench, &["score", RUN, "--placement-of", "leaned", "--json"]).json();
+    let again = again["best"]["objective_mm"].as_f64().unwrap();
+    assert!((again / leaned - 1.0).abs() < 1e-3, "{again} {leaned}");
+    ok(&bench, &["export", RUN, "--plan", "leaned/best.csv", "--format", "csv", "--out", "program"]);
+    let refused = bench.stead(&["place", RUN, "--certify", "5", "--no-page", "--out", "certified"]);
+    assert!(refused.stderr.contains("the tool may lean"), "{}", refused.stderr);
+}
