@@ -41,13 +41,17 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let header = bench.read("leaned/best.csv").lines().next().unwrap().to_owned();
     assert!(header.contains(",lead_deg,tilt_deg"), "{header}");
     let notes = found["notes"].to_string();
-    for note in ["the tool leans from the axis of the path by", "keep the directions of feed and wall", "may have been missed"]
+    for note in
+        ["the tool leans from the axis of the path by", "keep the directions of feed and wall", "may have been missed"]
     {
         assert!(notes.contains(note), "{note} in {notes}");
     }
     // The same search with the axis of the task.
     let upright = "configs/upright.toml";
-    bench.write(upright, &bench.read(RUN).replace("lead_deg = [-10.0, 15.0]", "").replace("tilt_deg = [-15.0, 15.0]", ""));
+    bench.write(
+        upright,
+        &bench.read(RUN).replace("lead_deg = [-10.0, 15.0]", "").replace("tilt_deg = [-15.0, 15.0]", ""),
+    );
     ok(&bench, &["place", upright, "--no-page", "--out", "upright"]);
     let upright = objective(&summary(&bench, "upright"));
     assert!(leaned < 0.99 * upright, "{leaned} {upright}");
@@ -55,7 +59,7 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let again = ok(&bench, &["score", RUN, "--placement-of", "leaned", "--json"]).json();
     let again = again["best"]["objective_mm"].as_f64().unwrap();
     assert!((again / leaned - 1.0).abs() < 1e-3, "{again} {leaned}");
-    ok(&bench, &["export", RUN, "--plan", "leaned/best.csv", "--format", "csv", "--out", "program"]);
+    ok(&bench, &["export", RUN, "leaned/best.csv", "--format", "csv", "--out", "program/part"]);
     let refused = bench.stead(&["place", RUN, "--certify", "5", "--no-page", "--out", "certified"]);
     assert!(refused.stderr.contains("the tool may lean"), "{}", refused.stderr);
 }

@@ -26,7 +26,9 @@ pub enum Unsupported {
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
     Orientations,
     /// The tool may lean.
-    #[error("the tool may lean (lead and tilt of [lean]): no bound covers that; without [lean] the placement can be certified")]
+    #[error(
+        "the tool may lean (lead and tilt of [lean]): no bound covers that; without [lean] the placement can be certified"
+    )]
     Lean,
     /// A tool axis that is not vertical.
     #[error("the tool is not upright: its axis is {:.3} deg from the vertical at point {point}", angle.to_degrees())]

@@ -11,6 +11,8 @@ use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
+use stead_cell::testing::{kr270_shapes, scene_of, shape};
+use stead_cell::{Attachment, Solid};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
@@ -201,4 +203,66 @@ fn a_wider_cone_is_never_worse() {
         }
     }
     assert!(gains > 10, "{gains}");
+}
+
+/// The published path with a ball cutter that may lean, the shapes of the arm and a post of a radius (m).
+fn among_a_post(radius: f64) -> Problem {
+    let post = shape("post", Attachment::Base, Solid::Cylinder { radius, length: 2.5 }, [0.55, -1.35, 0.3]);
+    let shapes = kr270_shapes().into_iter().filter(|shape| shape.name != "pillar").chain([post]).collect();
+    let problem = five_segments().with(|parts| {
+        parts.redundancy.beta_count = 30;
+        parts.scene = Some(Arc::new(scene_of(shapes, 0.02)));
+        parts.lean = Some(Arc::new(LeanSpace {
+            rule: BALL,
+            ranges: vec![range([-6.0, 6.0], [-6.0, 6.0]); 105],
+            max_lean: None,
+            steps: [6.0_f64.to_radians(); 2],
+            step_over: None,
+            scallop: None,
+            contact_tolerance: 2e-5,
+        }));
+    });
+    problem.changed(|_| {}).unwrap()
+}
+
+/// What is found state by state where something hits is the cheapest of all states that do not hit.
+#[test]
+fn ways_made_lazily_are_those_over_all_free_states() {
+    let problem = among_a_post(0.12);
+    let free = problem.clone().with(|parts| parts.scene = None);
+    let grids = [&problem, &free].map(|problem| LeanGrid::new(problem).unwrap());
+    let problems = grids.each_ref().map(LeanGrid::problems);
+    let [lazy, plain] = [0, 1].map(|k| LeanPlanner::new(&grids[k], &problems[k]));
+    let mut changed = 0;
+    for placement in [[0.1, -1.9, -0.4, 1.0], [-0.05, -1.75, -0.3, -0.6], [0.2, -1.7, -0.45, 2.4]].map(Placement::from)
+    {
+        let mut forbidden = vec![StateSet::default(); problems[0].len()];
+        for (lean, problem) in problems[0].iter().enumerate() {
+            for point in 0..105 {
+                for posture in Posture::ALL.into_iter().filter(|posture| !posture.is_flipped()) {
+                    for beta in 0..30 {
+                        let angle = problem.redundancy.beta(beta);
+                        if problem.posture_hit(point, &placement, angle, posture).is_some() {
+                            forbidden[lean].add(point, posture.class(), beta);
+                        }
+                    }
+                }
+            }
+        }
+        let segments = free.task.segments();
+        let dense: Option<Vec<Vec<Found>>> =
+            segments.iter().map(|span| plain.segment(span, &placement, &forbidden)).collect();
+        let dense = dense.and_then(|found| plain.chosen(&found));
+        let dense = dense.map(|ways| free.objective(ways.iter().map(|way| way.cost)));
+        let found = lazy.path(&placement);
+        match (&found, dense) {
+            (Some(found), Some(dense)) => {
+                assert!((found.objective - dense).abs() < 1e-15, "{} {dense}", found.objective)
+            }
+            (found, dense) => assert_eq!(found.is_some(), dense.is_some()),
+        }
+        let relaxed = plain.path(&placement);
+        changed += usize::from(relaxed.map(|way| way.objective) != found.map(|way| way.objective));
+    }
+    assert!(changed > 0);
 }
