@@ -173,7 +173,7 @@ impl LeanTable {
     }
 
     /// What the user should know of a tool that leans.
-    pub(super) fn notes(&self, space: &LeanSpace, has_computed_forces: bool) -> Vec<String> {
+    pub(super) fn notes(&self, space: &LeanSpace, has_computed_forces: bool, has_unscored: bool) -> Vec<String> {
         if space.is_closed() {
             return vec!["[lean] leaves neither lead nor tilt: the tool keeps to the axis of the task".to_owned()];
         }
@@ -200,7 +200,9 @@ impl LeanTable {
                     .to_owned(),
             );
         }
-        notes.push("unscored points (plunges) keep the axis of the task".to_owned());
+        if has_unscored {
+            notes.push("points that are not scored (plunges) keep the tool axis of the task".to_owned());
+        }
         notes
     }
 }
@@ -248,7 +250,6 @@ mod tests {
         assert_eq!((space.rule.contact, space.rule.force), (ContactRule::Centre, LeanForce::Feed));
         assert!((space.ranges[0].lead.max - 20_f64.to_radians()).abs() < 1e-12);
         assert!((space.ranges[1].tilt.max - 5_f64.to_radians()).abs() < 1e-12 && space.ranges[1].tilt.min == 0.0);
-        assert!(run.notes.iter().any(|note| note.contains("(plunges) keep the axis")), "{:?}", run.notes);
         let closed = read(&format!("{BALL}[lean]\nmax_lean_deg = 10\n"), None).unwrap();
         assert!(closed.problem.lean.is_none());
         assert!(closed.notes.iter().any(|note| note.contains("neither lead nor tilt")), "{:?}", closed.notes);

@@ -297,7 +297,12 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         None => None,
     };
     let has_computed_forces = removal.is_some() || run.cut.is_some();
-    notes.extend(run.lean.iter().zip(&lean).flat_map(|(table, space)| table.notes(space, has_computed_forces)));
+    notes.extend(
+        run.lean
+            .iter()
+            .zip(&lean)
+            .flat_map(|(table, space)| table.notes(space, has_computed_forces, task.path().first_unscored().is_some())),
+    );
     let lean = lean.filter(|space| !space.is_closed());
     let parts = ProblemParts {
         robot,
