@@ -30,6 +30,8 @@ mod identify;
 mod identify_plan;
 mod import_path;
 mod import_robot;
+#[cfg(feature = "live")]
+mod live;
 mod looks_wrong;
 mod opw_oracle;
 mod page;

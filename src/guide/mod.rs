@@ -11,6 +11,7 @@
 //! | Where should the workpiece stand? | [`place`], [`score`], [`explain`] |
 //! | Is the robot on a wall, the part on its side, a rail or a turntable there? | [`cell_setup`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
+//! | What does a placement come to while I move the part by hand? | [`live`] |
 //! | How do I show it to others? | [`page`] |
 //! | How far is that from the optimum? | [`certify`] |
 //! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
@@ -71,6 +72,8 @@ pub mod import_path {}
 pub mod import_robot {}
 #[doc = include_str!("library.md")]
 pub mod library {}
+#[doc = include_str!("live.md")]
+pub mod live {}
 #[doc = include_str!("method.md")]
 pub mod method {}
 #[doc = include_str!("objective.md")]
