@@ -75,8 +75,12 @@ pub mod forces;
 pub mod guide;
 pub mod identification;
 pub mod import;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod placement;
 pub mod program;
+#[cfg(feature = "cli")]
+mod progress;
 pub mod report;
 mod result;
 pub mod robot;

@@ -39,7 +39,7 @@ use stead_study::{self as study, Placed, Scored};
 pub struct Run {
     pub(crate) run: Arc<stead_runs::Run>,
     /// Whether the positions of the external axes are those of a result, and not to be looked for.
-    is_set_up: bool,
+    pub(crate) is_set_up: bool,
 }
 
 impl Run {

@@ -31,6 +31,8 @@ mod identify_plan;
 mod import_path;
 mod import_robot;
 mod lean;
+#[cfg(feature = "live")]
+mod live;
 mod looks_wrong;
 mod opw_oracle;
 mod page;

@@ -1,6 +1,8 @@
 //! The command line as a whole: which commands there are. What each takes and says of itself is declared in its own
 //! file.
 
+#[cfg(feature = "live")]
+use super::live;
 use super::manual::STEAD;
 use super::{
     assess, check, circularity, compensate, completions, explain, export, forces, identify, import, init, man, page,
@@ -24,6 +26,9 @@ pub(super) enum Command {
     Score(score::ScoreOptions),
     /// Show which constraints each posture satisfies at one path point of a given placement
     Explain(explain::ExplainOptions),
+    /// Move the workpiece by hand in the browser and see at once what a placement comes to
+    #[cfg(feature = "live")]
+    Live(live::LiveCommand),
     /// Write the page of a results folder again, from its files alone
     Page(page::PageOptions),
     /// Place many variants of a run, cell layouts by the thousand: one file, one table, resumable

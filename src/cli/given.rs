@@ -25,6 +25,12 @@ pub(super) struct GivenRun {
 }
 
 impl GivenRun {
+    /// The values in place of those of the file.
+    #[cfg(feature = "live")]
+    pub fn values(&self) -> &[FieldOverride] {
+        &self.set
+    }
+
     /// Reads the run, whose forces may have to be computed, on so many threads.
     pub fn read(&self, terminal: &Terminal, threads: Option<usize>) -> Result<Run, Failure> {
         let shown = terminal.show(None);

@@ -31,10 +31,12 @@ pub(super) struct Manual {
 }
 
 /// Every command that does something, as it is typed.
-const MANUALS: [(&str, &Manual); 26] = [
+const MANUALS: &[(&str, &Manual)] = &[
     ("place", &place::MANUAL),
     ("score", &score::MANUAL),
     ("explain", &explain::MANUAL),
+    #[cfg(feature = "live")]
+    ("live", &super::live::MANUAL),
     ("page", &page::MANUAL),
     ("study run", &study::run::MANUAL),
     ("study slurm", &study::slurm::MANUAL),
@@ -62,7 +64,7 @@ const MANUALS: [(&str, &Manual); 26] = [
 
 /// The commands by the question that they answer, those of no group last.
 const GROUPS: [(&str, &[&str]); 8] = [
-    ("Where to put the workpiece", &["place", "score", "explain", "page"]),
+    ("Where to put the workpiece", &["place", "score", "explain", "live", "page"]),
     ("Which cell layout is best", &["study"]),
     ("How good a robot is for machining, and how stiff its joints are", &["assess", "identify"]),
     ("What the cut does to the tool, and the tool to the part", &["forces", "compensate", "simulate", "stability"]),

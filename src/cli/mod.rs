@@ -17,6 +17,8 @@ mod given;
 mod identify;
 mod import;
 mod init;
+#[cfg(feature = "live")]
+mod live;
 mod man;
 mod manual;
 mod page;
@@ -110,6 +112,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Score(options) => score::run(&options),
         Command::Explain(options) => explain::run(&options),
         Command::Export(options) => export::run(&options),
+        #[cfg(feature = "live")]
+        Command::Live(options) => live::run(&options),
         Command::Page(options) => page::run(&options),
         Command::Study(command) => study::run(&command, &program),
         Command::Assess(options) => assess::run(&options),

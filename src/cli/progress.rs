@@ -1,15 +1,14 @@
 //! Progress on standard error, as bars on a terminal and else as a line now and then, and Ctrl-C.
 
+use crate::progress::{Described, locked};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use stead_certify::MAX_GAP_PERCENT;
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_report::output::Folder;
-use stead_report::units::figures;
 
 /// Between two lines where standard error is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(30);
@@ -132,11 +131,6 @@ impl Drop for Lines {
     }
 }
 
-/// What a mutex guards, whatever became of a thread that held it: progress is worth no failure.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// How far a job is, as one line.
 fn line(progress: Option<&Progress>, elapsed: Duration) -> String {
     let elapsed = format!("{} s", elapsed.as_secs());
@@ -145,38 +139,6 @@ fn line(progress: Option<&Progress>, elapsed: Duration) -> String {
     let steps = steps.map_or_else(String::new, |(done, total)| format!("{done} of {total}"));
     let parts = [steps, message, elapsed].into_iter().filter(|part| !part.is_empty());
     format!("progress: {stage}: {}", parts.collect::<Vec<_>>().join(", "))
-}
-
-/// A report of progress in words.
-struct Described {
-    stage: &'static str,
-    /// Done and in all, where that is known.
-    steps: Option<(usize, usize)>,
-    message: String,
-}
-
-impl Described {
-    fn of(progress: &Progress) -> Self {
-        let (stage, steps, message) = match *progress {
-            Progress::Search { stage, done, total, best } => {
-                let best = best.map_or("nothing feasible yet".to_owned(), |best| format!("{:.4} mm", best * 1e3));
-                (stage, Some((done, total)), best)
-            }
-            Progress::Steps { stage, done, total } => (stage, Some((done, total)), String::new()),
-            Progress::Bound { stage, nodes: 0, .. } => (stage, None, "tables are being made".to_owned()),
-            Progress::Bound { stage, value, bound, gap, open, nodes } => {
-                let reached = 100.0 * (1.0 - bound / value).abs();
-                let reached = if bound > 0.0 && reached <= MAX_GAP_PERCENT {
-                    format!("gap {} %", figures(reached))
-                } else {
-                    "no gap yet".to_owned()
-                };
-                let requested = figures(100.0 * gap);
-                (stage, None, format!("{reached} (asked {requested} %), {open} boxes open, {nodes} evaluated"))
-            }
-        };
-        Self { stage, steps, message }
-    }
 }
 
 /// Between two drawings of a bar.

@@ -12,6 +12,7 @@
 //! | Is the robot on a wall, the part on its side, a rail or a turntable there? | [`cell_setup`] |
 //! | May the tool lean, to cut with less deflection or where the spindle has no room? | [`lean`] |
 //! | What is minimised, and is it what spoils the part? | [`objective`] |
+//! | What does a placement come to while I move the part by hand? | [`live`] |
 //! | How do I show it to others? | [`page`] |
 //! | How far is that from the optimum? | [`certify`] |
 //! | Which robot, pedestal, mounting or stiffness: how do many variants compare? | [`study`], [`study_file`], with figures [`studies`] |
@@ -74,6 +75,8 @@ pub mod import_robot {}
 pub mod lean {}
 #[doc = include_str!("library.md")]
 pub mod library {}
+#[doc = include_str!("live.md")]
+pub mod live {}
 #[doc = include_str!("method.md")]
 pub mod method {}
 #[doc = include_str!("objective.md")]

@@ -2,7 +2,9 @@
 //!
 //! `searched` and `basins` are search and refinement, `plan` and `notes` what is stated of what they find, `infeasible`
 //! what blocks a placement that is refused. `long_path` and `long_refinement` do the same by subsets of a long path,
-//! `setups` and `axes` choose among orientations and positions of external axes, `lean` how the tool leans, `sets` covers several stiffnesses, and
+//! `preview` and `from_here` are for a placement that is moved by hand: what it comes to at once, and the best one near
+//! it. `setups` and `axes` choose among orientations and positions of external axes, `lean` how the tool leans, `sets`
+//! covers several stiffnesses, and
 //! `calmer` tells whether a calmer plan costs little.
 
 use super::evaluator::Evaluator;
@@ -30,21 +32,25 @@ use stead_planning::transfer::TransferSettings;
 mod axes;
 mod basins;
 mod calmer;
+mod from_here;
 mod infeasible;
 mod lean;
 mod long_path;
 mod long_refinement;
 mod notes;
 mod plan;
+mod preview;
 mod refined;
 mod score;
 mod searched;
 mod sets;
 mod setups;
 
+pub use from_here::improve;
 use infeasible::infeasible;
 pub use infeasible::{BlockingPair, Infeasible};
 pub use long_path::LongPath;
+pub use preview::{Blocked, Preview, PreviewProblem};
 pub use score::{Score, score};
 pub use setups::setup_at;
 

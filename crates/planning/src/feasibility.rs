@@ -108,7 +108,7 @@ pub struct DeflectionMap {
     pub beta_count: usize,
     /// For each path point the row of its `beta_count` states: a score (m), or the constraint that the posture nearest
     /// to being allowed breaks most.
-    pub rows: Vec<Vec<Result<MapCell, MapReason>>>,
+    pub rows: Vec<MapRow>,
 }
 
 /// Why no posture of a state is allowed.
@@ -133,9 +133,26 @@ pub struct MapCell {
 /// a second's work.
 pub const AFTER_STOP: usize = 50_000;
 
+/// A row of a [`DeflectionMap`].
+pub type MapRow = Vec<Result<MapCell, MapReason>>;
+
 /// The smallest score over the allowed postures for every path point and grid value of beta (Caro 2013, Fig. 7 and 9).
 /// `None` for a large map that the caller stops.
 pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<DeflectionMap> {
+    let beta_count = problem.redundancy.beta_count;
+    let points = problem.task.points().len();
+    let is_stopped = || points * beta_count > AFTER_STOP && monitor.should_stop();
+    let all: Vec<usize> = (0..points).collect();
+    Some(DeflectionMap { beta_count, rows: deflection_rows(problem, placement, &all, is_stopped)? })
+}
+
+/// The rows of that map at some path points. `None` where the caller stops it in between.
+pub fn deflection_rows(
+    problem: &Problem,
+    placement: &Placement,
+    points: &[usize],
+    is_stopped: impl Fn() -> bool + Sync,
+) -> Option<Vec<MapRow>> {
     let beta_count = problem.redundancy.beta_count;
     let placement_hit = problem.placement_hit(placement);
     let cell = |point: usize, k: usize, known: &mut Proximity| {
@@ -160,14 +177,11 @@ pub fn deflection_map(problem: &Problem, placement: &Placement, monitor: &Monito
         let kind = nearest.and_then(Explanation::worst).map_or(ConstraintKind::Reach, Measured::kind);
         Err(MapReason { kind, pair: None })
     };
-    let points = problem.task.points().len();
-    let is_stopped = || points * beta_count > AFTER_STOP && monitor.should_stop();
-    let row = |point: usize| {
+    let row = |point: &usize| {
         let mut known = Proximity::default();
-        (!is_stopped()).then(|| (0..beta_count).map(|k| cell(point, k, &mut known)).collect())
+        (!is_stopped()).then(|| (0..beta_count).map(|k| cell(*point, k, &mut known)).collect())
     };
-    let rows: Option<Vec<Vec<_>>> = (0..points).into_par_iter().map(row).collect();
-    Some(DeflectionMap { beta_count, rows: rows? })
+    points.par_iter().map(row).collect()
 }
 
 /// Neighbouring path points of one segment that fail for the same reason.

@@ -67,11 +67,17 @@ impl Cycle {
 /// A joint that moves by less than this stands still. rad
 const STANDSTILL: f64 = 1e-7;
 
-/// The times of a plan: the cut itself, each segment with the feed that the arm holds, and the moves between segments.
-pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
+/// The times of the cut itself, each segment with the feed that the arm holds, without the moves between segments.
+pub fn cut_alone(problem: &Problem, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
     let feed = cut_feed(problem, settings.blend, plans);
     let cutting =
         plans.iter().enumerate().map(|(s, plan)| cutting_time(problem, settings, feed.held(s), s, plan)).sum();
+    Cycle { feed, cutting, transfers: Vec::new(), unfollowed: Vec::new() }
+}
+
+/// The times of a plan: the cut itself, each segment with the feed that the arm holds, and the moves between segments.
+pub fn cycle(problem: &Problem, placement: &Placement, settings: &TransferSettings, plans: &[SegmentPlan]) -> Cycle {
+    let Cycle { feed, cutting, .. } = cut_alone(problem, settings, plans);
     let transfers = plans
         .windows(2)
         .enumerate()

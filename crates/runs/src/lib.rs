@@ -23,7 +23,7 @@ pub use assessment::AssessRun;
 pub use compensation::CompensateRun;
 pub use forces::ForcesRun;
 pub use identification::{IdentifyRun, LocatedError, PlanRun};
-pub use placed::{read_placement_of, read_setup_of};
+pub use placed::{read_placement_of, read_setup_of, setup_in};
 pub use points::{PointFile, read_points};
 pub use read_error::ReadError;
 pub use run::Run;

@@ -11,7 +11,7 @@ use stead_disk::manifest::{self, Unlisted, interruption_note};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
-use stead_planning::problem::Placement;
+use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::{AxisPositions, Setup};
 
 /// The file with the cases.
@@ -41,30 +41,20 @@ pub fn read_setup_of(folder: &Path, case: u8, run: &Run) -> Result<(Placement, S
         let problem = "is none of the run's".to_owned();
         InputError::new(&folder.join(SUMMARY), problem).in_field(format!("cases.{field}")).allowed(ALLOWED)
     };
+    let setup = setup_in(problem, &entry).map_err(error)?;
+    let notes = interruption_note(&folder.join(SUMMARY)).into_iter().chain(changed);
+    Ok((placement, setup, notes.collect()))
+}
+
+/// How part and external axes of a problem are set up as the entry of a result states it.
+///
+/// # Errors
+/// The key of what is none of the problem's.
+pub fn setup_in(problem: &Problem, entry: &Value) -> Result<Setup, &'static str> {
     let mut setup = problem.setup.clone();
     if !problem.orientations.is_empty() {
         let found = problem.orientations.iter().position(|known| entry["orientation"] == known.name.as_str());
-        setup.orientation = found.ok_or_else(|| error("orientation"))?;
-    }
-    if !problem.external_axes.is_empty() {
-        let axes = &entry["external_axes"];
-        let si = |(value, axis): (&Value, &ExternalAxis)| match axis.kind {
-            AxisKind::Rail => value.as_f64().map(|mm| mm / 1e3),
-            AxisKind::Turntable => value.as_f64().map(f64::to_radians),
-        };
-        let row = |row: &Value| -> Option<Vec<f64>> {
-            let row = row.as_array().filter(|row| row.len() == problem.external_axes.len())?;
-            row.iter().zip(&problem.external_axes).map(si).collect()
-        };
-        let rows = axes["positions"].as_array().and_then(|rows| rows.iter().map(row).collect::<Option<Vec<_>>>());
-        let task = &problem.task;
-        let positions = rows.and_then(|rows| match (axes["for_each"].as_str()?, rows.len()) {
-            ("path", 1) => rows.into_iter().next().map(AxisPositions::Same),
-            ("segment", count) => (count == task.segments().len()).then_some(AxisPositions::PerSegment(rows)),
-            ("point", count) => (count == task.points().len()).then_some(AxisPositions::PerPoint(rows)),
-            _ => None,
-        });
-        setup.positions = positions.ok_or_else(|| error("external_axes"))?;
+        setup.orientation = found.ok_or("orientation")?;
     }
     if problem.lean.is_some() && !entry["leans_deg"].is_null() {
         let lean = |row: &Value| match row.as_array()?.as_slice() {
@@ -72,11 +62,30 @@ pub fn read_setup_of(folder: &Path, case: u8, run: &Run) -> Result<(Placement, S
             _ => None,
         };
         let rows = entry["leans_deg"].as_array().and_then(|rows| rows.iter().map(lean).collect::<Option<Vec<Lean>>>());
-        let of_points = rows.filter(|rows| rows.len() == problem.task.points().len());
-        setup.leans = of_points.ok_or_else(|| error("leans_deg"))?.into();
+        setup.leans = rows.filter(|rows| rows.len() == problem.task.points().len()).ok_or("leans_deg")?.into();
     }
-    let notes = interruption_note(&folder.join(SUMMARY)).into_iter().chain(changed);
-    Ok((placement, setup, notes.collect()))
+    if problem.external_axes.is_empty() {
+        return Ok(setup);
+    }
+    let axes = &entry["external_axes"];
+    let si = |(value, axis): (&Value, &ExternalAxis)| match axis.kind {
+        AxisKind::Rail => value.as_f64().map(|mm| mm / 1e3),
+        AxisKind::Turntable => value.as_f64().map(f64::to_radians),
+    };
+    let row = |row: &Value| -> Option<Vec<f64>> {
+        let row = row.as_array().filter(|row| row.len() == problem.external_axes.len())?;
+        row.iter().zip(&problem.external_axes).map(si).collect()
+    };
+    let rows = axes["positions"].as_array().and_then(|rows| rows.iter().map(row).collect::<Option<Vec<_>>>());
+    let task = &problem.task;
+    let positions = rows.and_then(|rows| match (axes["for_each"].as_str()?, rows.len()) {
+        ("path", 1) => rows.into_iter().next().map(AxisPositions::Same),
+        ("segment", count) => (count == task.segments().len()).then_some(AxisPositions::PerSegment(rows)),
+        ("point", count) => (count == task.points().len()).then_some(AxisPositions::PerPoint(rows)),
+        _ => None,
+    });
+    setup.positions = positions.ok_or("external_axes")?;
+    Ok(setup)
 }
 
 /// The exact placement of a case, its entry, and a note where the run file has changed since.

@@ -8,7 +8,8 @@ use crate::document::value;
 use crate::placement::SETUP_SHEET;
 use serde::Serialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use stead_planning::problem::Problem;
 
 /// `page-data.json`.
 pub(super) const DATA: &str = "page-data.json";
@@ -18,6 +19,9 @@ const CERTIFICATE: &str = "certificate.json";
 const OPEN_REGION: &str = "open-region.csv";
 /// Longer paths are thinned for drawing.
 const MAX_POINTS: usize = 6000;
+
+/// The command that leaves the page of one placement.
+pub(super) const SCORE: &str = "score";
 
 /// A kind of results folder: its document and the tables of its plans.
 struct Kind {
@@ -35,7 +39,7 @@ const KINDS: [Kind; 2] = [
         stability: &["stability-best.csv", "stability-worst.csv"],
     },
     Kind {
-        command: "score",
+        command: SCORE,
         document: "score.json",
         plans: &["best-plan.csv", "worst-plan.csv"],
         stability: &["stability-best-plan.csv", "stability-worst-plan.csv"],
@@ -98,13 +102,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
     let depths = depths.iter().map(|name| table(name)?.content(&["stable", "kind"], chosen.as_deref()));
     let mut data = data;
     if let Some(chosen) = &chosen {
-        for key in ["position_mm", "feed", "axis"] {
-            let all = data["task"][key].as_str().unwrap_or_default();
-            data["task"][key] = chosen_singles(all, chosen, 3).into();
-        }
-        if let Some(removal) = data.get_mut("removal") {
-            removal::keep(removal, chosen);
-        }
+        keep_points(&mut data, chosen);
     }
     data["maps"] = maps.into();
     Ok(value(&Content {
@@ -118,6 +116,17 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         open_region: read(OPEN_REGION)?.map(|boxes| open_region(&boxes)).transpose()?,
         data,
     }))
+}
+
+/// Keeps of the path in `page-data.json` the points that are drawn.
+pub(super) fn keep_points(data: &mut Value, chosen: &[usize]) {
+    for key in ["position_mm", "feed", "axis"] {
+        let all = data["task"][key].as_str().unwrap_or_default();
+        data["task"][key] = chosen_singles(all, chosen, 3).into();
+    }
+    if let Some(removal) = data.get_mut("removal") {
+        removal::keep(removal, chosen);
+    }
 }
 
 /// What the script reads.
@@ -195,6 +204,14 @@ pub(super) fn json_file(name: &str, bytes: &[u8]) -> Result<Value, PageError> {
             Err(PageError::file(name, problem))
         }
     }
+}
+
+/// Of a long path evenly chosen points, with both ends of every segment; nothing where all points are drawn.
+pub(super) fn evenly_chosen(problem: &Problem) -> Option<Vec<usize>> {
+    let count = problem.task.points().len();
+    let step = (count > MAX_POINTS).then(|| count.div_ceil(MAX_POINTS))?;
+    let ends: BTreeSet<usize> = problem.task.segments().iter().flat_map(|span| [span.start, span.end - 1]).collect();
+    Some((0..count).filter(|k| k % step == 0 || ends.contains(k)).collect())
 }
 
 /// Of a long path evenly chosen points, with both ends of every segment and the point of every plan that deflects most.

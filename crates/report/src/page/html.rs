@@ -7,15 +7,23 @@ use stead_disk::input::sha256;
 const MARKUP: &str = include_str!("page.html");
 /// The style of all pages.
 const STYLE: &str = concat!(include_str!("base.css"), include_str!("page.css"), include_str!("cards.css"));
+/// That of the live page.
+const LIVE_STYLE: &str =
+    concat!(include_str!("base.css"), include_str!("page.css"), include_str!("cards.css"), include_str!("live.css"));
 
 /// What the main module of the placement page is.
 pub(super) const RUN: &str = "run/main.js";
 /// What that of pages of cards is.
 pub(super) const CARDS: &str = "cards/main.js";
 
+/// What that of a placement that is moved by hand is.
+pub(super) const LIVE: &str = "live/main.js";
+
 /// A page with this title, script and content.
 pub(super) fn html(title: &str, main: &str, content: &str) -> String {
-    document(title, &script_of(main), content)
+    // The live page asks the server that it comes from, the others nobody.
+    let (style, connections) = if main == LIVE { (LIVE_STYLE, "connect-src 'self'; ") } else { (STYLE, "") };
+    document(title, &script_of(main), style, content, connections)
 }
 
 /// The script as it stands in a page. All pages can be joined, as the tests of `script` have it; one that could not
@@ -24,23 +32,23 @@ fn script_of(main: &str) -> String {
     script(main).unwrap_or_else(|error| format!("throw new Error({:?});\n", error.to_string()))
 }
 
-fn document(title: &str, script: &str, data: &str) -> String {
+fn document(title: &str, script: &str, style: &str, data: &str, connections: &str) -> String {
     let digest = |text: &str| format!("sha256-{}", base64(&from_hex(&sha256(text.as_bytes()))));
     let policy = format!(
-        "default-src 'none'; script-src '{}'; style-src '{}'; img-src data:; base-uri 'none'; form-action 'none'",
+        "default-src 'none'; script-src '{}'; style-src '{}'; img-src data:; {connections}base-uri 'none'; form-action 'none'",
         digest(script),
-        digest(STYLE)
+        digest(style)
     );
     // In JSON the sign stands only within texts.
     let data = data.replace('<', "\\u003c");
     let parts = [
         ("{{policy}}", policy.as_str()),
         ("{{title}}", &escaped(title)),
-        ("{{style}}", STYLE),
+        ("{{style}}", style),
         ("{{data}}", &data),
         ("{{script}}", script),
     ];
-    let mut page = String::with_capacity(data.len() + script.len() + STYLE.len() + MARKUP.len());
+    let mut page = String::with_capacity(data.len() + script.len() + style.len() + MARKUP.len());
     let mut rest = MARKUP;
     for (mark, text) in parts {
         let (before, behind) = rest.split_once(mark).unwrap_or((rest, ""));

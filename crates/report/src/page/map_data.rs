@@ -7,7 +7,7 @@ use super::table::Table;
 use serde_json::Value;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::Range;
-use stead_planning::feasibility::DeflectionMap;
+use stead_planning::feasibility::{DeflectionMap, MapRow};
 use stead_planning::problem::{Placement, Problem};
 
 /// Joint angles in the page are multiples of this. deg
@@ -18,7 +18,7 @@ const SCORE_STEP_MM: f64 = 1e-4;
 const COLUMNS: usize = 400;
 
 /// The path points that a map in the page shows: all, or evenly chosen ones.
-fn columns(points: usize) -> Vec<usize> {
+pub(super) fn columns(points: usize) -> Vec<usize> {
     let step = points.div_ceil(COLUMNS).max(1);
     (0..points).step_by(step).collect()
 }
@@ -27,23 +27,7 @@ records! {
     /// A deflection map in `page-data.json`.
     pub struct MapData of (problem: &Problem, placement: &Placement, map: &DeflectionMap, table: &str) {
         let points = columns(map.rows.len());
-        let mut packed = Varints::default();
-        for &point in &points {
-            let mut last: Option<Posture> = None;
-            let mut sequences = [SecondDifferences::default(); 6];
-            for (k, cell) in map.rows[point].iter().enumerate() {
-                let posture = cell.as_ref().ok().map(|cell| cell.posture);
-                if posture != last {
-                    sequences.iter_mut().for_each(SecondDifferences::restart);
-                }
-                last = posture;
-                let Some(posture) = posture else { continue };
-                let angles = state(problem, placement, point, problem.redundancy.beta(k), posture);
-                for (sequence, angle) in sequences.iter_mut().zip(angles) {
-                    packed.push(sequence.next((angle.to_degrees() / ANGLE_STEP_DEG).round() as i64));
-                }
-            }
-        }
+        let joints = packed_joints(problem, placement, points.iter().map(|point| (*point, &map.rows[*point])));
     } with {
         /// The table of its scores.
         table: String = table.to_owned(),
@@ -55,7 +39,98 @@ records! {
         angle_step_deg: f64 = ANGLE_STEP_DEG,
         /// Joint angles of its allowed states: for each joint the second differences along beta, begun anew behind a
         /// state that is not allowed or has another posture.
-        joints: String = packed.text(),
+        joints: String = joints,
+    }
+}
+
+/// The joint angles of the allowed states of rows at path points.
+fn packed_joints<'a>(
+    problem: &Problem,
+    placement: &Placement,
+    rows: impl Iterator<Item = (usize, &'a MapRow)>,
+) -> String {
+    let mut packed = Varints::default();
+    for (point, row) in rows {
+        let mut last: Option<Posture> = None;
+        let mut sequences = [SecondDifferences::default(); 6];
+        for (k, cell) in row.iter().enumerate() {
+            let posture = cell.as_ref().ok().map(|cell| cell.posture);
+            if posture != last {
+                sequences.iter_mut().for_each(SecondDifferences::restart);
+            }
+            last = posture;
+            let Some(posture) = posture else { continue };
+            let angles = state(problem, placement, point, problem.redundancy.beta(k), posture);
+            for (sequence, angle) in sequences.iter_mut().zip(angles) {
+                packed.push(sequence.next((angle.to_degrees() / ANGLE_STEP_DEG).round() as i64));
+            }
+        }
+    }
+    packed.text()
+}
+
+records! {
+    /// Some columns of a deflection map as the script of the page has a whole one.
+    pub struct MapColumns of (problem: &Problem, placement: &Placement, points: &[usize], rows: &[MapRow]) {
+        let mut states = States::default();
+        for row in rows {
+            states.begin();
+            for cell in row {
+                match cell {
+                    Ok(cell) => states.allowed(u8::from(cell.posture), cell.score * 1e3),
+                    Err(reason) => states.refused(&reason.kind.code()),
+                }
+            }
+        }
+        let joints = packed_joints(problem, placement, points.iter().copied().zip(rows));
+        let (codes, scores) = (super::packed::base64(&states.codes), states.packed.text());
+    } with {
+        /// The path points, from 0.
+        points: Vec<usize> = points.to_vec(),
+        /// Angles about the tool axis at each point.
+        beta_count: usize = problem.redundancy.beta_count,
+        /// Joint angles are multiples of this. deg
+        angle_step_deg: f64 = ANGLE_STEP_DEG,
+        /// Joint angles of the allowed states.
+        joints: String = joints,
+        /// For each state its posture, or 16 and the number of the reason why none is allowed.
+        codes: String = codes,
+        /// The reasons.
+        reasons: Vec<String> = states.names,
+        /// Scores are multiples of this. mm
+        score_step_mm: f64 = SCORE_STEP_MM,
+        /// Scores of the allowed states.
+        scores: String = scores,
+    }
+}
+
+/// States one after the other, as the script unpacks them.
+#[derive(Debug, Default)]
+struct States {
+    names: Vec<String>,
+    codes: Vec<u8>,
+    packed: Varints,
+    sequence: SecondDifferences,
+}
+
+impl States {
+    /// Begins with another path point.
+    fn begin(&mut self) {
+        self.sequence.restart();
+    }
+
+    fn allowed(&mut self, posture: u8, score_mm: f64) {
+        self.codes.push(posture);
+        self.packed.push(self.sequence.next((score_mm / SCORE_STEP_MM).round() as i64));
+    }
+
+    fn refused(&mut self, why: &str) {
+        let known = self.names.iter().position(|name| name == why).unwrap_or(self.names.len());
+        if known == self.names.len() {
+            self.names.push(why.to_owned());
+        }
+        self.codes.push(16 + known as u8);
+        self.sequence.restart();
     }
 }
 
@@ -78,33 +153,25 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
     let beta_count = entry["beta_count"].as_u64().filter(|count| *count > 0).ok_or_else(wrong)? as usize;
     let [score, posture, reason] = [table.column("score_mm")?, table.column("posture")?, table.column("reason")?];
     let mut rows = table.rows();
-    let (mut names, mut codes, mut packed): (Vec<String>, _, _) = (Vec::new(), Vec::new(), Varints::default());
+    let mut states = States::default();
     for point in points {
         let point = point.as_u64().ok_or_else(wrong)? as usize;
-        let mut sequence = SecondDifferences::default();
+        states.begin();
         for row in point * beta_count..(point + 1) * beta_count {
             if !rows.go_to(row)? {
                 return Err(table.error("has fewer states than page-data.json says: they are of two runs"));
             }
-            let why = rows.text(reason);
-            if why.is_empty() {
-                codes.push(rows.number(posture)? as u8);
-                packed.push(sequence.next((rows.number(score)? / SCORE_STEP_MM).round() as i64));
-                continue;
+            match rows.text(reason) {
+                "" => states.allowed(rows.number(posture)? as u8, rows.number(score)?),
+                why => states.refused(why),
             }
-            let known = names.iter().position(|name| name == why).unwrap_or(names.len());
-            if known == names.len() {
-                names.push(why.to_owned());
-            }
-            codes.push(16 + known as u8);
-            sequence.restart();
         }
     }
     let mut value = entry.clone();
-    value["codes"] = super::packed::base64(&codes).into();
-    value["reasons"] = names.into();
+    value["codes"] = super::packed::base64(&states.codes).into();
+    value["reasons"] = states.names.into();
     value["score_step_mm"] = SCORE_STEP_MM.into();
-    value["scores"] = packed.text().into();
+    value["scores"] = states.packed.text().into();
     Ok(value)
 }
 

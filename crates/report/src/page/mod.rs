@@ -16,6 +16,7 @@ pub(crate) mod data;
 mod folder;
 pub mod gltf;
 mod html;
+pub mod live;
 mod map_data;
 mod moves;
 mod packed;

@@ -26,6 +26,18 @@ const MODULES: &[(&str, &str)] = modules![
     "cards/polar.js",
     "cards/sheet.js",
     "cards/table.js",
+    "live/answers.js",
+    "live/controls.js",
+    "live/drag.js",
+    "live/edits.js",
+    "live/figures.js",
+    "live/follow.js",
+    "live/jobs.js",
+    "live/main.js",
+    "live/pace.js",
+    "live/pins.js",
+    "live/place.js",
+    "live/server.js",
     "run/axis-tracks.js",
     "run/bodies.js",
     "run/camera.js",
@@ -186,7 +198,7 @@ mod tests {
     /// Every page can be written, every module is in one, and nothing in it ends the script.
     #[test]
     fn the_pages_have_all_modules() {
-        let both = ["run/main.js", "cards/main.js"].map(|main| script(main).unwrap());
+        let both = ["run/main.js", "cards/main.js", "live/main.js"].map(|main| script(main).unwrap());
         for (path, text) in MODULES {
             let last = text.lines().last().unwrap();
             let is_data = *path == "draw/chart-data.js";

@@ -6,6 +6,7 @@ use nalgebra::Matrix3;
 use stead_model::external_axis::{Carried, ExternalAxis};
 use stead_placement::outcome::Case;
 use stead_planning::problem::Problem;
+use stead_planning::setup::Setup;
 
 records! {
     /// An external axis; its positions along the plans are a column of the plans.
@@ -39,10 +40,12 @@ pub(super) fn external_axes(problem: &Problem) -> Vec<AxisData> {
 /// For each plan the rotation from the workpiece frame that the page has the task in to the frame that is placed;
 /// nothing where there is one orientation.
 pub(super) fn part_turns(problem: &Problem, plans: &[&Case]) -> Option<Vec<[[f64; 3]; 3]>> {
-    if problem.orientations.is_empty() {
-        return None;
-    }
+    let turns = plans.iter().map(|case| part_turn(problem, &case.setup));
+    (!problem.orientations.is_empty()).then(|| turns.collect())
+}
+
+/// That rotation in a setup.
+pub(super) fn part_turn(problem: &Problem, setup: &Setup) -> [[f64; 3]; 3] {
     let rotation = |problem: &Problem| problem.orientation().map_or(Matrix3::identity(), |found| found.rotation);
-    let turn = |case: &&Case| rows(&(rotation(&problem.in_setup(&case.setup)) * rotation(problem).transpose()));
-    Some(plans.iter().map(turn).collect())
+    rows(&(rotation(&problem.in_setup(setup)) * rotation(problem).transpose()))
 }

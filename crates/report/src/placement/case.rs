@@ -87,7 +87,7 @@ records! {
         /// Time of the cut at the programmed feed.
         cutting_s: TimeS = cycle.cutting.into(),
         /// Time with the moves between segments; null where a joint speed is not known.
-        cycle_s: Option<TimeS> = some(cycle.total()),
+        pub(super) cycle_s: Option<TimeS> = some(cycle.total()),
         /// Path points to which the arm cannot follow the straight move of the tool, or not within its joint limits.
         unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(unfollowed).collect(),
         /// The least clearance at the points, among shapes of a cell.

@@ -15,9 +15,9 @@ use crate::units::fixed;
 use serde_json::Value;
 use stead_model::robot::Posture;
 use stead_placement::outcome::Plan;
-use stead_placement::place::{BlockingPair, Infeasible, Score};
+use stead_placement::place::{BlockingPair, Infeasible, Preview, Score};
 use stead_planning::feasibility::{Explanation, Finding};
-use stead_planning::problem::Placement;
+use stead_planning::problem::{Placement, Problem};
 use stead_planning::sense::BySense;
 
 records! {
@@ -75,6 +75,32 @@ records! {
 /// What `stead score --json` prints, with the critical depths along both plans where they were requested.
 pub fn score_json(score: &Score, context: &Context) -> Value {
     context.document().with(ScoreFigures::of(score, context))
+}
+
+/// The same of a placement that is moved about, whose best plan alone is known, on the grid of the run and without the
+/// moves between segments.
+pub(crate) fn preview_json(
+    placement: &Placement,
+    problem: &Problem,
+    Preview { plan, cycle }: &Preview,
+    context: &Context,
+) -> Value {
+    let orientation = problem.orientation().map(|orientation| orientation.name.clone());
+    let mut best = PlanFigures::of(plan, cycle);
+    best.cycle_s = None;
+    context.document().with(ScoreFigures {
+        placement: placement.into(),
+        placement_exact: placement.into(),
+        feasible: true,
+        interrupted: false,
+        best: Some(best),
+        worst: None,
+        setup: Some(SetupFigures::of(orientation.as_ref(), &problem.setup, &plan.axes)),
+        setup_sheet: None,
+        stability: None,
+        findings: None,
+        collisions: Vec::new(),
+    })
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.

@@ -103,6 +103,22 @@ export const placeOf = (eye) =>
     ),
   );
 
+/** The angle of the view upwards, by how much wider than high it is. rad @param {number} aspect */
+export const fieldOf = (aspect) => (aspect < 1 ? 0.9 : 0.63);
+
+/** @typedef {{ from: Vec, along: Vec }} Ray */
+
+/** What is seen at a place of the window. @param {Eye} eye @param {HTMLElement} surface @param {number} x @param {number} y @returns {Ray} */
+export function rayAt(eye, surface, x, y) {
+  const box = surface.getBoundingClientRect();
+  const aspect = box.width / Math.max(box.height, 1);
+  const half = Math.tan(fieldOf(aspect) / 2);
+  const [right, up] = [((2 * (x - box.left)) / box.width - 1) * half * aspect, (1 - (2 * (y - box.top)) / box.height) * half];
+  const from = placeOf(eye);
+  const m = lookAt(from, eye.target, [0, 0, 1]);
+  return { from, along: unit([0, 4, 8].map((k) => m[k] * right + m[k + 1] * up - m[k + 2])) };
+}
+
 /** Moves the eye by hand. @param {HTMLElement} surface @param {Eye} eye @param {() => void} changed */
 export function steer(surface, eye, changed) {
   const zoom = (/** @type {number} */ factor) => {

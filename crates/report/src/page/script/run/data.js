@@ -71,14 +71,14 @@ class Sequence {
 }
 
 /** @param {Record<string, any>} packed @returns {Columns} */
-function columnsOf(packed) {
+export function columnsOf(packed) {
   return Object.fromEntries(
     Object.entries(packed).map(([name, text]) => [name, typeof text === 'string' ? singlesOf(text) : text]),
   );
 }
 
 /** @param {any} entry @returns {StateMap} */
-function mapOf(entry) {
+export function mapOf(entry) {
   const codes = bytesOf(entry.codes);
   const betaCount = entry.beta_count;
   const scores = new Float32Array(codes.length).fill(NaN);
@@ -150,9 +150,8 @@ function wayOf(entry) {
   return { joints: rowsOf(entry.joints_deg, places), axes: rowsOf(entry.axes, places), parts };
 }
 
-/** @type {Case[]} */
-export const CASES = caseEntries().map((entry, k) => {
-  const columns = columnsOf(RAW.plans[k]);
+/** A case of its entry and its table. @param {any} entry @param {number} k @param {Columns} columns @param {any[]} ways @returns {Case} */
+export function caseOf(entry, k, columns, ways) {
   const joints = Array.from(columns.point, (_, i) => [1, 2, 3, 4, 5, 6].map((j) => columns[`theta${j}_deg`][i]));
   const at = entry.placement;
   return {
@@ -171,10 +170,13 @@ export const CASES = caseEntries().map((entry, k) => {
     cycle: entry.cycle_s,
     cutting: entry.cutting_s,
     moves: (entry.transfers || []).map((/** @type {any} */ move) => move.duration_s),
-    ways: (RAW.moves ? RAW.moves[k] : []).map(wayOf),
+    ways: ways.map(wayOf),
     entry,
   };
-});
+}
+
+/** @type {Case[]} */
+export const CASES = caseEntries().map((entry, k) => caseOf(entry, k, columnsOf(RAW.plans[k]), RAW.moves ? RAW.moves[k] : []));
 
 /** How many path points are drawn. */
 export const COUNT = CASES[0].joints.length;

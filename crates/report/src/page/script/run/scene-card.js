@@ -10,12 +10,19 @@ import { LAYERS, sceneIn } from './scene.js';
 import { reasonText } from './map.js';
 import { chosenState, current, onChange, set, state } from './state.js';
 import { HAS_BLOCK } from './surroundings.js';
+/** @import { Scene } from './scene.js' */
 
 /** Gives the view as it is now, as the address of a picture; the card of the scene puts it in. */
 let picture = () => '';
 
 /** That address. */
 export const viewPicture = () => picture();
+
+/** What is seen at a place of the window; the card of the scene puts it in. @type {Scene['ray']} */
+let ray = () => ({ from: [0, 0, 0], along: [0, 0, 1] });
+
+/** That ray. @param {number} x @param {number} y */
+export const viewRay = (x, y) => ray(x, y);
 
 /** What the path is coloured by, where there is something to choose from. */
 function colouringChoice() {
@@ -51,6 +58,7 @@ export function sceneCard() {
   );
   const scene = sceneIn(view);
   picture = scene.picture;
+  ray = scene.ray;
   const views = [
     ['cell', '3-D'],
     ['top', 'Top'],

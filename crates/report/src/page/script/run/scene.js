@@ -5,9 +5,9 @@ import { clamp, fixed } from '../draw/scale.js';
 import { isDark, themeRgb } from '../draw/theme.js';
 import { axisTrack, platter } from './axis-tracks.js';
 import { ARM_FRAMES, BODIES, HAS_ENVELOPES, HAS_SURROUNDINGS, SHAPES, STOCKS, bodiesOf } from './bodies.js';
-import { MIDDLE, lookAt, parallel, perspective, placeOf, steer, viewOf } from './camera.js';
+import { MIDDLE, fieldOf, lookAt, parallel, perspective, placeOf, rayAt, steer, viewOf } from './camera.js';
 import { COLOURINGS } from './colour.js';
-import { CASES } from './data.js';
+import { CASES, RAW } from './data.js';
 import { AXES, axesAt, axisFrame, baseFrame, carriedBy, workpieceFrame } from './external-axes.js';
 import { LARGEST_FORCE, forceArrows } from './forces.js';
 import { buffersOf, free, linesOf, programOf, shadowTarget } from './gpu.js';
@@ -19,6 +19,7 @@ import { DEPTH_FRAGMENT, FRAGMENT, MODE, VERTEX } from './shaders.js';
 import { current, currentJoints, onChange, set, state } from './state.js';
 import { FLOOR, HAS_BLOCK, block, cellEdges, floorGrid, partEdges, reachBall, reachLines, wallEdges } from './surroundings.js';
 /** @import { Buffers, Program } from './gpu.js' */
+/** @import { Ray } from './camera.js' */
 /** @import { Mat } from './linear.js' */
 
 /** What can be left out of the view, with its words, where there is such a thing. */
@@ -29,7 +30,7 @@ export const LAYERS = [
   { name: 'before', words: 'stock before', isThere: STOCKS.length > 0, isOff: true },
   { name: 'cell', words: 'cell volume', isThere: true },
   { name: 'reach', words: 'reach', isThere: true },
-  { name: 'ghost', words: 'other placement', isThere: CASES.length > 2 },
+  { name: 'ghost', words: 'other placement', isThere: CASES.length > 2 || Boolean(RAW.live) },
   { name: 'around', words: 'surroundings', isThere: HAS_SURROUNDINGS },
   { name: 'envelopes', words: 'collision shapes of the arm', isThere: HAS_ENVELOPES, isOff: true },
 ].filter(({ isThere }) => isThere);
@@ -44,7 +45,7 @@ const SUN = unit([0.42, -0.52, 0.86]);
 /**
  * @typedef {{
  *   view: (name: string) => void, layer: (name: string, isShown: boolean) => void, turn: (dx: number, dy: number) => void,
- *   zoom: (factor: number) => void, picture: () => string
+ *   zoom: (factor: number) => void, picture: () => string, ray: (x: number, y: number) => Ray
  * }} Scene
  */
 
@@ -105,7 +106,7 @@ export function sceneIn(host) {
   const gl = canvas.getContext('webgl2', { antialias: false, alpha: true, premultipliedAlpha: false });
   if (!gl) {
     host.append(el('p.none', {}, 'This browser shows no WebGL2. Maps, charts and tables work all the same.'));
-    return { view() {}, layer() {}, turn() {}, zoom() {}, picture: () => '' };
+    return { view() {}, layer() {}, turn() {}, zoom() {}, picture: () => '', ray: () => ({ from: [0, 0, 0], along: [0, 0, 1] }) };
   }
   host.append(canvas);
   /** @type {Record<string, boolean>} */
@@ -202,7 +203,7 @@ export function sceneIn(host) {
     const aspect = canvas.width / canvas.height;
     const place = placeOf(eye);
     const view = product(
-      perspective(aspect < 1 ? 0.9 : 0.63, aspect, 0.02 * far, 11 * far),
+      perspective(fieldOf(aspect), aspect, 0.02 * far, 11 * far),
       lookAt(place, eye.target, [0, 0, 1]),
     );
     gl.useProgram(program.program);
@@ -297,7 +298,7 @@ export function sceneIn(host) {
       Object.values(ofCase).flat().forEach((buffers) => buffers && free(gl, buffers));
       ofCase = caseParts(gl);
     }
-    if (changed.case || changed.theme || changed.size) resize();
+    if ((changed.case && !changed.renewed) || changed.theme || changed.size) resize();
     else keepUp();
     draw();
   });
@@ -322,6 +323,7 @@ export function sceneIn(host) {
       settle();
       return canvas.toDataURL('image/png');
     },
+    ray: (x, y) => rayAt(eye, canvas, x, y),
   };
 }
 

@@ -8,7 +8,8 @@ import { jointsAt } from './kinematics.js';
 /**
  * @typedef {{ column: number, beta: number }} Chosen a state of the map: number of its column and of its angle
  * @typedef {{ chosen: Chosen | null, case: number, t: number, hover: number | null, colouring: number }} State
- * @typedef {{ theme?: boolean, size?: boolean, scene?: boolean }} Look what changes without the state
+ * @typedef {{ theme?: boolean, size?: boolean, scene?: boolean, renewed?: boolean }} Look what changes without the state; `renewed` where
+ *   the case is the same and what is known of it is not
  * @typedef {Look & { case?: boolean, colouring?: boolean }} Changes
  */
 
@@ -39,7 +40,7 @@ function show() {
 
 /** Changes the state; what shows it is drawn in the next frame, or at once. @param {Partial<State> & Look} to @param {boolean} [atOnce] */
 export function set(to, atOnce = false) {
-  const { theme, size: resized, scene, ...next } = to;
+  const { theme, size: resized, scene, renewed, ...next } = to;
   if (next.case !== undefined && next.case !== state.case) {
     changes.case = true;
     state.chosen = null;
@@ -48,6 +49,10 @@ export function set(to, atOnce = false) {
   if (next.t !== undefined) {
     next.t = clamp(next.t, 0, COUNT - 1);
     if (next.chosen === undefined) next.chosen = null;
+  }
+  if (renewed) {
+    changes.case = changes.renewed = true;
+    forgetters.forEach((forget) => forget());
   }
   changes.theme ||= theme;
   changes.size ||= resized;
@@ -94,10 +99,14 @@ export function currentJoints() {
   return chosen?.isAllowed ? chosen.joints : jointsAt(current(), state.t);
 }
 
+/** @type {(() => void)[]} what was computed of cases is forgotten */
+const forgetters = [];
+
 /** What depends on the case alone, computed once for each. @template T @param {() => T} make @returns {() => T} */
 export function remembered(make) {
   /** @type {Map<number, T>} */
   const known = new Map();
+  forgetters.push(() => known.clear());
   return () => {
     let found = known.get(state.case);
     if (found === undefined) {

@@ -1,0 +1,378 @@
+//! Long jobs, one at a time: they go on when their page has gone, end early when they are asked to, and keep what they
+//! have found.
+
+use super::pins::Pin;
+use super::place::Place;
+use super::requests::{Body, RequestError};
+use super::session::{Reading, Session};
+use crate::program::{ExportOptions, ProgramFormat};
+use crate::progress::{Described, locked};
+use crate::{Error, Monitor, Run};
+use serde_json::{Value, json};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Instant;
+use stead_certify::settings::CertificateSettings;
+use stead_disk::Existing;
+use stead_numerics::monitor::{Progress, StopHandle};
+use stead_placement::place::{improve, setup_at};
+use stead_report::certificate::{certificate_json, certificate_text};
+use stead_report::document;
+use stead_report::units::{Unit, fixed};
+
+/// Jobs that have ended and are still told of.
+const TOLD: usize = 16;
+
+/// What can be done in the background.
+#[derive(Debug, Clone, PartialEq)]
+enum Kind {
+    /// The best placement near the given one.
+    SearchHere,
+    /// The best placement of the cell.
+    SearchCell,
+    /// How far the placement is from the best possible, to a gap (relative).
+    Certify(f64),
+    /// The external axes where the placement is best.
+    SetUp,
+    /// A folder with the placement.
+    Keep,
+    /// A robot program of a placement that is kept.
+    Export(Exported),
+}
+
+/// What a program is made of.
+#[derive(Debug, Clone, PartialEq)]
+struct Exported {
+    pin: Pin,
+    format: ProgramFormat,
+    name: String,
+    mechanism: Option<usize>,
+    unit: Option<String>,
+}
+
+impl Kind {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::SearchHere => "search from here",
+            Self::SearchCell => "search the cell",
+            Self::Certify(_) => "certify",
+            Self::SetUp => "set up the axes",
+            Self::Keep => "keep this placement",
+            Self::Export(_) => "export",
+        }
+    }
+}
+
+/// The job that runs and those that have ended.
+#[derive(Debug, Default)]
+pub(super) struct Jobs {
+    list: Mutex<List>,
+    /// The page of the placement that is scored now, and what stops it when the page moves on.
+    whole: Mutex<Option<(String, StopHandle)>>,
+}
+
+#[derive(Debug, Default)]
+struct List {
+    begun: usize,
+    running: Option<Running>,
+    ended: VecDeque<Value>,
+    is_closed: bool,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Running {
+    id: usize,
+    name: &'static str,
+    page: String,
+    begun: Instant,
+    stop: StopHandle,
+    is_stopping: bool,
+    latest: Arc<Mutex<Option<Progress>>>,
+}
+
+/// What a job comes to.
+struct Ended {
+    /// In sentences.
+    said: Vec<String>,
+    /// A placement that pages may go to.
+    place: Option<Value>,
+    /// The name of the folder that keeps it.
+    pin: Option<String>,
+}
+
+impl Jobs {
+    /// A monitor for the placement of a page that is scored now.
+    pub fn whole_begins(&self, page: &str) -> Monitor {
+        let monitor = Monitor::silent();
+        *locked(&self.whole) = Some((page.to_owned(), monitor.stop_handle()));
+        monitor
+    }
+
+    /// A page has moved on: what is scored for it is not wanted any more.
+    pub fn outdate(&self, page: &str) {
+        if let Some((_, stop)) = locked(&self.whole).as_ref().filter(|(asked, _)| asked == page) {
+            stop.stop();
+        }
+    }
+
+    /// Stops what runs, and waits for what it keeps.
+    pub fn close(&self) {
+        let thread = {
+            let mut list = locked(&self.list);
+            list.is_closed = true;
+            list.running.iter_mut().for_each(Running::stop);
+            list.thread.take()
+        };
+        if let Some((_, stop)) = locked(&self.whole).as_ref() {
+            stop.stop();
+        }
+        // A thread that has failed has nothing left to write.
+        drop(thread.map(JoinHandle::join));
+    }
+
+    /// The job that runs and those that have ended, the last one last.
+    pub fn state(&self) -> Value {
+        let list = locked(&self.list);
+        let running = list.running.as_ref().map(Running::entry);
+        json!({ "running": running, "ended": list.ended })
+    }
+
+    fn begin(&self, name: &'static str, page: String) -> Result<(usize, Monitor), RequestError> {
+        let mut list = locked(&self.list);
+        if let Some(running) = &list.running {
+            let problem = format!("waits: `{}` is running", running.name);
+            return Err(RequestError::new("job", problem, "one job at a time: stop it, or wait until it has ended"));
+        }
+        if list.is_closed {
+            return Err(RequestError::new("job", "cannot begin: the session ends", "another session"));
+        }
+        list.begun += 1;
+        let latest: Arc<Mutex<Option<Progress>>> = Arc::default();
+        let seen = Arc::clone(&latest);
+        let monitor = Monitor::new(move |progress| *locked(&seen) = Some(*progress));
+        let (id, stop) = (list.begun, monitor.stop_handle());
+        list.running = Some(Running { id, name, page, begun: Instant::now(), stop, is_stopping: false, latest });
+        Ok((id, monitor))
+    }
+
+    fn end(&self, ended: Result<Ended, String>) {
+        let mut list = locked(&self.list);
+        let Some(running) = list.running.take() else { return };
+        let mut entry =
+            json!({ "id": running.id, "name": running.name, "page": running.page, "was_stopped": running.is_stopping });
+        match ended {
+            Ok(Ended { said, place, pin }) => {
+                entry["said"] = said.into();
+                entry["place"] = place.unwrap_or_default();
+                entry["pin"] = pin.into();
+            }
+            Err(error) => entry["error"] = error.into(),
+        }
+        list.ended.push_back(entry);
+        if list.ended.len() > TOLD {
+            list.ended.pop_front();
+        }
+    }
+}
+
+impl Running {
+    fn stop(&mut self) {
+        self.stop.stop();
+        self.is_stopping = true;
+    }
+
+    fn entry(&self) -> Value {
+        let described = locked(&self.latest).as_ref().map(Described::of);
+        let (stage, steps, message) = described
+            .map_or(("", None, String::new()), |described| (described.stage, described.steps, described.message));
+        json!({
+            "id": self.id,
+            "name": self.name,
+            "page": self.page,
+            "seconds": self.begun.elapsed().as_secs(),
+            "is_stopping": self.is_stopping,
+            "stage": stage,
+            "done": steps.map(|(done, _)| done),
+            "total": steps.map(|(_, total)| total),
+            "message": message,
+        })
+    }
+}
+
+impl Session {
+    /// Begins a job.
+    ///
+    /// # Errors
+    /// [`RequestError`] for a job that there is not, or while another one runs.
+    pub fn begin(self: &Arc<Self>, body: &[u8]) -> Result<Value, RequestError> {
+        let body = Body::read(body)?;
+        let reading = self.reading();
+        let (kind, page) = (self.kind(&body, &reading)?, body.page()?);
+        let place = match kind {
+            Kind::Export(_) => self.known().place.clone(),
+            _ => body.place(reading.run.problem())?,
+        };
+        let label = if body.is_on("is_labelled")? { body.text("label")?.to_owned() } else { String::new() };
+        let (id, monitor) = self.jobs.begin(kind.name(), page)?;
+        let session = Arc::clone(self);
+        let work = move || {
+            let ended = on_spare_threads(|| session.run_job(&kind, &reading, &place, &label, &monitor));
+            session.jobs.end(ended.and_then(|ended| ended.map_err(|error| error.to_string())));
+        };
+        match std::thread::Builder::new().name("job".to_owned()).spawn(work) {
+            Ok(thread) => locked(&self.jobs.list).thread = Some(thread),
+            Err(error) => self.jobs.end(Err(error.to_string())),
+        }
+        Ok(json!({ "id": id }))
+    }
+
+    /// Asks the job that runs to end with what it has.
+    pub fn stop(&self) -> Value {
+        locked(&self.jobs.list).running.iter_mut().for_each(Running::stop);
+        self.jobs.state()
+    }
+
+    fn kind(&self, body: &Body, reading: &Reading) -> Result<Kind, RequestError> {
+        match body.text("job")? {
+            "search_here" => Ok(Kind::SearchHere),
+            "search_cell" => Ok(Kind::SearchCell),
+            "set_up" if !reading.run.problem().external_axes.is_empty() => Ok(Kind::SetUp),
+            "keep" => Ok(Kind::Keep),
+            "certify" => {
+                let percent = body.number("gap_percent", 100.0)?;
+                let gap = CertificateSettings::gap(percent).ok_or_else(|| {
+                    let problem = format!("is no such gap, found {percent} %");
+                    RequestError::new("gap_percent", problem, stead_run_files::GAPS_ALLOWED)
+                })?;
+                Ok(Kind::Certify(gap))
+            }
+            "export" => self.exported(body).map(Kind::Export),
+            other => {
+                let allowed = "search_here, search_cell, certify, keep, export, and with external axes set_up";
+                Err(RequestError::new("job", format!("is none, found {other}"), allowed))
+            }
+        }
+    }
+
+    fn exported(&self, body: &Body) -> Result<Exported, RequestError> {
+        let (name, word) = (body.text("pin")?, body.text("format")?);
+        let pin = self.known().pins.iter().find(|pin| pin.name == name).cloned();
+        let pin =
+            pin.ok_or_else(|| RequestError::new("pin", format!("is none, found {name}"), "a placement that is kept"))?;
+        let format = ProgramFormat::ALL.into_iter().find(|format| format.word() == word);
+        let format = format.ok_or_else(|| {
+            let allowed = ProgramFormat::ALL.map(ProgramFormat::word).join(", ");
+            RequestError::new("format", format!("is none, found {word}"), allowed)
+        })?;
+        let mechanism = if body.is_on("has_mechanism")? { Some(body.whole("mechanism")?) } else { None };
+        let unit = if body.is_on("has_unit")? { Some(body.text("unit")?.to_owned()) } else { None };
+        Ok(Exported { pin, format, name: body.text("name")?.to_owned(), mechanism, unit })
+    }
+
+    fn run_job(
+        &self,
+        kind: &Kind,
+        reading: &Reading,
+        place: &Place,
+        label: &str,
+        monitor: &Monitor,
+    ) -> Result<Ended, Error> {
+        let problem = reading.run.problem();
+        match kind {
+            Kind::Keep => self.keep(reading, place, label, monitor, Vec::new()),
+            Kind::SearchHere => {
+                let set_up = problem.in_setup(&place.setup);
+                let placement = improve(&set_up, &place.placement, monitor).map_err(infeasible)?;
+                let found = Place { placement, setup: place.setup.clone() };
+                self.keep(reading, &found, "search from here", &Monitor::silent(), Vec::new())
+            }
+            Kind::SearchCell => {
+                let placements = reading.run.clone().without_worst().search(monitor)?;
+                let (outcome, best) = (placements.outcome(), &placements.cases().best);
+                let mut said = vec![format!("the best of {} placements", outcome.evaluations)];
+                said.extend(outcome.warnings.iter().map(ToString::to_string));
+                let found = Place { placement: best.placement, setup: best.setup.clone() };
+                self.keep(reading, &found, "search of the cell", &Monitor::silent(), said)
+            }
+            Kind::SetUp => {
+                let setup = setup_at(&problem.in_setup(&place.setup), &place.placement, monitor);
+                let found = Place { setup, ..place.clone() };
+                let said = vec!["the external axes stand where the placement is best".to_owned()];
+                Ok(Ended { said, place: Some(found.entry(problem)), pin: None })
+            }
+            Kind::Certify(gap) => self.certify(*gap, reading, place, monitor),
+            Kind::Export(exported) => self.export(exported, reading, monitor),
+        }
+    }
+
+    /// Scores a placement and writes its folder.
+    fn keep(
+        &self,
+        reading: &Reading,
+        place: &Place,
+        label: &str,
+        monitor: &Monitor,
+        mut said: Vec<String>,
+    ) -> Result<Ended, Error> {
+        let mut score = reading.run.in_setup(&place.setup).score(&place.placement, monitor)?;
+        score.map(monitor);
+        score.make_sheet(monitor);
+        let pin = Pin::write(self, reading, &score, label)?;
+        let mean = Unit::DEFLECTION_MM.text(score.score().plans.best.mean);
+        said.push(format!("mean {mean} mm, kept in {}", self.folder.path().join(&pin).display()));
+        Ok(Ended { said, place: Some(place.entry(reading.run.problem())), pin: Some(pin) })
+    }
+
+    fn certify(&self, gap: f64, reading: &Reading, place: &Place, monitor: &Monitor) -> Result<Ended, Error> {
+        let set_up = reading.run.in_setup(&place.setup);
+        let scored = set_up.score(&place.placement, &Monitor::silent())?;
+        let settings =
+            CertificateSettings { gap, ..reading.run.run.certificate.unwrap_or(CertificateSettings::new(gap)) };
+        let objective = scored.score().plans.best.objective;
+        let found = stead_certify::certify(set_up.problem(), &place.placement, objective, None, settings, monitor);
+        let name = format!("certificate-{}.json", self.known().reading.version);
+        let bytes = document::bytes(&certificate_json(&found, reading.run.inputs()));
+        let file = self.folder.write(&name, &bytes)?;
+        // A paragraph for each placement; no worst one was asked for.
+        let text = certificate_text(&found);
+        let best = text.split("No certificate for the worst").next().unwrap_or_default();
+        let mut said = vec![best.split_whitespace().collect::<Vec<_>>().join(" ")];
+        said.extend(found.warnings.iter().map(ToString::to_string));
+        said.push(format!("in {} s; {}", fixed(found.wall, 1), file.display()));
+        Ok(Ended { said, place: None, pin: None })
+    }
+
+    fn export(&self, exported: &Exported, reading: &Reading, monitor: &Monitor) -> Result<Ended, Error> {
+        let Exported { pin, format, name, mechanism, unit } = exported;
+        let edits = pin.edits();
+        let now: Vec<String> = reading.edits.iter().map(ToString::to_string).collect();
+        let read_again = if edits.iter().map(ToString::to_string).eq(now) {
+            None
+        } else {
+            Some(Run::read_with(&self.file, [self.given.clone(), edits].concat(), monitor)?)
+        };
+        let run = read_again.as_ref().unwrap_or(&reading.run);
+        let options =
+            ExportOptions { mechanism: *mechanism, unit: unit.as_deref(), ..ExportOptions::new(*format, name) };
+        let program = run.export(self.folder.path().join(&pin.name).join("best-plan.csv"), &options, monitor)?;
+        let folder = self.folder.path().join("programs").join(&pin.name);
+        let written = program.write(&folder, Existing::Kept)?;
+        let mut said: Vec<String> = written.files.iter().map(|file| file.display().to_string()).collect();
+        said.extend(program.notes().iter().chain(&written.notes).map(|note| format!("note: {note}")));
+        said.extend(program.warnings().iter().map(|warning| format!("warning: {warning}")));
+        Ok(Ended { said, place: None, pin: None })
+    }
+}
+
+fn infeasible(nothing: stead_placement::place::Infeasible) -> Error {
+    Error::Infeasible(Box::new(nothing))
+}
+
+/// Runs a job on all processors but one, which is left to the part that is being moved.
+fn on_spare_threads<T: Send>(job: impl FnOnce() -> T + Send) -> Result<T, String> {
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(processors.saturating_sub(1).max(1)).build();
+    pool.map(|pool| pool.install(job)).map_err(|error| format!("the threads cannot be started: {error}"))
+}

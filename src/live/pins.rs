@@ -1,0 +1,112 @@
+//! Placements that are kept: folders as `stead score --out` writes them.
+
+use super::edits;
+use super::session::{Reading, Session, strings};
+use crate::files::FieldOverride;
+use crate::{Error, PlacementScore};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use stead_disk::files;
+use stead_report::Folder;
+
+/// What its folder is called, with a number behind.
+const NAME: &str = "placement-";
+/// The document in it.
+const DOCUMENT: &str = "score.json";
+
+/// A placement that is kept.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Pin {
+    /// The name of its folder.
+    pub name: String,
+    /// What the page calls it.
+    label: String,
+    /// Values that were changed in the session when it was kept.
+    edits: Vec<String>,
+    /// What the page shows of its `score.json`.
+    document: Map<String, Value>,
+}
+
+/// The keys of `score.json` that the page shows.
+const SHOWN: [&str; 7] =
+    ["placement", "placement_exact", "orientation", "external_axes", "best", "feasible", "interrupted"];
+
+impl Pin {
+    /// Those in a folder, in the order of their numbers, with what an earlier session said of them.
+    pub fn all_in(folder: &Folder, kept: &Value) -> Vec<Self> {
+        let mut numbers: Vec<usize> = std::fs::read_dir(folder.path())
+            .into_iter()
+            .flatten()
+            .flatten()
+            .filter_map(|entry| entry.file_name().to_str()?.strip_prefix(NAME)?.parse().ok())
+            .collect();
+        numbers.sort_unstable();
+        let said = |name: &str| kept["pins"].as_array().into_iter().flatten().find(|pin| pin["name"] == name);
+        let read = |number: usize| {
+            let name = format!("{NAME}{number}");
+            let bytes = files::read(&folder.path().join(&name).join(DOCUMENT)).ok()?;
+            let document: Value = serde_json::from_slice(&bytes).ok()?;
+            let said = said(&name).cloned().unwrap_or_default();
+            Some(Self {
+                label: said["label"].as_str().unwrap_or_default().to_owned(),
+                edits: strings(&said["edits"]),
+                document: shown(&document),
+                name,
+            })
+        };
+        numbers.into_iter().filter_map(read).collect()
+    }
+
+    /// Writes a placement that was scored into a folder of its own; returns its name.
+    ///
+    /// # Errors
+    /// [`Error::Output`]: the folder cannot be written.
+    pub fn write(session: &Session, reading: &Reading, score: &PlacementScore, label: &str) -> Result<String, Error> {
+        let is_taken = |name: &String| session.folder.path().join(name).exists();
+        let name = (1..).map(|number| format!("{NAME}{number}")).find(|name| !is_taken(name)).unwrap_or_default();
+        score.write(session.folder.path().join(&name))?;
+        let pin = Self {
+            name: name.clone(),
+            label: label.to_owned(),
+            edits: reading.edits.iter().map(ToString::to_string).collect(),
+            document: shown(&score.to_json()),
+        };
+        session.known().pins.push(pin);
+        session.keep_state();
+        Ok(name)
+    }
+
+    /// As the page has it.
+    pub fn entry(&self) -> Value {
+        let mut entry = self.document.clone();
+        entry.insert("name".to_owned(), self.name.clone().into());
+        entry.insert("label".to_owned(), self.label.clone().into());
+        entry.insert("edits".to_owned(), self.edits.clone().into());
+        Value::Object(entry)
+    }
+
+    /// What its own folder does not hold.
+    pub fn kept(&self) -> Value {
+        json!({ "name": self.name, "label": self.label, "edits": self.edits })
+    }
+
+    /// The values that were changed when it was kept.
+    pub fn edits(&self) -> Vec<FieldOverride> {
+        self.edits.iter().flat_map(|text| edits::parsed(text)).collect()
+    }
+}
+
+fn shown(document: &Value) -> Map<String, Value> {
+    let some = SHOWN.iter().filter_map(|key| Some(((*key).to_owned(), document.get(*key)?.clone())));
+    some.collect()
+}
+
+/// A file of a kept placement, by the names of folder and file; none where there is no such file.
+pub(super) fn file(folder: &Path, pin: &str, name: &str) -> Option<Vec<u8>> {
+    let is_plain = |text: &str| {
+        let is_of = |c: char| c.is_ascii_alphanumeric() || ['.', '-', '_'].contains(&c);
+        !text.is_empty() && !text.starts_with('.') && text.chars().all(is_of)
+    };
+    (pin.starts_with(NAME) && is_plain(pin) && is_plain(name))
+        .then(|| files::read(&folder.join(pin).join(name)).ok())?
+}

@@ -1,0 +1,305 @@
+//! A run that is tried out, and the folder that keeps what is found.
+
+use super::edits;
+use super::evaluation::Asked;
+use super::jobs::Jobs;
+use super::newest::{Newest, Outcome};
+use super::pins::Pin;
+use super::place::Place;
+use super::requests::{Body, RequestError};
+use crate::files::FieldOverride;
+use crate::{Error, Monitor, Run};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use stead_report::Folder;
+use stead_report::document;
+use stead_report::page::live::LivePage;
+use stead_report::placement::Context;
+
+/// What a session begins with.
+#[derive(Debug, Clone, Default)]
+pub struct LiveOptions {
+    /// The run file.
+    pub file: PathBuf,
+    /// Values in place of its own.
+    pub values: Vec<FieldOverride>,
+    /// A results folder of `stead place` and a case of it, with the placement to begin at: that of the last session in
+    /// the same folder where there is none, else the middle of the cell.
+    pub placement_of: Option<(PathBuf, u8)>,
+}
+
+/// What is kept of a session beside its placements.
+pub(super) const KEPT: &str = "live.json";
+
+/// A run as it is read with the values that were changed last.
+#[derive(Debug)]
+pub(super) struct Reading {
+    /// Raised with every change.
+    pub version: u64,
+    pub run: Run,
+    pub context: Context,
+    /// Values in place of those of the file, changed in the session.
+    pub edits: Vec<FieldOverride>,
+}
+
+impl Reading {
+    pub(super) fn new(version: u64, run: Run, edits: Vec<FieldOverride>) -> Self {
+        let context = Context::new(&run.run, run.run.search);
+        Self { version, run, context, edits }
+    }
+}
+
+/// A run that is tried out: what pages ask is answered, and what they keep is written into a folder that no other
+/// process writes to in the meantime.
+#[derive(Debug)]
+pub struct Session {
+    pub(super) file: PathBuf,
+    pub(super) given: Vec<FieldOverride>,
+    pub(super) folder: Folder,
+    known: Mutex<Known>,
+    pub(super) previews: Newest<Asked, Value>,
+    pub(super) wholes: Newest<Asked, Value>,
+    pub(super) jobs: Jobs,
+    notes: Vec<String>,
+}
+
+/// What changes in a session.
+#[derive(Debug)]
+pub(super) struct Known {
+    pub reading: Arc<Reading>,
+    /// Where the part stood at rest last.
+    pub place: Place,
+    pub pins: Vec<Pin>,
+}
+
+impl Session {
+    /// Reads a run, and what an earlier session has left in the folder.
+    ///
+    /// # Errors
+    /// As [`Run::read_with`] and [`Run::set_up_as_in`].
+    pub fn new(options: LiveOptions, folder: Folder, monitor: &Monitor) -> Result<Self, Error> {
+        let LiveOptions { file, values, placement_of } = options;
+        let plain = Run::read_with(&file, values.clone(), monitor)?;
+        let mut notes = Vec::new();
+        let kept = kept_in(&folder);
+        let edits: Vec<FieldOverride> = strings(&kept["edits"]).iter().flat_map(|text| edits::parsed(text)).collect();
+        let mut reading = Reading::new(1, plain, Vec::new());
+        if !edits.is_empty() {
+            let shown = edits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            match Run::read_with(&file, [values.clone(), edits.clone()].concat(), monitor) {
+                Ok(run) => {
+                    notes.push(format!("values changed in the last session: {shown}"));
+                    reading = Reading::new(1, run, edits);
+                }
+                Err(error) => notes.push(format!("the values of the last session are left out ({shown}): {error}")),
+            }
+        }
+        let problem = reading.run.problem();
+        let place = match placement_of {
+            Some((results, case)) => {
+                let (run, placement) = reading.run.clone().set_up_as_in(results, case)?;
+                Place { placement, setup: run.problem().setup.clone() }
+            }
+            None => Place::of_entry(problem, &kept["place"]).unwrap_or_else(|| Place::middle(problem)),
+        };
+        let pins = Pin::all_in(&folder, &kept);
+        Ok(Self {
+            file,
+            given: values,
+            folder,
+            known: Mutex::new(Known { reading: Arc::new(reading), place, pins }),
+            previews: Newest::default(),
+            wholes: Newest::default(),
+            jobs: Jobs::default(),
+            notes,
+        })
+    }
+
+    /// The run as it is read now.
+    pub fn run(&self) -> Run {
+        self.known().reading.run.clone()
+    }
+
+    /// What should be known of how the session begins, in sentences.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The folder that keeps what is found.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    pub(super) fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn reading(&self) -> Arc<Reading> {
+        Arc::clone(&self.known().reading)
+    }
+
+    /// Answers what pages ask of placements until [`close`](Self::close), in two threads that are returned.
+    ///
+    /// # Errors
+    /// [`Error::Failed`] when the system gives no threads.
+    pub fn start(self: &Arc<Self>) -> Result<Vec<std::thread::JoinHandle<()>>, Error> {
+        let spawn = |name: &str, work: fn(&Self)| {
+            let session = Arc::clone(self);
+            std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&session)).map_err(Error::failed)
+        };
+        Ok(vec![spawn("previews", Self::answer_previews)?, spawn("wholes", Self::answer_wholes)?])
+    }
+
+    /// Ends the session: jobs end with what they have, and keep it.
+    pub fn close(&self) {
+        self.previews.close();
+        self.wholes.close();
+        self.jobs.close();
+    }
+
+    /// The page as it is opened, with what is known of the placement by then.
+    ///
+    /// # Errors
+    /// [`Error::Output`]: the page cannot be made.
+    pub fn page(&self, token: &str) -> Result<Vec<u8>, Error> {
+        let (reading, place) = {
+            let known = self.known();
+            (Arc::clone(&known.reading), known.place.clone())
+        };
+        let page = LivePage::new(reading.run.problem(), &reading.context);
+        let shown = self.preview_at(&reading, &place, &page)?;
+        let title = self.file.file_stem().unwrap_or_default().to_string_lossy();
+        let live = json!({
+            "token": token,
+            "place": place.entry(reading.run.problem()),
+            "orientations": reading.run.problem().orientations.iter().map(|one| &one.name).collect::<Vec<_>>(),
+            "stated": reading.run.run.stated,
+            "state": self.state(),
+            "has_maps": reading.run.run.maps,
+            "has_page": reading.run.run.page,
+            "points": reading.run.problem().task.points().len(),
+        });
+        Ok(page.html(&title, shown.as_ref(), &live)?)
+    }
+
+    /// What changes while pages look on: the version of the run, the job that runs, those that have ended, and the
+    /// placements kept.
+    pub fn state(&self) -> Value {
+        let known = self.known();
+        json!({
+            "version": known.reading.version,
+            "edits": known.reading.edits.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "folder": self.folder.path().display().to_string(),
+            "pins": known.pins.iter().map(Pin::entry).collect::<Vec<_>>(),
+            "jobs": self.jobs.state(),
+        })
+    }
+
+    /// What a placement comes to, on the grid of the run and along a long path on some of its points: for a part that
+    /// is being moved.
+    ///
+    /// # Errors
+    /// [`RequestError`] for a request that says no placement.
+    pub fn preview(&self, body: &[u8]) -> Result<Value, RequestError> {
+        let (page, asked) = self.asked(body)?;
+        self.jobs.outdate(&page);
+        received(&self.previews.ask(page, asked))
+    }
+
+    /// All that `stead score` states of a placement: for a part at rest.
+    ///
+    /// # Errors
+    /// As [`preview`](Self::preview).
+    pub fn whole(&self, body: &[u8]) -> Result<Value, RequestError> {
+        let (page, asked) = self.asked(body)?;
+        {
+            let mut known = self.known();
+            known.place = asked.place.clone();
+        }
+        self.keep_state();
+        self.jobs.outdate(&page);
+        received(&self.wholes.ask(page, asked))
+    }
+
+    fn asked(&self, body: &[u8]) -> Result<(String, Asked), RequestError> {
+        let body = Body::read(body)?;
+        let reading = self.reading();
+        let place = body.place(reading.run.problem())?;
+        Ok((body.page()?, Asked { id: body.whole("id")?, place, reading }))
+    }
+
+    /// Reads the run again with other values in place of its own; those of an earlier change no longer count.
+    ///
+    /// # Errors
+    /// [`RequestError`] in the words of the file's own checks; the run stays as it was.
+    pub fn edit(&self, body: &[u8]) -> Result<Value, RequestError> {
+        let body = Body::read(body)?;
+        let edits = body.texts("edits")?;
+        let edits = edits.iter().map(|text| edits::allowed(text)).collect::<Result<Vec<_>, _>>()?;
+        let refused =
+            |error: Error| RequestError::new("edits", error.to_string(), "as the guide has the keys of the file");
+        let values = [self.given.clone(), edits.clone()].concat();
+        let run = Run::read_with(&self.file, values, &Monitor::silent()).map_err(refused)?;
+        {
+            let mut known = self.known();
+            let version = known.reading.version + 1;
+            let entry = known.place.entry(known.reading.run.problem());
+            if let Some(place) = Place::of_entry(run.problem(), &entry) {
+                known.place = place;
+            } else {
+                known.place.setup = run.problem().setup.clone();
+            }
+            known.reading = Arc::new(Reading::new(version, run, edits));
+        }
+        self.keep_state();
+        Ok(self.state())
+    }
+
+    /// Writes the run file with the values of now as a new file beside it; on request its cell then holds the placement
+    /// alone.
+    ///
+    /// # Errors
+    /// [`RequestError`] for a name that is none, a file that is there, and values that no run file can hold.
+    pub fn save(&self, body: &[u8]) -> Result<Value, RequestError> {
+        let body = Body::read(body)?;
+        let reading = self.reading();
+        let place = if body.is_on("is_placement")? { Some(body.place(reading.run.problem())?) } else { None };
+        let file = edits::save(self, &reading, body.text("name")?, place.as_ref())?;
+        Ok(json!({ "file": file.display().to_string() }))
+    }
+
+    /// Writes what is to be there again when the folder is opened by another session. A disk that is full is said when
+    /// a placement is kept.
+    pub(super) fn keep_state(&self) {
+        let known = self.known();
+        let kept = json!({
+            "place": known.place.entry(known.reading.run.problem()),
+            "edits": known.reading.edits.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "pins": known.pins.iter().map(Pin::kept).collect::<Vec<_>>(),
+        });
+        let _ = self.folder.write(KEPT, &document::bytes(&kept));
+    }
+}
+
+/// What became of a request.
+fn received(outcome: &std::sync::mpsc::Receiver<Outcome<Value>>) -> Result<Value, RequestError> {
+    match outcome.recv() {
+        Ok(Outcome::Answered(answer)) => Ok(answer),
+        Ok(Outcome::Superseded) => Ok(json!({ "is_superseded": true })),
+        Ok(Outcome::Refused) | Err(_) => {
+            Err(RequestError::new("page", "is not answered: the session ends, or too many pages ask", "fewer pages"))
+        }
+    }
+}
+
+/// What an earlier session has left in a folder.
+fn kept_in(folder: &Folder) -> Value {
+    let bytes = std::fs::read(folder.path().join(KEPT)).unwrap_or_default();
+    serde_json::from_slice(&bytes).unwrap_or_default()
+}
+
+/// The texts of a list.
+pub(super) fn strings(list: &Value) -> Vec<String> {
+    list.as_array().into_iter().flatten().filter_map(|one| one.as_str().map(str::to_owned)).collect()
+}

@@ -1,0 +1,52 @@
+// How quick the live page is in software rendering: prints, asserts nothing.
+//
+//   STEAD=target/release/stead node measure-live.mjs RUN [MORE ..]     MORE are further arguments of `stead live`
+import { loadavg } from 'node:os';
+import { launch } from './browser.mjs';
+import { atRest, openLive, partAt, startLive } from './live.mjs';
+
+const MOVES = 60;
+const EVERY_MS = 100;
+const [run, ...more] = process.argv.slice(2);
+const session = startLive(run, more);
+const browser = await launch();
+const { page, close } = await openLive(browser, await session.address);
+await atRest(page);
+const first = await page.evaluate(() => window.stead.first);
+
+/** Of every move of the pointer the time until the frame with its mean, and until all of it is known after the last. */
+await page.evaluate(() => {
+  const times = [];
+  let moved = 0;
+  addEventListener('pointermove', (event) => event.buttons && (moved = event.timeStamp), { capture: true });
+  const mean = document.getElementById('live-mean');
+  new MutationObserver(() => {
+    const since = moved;
+    if (since) requestAnimationFrame(() => times.push(performance.now() - since));
+    moved = 0;
+  }).observe(mean, { childList: true, characterData: true, subtree: true });
+  window.measured = { times };
+});
+const at = await partAt(page);
+await page.mouse.move(...at);
+await page.mouse.down();
+for (let k = 0; k < MOVES; k++) {
+  await page.mouse.move(at[0] + 6 * Math.sin(k / 3) + k / 10, at[1] + 3 * Math.cos(k / 4));
+  await page.waitForTimeout(EVERY_MS);
+}
+await page.evaluate(() => (window.measured.last = performance.now()));
+await page.mouse.up();
+await atRest(page);
+const whole = await page.evaluate(() => performance.now() - window.measured.last);
+const times = (await page.evaluate(() => window.measured.times)).sort((a, b) => a - b);
+const share = (part) => times[Math.min(times.length - 1, Math.floor(part * times.length))].toFixed(0);
+const points = await page.evaluate(() => window.stead.shown.answer.points[1]);
+console.log(
+  `${run}: ${points} points; first view ${(first / 1000).toFixed(2)} s; of ${MOVES} moves ${times.length} means on the screen after ` +
+    `${share(0.5)} ms in the median, ${share(0.95)} ms at the 95th percentile; all of it ${(whole / 1000).toFixed(2)} s after the last; ` +
+    `load ${loadavg()[0].toFixed(1)}`,
+);
+await close();
+await browser.close();
+await session.close();
+process.exit(0);
