@@ -2,7 +2,7 @@
 //! table.
 
 use super::PageError;
-use super::packed::{SecondDifferences, Varints};
+use super::packed::{Runs, SecondDifferences, Varints};
 use super::table::Table;
 use serde_json::Value;
 use stead_model::robot::Posture;
@@ -70,7 +70,7 @@ fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, post
 }
 
 /// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for
-/// each (the posture, or 16 and the number of its reason), and the `scores` of the allowed ones. Of the table only the
+/// each (the posture, or 16 and the number of its reason), as [`Runs`], and the `scores` of the allowed ones. Of the table only the
 /// rows that are shown are kept: that of a long path has millions.
 pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageError> {
     let wrong = || PageError::data("maps", "is no description of a deflection map");
@@ -78,7 +78,8 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
     let beta_count = entry["beta_count"].as_u64().filter(|count| *count > 0).ok_or_else(wrong)? as usize;
     let [score, posture, reason] = [table.column("score_mm")?, table.column("posture")?, table.column("reason")?];
     let mut rows = table.rows();
-    let (mut names, mut codes, mut packed): (Vec<String>, _, _) = (Vec::new(), Vec::new(), Varints::default());
+    let (mut names, mut packed): (Vec<String>, _) = (Vec::new(), Varints::default());
+    let mut codes = Runs::default();
     for point in points {
         let point = point.as_u64().ok_or_else(wrong)? as usize;
         let mut sequence = SecondDifferences::default();
@@ -88,7 +89,7 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
             }
             let why = rows.text(reason);
             if why.is_empty() {
-                codes.push(rows.number(posture)? as u8);
+                codes.push(rows.number(posture)? as i64);
                 packed.push(sequence.next((rows.number(score)? / SCORE_STEP_MM).round() as i64));
                 continue;
             }
@@ -96,12 +97,12 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
             if known == names.len() {
                 names.push(why.to_owned());
             }
-            codes.push(16 + known as u8);
+            codes.push(16 + known as i64);
             sequence.restart();
         }
     }
     let mut value = entry.clone();
-    value["codes"] = super::packed::base64(&codes).into();
+    value["codes"] = codes.text().into();
     value["reasons"] = names.into();
     value["score_step_mm"] = SCORE_STEP_MM.into();
     value["scores"] = packed.text().into();
@@ -126,8 +127,9 @@ mod tests {
         let entry = json!({ "points": shown, "beta_count": beta_count });
         let content = |text: &str| content(&entry, &Table::read("map.csv", text.as_bytes())?);
         assert_eq!(shown.len(), COLUMNS);
-        let codes = super::super::packed::base64(&[2; 3 * COLUMNS]);
-        assert_eq!(content(&text).unwrap()["codes"], codes.as_str());
+        let mut codes = Varints::default();
+        [3 * COLUMNS as i64, 2].into_iter().for_each(|number| codes.push(number));
+        assert_eq!(content(&text).unwrap()["codes"], codes.text().as_str());
         let cut: String = text.lines().take(100).map(|line| format!("{line}\n")).collect();
         assert!(content(&cut).unwrap_err().to_string().contains("has fewer states"));
     }
