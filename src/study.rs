@@ -19,7 +19,7 @@ use stead_disk::files;
 use stead_disk::input::{InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
 use stead_report::certificate::write_certificate;
-use stead_report::placement::{Context, placement_files, write_placement};
+use stead_report::placement::{CaseOfStudy, Context, placement_files, write_placement};
 use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
@@ -97,7 +97,7 @@ impl Study {
     /// [`Error::Study`]: the folder of another study, or a file that cannot be read.
     pub fn status(&self, folder: impl AsRef<Path>) -> Result<StudyStatus, Error> {
         let folder = folder.as_ref();
-        Ok(StudyStatus { stale: self.folder(folder).stale(&self.plan), ..cases::status(&self.plan, folder)? })
+        Ok(StudyStatus { stale: self.folder(folder).stale(), ..cases::status(&self.plan, folder)? })
     }
 
     /// Removes the kept cases in a folder that the study as it is now has not: those of values that an edit has
@@ -198,7 +198,7 @@ impl Study {
 
     /// The folder of results as cases and tables are put into it.
     fn folder<'s>(&'s self, path: &'s Path) -> StudyFolder<'s> {
-        StudyFolder { path, inputs: &self.plan.study.inputs }
+        StudyFolder { path, plan: &self.plan }
     }
 }
 
@@ -255,7 +255,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// The folder of a study: its table, and the folders of cases, each with what `stead place` leaves.
 struct StudyFolder<'s> {
     path: &'s Path,
-    inputs: &'s [InputFile],
+    plan: &'s Plan,
 }
 
 impl StudyFolder<'_> {
@@ -263,9 +263,9 @@ impl StudyFolder<'_> {
         format!("{:04}-{}", case.case.number, case.id.get(..8).unwrap_or_default())
     }
 
-    /// The names of folders of kept cases that are none of a plan, in their order.
-    fn stale(&self, plan: &Plan) -> Vec<String> {
-        let known: HashSet<String> = plan.cases.iter().map(|case| self.name_of_case(case)).collect();
+    /// The names of folders of kept cases that are none of the study as it is now, in their order.
+    fn stale(&self) -> Vec<String> {
+        let known: HashSet<String> = self.plan.cases.iter().map(|case| self.name_of_case(case)).collect();
         let entries = std::fs::read_dir(self.path.join(CASES)).into_iter().flatten().flatten();
         let folders = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
         let names = folders.filter_map(|entry| entry.file_name().into_string().ok());
@@ -276,6 +276,17 @@ impl StudyFolder<'_> {
 
     fn of_case(&self, case: &PlannedCase) -> PathBuf {
         self.path.join(CASES).join(self.name_of_case(case))
+    }
+
+    /// Which case it is, as its page says.
+    fn case_of_page(&self, case: &PlannedCase) -> CaseOfStudy {
+        let values = self.plan.study.axes.iter().zip(&case.case.values);
+        CaseOfStudy {
+            study: self.plan.name(),
+            number: case.case.number,
+            values: values.map(|(axis, value)| [axis.clone(), value.to_string()]).collect(),
+            report: "../../report.html",
+        }
     }
 }
 
@@ -290,7 +301,7 @@ fn is_of_case(name: &str) -> bool {
 impl Keeping for StudyFolder<'_> {
     fn publish(&self, files: &[(&str, Vec<u8>)]) -> Result<(), String> {
         let folder = Folder::create_within(self.path, PATIENCE).map_err(|error| error.to_string())?;
-        let results = folder.results(RUN, self.inputs).without_derived(REPORT);
+        let results = folder.results(RUN, &self.plan.study.inputs).without_derived(REPORT);
         results.write(files).map(drop).map_err(|error| error.to_string())
     }
 
@@ -306,8 +317,13 @@ impl Keeping for StudyFolder<'_> {
         placed: Placed,
         certificate: Option<Certificate>,
     ) -> Result<(), String> {
-        let Placed { outcome, stability } = placed;
-        let mut context = Context { stability, ..Context::new(run, run.search) };
+        let Placed { mut outcome, stability } = placed;
+        if run.page {
+            // Whole in any case: the files of a case are the same however its study is stopped and goes on.
+            outcome.make_sheet(&run.problem, &Monitor::silent());
+        }
+        let study_case = Some(self.case_of_page(case));
+        let mut context = Context { stability, study_case, ..Context::new(run, run.search) };
         context.warnings.extend(outcome.warnings.iter().cloned());
         context.notes.extend(outcome.notes.iter().cloned());
         let folder = Folder::create(&self.of_case(case)).map_err(|error| error.to_string())?;

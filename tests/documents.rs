@@ -175,3 +175,44 @@ fn comments_and_pages_are_within_120_columns() {
     assert!(long.is_empty(), "{} lines: {long:#?}", long.len());
     assert!(lines > 10_000, "{lines}");
 }
+
+/// The book has every page of the guide once under its own heading, and every page, picture and file that a page names
+/// is there.
+#[test]
+fn the_book_has_every_page_and_no_page_names_one_that_is_not_there() {
+    let guide = root().join("src/guide");
+    let book = std::fs::read_to_string(root().join("docs/book.toml")).unwrap();
+    assert!(book.contains("src = \"../src/guide\""));
+    let summary = std::fs::read_to_string(guide.join("SUMMARY.md")).unwrap();
+    let chapters: Vec<(&str, &str)> =
+        summary.lines().filter_map(|line| line.strip_prefix("- [")?.strip_suffix(")")?.split_once("](")).collect();
+    let pages: Vec<PathBuf> = files_with(".md").into_iter().filter(|path| path.parent() == Some(&guide)).collect();
+    assert_eq!(chapters.len() + 1, pages.len());
+    let is_page = |name: &str| guide.join(format!("{name}.md")).is_file();
+    let mut named = 0;
+    for path in pages.iter().filter(|path| !path.ends_with("SUMMARY.md")) {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let text = std::fs::read_to_string(path).unwrap();
+        let heading = text.lines().next().unwrap().strip_prefix("# ").unwrap();
+        assert_eq!(chapters.iter().filter(|chapter| **chapter == (heading, name)).count(), 1, "{name}: {heading}");
+        // References in words: page `files`, pages `files` and `tables`.
+        for (at, _) in text.match_indices("page") {
+            let behind = text[at + 4..].trim_start_matches('s');
+            let references = behind.strip_prefix([' ', '\n']).and_then(|rest| rest.strip_prefix('`'));
+            if let Some((page, _)) = references.and_then(|rest| rest.split_once('`')) {
+                assert!(is_page(page), "{name} refers to the page `{page}`");
+                named += 1;
+            }
+        }
+        // Links and pictures to files; a link to the web is none of them.
+        for (at, _) in text.match_indices("](") {
+            let target = text[at + 2..].split([')', ' ']).next().unwrap();
+            let is_code = text[..at].lines().last().is_some_and(|line| line.contains('"'));
+            if is_code || target.contains("://") || target.starts_with('#') {
+                continue;
+            }
+            assert!(guide.join(target.split('#').next().unwrap()).exists(), "{name} links to {target}");
+        }
+    }
+    assert!(named > 40, "{named}");
+}

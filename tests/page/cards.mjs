@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import assert from 'node:assert/strict';
 import { inShort, launch, withScript } from './browser.mjs';
+import { violations } from './axe.mjs';
 import { table } from './suite.mjs';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
@@ -33,6 +34,7 @@ async function check(file, test, { width = 1400, also } = {}) {
     await page.goto(address);
     await page.waitForSelector('footer');
     await test(page);
+    assert.deepEqual(await violations(page), []);
     assert.deepEqual(wrong, []);
     return null;
   } catch (error) {
@@ -99,6 +101,17 @@ async function sorts(page, title, column, word) {
   await card(page, title).getByRole('searchbox').fill('');
 }
 
+/** Picture and figures of a card, as files. */
+async function given(page, title) {
+  const files = [];
+  for (const name of [`CSV: ${title}`, `PNG: ${title}`]) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name, exact: true }).click()]);
+    files.push(readFileSync(await download.path()));
+  }
+  assert.ok(files[1].subarray(1, 4).equals(Buffer.from('PNG')), title);
+  return files[0].toString().trimEnd().split('\n').map((line) => line.split(','));
+}
+
 /** D changes the colours of page and charts. */
 async function darkens(page, title) {
   const light = await pixels(page, title);
@@ -143,6 +156,10 @@ const identify = async (page) => {
   const [, read] = text.match(/component read \(mm\) (\S+)/);
   assert.ok(Math.abs(read - row.measured_x_mm) < 1e-4 * Math.abs(read), text);
   await zooms(page, 'Residuals');
+  const figures = await given(page, 'Readings');
+  assert.deepEqual([figures.length, +figures[1][0]], [residuals.length + 1, +residuals[0].line]);
+  const dots = await given(page, 'Residuals');
+  assert.ok(dots.length > 3 * residuals.length && dots[0][0] === 'series', dots[0].join());
   await sorts(page, 'Readings', 5, residuals[0].configuration);
   await plot(page, 'Compliances with their 95 % intervals').press('ArrowRight');
   assert.match(await tip(page, 'Compliances with their 95 % intervals'), /^ ?joint 1/m);
@@ -240,6 +257,14 @@ await must('study report: front and map with the numbers of the tables, and the 
   await page.waitForSelector('#cases');
   const [best] = table(fileURLToPath(new URL('placements.csv', kept)));
   assert.ok((await page.locator('#cases tbody tr').first().textContent()).includes((+best.mean_mm).toFixed(4)));
+  // The page of the case says which it is, has its setup sheet, and leads back.
+  const said = await page.locator('header .case').textContent();
+  assert.equal(said, `case ${ranked[0].cases} of the study small: cell = ${ranked[0].cell}, robot.joints[1].stiffness_mnm_per_rad = ${ranked[0]['robot.joints[1].stiffness_mnm_per_rad']}, search = small`);
+  assert.equal(await page.locator('#setup svg').count(), 1);
+  assert.ok(existsSync(fileURLToPath(new URL('setup.svg', kept))));
+  await page.locator('#study').click();
+  await page.waitForURL(pathToFileURL(join(out('small'), 'report.html')).href);
+  await page.waitForSelector('footer');
 }, { also: /cases\/[^/]+\/report\.html$/ });
 
 run('simulate', 'configs/umons-aluminium.toml', '--out', out('simulate'));

@@ -8,6 +8,7 @@ import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import assert from 'node:assert/strict';
 import { inShort, launch, withScript } from './browser.mjs';
+import { violations } from './axe.mjs';
 import { PLANS, open, table } from './suite.mjs';
 import { validated } from './validated.mjs';
 
@@ -34,6 +35,7 @@ async function check(name, run, test) {
     const place = folder(run);
     const { page, seen, close } = await open(browser, pathToFileURL(join(place, 'report.html')).href);
     const said = await test(page, place);
+    assert.deepEqual(await violations(page), []);
     assert.deepEqual(seen, { requests: [], complaints: [] });
     await close();
     const scene = await validated(place);

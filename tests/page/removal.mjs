@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import assert from 'node:assert/strict';
 import { inShort, launch, withScript } from './browser.mjs';
+import { violations } from './axe.mjs';
 import { open, table } from './suite.mjs';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
@@ -73,13 +74,13 @@ async function check(name, test, { where = address, ...options } = {}) {
 }
 
 const picture = (page) => page.evaluate(() => window.stead.picture());
-const forces = (page) => page.locator('section[aria-label="Forces of the cut"]');
+const forces = (page) => page.locator('section[aria-label="Force and deflection"]');
 const pick = (page, group, name) => page.getByRole('radiogroup', { name: group }).getByRole('radio', { name, exact: true }).click();
 
 async function charts(page) {
   // What is read of the last curve, its column and decimals.
   const read = [
-    ['force', 'force_n', 1, 'N'],
+    ['cutting', 'force_n', 1, 'N'],
     ['removed', 'removed_mm3_per_mm', 2, 'mm³/mm'],
     ['height', 'highest_mm', 2, 'mm'],
     ['chip', 'chip_um', 1, 'µm'],
@@ -87,7 +88,7 @@ async function charts(page) {
   const points = await page.evaluate(() => window.stead.cases[0].joints.length);
   assert.equal(points, engagement.length);
   for (const [name, column, digits, unit] of read) {
-    await pick(page, 'What is seen of the cut', name);
+    await pick(page, 'What is seen along the path', name);
     for (const point of [3, 24, 70, points - 2]) {
       await page.evaluate((t) => window.stead.set({ t }, true), point);
       const said = await forces(page).locator('.head .sub').textContent();
@@ -106,7 +107,7 @@ await check('the charts of the cut are the table of its engagement', charts);
 async function layers(page) {
   await page.locator('[data-view=tool]').click();
   const all = await picture(page);
-  for (const layer of ['forces', 'after', 'before']) {
+  for (const layer of ['forces', 'deflection', 'after', 'before']) {
     await page.locator(`[data-layer=${layer}]`).click();
     assert.notEqual(await picture(page), all, `${layer} is not seen`);
     await page.locator(`[data-layer=${layer}]`).click();
@@ -138,6 +139,8 @@ async function colours(page) {
 }
 await check('the path has the colours of error, force and removed volume', colours);
 
+await check('axe-core finds nothing', async (page) => assert.deepEqual(await violations(page), []));
+
 await check('both feeds and the warnings are stated', async (page) => {
   const rows = await page.locator('section[aria-label="At the programmed and at the held feed"] tbody tr').allTextContents();
   const expected = summary.cases.map(({ at_held_feed: held, mean_mm, max_mm }) =>
@@ -164,8 +167,8 @@ for (const width of [380, 800, 1400]) {
 await check(
   'a run without a stock has none of it',
   async (page) => {
-    assert.equal(await page.locator('[data-layer=forces], [data-layer=after], [data-layer=before], .colouring').count(), 0);
-    assert.equal(await forces(page).count(), 0);
+    assert.equal(await page.locator('[data-layer=after], [data-layer=before], .colouring').count(), 0);
+    assert.deepEqual(await forces(page).getByRole('radio').allTextContents(), ['force', 'deflection']);
   },
   { where: pathToFileURL(join(root, 'results/caro-2013/report.html')).href },
 );
@@ -173,9 +176,9 @@ await check(
 // Broken on purpose: the test that is about it must fail.
 const html = readFileSync(at('out/report.html'), 'utf8');
 for (const [part, test, change] of [
-  ['arrows', layers, (script) => script.replace('if (shown.forces) put(program, parts.forces, part);', '')],
+  ['arrows', layers, (script) => script.replace('if (shown.forces) put(program, ofCase.forces, part);', '')],
   ['colours', colours, (script) => script.replace(/COLOURINGS\[state\.colouring\](;\s*const \{ tube)/, 'COLOURINGS[0]$1')],
-  ['charts', charts, (script) => script.replace("['mean over a turn', SIZES,", "['mean over a turn', of.chip_n,")],
+  ['charts', charts, (script) => script.replace("['mean over a turn', FORCES,", "['mean over a turn', of.chip_n,")],
 ]) {
   const file = at(`${part}.html`);
   writeFileSync(file, withScript(html, change));

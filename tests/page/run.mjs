@@ -10,6 +10,7 @@ import { join, resolve } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import assert from 'node:assert/strict';
 import { inShort, launch, withScript } from './browser.mjs';
+import { violations } from './axe.mjs';
 import { open, tests } from './suite.mjs';
 
 const results = fileURLToPath(new URL('../../results/', import.meta.url));
@@ -133,10 +134,47 @@ await check('the play bar is in a low window', { width: 1280, height: 720 }, add
 });
 
 await check('a finger that goes up scrolls the page', { width: 390, height: 844, touch: true }, address, async (page) => {
+  // A finger drawn up over the view and over the map moves the page, and the robot and the state stay.
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, ...touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+  for (const what of ['.view', '#map']) {
+    await page.locator(what).evaluate((one) => one.scrollIntoView({ block: 'center' }));
+    const box = await page.locator(what).boundingBox();
+    const before = await page.evaluate(() => scrollY);
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    await touch('touchStart', { x, y });
+    for (let k = 1; k <= 12; k++) await touch('touchMove', { x, y: y - 15 * k });
+    await touch('touchEnd');
+    await page.waitForFunction((before) => scrollY > before + 100, before, { timeout: 5000 });
+  }
   const actions = await page.evaluate(() =>
     [...document.querySelectorAll('.view > canvas, #map canvas')].map((one) => getComputedStyle(one).touchAction),
   );
   assert.ok(actions.includes('pan-y') && !actions.includes('none'), String(actions));
+});
+
+for (const options of [{ width: 1400 }, { width: 1400, scheme: 'dark' }, { width: 390, touch: true }]) {
+  await check(`axe-core finds nothing, ${JSON.stringify(options)}`, options, address, async (page) => {
+    await page.locator('#setup summary').click();
+    assert.deepEqual(await violations(page), []);
+    await page.evaluate(() => {
+      const { codes, betaCount, points } = window.stead.maps[0];
+      const row = codes.findIndex((code) => code >= 16);
+      window.stead.set({ t: points[Math.floor(row / betaCount)], chosen: { column: Math.floor(row / betaCount), beta: row % betaCount } }, true);
+    });
+    assert.deepEqual(await violations(page), []);
+    // It would find something.
+    await page.locator('#play').evaluate((button) => {
+      button.removeAttribute('aria-label');
+      button.textContent = '';
+    });
+    assert.match((await violations(page)).join(), /button-name/);
+  });
+}
+
+await check('a page of 105 points is small', {}, address, async (page) => {
+  assert.equal(await page.evaluate(() => window.stead.cases[0].joints.length), 105);
+  assert.ok(html.length < 600_000, `${html.length} characters`);
 });
 
 await check('printed it is two pages', {}, address, async (page) => {

@@ -46,4 +46,4 @@ pub mod tool_scene;
 pub use scene::{Clearance, MotionHit, Near, Pair, PairKind, Poses, Proximity, Scene, SceneError};
 pub use shape::{Attachment, KeepOut, Shape, TrackedPoint, Zone};
 pub use solid::{MeshError, Solid, TriangleMesh};
-pub use surroundings::{Surroundings, SurroundingsError};
+pub use surroundings::{Surroundings, SurroundingsError, Visual};

@@ -1,6 +1,9 @@
 //! All shapes and zones of a cell, and the clearance that is requested.
 
-use crate::shape::{KeepOut, Shape};
+use crate::shape::{Attachment, KeepOut, Shape};
+use crate::solid::TriangleMesh;
+use std::sync::Arc;
+use stead_model::robot::Pose;
 
 /// What there is in a cell beside the arm's own kinematics, checked.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -9,6 +12,22 @@ pub struct Surroundings {
     zones: Vec<KeepOut>,
     clearance: f64,
     ignored: Vec<[String; 2]>,
+    visuals: Vec<Visual>,
+}
+
+/// What a part of the arm looks like: drawn, and held against nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visual {
+    /// Its name.
+    pub name: String,
+    /// What it moves with: the base of the robot, a link, or the flange.
+    pub attached: Attachment,
+    /// Its surface.
+    pub mesh: Arc<TriangleMesh>,
+    /// The frame of the surface in the frame that it moves with.
+    pub pose: Pose<f64>,
+    /// Red, green and blue, sRGB from 0 to 1, where they are known.
+    pub color: Option<[f64; 3]>,
 }
 
 /// Why shapes do not make surroundings.
@@ -57,7 +76,18 @@ impl Surroundings {
         if let Some([name, _]) = ignored.iter().find(|[first, second]| first == second) {
             return Err(SurroundingsError::IgnoresItself(name.clone()));
         }
-        Ok(Self { shapes, zones, clearance, ignored })
+        Ok(Self { shapes, zones, clearance, ignored, visuals: Vec::new() })
+    }
+
+    /// The same with what the arm looks like.
+    #[must_use]
+    pub fn with_visuals(self, visuals: Vec<Visual>) -> Self {
+        Self { visuals, ..self }
+    }
+
+    /// What the arm looks like, as far as that is known.
+    pub fn visuals(&self) -> &[Visual] {
+        &self.visuals
     }
 
     /// The shapes.

@@ -147,7 +147,7 @@ impl ToolScene {
         }
         // All names are known and unlike each other, and the clearance is one that was allowed.
         let joined = Surroundings::new(shapes, known.zones().to_vec(), known.clearance(), ignored);
-        let joined = joined.unwrap_or_else(|_| known.clone());
+        let joined = joined.unwrap_or_else(|_| known.clone()).with_visuals(known.visuals().to_vec());
         let scene = Scene::new(robot, flange_from_tool, joined)?;
         Ok(Self { scene, tool, flange_from_tool: *flange_from_tool, part })
     }

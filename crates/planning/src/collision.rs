@@ -46,6 +46,29 @@ pub struct PlanClearance {
     pub names: Arc<[String; 2]>,
 }
 
+/// A point of a plan with what is known of its room.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointClearance {
+    /// The path point.
+    pub point: usize,
+    /// Joint angles there. rad
+    pub joints: [f64; 6],
+    /// The pair with the least room; `None` where nothing is near.
+    pub clearance: Option<Clearance>,
+}
+
+/// The least room at the points of a plan, without the pairs whose distance is the same at all of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChangingClearance {
+    /// The pairs left out, with their distances. m
+    pub still: Vec<Clearance>,
+    /// What is left at each point; `None` where nothing is near.
+    pub at: Vec<Option<Clearance>>,
+}
+
+/// Distances that differ by no more are the same along a plan. m
+const SAME: f64 = 1e-6;
+
 impl Problem {
     /// Where all that moves stands at a path point, for joint angles (rad) and the workpiece at a placement: in the
     /// base frame, in which the cell moves the other way where an external axis carries the robot.
@@ -135,6 +158,39 @@ impl Problem {
     pub fn state_clearance(&self, point: usize, placement: &Placement, joints: &[f64; 6]) -> Option<Clearance> {
         let scene = self.scene.as_deref()?;
         scene.clearance(&self.poses(scene, point, placement, joints), &PairKind::ALL)
+    }
+
+    /// The least room along a plan without the pairs whose distance does not change along it, as that of a part and the
+    /// table that it lies on; `None` where no such pair has the least room anywhere.
+    pub fn changing_clearance(&self, placement: &Placement, plan: &[PointClearance]) -> Option<ChangingClearance> {
+        let scene = self.scene.as_deref()?;
+        let poses = |of: &PointClearance| self.poses(scene, of.point, placement, &of.joints);
+        let distance = |pair: usize, of: &PointClearance| scene.distance(pair, &poses(of), f64::INFINITY);
+        let mut changing = ChangingClearance { still: Vec::new(), at: plan.iter().map(|of| of.clearance).collect() };
+        let mut seen = Vec::new();
+        loop {
+            let mut still = Vec::new();
+            for pair in changing.at.iter().flatten().map(|clearance| clearance.pair) {
+                if seen.contains(&pair) {
+                    continue;
+                }
+                seen.push(pair);
+                let first = distance(pair, plan.first()?);
+                if plan.iter().all(|of| (distance(pair, of) - first).abs() <= SAME) {
+                    still.push(Clearance { distance: first, pair });
+                }
+            }
+            if still.is_empty() {
+                return (!changing.still.is_empty()).then_some(changing);
+            }
+            changing.still.extend(still);
+            let left_out: Vec<usize> = changing.still.iter().map(|clearance| clearance.pair).collect();
+            for (of, at) in plan.iter().zip(&mut changing.at) {
+                if at.is_some_and(|clearance| left_out.contains(&clearance.pair)) {
+                    *at = scene.clearance_without(&poses(of), &left_out);
+                }
+            }
+        }
     }
 
     /// The pair with the least room as a constraint, of pairs that touch the deepest; `None` where there is no scene,

@@ -94,6 +94,7 @@ pub fn context() -> Context {
         }),
         stability: None,
         removal: None,
+        study_case: None,
         page: true,
     }
 }

@@ -1,6 +1,7 @@
 //! A study: a run, what is varied of it, and the cases that this makes.
 
 use crate::{ReadError, Run};
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 use stead_disk::input::InputFile;
@@ -80,6 +81,15 @@ pub enum AxisValue {
     Text(String),
 }
 
+impl fmt::Display for AxisValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Text(text) => text.fmt(f),
+        }
+    }
+}
+
 /// A case of a study: values that take the place of those of its base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyCase {
@@ -96,12 +106,7 @@ pub struct StudyCase {
 impl StudyCase {
     /// The values of the axes, in words; nothing without axes.
     fn combination(&self, axes: &[String]) -> String {
-        let value = |value: &AxisValue| match value {
-            AxisValue::Number(number) => number.to_string(),
-            AxisValue::Text(text) => text.clone(),
-        };
-        let all: Vec<String> =
-            axes.iter().zip(&self.values).map(|(axis, shown)| format!("{axis} = {}", value(shown))).collect();
+        let all: Vec<String> = axes.iter().zip(&self.values).map(|(axis, value)| format!("{axis} = {value}")).collect();
         if all.is_empty() { String::new() } else { format!(" ({})", all.join(", ")) }
     }
 }

@@ -74,7 +74,7 @@ def command(
             there several times. `None` and `False` leave it out.
 
     Raises:
-        CommandError: The command ended with another exit code than 0; its last line says why.
+        CommandError: The command ended with another exit code than 0; the line of its error says why.
     """
     program = shutil.which("stead", path=sysconfig.get_path("scripts"))
     if program is None:
@@ -90,8 +90,10 @@ def command(
     done = subprocess.run(call, capture_output=True, text=True, encoding="utf-8", check=False)
     messages = done.stderr.splitlines()
     if done.returncode:
-        problem = messages[-1].removeprefix("error: ") if messages else f"exit code {done.returncode}"
-        raise CommandError(problem, done.returncode, done.stdout, messages)
+        last = messages[-1] if messages else f"exit code {done.returncode}"
+        # Wrong usage is followed by how it is right.
+        problem = next((line for line in messages if line.startswith("error: ")), last)
+        raise CommandError(problem.removeprefix("error: "), done.returncode, done.stdout, messages)
     return Completed(done.stdout, messages)
 
 

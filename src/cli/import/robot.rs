@@ -34,7 +34,7 @@ pub(in super::super) struct RobotOptions {
     /// Look for the mesh files that the URDF names, and note those that are missing
     #[arg(long)]
     pub check_meshes: bool,
-    /// Write the <collision> shapes of the links too, to NAME-cell.toml beside the robot file
+    /// Write the <collision> shapes of the links too, and what they look like, to NAME-cell.toml beside the robot file
     #[arg(long)]
     pub collision: bool,
     #[command(flatten)]

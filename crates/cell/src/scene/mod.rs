@@ -321,8 +321,16 @@ impl Scene {
     /// The pair of some kinds with the least room beyond what it has to keep; `None` where there is no pair nearer than
     /// [`FAR`].
     pub fn clearance(&self, poses: &Poses, kinds: &[PairKind]) -> Option<Clearance> {
-        let mut bounds: Vec<(f64, usize)> = self
-            .of_kinds(kinds)
+        self.clearance_of(poses, self.of_kinds(kinds))
+    }
+
+    /// The same of all pairs but those of these numbers.
+    pub fn clearance_without(&self, poses: &Poses, left_out: &[usize]) -> Option<Clearance> {
+        self.clearance_of(poses, (0..self.pairs.len()).filter(|number| !left_out.contains(number)))
+    }
+
+    fn clearance_of(&self, poses: &Poses, numbers: impl Iterator<Item = usize>) -> Option<Clearance> {
+        let mut bounds: Vec<(f64, usize)> = numbers
             .map(|number| {
                 let pair = &self.pairs[number];
                 (self.bound(pair, poses, f64::INFINITY) - pair.required, number)

@@ -9,6 +9,7 @@ mod tables;
 pub use stock::{PartTable, PlacedSolid, StockTable};
 pub use tables::{
     CapsuleTable, CollisionTable, CylinderTable, HalfSpaceTable, KeepOutTable, ShapeTable, SurroundingsFile,
+    VisualTable,
 };
 
 use crate::place::Place;
@@ -115,6 +116,10 @@ fn surroundings(
         ignored.extend(collision.ignored().map(|pair| pair.map(known)));
     }
     if shapes.is_empty() && zones.is_empty() {
+        if let Some(part) = parts.iter().find(|part| part.at.key("visual").is_given()) {
+            let at = part.at.key("visual");
+            return Err(at.error("is there without anything that could collide", "[[shape]] beside it").found_if(None));
+        }
         return match parts.iter().find(|part| part.at.key("collision").is_given()) {
             Some(part) => {
                 let at = part.at.key("collision");
@@ -125,8 +130,17 @@ fn surroundings(
             None => Ok(None),
         };
     }
+    let mut visuals = Vec::new();
+    for Part { tables, at } in parts {
+        for (table, number) in tables.visual.iter().flatten().zip(1..) {
+            let (visual, file) = table.visual(&at.key("visual").element(number))?;
+            inputs.extend(Some(file).filter(|file| !inputs.contains(file)));
+            visuals.push(visual);
+        }
+    }
     let around = Surroundings::new(shapes, zones, clearance.unwrap_or(CLEARANCE), ignored);
-    around.map(Some).map_err(|error| no_surroundings(parts, &error))
+    let around = around.map_err(|error| no_surroundings(parts, &error))?;
+    Ok(Some(around.with_visuals(visuals)))
 }
 
 /// The places of all shapes and zones of a name, in the order of the files.

@@ -10,8 +10,8 @@ use crate::units::{Deg, Mm, NotNegative, Number, Positive};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stead_cell::{Attachment, KeepOut, TrackedPoint, Zone};
-use stead_disk::input::InputError;
+use stead_cell::{Attachment, KeepOut, TrackedPoint, Visual, Zone};
+use stead_disk::input::{InputError, InputFile};
 use stead_disk::quote::garbles;
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::Pose;
@@ -29,6 +29,8 @@ pub struct SurroundingsFile {
     pub keep_out: Option<Vec<KeepOutTable>>,
     /// How far shapes keep apart, and which may touch.
     pub collision: Option<CollisionTable>,
+    /// What the arm looks like: drawn in pages and scenes in place of an illustration, and held against nothing.
+    pub visual: Option<Vec<VisualTable>>,
 }
 
 /// A cylinder along z about the origin of the shape.
@@ -105,6 +107,35 @@ pub struct KeepOutTable {
     /// Where the origin of the box is, in the base frame; zero where left out.
     pub xyz_mm: Option<Vector<Mm>>,
     /// How the box is turned, as a rotation matrix by rows: this, one of the four keys below, or none.
+    pub rotation: Option<Matrix>,
+    /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
+    pub abc_deg: Option<Vector<Deg>>,
+    /// The same as Fanuc's W, P, R: Rz(R) Ry(P) Rx(W).
+    pub wpr_deg: Option<Vector<Deg>>,
+    /// The same as roll, pitch, yaw of a URDF: Rz(y) Ry(p) Rx(r).
+    pub rpy_deg: Option<Vector<Deg>>,
+    /// The same as ABB's quaternion.
+    pub quaternion_wxyz: Option<Quaternion>,
+}
+
+/// The surface of a part of the arm as it looks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VisualTable {
+    /// Its name.
+    pub name: String,
+    /// What it moves with: `base` (the base of the robot, wherever that is carried), `flange`, or a link, `link_1` to
+    /// `link_6`, in the frame of its row.
+    pub attached: String,
+    /// A mesh file (STL, OBJ), relative to the folder of this file.
+    pub mesh: String,
+    /// The unit of the mesh file, which does not state it: `mm` (where left out) or `m`.
+    pub unit: Option<Word<MeshUnit>>,
+    /// Its colour, red, green and blue from 0 to 1; that of the maker of the robot where left out.
+    pub color: Option<Vector<Number>>,
+    /// Where the origin of the mesh is, in the frame of what it moves with; zero where left out.
+    pub xyz_mm: Option<Vector<Mm>>,
+    /// How it is turned, as a rotation matrix by rows: this, one of the four keys below, or none.
     pub rotation: Option<Matrix>,
     /// The same as KUKA's A, B, C: Rz(A) Ry(B) Rx(C).
     pub abc_deg: Option<Vector<Deg>>,
@@ -246,6 +277,29 @@ impl KeepOutTable {
             (None, None) => return Err(at.key("box_mm").missing("box_mm, or half_space = { xyz_mm, normal }")),
         };
         Ok(KeepOut { name: self.name.clone(), zone, points })
+    }
+}
+
+impl VisualTable {
+    /// What is drawn, and the mesh file.
+    ///
+    /// # Errors
+    /// [`InputError`] for a frame that is none of the arm, a colour that is none, and a mesh file that cannot be read.
+    pub(super) fn visual(&self, at: &Place<'_>) -> Result<(Visual, InputFile), InputError> {
+        check_name(&self.name, &[], at)?;
+        let of_arm = |attached: &Attachment| !matches!(attached, Attachment::Workpiece | Attachment::Axis(_));
+        let unknown = || {
+            let allowed = "\"base\", \"flange\", or a link, \"link_1\" to \"link_6\"";
+            at.key("attached").error("is no frame of the arm", allowed)
+        };
+        let attached = attachment(&self.attached).filter(of_arm).ok_or_else(unknown)?;
+        let color = self.color.map(|color| <[f64; 3]>::from(color.vector()));
+        if color.is_some_and(|parts| parts.iter().any(|part| !(0.0..=1.0).contains(part))) {
+            return Err(at.key("color").error("is no colour", "red, green and blue, each from 0 to 1"));
+        }
+        let pose = pose(self.xyz_mm, &orientation_keys!(self), at)?;
+        let (mesh, file) = super::solid::read(&at.key("mesh"), self.unit.map_or(MeshUnit::Millimetre, |word| word.0))?;
+        Ok((Visual { name: self.name.clone(), attached, mesh, pose, color }, file))
     }
 }
 

@@ -1,18 +1,20 @@
 //! The file of surroundings of an imported arm.
 
 use super::collision::{LinkShape, LinkShapes};
+use super::visual::LinkVisual;
 use super::xml::one_line;
 use crate::mesh::MeshUnit;
 use nalgebra::Vector3;
 use std::fmt::Write;
 use std::path::{Component, Path, PathBuf};
 use stead_cell::Solid;
+use stead_model::robot::Pose;
 use stead_numerics::rotation::quaternion_from_rotation;
 use toml::Value;
 
 /// The text of a file of surroundings at a path, from whose folder mesh files are named; `urdf` is the file that they
 /// come from.
-pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
+pub(super) fn text(links: &LinkShapes, visuals: &[LinkVisual], file: &Path, urdf: &str) -> String {
     let mut text = format!(
         "# The links of an arm, by `stead import robot --collision` from {}: its <collision> shapes in the frames of the rows.\n\
          # A run file takes it by surroundings = \"{}\"; fence, table and spindle are added beside it.\n",
@@ -31,7 +33,35 @@ pub(super) fn text(links: &LinkShapes, file: &Path, urdf: &str) -> String {
         }
         text.push_str("]\n");
     }
+    if !visuals.is_empty() {
+        text.push_str("\n# What the links look like: drawn, and held against nothing.");
+        visuals.iter().for_each(|of| visual(&mut text, of, file));
+    }
     text
+}
+
+fn visual(text: &mut String, LinkVisual { visual, file, unit }: &LinkVisual, out: &Path) {
+    let name = Value::from(visual.name.as_str());
+    let _ = writeln!(text, "\n[[visual]]\nname = {name}\nattached = \"{}\"", visual.attached);
+    let _ = writeln!(text, "mesh = {}", mesh_file(file, *unit, out));
+    if let Some(color) = visual.color {
+        let _ = writeln!(text, "color = {:?}", color.map(|part| (part * 1e3).round() / 1e3));
+    }
+    place(text, &visual.pose);
+}
+
+/// A mesh file as it is named from the folder of a file, with the line of its unit behind it.
+fn mesh_file(mesh: &Path, unit: MeshUnit, out: &Path) -> String {
+    let name = Value::from(relative(out.parent().unwrap_or(Path::new("")), mesh));
+    format!("{name}{}", if unit == MeshUnit::Metre { "\nunit = \"m\"" } else { "" })
+}
+
+fn place(text: &mut String, pose: &Pose<f64>) {
+    let _ = writeln!(text, "xyz_mm = {}", vector(&pose.translation));
+    let turn = quaternion_from_rotation(&pose.rotation).map(|value| (value * 1e15).round() / 1e15 + 0.0);
+    if turn != [1.0, 0.0, 0.0, 0.0] {
+        let _ = writeln!(text, "quaternion_wxyz = {turn:?}");
+    }
 }
 
 /// Writing to a text cannot fail.
@@ -45,19 +75,12 @@ fn shape(text: &mut String, LinkShape { shape, file }: &LinkShape, out: &Path) {
         Solid::Capsule { radius, length } => writeln!(text, "capsule_mm = {}", round(*radius, *length)),
         Solid::Hull(_) | Solid::Mesh(_) => {
             let key = if matches!(shape.solid, Solid::Hull(_)) { "hull" } else { "mesh" };
-            let (path, unit) = file
-                .as_ref()
-                .map_or(("", MeshUnit::Millimetre), |(path, unit)| (path.as_path().to_str().unwrap_or(""), *unit));
-            let name = relative(out.parent().unwrap_or(Path::new("")), Path::new(path));
-            let unit = if unit == MeshUnit::Metre { "\nunit = \"m\"" } else { "" };
-            writeln!(text, "{key} = {}{unit}", Value::from(name))
+            let (path, unit) =
+                file.as_ref().map_or((Path::new(""), MeshUnit::Millimetre), |(path, unit)| (path.as_path(), *unit));
+            writeln!(text, "{key} = {}", mesh_file(path, unit, out))
         }
     };
-    let _ = writeln!(text, "xyz_mm = {}", vector(&shape.pose.translation));
-    let turn = quaternion_from_rotation(&shape.pose.rotation).map(|value| (value * 1e15).round() / 1e15 + 0.0);
-    if turn != [1.0, 0.0, 0.0, 0.0] {
-        let _ = writeln!(text, "quaternion_wxyz = {turn:?}");
-    }
+    place(text, &shape.pose);
 }
 
 /// A length in mm, to 1e-9 mm.

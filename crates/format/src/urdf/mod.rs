@@ -28,12 +28,14 @@ mod stiffness;
 mod summary;
 mod toml_text;
 mod tree;
+mod visual;
 mod xml;
 
 pub use collision::{LinkShape, LinkShapes};
 pub use deviation::{Deviation, POSTURES};
 pub use home::HomePose;
 pub use rows::ImportedRow;
+pub use visual::LinkVisual;
 
 use deviation::deviation;
 use home::controller_at;
@@ -94,6 +96,8 @@ pub struct ImportedRobot {
     pub bodies: Option<[Inertial; 6]>,
     /// The shapes of the links, where they were requested.
     pub link_shapes: Option<LinkShapes>,
+    /// What the links look like, as far as the URDF says it, where their shapes were requested.
+    pub link_visuals: Vec<LinkVisual>,
     /// What the user should know.
     pub notes: Vec<String>,
     /// The robot file.
@@ -155,6 +159,7 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         controller: None,
         bodies: bodies.as_ref().ok().copied(),
         link_shapes: None,
+        link_visuals: Vec::new(),
         text: String::new(),
     };
     imported.notes.extend(
@@ -180,6 +185,9 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
             return Err(error.allowed(allowed));
         }
         imported.notes.extend(shapes.notes.iter().cloned());
+        let (visuals, notes) = visual::link_visuals(urdf, &chain, &rows, &robot, &shapes);
+        imported.notes.extend(notes);
+        imported.link_visuals = visuals;
         imported.link_shapes = Some(shapes);
     }
     imported.text = toml_text::text(&imported, urdf, &sha256(urdf.text.as_bytes()), borrowed.as_ref());
@@ -194,13 +202,13 @@ impl ImportedRobot {
     }
 
     /// The files of the robot with their texts: the robot file, and beside it, where the shapes of the links were
-    /// requested, that of the surroundings with these shapes, `NAME-cell.toml`.
+    /// requested, that of the surroundings with these shapes and with what the links look like, `NAME-cell.toml`.
     pub fn files(&self, file: &Path) -> Vec<(PathBuf, String)> {
         let mut files = vec![(file.to_owned(), self.text.clone())];
         if let Some(shapes) = &self.link_shapes {
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
             let cell = file.with_file_name(format!("{stem}-cell.toml"));
-            let text = cell_text::text(shapes, &cell, &self.name);
+            let text = cell_text::text(shapes, &self.link_visuals, &cell, &self.name);
             files.push((cell, text));
         }
         files

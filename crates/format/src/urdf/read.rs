@@ -38,6 +38,16 @@ pub(super) struct Link {
     pub meshes: Vec<String>,
     /// Its shapes for collision checks, each in its own frame; the reason where one says nothing that can be.
     pub collisions: Vec<Result<(Pose<f64>, Geometry), InputError>>,
+    /// What it looks like, each in its own frame; the reason where one says nothing that can be.
+    pub visuals: Vec<Result<VisualForm, InputError>>,
+}
+
+/// The form of a `<visual>`, and its colour where the file states it: red, green and blue from 0 to 1.
+#[derive(Debug, Clone)]
+pub(super) struct VisualForm {
+    pub origin: Pose<f64>,
+    pub geometry: Geometry,
+    pub color: Option<[f64; 3]>,
 }
 
 /// The form of a shape. m
@@ -191,7 +201,8 @@ fn links_of(root: Element<'_>) -> Result<(Vec<Link>, BTreeMap<String, usize>), I
         meshes.dedup();
         let inertial = element.child("inertial").map(inertial_of).transpose()?;
         let collisions = element.children("collision").map(collision_of).collect();
-        links.push(Link { name, byte: element.byte(), inertial, meshes, collisions });
+        let visuals = element.children("visual").map(|visual| visual_of(visual, root)).collect();
+        links.push(Link { name, byte: element.byte(), inertial, meshes, collisions, visuals });
     }
     if links.is_empty() {
         return Err(root.error(None, "has no links", "a robot of links and joints"));
@@ -225,6 +236,22 @@ fn collision_of(element: Element<'_>) -> Result<(Pose<f64>, Geometry), InputErro
         return Err(geometry.error(None, "has no form that is known", FORMS));
     };
     Ok((origin, form))
+}
+
+fn visual_of(element: Element<'_>, root: Element<'_>) -> Result<VisualForm, InputError> {
+    let (origin, geometry) = collision_of(element)?;
+    // A material with its colour, or the name of one that the robot has.
+    let named = |material: Element<'_>| {
+        let name = material.attribute("name")?;
+        root.children("material").find(|known| known.attribute("name") == Some(name))?.child("color")
+    };
+    let color = element.child("material").and_then(|material| material.child("color").or_else(|| named(material)));
+    let parts = color
+        .and_then(|color| color.attribute("rgba"))
+        .map(|rgba| rgba.split_whitespace().take(3).map_while(|part| part.parse::<f64>().ok()).collect::<Vec<f64>>());
+    let color = parts.and_then(|parts| <[f64; 3]>::try_from(parts).ok());
+    let color = color.filter(|parts| parts.iter().all(|part| (0.0..=1.0).contains(part)));
+    Ok(VisualForm { origin, geometry, color })
 }
 
 fn inertial_of(element: Element<'_>) -> Result<Result<Inertial, InertialError>, InputError> {

@@ -11,10 +11,11 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
     let kept = outcome.not_corrected().map_or_else(Vec::new, |not| not.failed);
     let subtitle = format!("compensation · {count} path points");
     let [before, after] = outcome.deflections();
+    let start = if run.has_reality { "The" } else { "By the model, the" };
     let mut lead = format!(
-        "The commands bring the mean deflection of the tool from {} mm to {} mm",
-        figures(before.mean * 1e3),
-        figures(after.mean * 1e3)
+        "{start} commands bring the mean deflection of the tool from {} mm to {} mm",
+        millimetres(before.mean),
+        millimetres(after.mean)
     );
     if run.has_reality {
         lead.push_str(&format!(", carried out by {}", run.job.reality.name()));
@@ -48,16 +49,11 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
 fn tiles(outcome: &CompensatedPath) -> Card {
     let of = |what: &str, pair: [MeanAndMax; 2]| {
         let [before, after] = pair;
-        let less = reduction(pair).map_or_else(String::new, |share| format!("{} % less", fixed(share * 100.0, 3)));
-        let largest = |figures_: &MeanAndMax| format!("largest {} mm", figures(figures_.max * 1e3));
+        let largest = |figures_: &MeanAndMax| format!("largest {} mm", millimetres(figures_.max));
+        let detail = [Some(largest(&after)), change(pair)].into_iter().flatten().collect::<Vec<_>>().join("; ");
         [
-            Tile::new(&format!("mean {what} before"), figures(before.mean * 1e3), "mm", largest(&before)),
-            Tile::new(
-                &format!("mean {what} after"),
-                figures(after.mean * 1e3),
-                "mm",
-                format!("{}; {less}", largest(&after)),
-            ),
+            Tile::new(&format!("mean {what} before"), millimetres(before.mean), "mm", largest(&before)),
+            Tile::new(&format!("mean {what} after"), millimetres(after.mean), "mm", detail),
         ]
     };
     let moved = outcome.figures(|point| Some(point.correction.linear.norm())).max * 1e3;
@@ -67,6 +63,21 @@ fn tiles(outcome: &CompensatedPath) -> Card {
     tiles.extend(of("normal to the feed", outcome.normal_parts()));
     tiles.push(Tile::new("largest correction", figures(moved), "mm", detail));
     Card::Tiles(Tiles { tiles })
+}
+
+/// What is smaller is how well the equations of the model are solved, and no accuracy. m
+const SOLVED: f64 = 1e-6;
+
+/// A mean or a largest deflection in mm.
+fn millimetres(length: f64) -> String {
+    if length < SOLVED { "below 0.001".to_owned() } else { figures(length * 1e3) }
+}
+
+/// By how much less or more a mean is behind than before, where what is left says it.
+fn change(pair: [MeanAndMax; 2]) -> Option<String> {
+    let share = reduction(pair).filter(|_| pair[1].mean >= SOLVED)?;
+    let word = if share < 0.0 { "more" } else { "less" };
+    Some(format!("{} % {word}", fixed(share.abs() * 100.0, 1)))
 }
 
 /// The deflection along the path, and its part normal to the feed.
@@ -81,11 +92,8 @@ pub(super) fn before_and_after(outcome: &CompensatedPath) -> [Chart; 2] {
 
 /// A part of the deflection over the points, without and with the commands.
 fn along(title: &str, outcome: &CompensatedPath, pair: [MeanAndMax; 2], part: fn(&Deflection) -> f64) -> Chart {
-    let [before, after] = pair.map(|sizes| figures(sizes.mean * 1e3));
-    let change = reduction(pair).map_or_else(String::new, |share| {
-        let word = if share < 0.0 { "more" } else { "less" };
-        format!(", {} % {word}", fixed(share.abs() * 100.0, 1))
-    });
+    let [before, after] = pair.map(|sizes| millimetres(sizes.mean));
+    let change = change(pair).map_or_else(String::new, |change| format!(", {change}"));
     let curve = |name: &str, color: usize, of: fn(&CompensatedPoint) -> &Option<Deflection>| {
         let value = |point: &CompensatedPoint| of(point).as_ref().map(part).filter(|part| *part > 0.0);
         Series::curve(name, color, by_segment(outcome, |point| value(point).map_or(f64::NAN, |part| part * 1e3)))
@@ -175,6 +183,15 @@ mod tests {
         for label in ["deflection (mm)", "Normal to the feed", "target commanded", "path point", "77.0 % more"] {
             assert!(svg.contains(label), "{label}");
         }
+    }
+
+    #[test]
+    fn what_is_left_by_the_solver_is_no_accuracy() {
+        assert_eq!([0.0, 9e-7, 1.25e-6, 2e-4].map(millimetres), ["below 0.001", "below 0.001", "0.00125", "0.2"]);
+        let of = |mean: f64| MeanAndMax { mean, max: mean };
+        assert_eq!(change([of(1e-3), of(1e-12)]), None);
+        assert_eq!(change([of(1e-3), of(25e-5)]).as_deref(), Some("75.0 % less"));
+        assert_eq!(change([of(1e-3), of(15e-4)]).as_deref(), Some("50.0 % more"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::packed::chosen_singles;
 use super::table::Table;
-use super::{PageError, map_data, removal};
+use super::{PageError, clearance, map_data, removal};
 use crate::Files;
 use crate::document::value;
 use crate::placement::SETUP_SHEET;
@@ -120,9 +120,15 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
 
 /// Keeps of the path in `page-data.json` the points that are drawn.
 pub(super) fn keep_points(data: &mut Value, chosen: &[usize]) {
-    for key in ["position_mm", "feed", "axis"] {
-        let all = data["task"][key].as_str().unwrap_or_default();
-        data["task"][key] = chosen_singles(all, chosen, 3).into();
+    let vectors = data["task"].as_object_mut().into_iter().flatten();
+    for (_, all) in vectors.filter(|(key, _)| ["position_mm", "feed", "axis", "moment_nm"].contains(&key.as_str())) {
+        *all = chosen_singles(all.as_str().unwrap_or_default(), chosen, 3).into();
+    }
+    for all in data["task"]["scored"].as_array_mut().into_iter().flatten() {
+        *all = chosen_singles(all.as_str().unwrap_or_default(), chosen, 3).into();
+    }
+    if let Some(clearances) = data.get_mut("clearances") {
+        clearance::keep(clearances, chosen);
     }
     if let Some(removal) = data.get_mut("removal") {
         removal::keep(removal, chosen);

@@ -1,5 +1,6 @@
 //! `page-data.json`: what a page shows beyond the tables beside it.
 
+use super::clearance::{ClearanceData, changing};
 use super::map_data::MapData;
 use super::moves::{MoveData, moves};
 use super::packed::{base64, singles};
@@ -10,8 +11,10 @@ use super::shapes::{BodyFrame, BodyMesh, bodies};
 use super::surroundings::surroundings;
 use crate::document::Document;
 use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, each, some};
+use crate::placement::CaseOfStudy;
 use nalgebra::Vector3;
 use serde_json::Value;
+use stead_model::robot::{Compliance, Joint};
 use stead_placement::outcome::Case;
 use stead_planning::criterion::Direction;
 use stead_planning::feasibility::DeflectionMap;
@@ -30,6 +33,8 @@ pub(crate) struct RunOf<'a> {
     pub transfer: &'a TransferSettings,
     /// What its path removes of a table `[stock]`.
     pub removal: Option<&'a RemovalForces>,
+    /// Which case of a study it is, where it is one.
+    pub study_case: Option<&'a CaseOfStudy>,
 }
 
 /// A placement with the setup of the cell.
@@ -45,6 +50,9 @@ records! {
     } with {
         /// The command that left it.
         command: String = command.to_owned(),
+        /// Which case of a study it is, where it is one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        study_case: Option<CaseOfStudy> = run.study_case.cloned(),
         /// The arm.
         robot: RobotData = RobotData::of(problem),
         /// The tool frame in the frame of the flange.
@@ -72,6 +80,10 @@ records! {
         /// plan has a path round shapes.
         #[serde(skip_serializing_if = "Option::is_none")]
         moves: Option<Vec<Vec<Option<MoveData>>>> = moves(problem, run.transfer, plans),
+        /// For each plan its least room without the pairs whose distance does not change along it, null where no such
+        /// pair has the least room; left out where that is so of all plans.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        clearances: Option<Vec<Option<ClearanceData>>> = changing(problem, plans),
         /// What the path removes of its stock, where the run has one.
         #[serde(skip_serializing_if = "Option::is_none")]
         removal: Option<RemovalData> = run.removal.map(|removal| RemovalData::of(problem, removal)),
@@ -92,7 +104,7 @@ records! {
     }
 
     /// A Denavit-Hartenberg row with the limits of its joint.
-    pub struct RowData of (joint: &stead_model::robot::Joint) {
+    pub struct RowData of (joint: &Joint) {
         /// Twist. deg
         alpha_deg: f64 = joint.alpha.to_degrees(),
         /// Length. mm
@@ -103,6 +115,9 @@ records! {
         min_deg: AngleDeg = joint.min.into(),
         /// Upper limit.
         max_deg: AngleDeg = joint.max.into(),
+        /// Compliance of the joint about its axis, at angles that go evenly from the lower limit to the upper one; one
+        /// number where it is the same at all. urad/(N m)
+        compliance_urad_per_nm: Vec<f64> = compliances(joint),
     }
 
     /// Where the workpiece origin may be: ends of intervals.
@@ -139,6 +154,12 @@ records! {
         let all = |of: fn(&stead_model::task::PathPoint) -> Vector3<f64>, factor: f64| {
             singles(points.iter().flat_map(|point| <[f64; 3]>::from(of(point) * factor)))
         };
+        let directions = |point: usize| problem.scored_directions(point, &points[point].workpiece_from_point());
+        let scored = |k: usize| {
+            singles((0..points.len()).flat_map(|point| <[f64; 3]>::from(directions(point).padded()[k])))
+        };
+        let most = (0..points.len()).map(|point| directions(point).vectors().len()).max().unwrap_or(0);
+        let moments = || problem.task.wrenches().iter().map(|wrench| wrench.moment);
         let starts: Vec<usize> = problem.task.segments().iter().map(|segment| segment.start).collect();
         let step = |point: usize| {
             let time = if starts.contains(&point) { 0.0 } else { problem.step_time(point) };
@@ -155,6 +176,14 @@ records! {
         feed: String = all(|point| point.feed, 1.0),
         /// Tool axes.
         axis: String = all(|point| point.axis, 1.0),
+        /// The directions that are scored, each with the root of its weight: one to three lists, zero at points that
+        /// have fewer.
+        scored: Vec<String> = (0..most).map(scored).collect(),
+        /// Moments on the tool about the tool centre point, where there are any. N m
+        #[serde(skip_serializing_if = "Option::is_none")]
+        moment_nm: Option<String> = moments()
+            .any(|moment| moment != Vector3::zeros())
+            .then(|| singles(moments().flat_map(<[f64; 3]>::from))),
         /// Time from each point to the next at the programmed feed.
         step_s: String = singles((0..points.len()).map(step)),
     }
@@ -213,6 +242,20 @@ pub(crate) fn page_data(
     maps: &[MapOf<'_>],
 ) -> Value {
     document.with(PageData::of(command, problem, run, plans, maps))
+}
+
+/// Compliances along the range of a joint that follow a curve.
+const CURVED: usize = 65;
+
+/// The compliance of a joint at angles that go evenly from its lower limit to its upper one. urad/(N m)
+fn compliances(joint: &Joint) -> Vec<f64> {
+    let count = match joint.compliance {
+        Compliance::Constant(_) => 1,
+        Compliance::Range { .. } => 2,
+        Compliance::Compensated { .. } => CURVED,
+    };
+    let angle = |k: usize| joint.min + (joint.max - joint.min) * k as f64 / (count - 1).max(1) as f64;
+    (0..count).map(|k| joint.compliance_at(angle(k)) * 1e6).collect()
 }
 
 fn frame(frame: BodyFrame) -> String {

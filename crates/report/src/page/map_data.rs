@@ -2,7 +2,7 @@
 //! table.
 
 use super::PageError;
-use super::packed::{SecondDifferences, Varints};
+use super::packed::{Runs, SecondDifferences, Varints};
 use super::table::Table;
 use serde_json::Value;
 use stead_model::robot::Posture;
@@ -83,7 +83,7 @@ records! {
             }
         }
         let joints = packed_joints(problem, placement, points.iter().copied().zip(rows));
-        let (codes, scores) = (super::packed::base64(&states.codes), states.packed.text());
+        let (codes, scores) = (states.codes.text(), states.packed.text());
     } with {
         /// The path points, from 0.
         points: Vec<usize> = points.to_vec(),
@@ -108,7 +108,7 @@ records! {
 #[derive(Debug, Default)]
 struct States {
     names: Vec<String>,
-    codes: Vec<u8>,
+    codes: Runs,
     packed: Varints,
     sequence: SecondDifferences,
 }
@@ -120,7 +120,7 @@ impl States {
     }
 
     fn allowed(&mut self, posture: u8, score_mm: f64) {
-        self.codes.push(posture);
+        self.codes.push(i64::from(posture));
         self.packed.push(self.sequence.next((score_mm / SCORE_STEP_MM).round() as i64));
     }
 
@@ -129,7 +129,7 @@ impl States {
         if known == self.names.len() {
             self.names.push(why.to_owned());
         }
-        self.codes.push(16 + known as u8);
+        self.codes.push(16 + known as i64);
         self.sequence.restart();
     }
 }
@@ -145,7 +145,7 @@ fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, post
 }
 
 /// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for
-/// each (the posture, or 16 and the number of its reason), and the `scores` of the allowed ones. Of the table only the
+/// each (the posture, or 16 and the number of its reason), as [`Runs`], and the `scores` of the allowed ones. Of the table only the
 /// rows that are shown are kept: that of a long path has millions.
 pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageError> {
     let wrong = || PageError::data("maps", "is no description of a deflection map");
@@ -168,7 +168,7 @@ pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageErr
         }
     }
     let mut value = entry.clone();
-    value["codes"] = super::packed::base64(&states.codes).into();
+    value["codes"] = states.codes.text().into();
     value["reasons"] = states.names.into();
     value["score_step_mm"] = SCORE_STEP_MM.into();
     value["scores"] = states.packed.text().into();
@@ -193,8 +193,9 @@ mod tests {
         let entry = json!({ "points": shown, "beta_count": beta_count });
         let content = |text: &str| content(&entry, &Table::read("map.csv", text.as_bytes())?);
         assert_eq!(shown.len(), COLUMNS);
-        let codes = super::super::packed::base64(&[2; 3 * COLUMNS]);
-        assert_eq!(content(&text).unwrap()["codes"], codes.as_str());
+        let mut codes = Varints::default();
+        [3 * COLUMNS as i64, 2].into_iter().for_each(|number| codes.push(number));
+        assert_eq!(content(&text).unwrap()["codes"], codes.text().as_str());
         let cut: String = text.lines().take(100).map(|line| format!("{line}\n")).collect();
         assert!(content(&cut).unwrap_err().to_string().contains("has fewer states"));
     }

@@ -11,6 +11,7 @@
 //! good, builds offline, and leaves no third-party text in what users pass on.
 
 pub mod cards;
+mod clearance;
 mod content;
 pub(crate) mod data;
 mod folder;

@@ -47,6 +47,37 @@ impl Varints {
     }
 }
 
+/// Numbers of which many that follow each other are the same: for each run how many, and the number.
+#[derive(Debug, Default)]
+pub(super) struct Runs {
+    ended: Varints,
+    run: Option<(i64, i64)>,
+}
+
+impl Runs {
+    /// Adds a number.
+    pub(super) fn push(&mut self, value: i64) {
+        match &mut self.run {
+            Some((count, last)) if *last == value => *count += 1,
+            run => {
+                if let Some((count, last)) = run.replace((1, value)) {
+                    self.ended.push(count);
+                    self.ended.push(last);
+                }
+            }
+        }
+    }
+
+    /// All of them as Base64.
+    pub(super) fn text(mut self) -> String {
+        if let Some((count, last)) = self.run {
+            self.ended.push(count);
+            self.ended.push(last);
+        }
+        self.ended.text()
+    }
+}
+
 /// The second differences of a sequence, which are small where it is smooth; [`SecondDifferences::restart`] begins a
 /// new one.
 #[derive(Debug, Default, Clone, Copy)]
@@ -79,6 +110,16 @@ mod tests {
         let mut packed = Varints::default();
         [0, -1, 1, 63, -64, 64, -300].into_iter().for_each(|value| packed.push(value));
         assert_eq!(packed.0, [0, 1, 2, 126, 127, 128, 1, 215, 4]);
+    }
+
+    #[test]
+    fn runs_are_counted() {
+        let mut runs = Runs::default();
+        [7, 7, 7, 3, 7].into_iter().for_each(|value| runs.push(value));
+        let mut packed = Varints::default();
+        [3, 7, 1, 3, 1, 7].into_iter().for_each(|value| packed.push(value));
+        assert_eq!(runs.text(), packed.text());
+        assert_eq!(Runs::default().text(), "");
     }
 
     #[test]

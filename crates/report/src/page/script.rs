@@ -18,6 +18,7 @@ const MODULES: &[(&str, &str)] = modules![
     "draw/chart-data.js",
     "draw/chart.js",
     "draw/dom.js",
+    "draw/downloads.js",
     "draw/heat-map.js",
     "draw/plot.js",
     "draw/scale.js",
@@ -38,6 +39,7 @@ const MODULES: &[(&str, &str)] = modules![
     "live/pins.js",
     "live/place.js",
     "live/server.js",
+    "run/arrows.js",
     "run/axis-tracks.js",
     "run/bodies.js",
     "run/camera.js",
@@ -47,12 +49,12 @@ const MODULES: &[(&str, &str)] = modules![
     "run/colour.js",
     "run/data.js",
     "run/external-axes.js",
-    "run/forces.js",
     "run/gpu.js",
     "run/header.js",
     "run/kinematics.js",
     "run/linear.js",
     "run/link.js",
+    "run/loads.js",
     "run/main.js",
     "run/map.js",
     "run/mesh.js",
@@ -70,6 +72,7 @@ const MODULES: &[(&str, &str)] = modules![
     "run/state.js",
     "run/surroundings.js",
     "run/transport.js",
+    "run/yielding.js",
 ];
 
 /// Why modules are not joined.

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use stead_removal::surface::Surface;
 
 /// What changes the surface by no more goes though there are few enough triangles, over the fourth power of its size:
@@ -99,8 +99,7 @@ struct Thinning {
 
 /// The surface with at most so many triangles, where its form allows it, and with fewer where these do as well.
 pub(super) fn thinned(surface: &Surface, most: usize) -> Surface {
-    let low = surface.vertices.iter().fold(Vector3::repeat(f64::INFINITY), |low, corner| low.inf(corner));
-    let high = surface.vertices.iter().fold(Vector3::repeat(f64::NEG_INFINITY), |high, corner| high.sup(corner));
+    let [low, high] = extent(surface);
     let size = (high - low).norm();
     let mut thinning = Thinning::of(surface);
     while let Some(Reverse(edge)) = thinning.edges.pop() {
@@ -110,6 +109,57 @@ pub(super) fn thinned(surface: &Surface, most: usize) -> Surface {
         thinning.collapse(&edge);
     }
     thinning.surface()
+}
+
+/// A surface of any form with at most so many triangles: thinned, or where that is not enough, since it has holes or
+/// edges of more than two triangles, with its corners drawn together to the middles of ever larger cubes.
+pub(super) fn thinned_to(surface: &Surface, most: usize) -> Surface {
+    let few = thinned(surface, most);
+    let [low, high] = extent(&few);
+    let size = (high - low).amax();
+    let mut cubes = 256.0_f64;
+    let mut fewer = few;
+    while fewer.triangles.len() > most && cubes >= 1.0 {
+        fewer = clustered(surface, &low, size / cubes);
+        cubes *= 0.8;
+    }
+    fewer
+}
+
+/// The surface with the corners within each cube of a size drawn together.
+fn clustered(surface: &Surface, low: &Vector3<f64>, cube: f64) -> Surface {
+    let mut numbers: BTreeMap<[i64; 3], u32> = BTreeMap::new();
+    let mut sums: Vec<(Vector3<f64>, f64)> = Vec::new();
+    let cluster: Vec<u32> = surface
+        .vertices
+        .iter()
+        .map(|corner| {
+            let place = <[f64; 3]>::from((corner - low) / cube).map(|part| part.floor() as i64);
+            let number = *numbers.entry(place).or_insert_with(|| {
+                sums.push((Vector3::zeros(), 0.0));
+                sums.len() as u32 - 1
+            });
+            let (sum, count) = &mut sums[number as usize];
+            *sum += corner;
+            *count += 1.0;
+            number
+        })
+        .collect();
+    let mut known = BTreeSet::new();
+    let triangles = surface.triangles.iter().map(|triangle| triangle.map(|corner| cluster[corner as usize]));
+    let kept = triangles.filter(|[a, b, c]| {
+        let mut sorted = [*a, *b, *c];
+        sorted.sort_unstable();
+        a != b && b != c && c != a && known.insert(sorted)
+    });
+    Surface { triangles: kept.collect(), vertices: sums.into_iter().map(|(sum, count)| sum / count).collect() }
+}
+
+/// The ends of a surface along x, y and z; both at nothing where it has no corner.
+fn extent(surface: &Surface) -> [Vector3<f64>; 2] {
+    let mut corners = surface.vertices.iter();
+    let first = corners.next().copied().unwrap_or_default();
+    corners.fold([first; 2], |[low, high], corner| [low.inf(corner), high.sup(corner)])
 }
 
 impl Thinning {
@@ -239,7 +289,6 @@ impl Thinning {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeMap;
 
     /// A closed sheet about a box of 2 x 1 x 1 whose sides have so many squares along each unit, drawn onto a form.
     fn sheet(squares: usize, form: fn(Vector3<f64>) -> Vector3<f64>) -> Surface {
@@ -299,6 +348,25 @@ mod tests {
         assert!((volume(&few) - 2.0).abs() < 1e-9 && full.triangles.len() == 8000);
         assert!(few.triangles.len() < 60, "{}", few.triangles.len());
         assert_eq!(thinned(&full, usize::MAX), few);
+    }
+
+    /// Loose triangles, as some programs write them, share no edge that could be drawn together.
+    #[test]
+    fn loose_triangles_come_down_to_what_is_allowed_and_stay_where_they_are() {
+        let ball = sheet(16, |place| (place - Vector3::new(1.0, 0.5, 0.5)).normalize());
+        let mut loose = Surface::default();
+        for triangle in &ball.triangles {
+            let first = loose.vertices.len() as u32;
+            loose.vertices.extend(triangle.map(|corner| ball.vertices[corner as usize]));
+            loose.triangles.push([first, first + 1, first + 2]);
+        }
+        assert!(thinned(&loose, 500).triangles.len() > 500);
+        let few = thinned_to(&loose, 500);
+        assert!(few.triangles.len() <= 500 && few.triangles.len() > 200, "{}", few.triangles.len());
+        assert!(few.vertices.iter().all(|corner| (corner.norm() - 1.0).abs() < 0.1));
+        assert_eq!(thinned_to(&loose, 500), few);
+        assert_eq!(thinned_to(&Surface::default(), 10), Surface::default());
+        assert!(thinned_to(&ball, 500).triangles.len() <= 500);
     }
 
     #[test]

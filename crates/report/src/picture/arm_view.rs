@@ -2,7 +2,7 @@
 
 use super::axes::{Panel, Scale, around};
 use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
-use super::colour::{BLUE, GREEN, GREY, INK, RED};
+use super::colour::{BLUE, GREY, INK, ORANGE, TEAL};
 use super::surroundings::Outline;
 use crate::units::fixed;
 use nalgebra::Vector3;
@@ -89,7 +89,7 @@ fn drawn(
                 .iter()
                 .map(|(shape, poses, is_hit)| {
                     let outline = Outline::new(shape, poses, shown);
-                    if *is_hit { outline.coloured(RED) } else { outline }
+                    if *is_hit { outline.coloured(ORANGE) } else { outline }
                 })
                 .collect();
             let corners = outlines.iter().flat_map(|outline| outline.corners.iter().copied());
@@ -108,8 +108,8 @@ fn drawn(
             if let Some(tip) = tip {
                 // The tool axis, as far out of the spindle as the picture makes it visible.
                 let out = tip.translation + tip.rotation.column(2) * 0.15;
-                canvas.curve(&[place(&flange), place(&tip.translation)], RED, 3);
-                canvas.arrow(place(&tip.translation), place(&out), RED, 2);
+                canvas.curve(&[place(&flange), place(&tip.translation)], ORANGE, 3);
+                canvas.arrow(place(&tip.translation), place(&out), ORANGE, 2);
             }
             panel.draw_frame(canvas);
         }
@@ -151,7 +151,7 @@ fn draw_surroundings(
         }
     }
     for segment in path {
-        canvas.edged_curve(&segment.iter().map(place).collect::<Vec<_>>(), GREEN, 3);
+        canvas.edged_curve(&segment.iter().map(place).collect::<Vec<_>>(), TEAL, 3);
     }
 }
 

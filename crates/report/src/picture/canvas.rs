@@ -1,6 +1,6 @@
 //! Drawing to SVG in pixels: frames, fills and text on whole ones, curves on quarters of one.
 
-use super::colour::{BLACK, Colour, WHITE};
+use super::colour::{BEST, BLACK, Colour, WHITE, WORST};
 
 /// A place on the picture: pixels to the right and down from the upper left corner.
 pub(super) type Pixel = (i32, i32);
@@ -32,6 +32,25 @@ pub(super) struct TextStyle {
     anchor: Anchor,
     runs_upwards: bool,
 }
+
+/// How a line is drawn: what is best is whole and what is worst in strokes, so that nobody needs the colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct LineStyle {
+    pub colour: Colour,
+    pub is_dashed: bool,
+}
+
+impl From<Colour> for LineStyle {
+    /// A whole line.
+    fn from(colour: Colour) -> Self {
+        Self { colour, is_dashed: false }
+    }
+}
+
+/// The line of what is best.
+pub(super) const BEST_LINE: LineStyle = LineStyle { colour: BEST, is_dashed: false };
+/// The line of what is worst.
+pub(super) const WORST_LINE: LineStyle = LineStyle { colour: WORST, is_dashed: true };
 
 /// Whole numbers of the SVG document to a pixel.
 const FINENESS: i32 = 4;
@@ -109,24 +128,40 @@ impl Canvas {
     }
 
     fn fine_line(&mut self, line: impl IntoIterator<Item = Pixel>, colour: Colour, width: i32) {
+        self.stroked(line, colour, width, "");
+    }
+
+    fn stroked(&mut self, line: impl IntoIterator<Item = Pixel>, colour: Colour, width: i32, dashes: &str) {
         let (width, points) = (width * FINENESS, points(line));
-        self.document +=
-            &format!("<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" points=\"{points}\"/>\n");
+        self.document += &format!(
+            "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dashes} points=\"{points}\"/>\n"
+        );
+    }
+
+    /// A line through any places, whole or in strokes.
+    pub fn styled_curve(&mut self, points: &[Place], line: LineStyle, width: i32) {
+        let dashes = if line.is_dashed {
+            format!(" stroke-dasharray=\"{} {}\"", 9 * FINENESS, 5 * FINENESS)
+        } else {
+            String::new()
+        };
+        self.stroked(points.iter().map(|place| fine(*place)), line.colour, width, &dashes);
     }
 
     /// A line through any places; a single one is a dot.
-    pub fn curve_or_dot(&mut self, points: &[Place], colour: Colour, width: i32) {
+    pub fn curve_or_dot(&mut self, points: &[Place], line: impl Into<LineStyle>, width: i32) {
+        let line = line.into();
         match points {
             [] => {}
-            [alone] => self.dot(*alone, 3, colour),
-            _ => self.curve(points, colour, width),
+            [alone] => self.dot(*alone, 3, line.colour),
+            _ => self.styled_curve(points, line, width),
         }
     }
 
     /// A line with a white edge that stands out from any ground.
-    pub fn edged_curve(&mut self, points: &[Place], colour: Colour, width: i32) {
+    pub fn edged_curve(&mut self, points: &[Place], line: impl Into<LineStyle>, width: i32) {
         self.curve(points, WHITE, width + 3);
-        self.curve(points, colour, width);
+        self.styled_curve(points, line.into(), width);
     }
 
     /// A dashed straight line.

@@ -1,9 +1,9 @@
 //! The robot cell from above with the best and the worst placement (Caro 2013, Fig. 8).
 
 use super::axes::{Panel, Scale, around};
-use super::canvas::{Canvas, Pixel, TextStyle, exact, picture};
+use super::canvas::{BEST_LINE, Canvas, LineStyle, Pixel, TextStyle, WORST_LINE, exact, picture};
 use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
-use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
+use super::colour::{BLUE, GREY, INK, PALE};
 use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_placement::outcome::{Case, Outcome};
@@ -22,7 +22,7 @@ const BASE: f64 = 300.0;
 /// A placement that is shown.
 struct Shown<'a> {
     case: &'a Case,
-    colour: Colour,
+    line: LineStyle,
     /// What its panel is called.
     title: &'static str,
     /// What its tool path is called.
@@ -33,16 +33,16 @@ struct Shown<'a> {
 /// with the tool path as it lies and the direction to the wrist centre in the middle of each segment.
 pub fn cell(problem: &Problem, outcome: &Outcome) -> String {
     let names = [
-        (GREEN, "Best placement", "tool path at the best placement"),
-        (RED, "Worst placement", "tool path at the worst placement"),
+        (BEST_LINE, "Best placement", "tool path at the best placement"),
+        (WORST_LINE, "Worst placement", "tool path at the worst placement"),
     ];
     let shown = outcome.cases.optima().into_iter().zip(names);
-    drawn(problem, &shown.map(|(case, (colour, title, path))| Shown { case, colour, title, path }).collect::<Vec<_>>())
+    drawn(problem, &shown.map(|(case, (line, title, path))| Shown { case, line, title, path }).collect::<Vec<_>>())
 }
 
 /// The same with one given placement.
 pub fn cell_with(problem: &Problem, case: &Case) -> String {
-    drawn(problem, &[Shown { case, colour: GREEN, title: "This placement", path: "tool path at this placement" }])
+    drawn(problem, &[Shown { case, line: BEST_LINE, title: "This placement", path: "tool path at this placement" }])
 }
 
 fn drawn(problem: &Problem, all: &[Shown<'_>]) -> String {
@@ -70,7 +70,7 @@ fn overview(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>], near: &Re
     view.limits(canvas);
     view.base(canvas);
     for shown in all.iter().rev() {
-        view.path(canvas, shown.case, shown.colour);
+        view.path(canvas, shown.case, shown.line);
         view.origin(canvas, shown.case);
     }
     view.panel.draw_frame(canvas)
@@ -78,10 +78,10 @@ fn overview(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>], near: &Re
 
 /// One placement with its surroundings.
 fn placement(canvas: &mut Canvas, problem: &Problem, shown: &Shown<'_>, panel: Panel) {
-    let Shown { case, colour, title, .. } = *shown;
+    let Shown { case, line, title, .. } = *shown;
     let title = format!("{title}: mean {} mm", fixed(case.plan.mean * 1e3, 4));
     let (left, top) = (panel.x.start, panel.y.end);
-    canvas.text(&title, (left, top - 38), TextStyle::new(13.0).bold().coloured(colour));
+    canvas.text(&title, (left, top - 38), TextStyle::new(13.0).bold().coloured(line.colour));
     let place = &case.placement;
     let [x, y, z] = [place.x, place.y, place.z].map(|value| fixed(value * 1e3, 1));
     let words = format!("x = {x} mm, y = {y} mm, z = {z} mm, yaw = {} deg", fixed(place.yaw.to_degrees(), 1));
@@ -90,9 +90,9 @@ fn placement(canvas: &mut Canvas, problem: &Problem, shown: &Shown<'_>, panel: P
     view.panel.draw_grid(canvas);
     view.limits(canvas);
     view.wrists(canvas, case);
-    view.path(canvas, case, colour);
+    view.path(canvas, case, line);
     view.workpiece(canvas, case);
-    view.numbers(canvas, case, colour);
+    view.numbers(canvas, case, line.colour);
     view.panel.draw_frame(canvas)
 }
 
@@ -104,7 +104,7 @@ fn legend(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>]) {
         y += 28;
     };
     for shown in all {
-        entry(shown.path, &|canvas, y| canvas.line(&[(left, y), (right, y)], shown.colour, 3));
+        entry(shown.path, &|canvas, y| canvas.styled_curve(&[exact((left, y)), exact((right, y))], shown.line, 3));
     }
     entry("workpiece origin; below with the axes x and y", &|canvas, y| canvas.dot(exact((left + 17, y)), 4, INK));
     entry("where the workpiece origin may stand", &|canvas, y| canvas.dashed((left, y), (right, y), INK));

@@ -1,7 +1,7 @@
 //! What there is to see of a robot cell from above, to be drawn into a panel.
 
 use super::axes::Panel;
-use super::canvas::{Canvas, Place, TextStyle, nearest};
+use super::canvas::{Canvas, LineStyle, Place, TextStyle, nearest};
 use super::colour::{BLUE, Colour, GREY, INK, PALE};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -91,10 +91,10 @@ impl CellView<'_> {
     }
 
     /// The tool path as it lies.
-    pub fn path(&self, canvas: &mut Canvas, case: &Case, colour: Colour) {
+    pub fn path(&self, canvas: &mut Canvas, case: &Case, line: LineStyle) {
         for run in case.plan.points.chunk_by(|a, b| a.segment == b.segment) {
             let places: Vec<Place> = run.iter().map(|point| self.place(&point.position)).collect();
-            canvas.edged_curve(&places, colour, 3);
+            canvas.edged_curve(&places, line, 3);
         }
     }
 

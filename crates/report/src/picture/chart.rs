@@ -1,7 +1,7 @@
 //! Charts as data, drawn: the same that pages show, one below the other.
 
 use super::axes::{Panel, Scale, Ticks, extent};
-use super::canvas::{Canvas, TextStyle, picture};
+use super::canvas::{Canvas, LineStyle, TextStyle, picture};
 use super::colour::{Colour, INK, PALE, SERIES};
 use super::line_chart::{LineChart, Mark, Sign, legend};
 use crate::page::cards::{Axis, Chart, Series, Style};
@@ -53,9 +53,13 @@ fn colour(series: &Series) -> Colour {
     SERIES[series.color % SERIES.len()]
 }
 
+fn line(series: &Series) -> LineStyle {
+    LineStyle { colour: colour(series), is_dashed: series.style == Style::Dashed }
+}
+
 fn sign(series: &Series) -> (Sign, &str) {
     let sign = match series.style {
-        Style::Line | Style::Dashed => Sign::Line(colour(series)),
+        Style::Line | Style::Dashed => Sign::Line(line(series)),
         Style::Dots | Style::Rings | Style::Intervals => Sign::Dot(colour(series)),
     };
     (sign, &series.name)
@@ -121,7 +125,7 @@ fn line_chart(chart: &Chart, edges: [i32; 2]) -> LineChart {
         let points = series.x.iter().zip(&series.y).map(|(at, value)| (along(&chart.x, *at), height(*value)));
         let points = points.map(|(at, value)| (at, value.map(|value| value.clamp(y.from, y.to))));
         match series.style {
-            Style::Line | Style::Dashed => drawn.broken_curve(points, colour(series)),
+            Style::Line | Style::Dashed => drawn.broken_curve(points, line(series)),
             Style::Dots | Style::Rings | Style::Intervals => {
                 let ends = series.low.iter().zip(&series.high).zip(&series.x);
                 for ((low, high), at) in ends {

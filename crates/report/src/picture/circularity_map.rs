@@ -3,7 +3,7 @@
 use super::axes::{Panel, Scale, Ticks, Window, around};
 use super::canvas::{Canvas, Place, TextStyle, exact, picture};
 use super::circularity_panel::{Colours, ElbowPanel, Nodes, shoulder_mark};
-use super::colour::{BLACK, Colour, GREEN, GREY, INK, RED};
+use super::colour::{BEST, BLACK, Colour, GREY, INK, WORST};
 use super::heat_map::{ColourBar, ColourRange};
 use super::labels::{lines, whole_or_figures};
 use super::plane_view::{ArmInPlane, PlaneView};
@@ -188,8 +188,8 @@ impl<'a> Picture<'a> {
         let y = self.text_bottom() + 26;
         let left = COLUMNS[0];
         for (x, colour, label) in [
-            (left, RED, "optimal zone: its largest circularity is the smallest of all squares of its side"),
-            (left + 560, GREEN, "zone about the middle of the map"),
+            (left, BEST, "optimal zone: its largest circularity is the smallest of all squares of its side"),
+            (left + 560, WORST, "zone about the middle of the map"),
         ] {
             canvas.curve(&square(x, y), colour, 2);
             canvas.text(label, (x + 24, y), style);
@@ -272,8 +272,8 @@ fn zone_lines(found: &Configuration) -> Vec<(String, Colour)> {
     if found.zones.is_empty() || found.circles == 0 {
         return Vec::new();
     }
-    let mut both = table("optimal zones", RED, |zones| zones.optimal);
-    both.extend(table("middle zones", GREEN, |zones| zones.middle));
+    let mut both = table("optimal zones", BEST, |zones| zones.optimal);
+    both.extend(table("middle zones", WORST, |zones| zones.middle));
     both
 }
 

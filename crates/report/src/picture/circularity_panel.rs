@@ -3,7 +3,7 @@
 
 use super::axes::{Panel, Ticks, Window, around};
 use super::canvas::{Canvas, Pixel, Place, exact, nearest};
-use super::colour::{BLACK, GREEN, INK, RED, WHITE, contrast, viridis};
+use super::colour::{BEST, BLACK, INK, WHITE, WORST, contrast, viridis};
 use super::contour::contour;
 use super::heat_map::{ColourRange, HeatMap};
 use super::labels::{Area, Label, Labeller, whole_or_figures};
@@ -181,7 +181,7 @@ impl ElbowPanel<'_> {
     fn zones(&self, canvas: &mut Canvas, labeller: &mut Labeller) {
         let zones = || {
             let each = self.found.zones.iter();
-            each.flat_map(|zones| [(zones.middle, GREEN), (zones.optimal, RED)])
+            each.flat_map(|zones| [(zones.middle, WORST), (zones.optimal, BEST)])
                 .filter_map(|(zone, colour)| Some((zone?, colour)))
         };
         for (zone, colour) in zones() {

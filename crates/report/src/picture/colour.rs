@@ -26,10 +26,14 @@ pub(super) const GREY: Colour = Colour(130, 130, 130);
 pub(super) const PALE: Colour = Colour(175, 175, 175);
 /// Grid lines.
 pub(super) const GRID: Colour = Colour(228, 228, 228);
-/// What is best.
-pub(super) const GREEN: Colour = Colour(0, 170, 60);
+/// What is best: that of the pages in daylight. No two things differ by red and green alone.
+pub(super) const BEST: Colour = Colour(0, 105, 166);
 /// What is worst.
-pub(super) const RED: Colour = Colour(214, 20, 30);
+pub(super) const WORST: Colour = Colour(184, 74, 0);
+/// What is shown of a thing, beside orange distinct for the colour-blind too (Okabe and Ito 2008).
+pub(super) const TEAL: Colour = Colour(0, 158, 115);
+/// What stands out: loads, hits, points left out.
+pub(super) const ORANGE: Colour = Colour(213, 94, 0);
 /// Means.
 pub(super) const BLUE: Colour = Colour(110, 140, 190);
 

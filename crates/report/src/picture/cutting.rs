@@ -93,10 +93,10 @@ fn head(canvas: &mut Canvas, force_history: &ForceHistory) {
 fn curve_legend(canvas: &mut Canvas, left: i32) {
     let [feed, side, axis] = COMPONENTS;
     let entries = [
-        (left, Sign::Line(feed), "along the feed"),
-        (left + 150, Sign::Line(side), "to the left of it"),
-        (left + 300, Sign::Line(axis), "along the tool axis"),
-        (left + 480, Sign::Line(BLACK), "magnitude"),
+        (left, Sign::Line(feed.into()), "along the feed"),
+        (left + 150, Sign::Line(side.into()), "to the left of it"),
+        (left + 300, Sign::Line(axis.into()), "along the tool axis"),
+        (left + 480, Sign::Line(BLACK.into()), "magnitude"),
         (left + 606, Sign::Dashed(INK), "mean over the turn"),
         (left + 785, Sign::Ground(SHADE), "a tooth is in the work"),
     ];

@@ -1,8 +1,8 @@
 //! The deflection over path point and beta, with both plans (Caro 2013, Fig. 7 and 9).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
-use super::colour::{Colour, GREEN, GREY, INK, RED, ground, viridis};
+use super::canvas::{BEST_LINE, Canvas, LineStyle, Pixel, Place, TextStyle, WORST_LINE, picture};
+use super::colour::{BEST, GREY, INK, WORST, ground, viridis};
 use super::hatch::{Slope, hatch};
 use super::heat_map::{ColourBar, ColourRange, HeatMap};
 use crate::names;
@@ -81,8 +81,8 @@ impl<'a> Picture<'a> {
         self.hatching(canvas, ConstraintKind::Conditioning, Slope::Up);
         self.hatching(canvas, ConstraintKind::MaxDeflection, Slope::Down);
         self.segments(canvas);
-        self.plan(canvas, &self.worst.plan, RED);
-        self.plan(canvas, &self.best.plan, GREEN);
+        self.plan(canvas, &self.worst.plan, WORST_LINE);
+        self.plan(canvas, &self.best.plan, BEST_LINE);
         self.panel.draw_frame(canvas);
         self.colour_bar(canvas);
         self.legend(canvas)
@@ -119,8 +119,8 @@ impl<'a> Picture<'a> {
         if (NARROW..MEDIUM).contains(&narrowest) {
             let heading = TextStyle::new(11.5).ending();
             canvas.text("segment", (LEFT - 8, TOP - 43), heading.bold().coloured(INK));
-            canvas.text("posture", (LEFT - 8, TOP - 26), heading.coloured(GREEN));
-            canvas.text("posture", (LEFT - 8, TOP - 10), heading.coloured(RED));
+            canvas.text("posture", (LEFT - 8, TOP - 26), heading.coloured(BEST));
+            canvas.text("posture", (LEFT - 8, TOP - 10), heading.coloured(WORST));
         }
         for (index, range) in segments.iter().enumerate() {
             let (left, right) = (self.edge(range.start), self.edge(range.end));
@@ -134,7 +134,7 @@ impl<'a> Picture<'a> {
             let (segment, posture) = if narrowest < MEDIUM { ("", "") } else { ("segment ", "posture ") };
             let style = TextStyle::new(11.5).centred();
             canvas.text(&format!("{segment}{}", index + 1), (middle, TOP - 43), style.bold().coloured(INK));
-            for (plan, colour, up) in [(&self.best.plan, GREEN, 26), (&self.worst.plan, RED, 10)] {
+            for (plan, colour, up) in [(&self.best.plan, BEST, 26), (&self.worst.plan, WORST, 10)] {
                 if let Some(number) = plan.postures.get(index) {
                     canvas.text(&format!("{posture}{number}"), (middle, TOP - up), style.coloured(colour));
                 }
@@ -146,11 +146,11 @@ impl<'a> Picture<'a> {
         self.panel.x.pixel(point as f64 - 0.5)
     }
 
-    fn plan(&self, canvas: &mut Canvas, plan: &Plan, colour: Colour) {
+    fn plan(&self, canvas: &mut Canvas, plan: &Plan, line: LineStyle) {
         for run in plan_lines(plan, |point, beta_deg| self.panel.place(point, beta_deg)) {
             match run[..] {
-                [alone] => canvas.dot(alone, 3, colour),
-                _ => canvas.edged_curve(&run, colour, 3),
+                [alone] => canvas.dot(alone, 3, line.colour),
+                _ => canvas.edged_curve(&run, line, 3),
             }
         }
     }
@@ -173,10 +173,10 @@ impl<'a> Picture<'a> {
     fn legend(&self, canvas: &mut Canvas) {
         let style = TextStyle::new(12.0);
         let mut x = LEFT;
-        for (kind, plan, colour) in [("best", &self.best.plan, GREEN), ("worst", &self.worst.plan, RED)] {
+        for (kind, plan, line) in [("best", &self.best.plan, BEST_LINE), ("worst", &self.worst.plan, WORST_LINE)] {
             let (mean, max) = (fixed(plan.mean * 1e3, 4), fixed(plan.max * 1e3, 4));
             let label = format!("{kind} plan: mean {mean} mm, largest {max} mm");
-            canvas.line(&[(x, 632), (x + 32, 632)], colour, 3);
+            canvas.styled_curve(&[(f64::from(x), 632.0), (f64::from(x + 32), 632.0)], line, 3);
             canvas.text(&label, (x + 40, 632), style);
             x += 40 + style.width(&label) + 24;
         }

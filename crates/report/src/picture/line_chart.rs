@@ -1,7 +1,7 @@
 //! Curves over two axes: what the charts over time, path point, angle, frequency and speed have in common.
 
 use super::axes::Panel;
-use super::canvas::{Canvas, Place, TextStyle};
+use super::canvas::{Canvas, LineStyle, Place, TextStyle, exact};
 use super::colour::{Colour, INK, SHADE};
 use std::borrow::Cow;
 
@@ -20,7 +20,7 @@ pub(super) enum Mark {
     /// A heading over the upper left corner of the chart.
     Heading(Cow<'static, str>, Colour),
     /// A curve through points; a single point is a dot.
-    Curve(Vec<[f64; 2]>, Colour),
+    Curve(Vec<[f64; 2]>, LineStyle),
     /// A disc of a radius in pixels about a point.
     Dot([f64; 2], i32, Colour),
     /// A line across the chart at a height.
@@ -39,15 +39,16 @@ impl LineChart {
     }
 
     /// Adds a curve.
-    pub fn curve(&mut self, points: impl IntoIterator<Item = [f64; 2]>, colour: Colour) {
-        self.marks.push(Mark::Curve(points.into_iter().collect(), colour));
+    pub fn curve(&mut self, points: impl IntoIterator<Item = [f64; 2]>, line: impl Into<LineStyle>) {
+        self.marks.push(Mark::Curve(points.into_iter().collect(), line.into()));
     }
 
     /// Adds a curve that is broken where there is no value.
-    pub fn broken_curve(&mut self, points: impl IntoIterator<Item = (f64, Option<f64>)>, colour: Colour) {
+    pub fn broken_curve(&mut self, points: impl IntoIterator<Item = (f64, Option<f64>)>, line: impl Into<LineStyle>) {
+        let line = line.into();
         let points: Vec<(f64, Option<f64>)> = points.into_iter().collect();
         for run in points.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
-            self.curve(run.iter().filter_map(|(x, y)| Some([*x, (*y)?])), colour);
+            self.curve(run.iter().filter_map(|(x, y)| Some([*x, (*y)?])), line);
         }
     }
 
@@ -65,7 +66,7 @@ impl LineChart {
                 Mark::Heading(text, colour) => {
                     canvas.text(text, (x.start, y.end - 14), TextStyle::new(13.0).bold().coloured(*colour));
                 }
-                Mark::Curve(points, colour) => canvas.curve_or_dot(&self.places(points), *colour, 2),
+                Mark::Curve(points, line) => canvas.curve_or_dot(&self.places(points), *line, 2),
                 Mark::Dot([x, y], radius, colour) => canvas.dot(self.panel.place(*x, *y), *radius, *colour),
                 Mark::Horizontal(at, colour) => {
                     let at = y.pixel(*at);
@@ -99,7 +100,7 @@ impl LineChart {
 /// What stands before a label in a legend.
 pub(super) enum Sign {
     /// A piece of a curve.
-    Line(Colour),
+    Line(LineStyle),
     /// A piece of a dashed line.
     Dashed(Colour),
     /// A dot.
@@ -113,7 +114,7 @@ pub(super) fn legend(canvas: &mut Canvas, y: i32, entries: &[(i32, Sign, &str)])
     for (left, sign, label) in entries {
         let (from, to) = ((*left, y), (left + 28, y));
         match sign {
-            Sign::Line(colour) => canvas.line(&[from, to], *colour, 2),
+            Sign::Line(line) => canvas.styled_curve(&[exact(from), exact(to)], *line, 2),
             Sign::Dashed(colour) => canvas.dashed(from, to, *colour),
             Sign::Dot(colour) => canvas.dot((f64::from(left + 14), f64::from(y)), 4, *colour),
             Sign::Ground(colour) => canvas.fill((from.0, y - 7), (to.0, y + 7), *colour),
@@ -126,7 +127,7 @@ pub(super) fn legend(canvas: &mut Canvas, y: i32, entries: &[(i32, Sign, &str)])
 mod tests {
     use super::super::axes::Scale;
     use super::super::canvas::picture;
-    use super::super::colour::{BLUE, RED};
+    use super::super::colour::{BLUE, ORANGE};
     use super::*;
 
     /// A chart of 100 by 50 pixels at (10, 20) over 0 to 10 and 0 to 5: ten pixels to the unit both ways.
@@ -143,7 +144,7 @@ mod tests {
     #[test]
     fn a_known_series_is_drawn_at_its_pixels() {
         let mut chart = chart();
-        chart.curve([[0.0, 0.0], [1.0, 2.5], [10.0, 5.0]], RED);
+        chart.curve([[0.0, 0.0], [1.0, 2.5], [10.0, 5.0]], ORANGE);
         // In quarters of a pixel: (10, 70), (20, 45), (110, 20).
         assert_eq!(
             drawn(&chart, "#D6141E"),
@@ -165,7 +166,7 @@ mod tests {
     fn labels_of_lines_that_would_run_into_each_other_are_left_out() {
         let mut chart = chart();
         for at in [2.0, 2.5, 9.0] {
-            chart.marks.push(Mark::Vertical(at, RED, Some(format!("{at} Hz"))));
+            chart.marks.push(Mark::Vertical(at, ORANGE, Some(format!("{at} Hz"))));
         }
         let svg = picture((140, 100), |canvas| chart.draw(canvas));
         assert!(svg.contains("2 Hz") && !svg.contains("2.5 Hz") && svg.contains("9 Hz"));

@@ -2,7 +2,7 @@
 
 use super::axes::{Panel, Scale, Ticks, around};
 use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
-use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
+use super::colour::{BLUE, Colour, GREY, INK, ORANGE, PALE, TEAL};
 use crate::units::{figures, fixed};
 use nalgebra::{Vector2, Vector3};
 use stead_calibration::identification::design::expected::ExpectedCompliance;
@@ -37,7 +37,7 @@ fn percents(bar: &ExpectedCompliance) -> [Option<f64>; 3] {
     [Some(bar.by_law), bar.best_random, bar.median_random].map(|d| d.map(|d| (100.0 * d / bar.value).abs()))
 }
 
-const COLOURS: [Colour; 3] = [GREEN, BLUE, PALE];
+const COLOURS: [Colour; 3] = [TEAL, BLUE, PALE];
 
 fn legend(canvas: &mut Canvas, plan: &Design) {
     let expected = &plan.errors;
@@ -147,9 +147,9 @@ fn view(canvas: &mut Canvas, poses: &[Posed], left: i32, from_above: bool) {
         let Some(load) = pose.arm.last().map(place) else { continue };
         let tip = (load.0 + ARROW * pose.force.x, load.1 - ARROW * pose.force.y);
         if nearest(tip) == nearest(load) {
-            canvas.dot(load, 3, RED);
+            canvas.dot(load, 3, ORANGE);
         } else {
-            canvas.arrow(load, tip, RED, 1);
+            canvas.arrow(load, tip, ORANGE, 1);
         }
     }
     panel.draw_frame(canvas)

@@ -3,7 +3,7 @@
 use super::axes::{Panel, Scale};
 use super::canvas::{Canvas, TextStyle, picture};
 use super::cell_view::CellView;
-use super::colour::{GREY, INK, LEVELS, RED, viridis};
+use super::colour::{GREY, INK, LEVELS, ORANGE, viridis};
 use super::heat_map::HeatMap;
 use crate::units::fixed;
 use stead_certify::{OpenBox, Proof};
@@ -88,7 +88,7 @@ fn from_above(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[Op
     let view = CellView { problem, panel };
     view.limits(canvas);
     let place = view.panel.place(proof.placement.x * 1e3, proof.placement.y * 1e3);
-    canvas.dot(place, 4, RED);
+    canvas.dot(place, 4, ORANGE);
     canvas.text("Workpiece origin from above", (LEFT[0], TOP - 14), TextStyle::new(13.0).bold().coloured(INK));
     view.panel.draw_frame(canvas)
 }
@@ -110,7 +110,7 @@ fn turned(canvas: &mut Canvas, problem: &Problem, proof: &Proof, boxes: &[OpenBo
     let panel = panel(LEFT[1], [-180.0, 180.0], radius, ["yaw less azimuth (deg)", "distance from axis 1 (mm)"]);
     panel.draw_grid(canvas);
     grid.draw(canvas, &panel, levels);
-    canvas.dot(panel.place(turn, own), 4, RED);
+    canvas.dot(panel.place(turn, own), 4, ORANGE);
     canvas.text("Workpiece origin and yaw", (LEFT[1], TOP - 14), TextStyle::new(13.0).bold().coloured(INK));
     panel.draw_frame(canvas)
 }
@@ -197,7 +197,7 @@ impl Colours {
     fn legend(&self, canvas: &mut Canvas, proof: &Proof) {
         let y = TOP + SIDE + 76;
         let small = TextStyle::new(12.0).coloured(INK);
-        canvas.dot((f64::from(LEFT[1]), f64::from(y)), 4, RED);
+        canvas.dot((f64::from(LEFT[1]), f64::from(y)), 4, ORANGE);
         canvas.text("the placement found", (LEFT[1] + 14, y), small);
         if !self.best.is_finite() || !self.worst.is_finite() {
             return;

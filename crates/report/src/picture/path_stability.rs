@@ -1,7 +1,7 @@
 //! Critical depths along the path.
 
 use super::chart::charts;
-use crate::page::cards::{Axis, Chart, Mark, Series};
+use crate::page::cards::{Axis, Chart, Mark, Series, Style};
 use crate::units::fixed;
 use stead_placement::outcome::Plan;
 use stead_study::PathStability;
@@ -15,12 +15,12 @@ pub fn path_stability(stability: &PathStability, plans: &[&Plan], names: [&str; 
     let starts = (1..segments.len()).filter(|k| segments[*k] != segments[k - 1]);
     let depths = stability.plans.iter().map(|plan| plan.iter().map(|at| at.semi_discretisation.unwrap_or(max_depth)));
     let highest = depths.clone().flatten().fold(1.3 * cut, f64::max);
-    let curve = |((depths, name), color): ((_, &str), usize)| {
+    let curve = |((depths, name), (color, style)): ((_, &str), (usize, Style))| {
         let depths = Iterator::enumerate(depths).map(|(k, depth): (usize, f64)| [k as f64, depth * 1e3]);
         let gaps = starts.clone().map(|k| [k as f64 - 0.5, f64::NAN]);
         let mut points: Vec<[f64; 2]> = depths.chain(gaps).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Series::curve(name, color, points)
+        Series::curve(name, color, points).styled(style)
     };
     let edges = starts.clone().map(|k| Mark { is_level: false, at: k as f64 - 0.5, label: String::new() });
     let level = Mark { is_level: true, at: cut * 1e3, label: format!("this cut, {} mm", fixed(cut * 1e3, 2)) };
@@ -28,7 +28,7 @@ pub fn path_stability(stability: &PathStability, plans: &[&Plan], names: [&str; 
         title: "How deep may be cut along the path".to_owned(),
         x: Axis::new("path point"),
         y: Axis { range: Some([0.0, highest * 1.05e3]), ..Axis::new("critical depth of cut (mm)") },
-        series: depths.zip(names).zip([4, 2]).map(curve).collect(),
+        series: depths.zip(names).zip([(0, Style::Line), (2, Style::Dashed)]).map(curve).collect(),
         marks: edges.chain([level]).collect(),
         ..Chart::default()
     }])

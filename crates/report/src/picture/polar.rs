@@ -2,7 +2,7 @@
 
 use super::axes::{Scale, Ticks};
 use super::canvas::{Canvas, Place, TextStyle, nearest, picture};
-use super::colour::{BLUE, Colour, GREEN, GREY, GRID, INK, PALE, RED, WHITE};
+use super::colour::{BLUE, Colour, GREY, GRID, INK, ORANGE, PALE, TEAL, WHITE};
 use super::labels::whole_or_figures;
 use crate::units::fixed;
 use std::f64::consts::{PI, TAU};
@@ -110,8 +110,8 @@ impl<'a> Plot<'a> {
     fn circles(&self, canvas: &mut Canvas) {
         let half = ZONE / self.scale;
         self.ring(canvas, 0.0, INK, 1);
-        self.ring(canvas, half, GREEN, 2);
-        self.ring(canvas, -half, GREEN, 2)
+        self.ring(canvas, half, TEAL, 2);
+        self.ring(canvas, -half, TEAL, 2)
     }
 
     fn profile(&self, canvas: &mut Canvas) {
@@ -140,7 +140,7 @@ impl<'a> Plot<'a> {
     }
 
     fn left_out(&self, canvas: &mut Canvas) {
-        self.excluded.iter().for_each(|(angle, deviation)| canvas.dot(self.place(*angle, *deviation), 3, RED));
+        self.excluded.iter().for_each(|(angle, deviation)| canvas.dot(self.place(*angle, *deviation), 3, ORANGE));
     }
 
     /// What the rings stand for, upwards from the middle, on white so that the profile does not hide them.
@@ -190,14 +190,14 @@ impl<'a> Plot<'a> {
         let measured = format!("measured, {} points", self.found.kept().count());
         let left_out = format!("left out, {excluded} points");
         for (label, colour, width) in
-            [("reference circle", INK, 1), ("zone circles", GREEN, 2), (measured.as_str(), BLUE, 2)]
+            [("reference circle", INK, 1), ("zone circles", TEAL, 2), (measured.as_str(), BLUE, 2)]
         {
             canvas.line(&[(left, y), (left + 30, y)], colour, width);
             canvas.text(label, (left + 40, y), style);
             y += 22;
         }
         if excluded > 0 {
-            canvas.dot((f64::from(left) + 15.0, f64::from(y)), 3, RED);
+            canvas.dot((f64::from(left) + 15.0, f64::from(y)), 3, ORANGE);
             canvas.text(&left_out, (left + 40, y), style);
             y += 22;
         }

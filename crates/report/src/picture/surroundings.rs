@@ -3,7 +3,7 @@
 use super::axes::{Panel, Scale, around};
 use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
 use super::cell_view::middles;
-use super::colour::{BLUE, Colour, GREEN, GREY, INK, PALE, RED};
+use super::colour::{BLUE, Colour, GREY, INK, ORANGE, PALE, TEAL};
 use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_cell::{Attachment, Poses, Scene, Shape, Solid};
@@ -98,12 +98,12 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
         }
         for segment in problem.task.segments() {
             let line: Vec<Place> = path[segment.clone()].iter().map(|point| place(*point)).collect();
-            canvas.curve(&line, GREEN, 3);
+            canvas.curve(&line, TEAL, 3);
         }
         if let Some(near) = &case.plan.clearance
             && let Some(at) = path.get(near.point)
         {
-            canvas.dot(place(*at), 5, RED);
+            canvas.dot(place(*at), 5, ORANGE);
         }
         panel.draw_frame(canvas);
     }

@@ -21,6 +21,8 @@ use crate::output::{Folder, ReportError};
 use crate::page;
 use crate::page::data::{MapOf, Placed, RunOf, page_data};
 use crate::{Files, named, picture};
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -60,8 +62,23 @@ pub struct Context {
     pub stability: Option<PathStability>,
     /// What the path removes of a table `[stock]`.
     pub removal: Option<Arc<RemovalForces>>,
+    /// Which case of a study the run is, where it is one.
+    pub study_case: Option<CaseOfStudy>,
     /// Whether a page is left with the files.
     pub page: bool,
+}
+
+/// A case of a study whose files are kept.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct CaseOfStudy {
+    /// The name of the study.
+    pub study: String,
+    /// The number of the case, from 1.
+    pub number: usize,
+    /// For each axis of the study its name and the value of the case.
+    pub values: Vec<[String; 2]>,
+    /// Where the page of the study will be, from the folder of the case.
+    pub report: &'static str,
 }
 
 impl Context {
@@ -77,6 +94,7 @@ impl Context {
             reference: run.reference.clone(),
             stability: None,
             removal: run.removal.clone(),
+            study_case: None,
             page: run.page,
         }
     }
@@ -96,7 +114,11 @@ impl Context {
         maps: &[MapOf<'_>],
     ) -> Result<Files, ReportError> {
         if self.page {
-            let run = RunOf { transfer: &self.transfer, removal: self.removal.as_deref() };
+            let run = RunOf {
+                transfer: &self.transfer,
+                removal: self.removal.as_deref(),
+                study_case: self.study_case.as_ref(),
+            };
             let data = page_data(self.document(), command, problem, &run, plans, maps);
             files.push((page::DATA.to_owned(), bytes(&data)));
             page::put_page(&mut files)?;

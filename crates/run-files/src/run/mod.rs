@@ -284,7 +284,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
     let rules = postures.rules(&at.key("postures"))?;
-    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision };
+    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision, visual: None };
     let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
     let around = read_scene(around, &at, &robot, &spindle, &external_axes)?;
     let scene = around.scene;

@@ -12,7 +12,7 @@ use stead_model::robot::testing::spindle;
 use stead_numerics::rotation::rotation_from_zyx;
 
 /// A wedge of 100 x 60 x 40 mm, as a file in mm and as one in m.
-fn folder() -> tempfile::TempDir {
+pub(super) fn fixture_folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let meshes = folder.path().join("wide_arm_k_support/meshes/collision");
     std::fs::create_dir_all(&meshes).unwrap();
@@ -35,14 +35,25 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-const PACKAGE: &str = "package://wide_arm_k_support/meshes/collision";
+pub(super) const PACKAGE: &str = "package://wide_arm_k_support/meshes/collision";
 
 /// The fixture with a `<collision>` in a link.
-fn with(text: &str, link: &str, geometry: &str) -> String {
+pub(super) fn with(text: &str, link: &str, geometry: &str) -> String {
     let tag = format!("<link name=\"{link}\">");
     assert!(text.contains(&tag), "{tag}");
     let collision = "<collision><origin xyz=\"0.1 -0.2 0.3\" rpy=\"0.4 -0.5 0.6\"/><geometry>";
     text.replacen(&tag, &format!("{tag}{collision}{geometry}</geometry></collision>"), 1)
+}
+
+/// The fixture with a `<visual>` in a link.
+pub(super) fn with_visual(text: &str, link: &str, geometry: &str, material: &str) -> String {
+    let tag = format!("<link name=\"{link}\">");
+    assert!(text.contains(&tag), "{tag}");
+    // Behind those before.
+    let start = text.find(&tag).unwrap();
+    let end = start + text[start..].find("</link>").unwrap();
+    let visual = format!("<visual><geometry>{geometry}</geometry>{material}</visual>");
+    format!("{}{visual}{}", &text[..end], &text[end..])
 }
 
 fn shaped() -> String {
@@ -62,7 +73,7 @@ fn shaped() -> String {
     text
 }
 
-fn import_in(folder: &Path, text: &str) -> Result<ImportedRobot, InputError> {
+pub(super) fn import_in(folder: &Path, text: &str) -> Result<ImportedRobot, InputError> {
     let file = folder.join("wide_arm_k_support/urdf/arm.urdf");
     std::fs::write(&file, text).unwrap();
     import_robot(&file, &ImportOptions { collision: true, ..ImportOptions::default() })
@@ -71,7 +82,7 @@ fn import_in(folder: &Path, text: &str) -> Result<ImportedRobot, InputError> {
 /// Points of the shapes, moved by the URDF's own joints, are where the rows move them.
 #[test]
 fn shapes_are_where_the_urdf_has_them_in_every_posture() {
-    let folder = folder();
+    let folder = fixture_folder();
     let imported = import_in(folder.path(), &shaped()).unwrap_or_else(|error| panic!("{error}"));
     let shapes = imported.link_shapes.as_ref().unwrap();
     let urdf = Urdf::parse(Path::new("arm.urdf"), shaped()).unwrap();
@@ -113,7 +124,7 @@ fn shapes_are_where_the_urdf_has_them_in_every_posture() {
 
 #[test]
 fn forms_names_notes_and_pairs_are_those_of_the_urdf() {
-    let folder = folder();
+    let folder = fixture_folder();
     let imported = import_in(folder.path(), &shaped()).unwrap();
     let shapes = imported.link_shapes.unwrap();
     let solid = |name: &str| {
@@ -144,7 +155,7 @@ fn forms_names_notes_and_pairs_are_those_of_the_urdf() {
 /// What is written is read back as what was imported, from a run beside it.
 #[test]
 fn the_file_of_the_shapes_is_read_by_a_run() {
-    let folder = folder();
+    let folder = fixture_folder();
     let mut text = shaped();
     // A forearm that always touches all others.
     text = with(&text, "link_4", "<sphere radius=\"5\"/>");
@@ -162,7 +173,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
     let file = run.path().join("run.toml");
     std::fs::write(&file, "surroundings = 'arms/imported-cell.toml'\n").unwrap();
     let (source, robot) = (TomlFile::read(&file).unwrap(), read_robot(&out).unwrap());
-    let own = SurroundingsFile { shape: None, keep_out: None, collision: None };
+    let own = SurroundingsFile::default();
     let read = read_scene(own, &source.parse().unwrap().root(), &robot, &spindle(), &[]);
     let scene = read.unwrap_or_else(|error| panic!("{error}")).scene.unwrap();
     assert_eq!(scene.surroundings().shapes().len(), shapes.shapes.len());
@@ -179,7 +190,7 @@ fn the_file_of_the_shapes_is_read_by_a_run() {
 
 #[test]
 fn a_collision_shape_that_cannot_be_is_refused_where_it_is_asked_for() {
-    let folder = folder();
+    let folder = fixture_folder();
     for (geometry, parts) in [
         ("<box size=\"1 0 1\"/>", ["<box>, attribute size: ", "three lengths above 0"]),
         ("<sphere radius=\"-1\"/>", ["<sphere>, attribute radius: ", "a length above 0"]),
@@ -200,7 +211,7 @@ fn a_collision_shape_that_cannot_be_is_refused_where_it_is_asked_for() {
 
 #[test]
 fn parts_that_are_near_in_every_posture_are_ignored_and_noted() {
-    let folder = folder();
+    let folder = fixture_folder();
     let sphere = |text: &str, link: &str, x: f64| {
         let tag = format!("<link name=\"{link}\">");
         let geometry = "<geometry><sphere radius=\"0.028\"/></geometry>";

@@ -6,6 +6,7 @@ mod collision;
 mod mutations;
 mod refusals;
 mod rows;
+mod visual;
 
 use super::*;
 use crate::robot::robot_from;

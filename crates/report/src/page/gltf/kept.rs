@@ -39,12 +39,13 @@ pub(crate) fn scene(files: &Files) -> Result<Vec<u8>, PageError> {
     cell_from_workpiece.rotation *= turn;
     let mount = &data["robot"]["mount"];
     let axes = external_axes(&data["external_axes"])?;
+    let read = |key: &str| {
+        let list = data[key].as_array().map_or(&[][..], Vec::as_slice);
+        list.iter().map(body).collect::<Option<Vec<_>>>().ok_or_else(bad_bodies)
+    };
+    let mut bodies = read("bodies")?;
     // Collision shapes of the arm enclose the bodies of it.
-    let listed = ["bodies", "surroundings"].map(|key| data[key].as_array().map_or(&[][..], Vec::as_slice));
-    let read = listed.iter().flat_map(|list| list.iter()).map(body);
-    let mut bodies = read.collect::<Option<Vec<_>>>().ok_or_else(bad_bodies)?;
-    let is_drawn = |body: &BodyMesh| body.is_illustration || !matches!(body.frame, BodyFrame::Link(_));
-    bodies.retain(is_drawn);
+    bodies.extend(read("surroundings")?.into_iter().filter(|body| !matches!(body.frame, BodyFrame::Link(_))));
     let positions = vectors(&data["task"]["position_mm"], 1e-3);
     if !bodies.iter().any(|body| body.frame == BodyFrame::Workpiece) {
         bodies.push(block_of(&positions, &vectors(&data["task"]["axis"], 1.0)));

@@ -1,6 +1,7 @@
 //! The links of an arm from its rows.
 
 use super::loft::{Section, Solid};
+use super::maker::body_color;
 use super::{BodyFrame, BodyMesh, Paint, illustration};
 use nalgebra::Vector3;
 use stead_model::robot::{Robot, Spindle};
@@ -59,7 +60,11 @@ impl Arm<'_> {
         let mut solid = Solid::default();
         build(&mut solid);
         let frame = if frame == 0 { BodyFrame::Base } else { BodyFrame::Link(frame) };
-        illustration(name, frame, paint, solid)
+        let mut body = illustration(name, frame, paint, solid);
+        if paint == Paint::Body {
+            body.color = body_color(self.robot);
+        }
+        body
     }
 
     /// Height of the axis of joint 2 above the foot of the robot, with its sign along axis 1: the first row, or where

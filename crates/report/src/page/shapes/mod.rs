@@ -7,7 +7,9 @@
 mod arm;
 mod attached;
 mod loft;
+mod maker;
 mod shading;
+mod visuals;
 
 pub use arm::arm_bodies;
 pub use attached::{block_of, spindle_bodies};
@@ -50,9 +52,13 @@ pub struct BodyMesh {
     pub is_illustration: bool,
 }
 
-/// The bodies of the arm, its base first, and of its spindle. What it works on is `block_of`.
+/// The bodies of the arm, its base first, and of its spindle: what they look like where that is known, else
+/// illustrations. What it works on is `block_of`.
 pub fn bodies(problem: &Problem) -> Vec<BodyMesh> {
     let mut bodies = arm_bodies(&problem.robot, &problem.spindle);
+    if let Some(scene) = &problem.scene {
+        visuals::put(&mut bodies, &problem.robot, scene.surroundings().visuals());
+    }
     bodies.extend(spindle_bodies(&problem.robot, &problem.spindle));
     bodies
 }
@@ -72,7 +78,7 @@ impl Paint {
     /// Red, green and blue, sRGB from 0 to 1.
     fn color(self) -> [f32; 3] {
         let bytes: [u8; 3] = match self {
-            Self::Body => [232, 112, 38],
+            Self::Body => [198, 204, 212],
             Self::Dark => [58, 64, 74],
             Self::Steel => [176, 186, 198],
             Self::Spindle => [43, 92, 138],

@@ -2,7 +2,7 @@
 
 use super::super::axes::{Panel, Scale, Ticks};
 use super::super::canvas::{Canvas, TextStyle, picture};
-use super::super::colour::{BLUE, Colour, GREEN, INK, PALE};
+use super::super::colour::{BLUE, Colour, INK, PALE, TEAL};
 use super::super::line_chart::{LineChart, Mark};
 use super::{cut, fitting, percent, roomy};
 use stead_study::analysis::{AxisEffect, Effects, Layouts, Level, Method};
@@ -25,7 +25,7 @@ pub fn effects(effects: &Effects, layouts: &Layouts) -> String {
         canvas.title(&format!("Effects on {}", effects.measure.name), (LEFT[0], 26));
         let is_alone = effects.axes.len() == 1;
         let mean = if is_alone { "mean of the layouts" } else { "mean over the other axes" };
-        for (colour, label, along) in [(PALE, "a layout", 0), (BLUE, mean, 110), (GREEN, "the best of them", 330)] {
+        for (colour, label, along) in [(PALE, "a layout", 0), (BLUE, mean, 110), (TEAL, "the best of them", 330)] {
             canvas.dot((f64::from(LEFT[0] + along + 5), 54.0), 4, colour);
             canvas.text(label, (LEFT[0] + along + 17, 54), TextStyle::new(12.0).coloured(INK));
         }
@@ -72,7 +72,7 @@ fn one(canvas: &mut Canvas, effects: &Effects, layouts: &Layouts, axis: &AxisEff
         chart.curve(means.iter().copied(), BLUE);
     }
     let best = axis.best(effects.measure.sense).map(|level| level.value);
-    let colour = |value: f64| -> Colour { if Some(value) == best { GREEN } else { BLUE } };
+    let colour = |value: f64| -> Colour { if Some(value) == best { TEAL } else { BLUE } };
     if !is_line {
         chart.marks.extend(means.iter().map(|[x, value]| Mark::Dot([*x, *value], 5, colour(*value))));
     }

@@ -2,7 +2,7 @@
 
 use super::super::axes::{Panel, Scale};
 use super::super::canvas::{Canvas, TextStyle, nearest, picture};
-use super::super::colour::{BLACK, BLUE, Colour, GREEN, INK, PALE, WHITE};
+use super::super::colour::{BLACK, BLUE, Colour, INK, PALE, TEAL, WHITE};
 use super::super::labels::{Label, Labeller};
 use super::super::line_chart::{LineChart, Mark};
 use super::roomy;
@@ -27,7 +27,7 @@ pub fn front(front: &Front, layouts: &Layouts) -> String {
         canvas.title(&format!("Front of {}", names.join(", ")), (LEFT[0], 26));
         let ties = front.members.iter().filter(|member| member.is_tie).count();
         let entries = [
-            (GREEN, format!("on the front: {}", front.members.len() - ties), 0),
+            (TEAL, format!("on the front: {}", front.members.len() - ties), 0),
             (BLUE, format!("behind it within the noise of the search: {ties}"), 220),
             (PALE, format!("other layouts: {}", front.compared.len() - front.members.len()), 620),
         ];
@@ -54,12 +54,12 @@ fn one(canvas: &mut Canvas, front: &Front, layouts: &Layouts, other: usize, [lef
     let ticks = if right - left > WIDTH { 11 } else { 6 };
     let mut chart = LineChart::new(Panel::new(x, y, [ticks, 8], labels));
     if front.measures.len() == 2 {
-        chart.curve(stairs(&front.members), GREEN);
+        chart.curve(stairs(&front.members), TEAL);
     }
     for (_, values) in &front.compared {
         chart.marks.push(Mark::Dot(at(values), 3, PALE));
     }
-    for (is_tie, radius, colour) in [(true, 4, BLUE), (false, 5, GREEN)] {
+    for (is_tie, radius, colour) in [(true, 4, BLUE), (false, 5, TEAL)] {
         let of = front.members.iter().filter(|member| member.is_tie == is_tie);
         chart.marks.extend(of.map(|member| Mark::Dot(at(&member.values), radius, colour)));
     }

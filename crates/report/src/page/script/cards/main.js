@@ -2,6 +2,7 @@
 
 import { chartCard } from '../draw/chart.js';
 import { el } from '../draw/dom.js';
+import { withDownloads } from '../draw/downloads.js';
 import { heatMapCard } from '../draw/heat-map.js';
 import { themeButton, turnTheme } from '../draw/theme.js';
 import { polarCard } from './polar.js';
@@ -44,3 +45,4 @@ document.body.append(el('div', { class: 'wrap' },
   el('header', {}, head, el('div', { class: 'tools' }, themeButton())),
   el('main', { class: 'cards' }, ...sheet.cards.map(cardOf)),
   el('footer', {}, help, ...sheet.origin.map(line => el('span', {}, line)))));
+withDownloads(document.body);

@@ -50,6 +50,10 @@ export function polarCard(card) {
       });
       return best < 0 ? null : hitOf(best);
     },
+    rows: () => [
+      ['point', 'angle (deg)', ...card.choices.map(({ name }) => `deviation ${name} (${card.unit})`), 'left out'],
+      ...card.angles.map((angle, k) => [k, angle, ...card.choices.map(({ deviations }) => deviations[k]), card.excluded[k] ? 'yes' : 'no']),
+    ],
     list: () => card.angles.flatMap((_, k) => hitOf(k) ?? []),
   }), [said]);
   made.section.classList.add('tall');

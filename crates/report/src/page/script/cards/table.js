@@ -1,6 +1,7 @@
 // Tables that sort by a click on a heading and show the rows with a word in them.
 
 import { el } from '../draw/dom.js';
+import { giving } from '../draw/downloads.js';
 /** @import { TableCard } from './sheet.js' */
 
 /** Rows that are shown at once; the others come when asked for. */
@@ -52,5 +53,6 @@ export function tableCard(card) {
   }
   const table = el('table', {}, el('caption', { class: 'sr' }, card.title), el('thead', {}, el('tr', {}, ...headings)), body);
   show();
-  return el('section', { class: 'card wide', 'aria-label': card.title }, head, el('div', { class: 'scroll', tabindex: '0' }, table), more);
+  const section = el('section', { class: 'card wide', 'aria-label': card.title }, head, el('div', { class: 'scroll', tabindex: '0' }, table), more);
+  return giving(section, { rows: () => [card.columns.map(({ name }) => name), ...rows.map(row => row.map(text))] });
 }

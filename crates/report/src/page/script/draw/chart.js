@@ -114,7 +114,23 @@ function drawingOf(chart) {
       return best;
     },
     list: () => points.flatMap((list, s) => list.map((_, k) => hitOf(s, k))).flatMap((hit) => (hit ? [hit] : [])),
+    rows: () => rowsOf(chart),
   };
+}
+
+/** The figures of a chart: a column for each series where all have the same places across, else a row for each point. @param {Chart} chart */
+function rowsOf(chart) {
+  const { x, y, series } = chart;
+  const at = (/** @type {number} */ place) => x.names?.[place] ?? place;
+  if (series.every((one) => !one.x)) {
+    const count = Math.max(0, ...series.map((one) => one.y.length));
+    const row = (/** @type {number} */ k) => [at(k), ...series.map((one) => one.y[k] ?? null)];
+    return [[x.label, ...series.map(({ name }) => (name ? `${name} (${y.label})` : y.label))], ...Array.from({ length: count }, (_, k) => row(k))];
+  }
+  const rows = series.flatMap((one) =>
+    Array.from(one.y, (value, k) => [one.name, at(one.x?.[k] ?? k), value, one.low?.[k] ?? null, one.high?.[k] ?? null, one.labels?.[k] ?? null]),
+  );
+  return [['series', x.label, y.label, 'from', 'to', 'what'], ...rows];
 }
 
 /**

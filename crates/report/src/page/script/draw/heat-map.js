@@ -85,6 +85,10 @@ export function heatMapCard(card) {
       }
     },
     find: (plot, x, y) => hitOf(Math.floor((plot.placeX(x) - home.x0) / dx), Math.floor((plot.placeY(y) - home.y0) / dy)),
+    rows: () => [
+      [card.x.label, card.y.label, card.unit],
+      ...card.values.map((value, k) => [shownAt(card.x, card.columns[k % across]), shownAt(card.y, card.rows[Math.floor(k / across)]), value]),
+    ],
     list: () => card.values.flatMap((value, k) => {
       const hit = value === null ? null : hitOf(k % across, Math.floor(k / across));
       return hit ? [hit] : [];

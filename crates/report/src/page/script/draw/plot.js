@@ -26,6 +26,7 @@ import { onTheme, themeColour } from './theme.js';
  * @property {(plot: Plot, x: number, y: number) => Hit | null} find what is nearest to a place in pixels
  * @property {() => Hit[]} [list] what the arrow keys step through; without it the plot takes no keys
  * @property {(plot: Plot, x: number, y: number) => void} [onPoint] what pressing and dragging does, in place of zooming
+ * @property {() => (string | number | null)[][]} [rows] its figures as a table, the heads first
  */
 
 /** Margins of a plot whose axes have labels. */
@@ -46,10 +47,14 @@ export function disc(g, x, y, radius, colour) {
   g.fill();
 }
 
+/** The plots by the elements that they are in. @type {WeakMap<Element, Plot>} */
+export const PLOTS = new WeakMap();
+
 export class Plot {
   /** @param {HTMLElement} host @param {() => Drawing} make what is drawn, anew at each `refresh` */
   constructor(host, make) {
     this.host = host;
+    PLOTS.set(host, this);
     this.make = make;
     this.drawing = make();
     this.view = { ...this.drawing.home };

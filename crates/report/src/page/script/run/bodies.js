@@ -54,5 +54,8 @@ export const HAS_ENVELOPES = SHAPES.some((body) => ARM_FRAMES.includes(body.fram
 /** Whether anything is known that stands in the cell. */
 export const HAS_SURROUNDINGS = SHAPES.some((body) => body.frame === 'cell' || body.frame.startsWith('axis_'));
 
-/** Whether shapes are drawn that no drawing of the real part is behind. */
-export const HAS_ILLUSTRATIONS = BODIES.some((body) => body.isIllustration);
+/** What is drawn that no drawing of the real part is behind, in words. */
+export const ILLUSTRATED = [
+  BODIES.some((body) => body.isIllustration && body.frame !== 'tool') ? 'arm' : '',
+  BODIES.some((body) => body.isIllustration && body.frame === 'tool') ? 'spindle' : '',
+].filter(Boolean).join(' and ');

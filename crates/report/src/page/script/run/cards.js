@@ -3,12 +3,14 @@
 import { chartCard, legendOf } from '../draw/chart.js';
 import { card, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
+import { FORCES } from './arrows.js';
 import { alongPath, limitAt } from './charts.js';
-import { CASES, COUNT, IS_SCORE, RAW, SHORT_NAMES, singlesOf } from './data.js';
-import { originsCard } from './origins.js';
+import { CASES, COUNT, IS_SCORE, RAW, ROWS, SHORT_NAMES, singlesOf } from './data.js';
+import { jointSharesCard, originsCard } from './origins.js';
 import { pathPoint } from './path.js';
 import { smallTable } from './small-table.js';
 import { current, onChange, set } from './state.js';
+import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
 
@@ -124,6 +126,11 @@ function setupsCard() {
 function worstPointsCard() {
   const host = el('div.worst-points');
   const near = Math.max(1, Math.round(COUNT / 30));
+  const shares = (/** @type {number} */ i) => {
+    const parts = [...byJointOnPlan(current(), i), ...(HAS_OTHERS ? [besideJoints(current(), i)] : [])];
+    const all = parts.reduce((a, b) => a + b, 0);
+    return parts.map((part) => fixed(all ? (part / all) * 100 : 0, 0));
+  };
   onChange(({ case: isOther }) => {
     if (!isOther) return;
     const { columns } = current();
@@ -138,11 +145,15 @@ function worstPointsCard() {
       String(columns.segment[i]),
       fixed(columns.score_mm[i], 3),
       fixed(columns.total_mm[i], 3),
-      fixed(Math.hypot(columns.force_x_n[i], columns.force_y_n[i], columns.force_z_n[i]), 0),
+      fixed(FORCES[i], 0),
+      ...shares(i),
     ]);
-    host.replaceChildren(smallTable(['Go to', 'Segment', 'Scored mm', 'Whole mm', 'Force N'], rows));
+    const joints = ROWS.map((_, j) => `A${j + 1} %`);
+    const heads = ['Go to', 'Segment', 'Scored mm', 'Whole mm', 'Force N', ...joints, ...(HAS_OTHERS ? ['Other %'] : [])];
+    host.replaceChildren(smallTable(heads, rows));
   });
-  return card('Worst points of this case', 'the three that deflect most, apart from each other', host);
+  const hint = 'the three that deflect most, apart from each other, and what each joint gives of the scored part';
+  return card('Worst points of this case', hint, host);
 }
 
 /** The genetic searches, generation by generation. */
@@ -313,6 +324,7 @@ function stabilityCard() {
 export function furtherCards() {
   const cards = [
     worstPointsCard(),
+    jointSharesCard(),
     setupsCard(),
     originsCard(),
     heldFeedCard(),

@@ -1,6 +1,6 @@
 // The table of cases: a row selects its case.
 
-import { el } from '../draw/dom.js';
+import { card, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { cssOf } from '../draw/theme.js';
 import { colourOf } from './colour.js';
@@ -80,5 +80,8 @@ export function casesCard() {
     el('tr', {}, ...heads.map((name, k) => el(k < 2 ? 'th.words' : 'th', { scope: 'col' }, name))),
   );
   const table = el('table', { id: 'cases' }, el('caption.sr', {}, 'The cases'), head, el('tbody', {}, ...rows));
-  return el('section.card.scroll', { 'aria-label': 'Cases', tabindex: 0 }, table);
+  const out = card('Cases', 'a row shows its case', table);
+  out.classList.add('scroll');
+  out.tabIndex = 0;
+  return out;
 }

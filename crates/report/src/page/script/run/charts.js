@@ -11,7 +11,7 @@ import { pause } from './play.js';
 import { chosenState, current, currentPoint, onChange, set, state } from './state.js';
 /** @import { Reading } from '../draw/chart.js' */
 /** @import { Axis, Chart, Mark, Series } from '../draw/chart-data.js' */
-/** @import { Case, Numbers } from './data.js' */
+/** @import { Case, Numbers, Room } from './data.js' */
 
 /** Deflections to choose from: words and columns. @type {[string, string][]} */
 const DEFLECTIONS = /** @type {[string, string][]} */ ([
@@ -150,9 +150,8 @@ function jointsCard() {
   return sayChosen(card('Joints within their limits', '', chart.host), '% of range', () => 'dots: the chosen state');
 }
 
-/** A column of this case and of the other placement, from nothing up. @param {string} label @param {string} column @param {number} least what is within in any case @param {(most: number) => number} end @param {Mark[]} marks @param {number} digits */
-function columnChart(label, column, least, end, marks, digits) {
-  const of = (/** @type {Case} */ one) => one.columns[column];
+/** A column of this case and of the other placement, from nothing up. @param {string} label @param {(one: Case) => Float32Array} of @param {number} least what is within in any case @param {(most: number) => number} end @param {Mark[]} marks @param {number} digits */
+function columnChart(label, of, least, end, marks, digits) {
   const most = CASES.reduce((sum, one) => of(one).reduce((a, b) => (b > a ? b : a), sum), least);
   const y = { label, is_log: false, range: /** @type {[number, number]} */ ([0, end(most)]) };
   return alongPath(label, () => ({ y, series: seriesBeside(of, false), marks }), { chosen: notOfChosen, digits });
@@ -161,21 +160,23 @@ function columnChart(label, column, least, end, marks, digits) {
 function conditioningCard() {
   const limit = LIMITS.inverse;
   const upToTenths = (/** @type {number} */ most) => Math.ceil(most * 10) / 10;
-  const chart = columnChart('Conditioning', 'inverse_condition', limit, upToTenths, [limitAt(limit)], 3);
+  const chart = columnChart('Conditioning', (one) => one.columns.inverse_condition, limit, upToTenths, [limitAt(limit)], 3);
   return sayChosen(card('Conditioning 1/κ', '', chart.host), `limit ${limit}`, () => 'along plans only');
 }
 
 /** @returns {HTMLElement | null} where the run knows clearances */
 function clearanceCard() {
-  if (!('clearance_mm' in CASES[0].columns)) return null;
-  const chart = columnChart('Clearance', 'clearance_mm', 1, (most) => most, [], 1);
+  if (!CASES[0].room) return null;
+  const roomOf = (/** @type {Case} */ one) => /** @type {Room} */ (one.room);
+  const chart = columnChart('Clearance', (one) => roomOf(one).distance, 1, (most) => most, [], 1);
   const out = card('Clearance', '', chart.host);
   const words = /** @type {HTMLElement} */ (out.querySelector('.sub'));
   onChange(() => {
     if (state.chosen) return void (words.textContent = 'mm; along plans only');
-    const { clearance_mm, nearest_pair } = current().columns;
-    const [clearance, pair] = [clearance_mm[currentPoint()], nearest_pair[currentPoint()]];
-    words.textContent = Number.isFinite(clearance) ? `mm; here ${fixed(clearance, 1)}: ${pair}` : 'mm; here nothing within 1 m';
+    const { distance, pair, still } = roomOf(current());
+    const clearance = distance[currentPoint()];
+    const here = Number.isFinite(clearance) ? `here ${fixed(clearance, 1)}: ${pair(currentPoint())}` : 'here nothing within 1 m';
+    words.textContent = ['mm', here, still.length ? `left out, the same all along: ${still.join(', ')}` : ''].filter(Boolean).join('; ');
   });
   return out;
 }

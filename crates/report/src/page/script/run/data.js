@@ -3,13 +3,17 @@
 /**
  * @typedef {number[] | Float32Array | Float64Array | Uint16Array | Uint32Array | Int16Array} Numbers
  * @typedef {Record<string, Float32Array>} Columns
- * @typedef {{ alpha: number, a: number, d: number, min: number, max: number }} Row one joint: modified Denavit-Hartenberg row and limits
+ * @typedef {{ alpha: number, a: number, d: number, min: number, max: number, compliance: number[] }} Row one joint: modified
+ *   Denavit-Hartenberg row, limits, and its compliance in urad/(N m), evenly from limit to limit
  * @typedef {{ x: number, y: number, z: number, yaw: number }} Place
  * @typedef {{
  *   number: number, place: number, plan: number, name: string, at: Place, mean: number, max: number, columns: Columns,
  *   joints: number[][], postures: string[], travel: any, cycle: number | null, cutting: number, moves: (number | null)[], ways: (Way | null)[],
- *   entry: any
+ *   room: Room | null, entry: any
  * }} Case one placement with one plan
+ * @typedef {{
+ *   distance: Float32Array, pair: (i: number) => string, still: string[]
+ * }} Room the least clearance at the points; `still`: pairs left out whose distance never changes, in words
  * @typedef {{ joints: number[][], axes: number[][], parts: { first: number, steps: number, from: number, until: number }[] }} Way how a
  *   move between segments goes: places one after the other, and its parts from rest to rest with the shares of the time between them
  * @typedef {{
@@ -79,8 +83,13 @@ export function columnsOf(packed) {
 
 /** @param {any} entry @returns {StateMap} */
 export function mapOf(entry) {
-  const codes = bytesOf(entry.codes);
   const betaCount = entry.beta_count;
+  const codes = new Uint8Array(entry.points.length * betaCount);
+  const nextRun = varintsOf(entry.codes);
+  for (let row = 0; row < codes.length;) {
+    const [count, code] = [nextRun(), nextRun()];
+    codes.fill(code, row, (row += count));
+  }
   const scores = new Float32Array(codes.length).fill(NaN);
   const joints = new Float32Array(codes.length * 6).fill(NaN);
   const [nextScore, nextAngle] = [varintsOf(entry.scores), varintsOf(entry.joints)];
@@ -128,6 +137,7 @@ export const ROWS = RAW.robot.rows.map((/** @type {any} */ row) => ({
   d: row.d_mm,
   min: row.min_deg,
   max: row.max_deg,
+  compliance: row.compliance_urad_per_nm,
 }));
 
 /** Numbers in rows of so many. @param {string} text @param {number} rows @returns {number[][]} */
@@ -150,8 +160,20 @@ function wayOf(entry) {
   return { joints: rowsOf(entry.joints_deg, places), axes: rowsOf(entry.axes, places), parts };
 }
 
-/** A case of its entry and its table. @param {any} entry @param {number} k @param {Columns} columns @param {any[]} ways @returns {Case} */
-export function caseOf(entry, k, columns, ways) {
+/** @param {Record<string, any>} columns @param {any} changing what is known without pairs that stand still @returns {Room | null} */
+function roomOf(columns, changing) {
+  if (!columns.clearance_mm) return null;
+  if (!changing) return { distance: columns.clearance_mm, pair: (i) => columns.nearest_pair[i], still: [] };
+  const numbers = singlesOf(changing.pair);
+  return {
+    distance: singlesOf(changing.clearance_mm),
+    pair: (i) => changing.pairs[numbers[i]] ?? '',
+    still: changing.still.map((/** @type {any} */ of) => `${of.pair} ${of.distance_mm.toFixed(1)}`),
+  };
+}
+
+/** A case of its entry and its table. @param {any} entry @param {number} k @param {Columns} columns @param {any[]} ways @param {any} [changing] @returns {Case} */
+export function caseOf(entry, k, columns, ways, changing) {
   const joints = Array.from(columns.point, (_, i) => [1, 2, 3, 4, 5, 6].map((j) => columns[`theta${j}_deg`][i]));
   const at = entry.placement;
   return {
@@ -171,12 +193,13 @@ export function caseOf(entry, k, columns, ways) {
     cutting: entry.cutting_s,
     moves: (entry.transfers || []).map((/** @type {any} */ move) => move.duration_s),
     ways: ways.map(wayOf),
+    room: roomOf(columns, changing),
     entry,
   };
 }
 
 /** @type {Case[]} */
-export const CASES = caseEntries().map((entry, k) => caseOf(entry, k, columnsOf(RAW.plans[k]), RAW.moves ? RAW.moves[k] : []));
+export const CASES = caseEntries().map((entry, k) => caseOf(entry, k, columnsOf(RAW.plans[k]), RAW.moves ? RAW.moves[k] : [], RAW.clearances?.[k]));
 
 /** How many path points are drawn. */
 export const COUNT = CASES[0].joints.length;
@@ -187,11 +210,16 @@ function vectorsOf(text) {
   return Array.from({ length: all.length / 3 }, (_, i) => [all[3 * i], all[3 * i + 1], all[3 * i + 2]]);
 }
 
-/** The task in the workpiece frame; `steps` are those of all points, also where fewer are drawn. */
+/**
+ * The task in the workpiece frame; `scored` are the directions that count, with the roots of their weights; `steps` are those of all points,
+ * also where fewer are drawn.
+ */
 export const TASK = {
   position: vectorsOf(RAW.task.position_mm),
   feed: vectorsOf(RAW.task.feed),
   axis: vectorsOf(RAW.task.axis),
+  scored: RAW.task.scored.map(vectorsOf),
+  moment: RAW.task.moment_nm ? vectorsOf(RAW.task.moment_nm) : null,
   steps: singlesOf(RAW.task.step_s),
 };
 

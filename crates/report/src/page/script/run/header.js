@@ -48,6 +48,15 @@ function verdict() {
   return out;
 }
 
+/** Which case of a study this is, and the way back to it. */
+function caseOfStudy() {
+  const { study_case: of } = RAW;
+  if (!of) return null;
+  const values = of.values.map((/** @type {[string, string]} */ [axis, value]) => `${axis} = ${value}`);
+  const words = [`case ${of.number} of `, el('a', { href: of.report, id: 'study' }, `the study ${of.study}`), values.length ? `: ${values.join(', ')}` : ''];
+  return el('p.case', {}, ...words);
+}
+
 export function header() {
   const pick = (/** @type {number} */ place, /** @type {number} */ plan) =>
     set({ case: CASES.findIndex((one) => one.place === place && one.plan === plan) });
@@ -72,7 +81,7 @@ export function header() {
   return el(
     'header',
     {},
-    el('div', {}, el('h1', {}, TITLE, el('small', {}, what)), verdict()),
+    el('div', {}, el('h1', {}, TITLE, el('small', {}, what)), caseOfStudy(), verdict()),
     el('div.tools', {}, CASES.length > 2 ? places : null, plans, themeButton()),
   );
 }

@@ -1,12 +1,13 @@
 // The page from its parts.
 
 import { el } from '../draw/dom.js';
+import { withDownloads } from '../draw/downloads.js';
 import { furtherCards, messages } from './cards.js';
 import { casesCard } from './cases.js';
 import { chartCards } from './charts.js';
 import { CASES, MAPS, RAW } from './data.js';
 import { axesAt, meets } from './external-axes.js';
-import { forcesCard } from './forces.js';
+import { loadsCard } from './loads.js';
 import { header } from './header.js';
 import { framesOf, jointsAt } from './kinematics.js';
 import { linked } from './link.js';
@@ -17,6 +18,7 @@ import { sceneCard, viewPicture } from './scene-card.js';
 import { sheetCard } from './sheet.js';
 import { set, state, steps } from './state.js';
 import { onKey, transport } from './transport.js';
+import { besideJoints, byJointHere, byJointOnPlan } from './yielding.js';
 
 function footer() {
   const key = (/** @type {string[]} */ names, /** @type {string} */ words) =>
@@ -61,19 +63,21 @@ function main() {
       el('div.main', {}, sceneCard(), el('div.right', {}, tiles(), mapCard())),
       transport(),
       chartCards(),
-      forcesCard(),
+      loadsCard(),
       el('div.low', {}, casesCard(), gauges()),
       furtherCards(),
       footer(),
     ),
   );
+  withDownloads(document.body);
   addEventListener('keydown', onKey);
   linked();
   set({}, true);
   const observer = new ResizeObserver(() => set({ size: true }));
   document.querySelectorAll('.view').forEach((host) => observer.observe(host));
   // For measurements and tests: what is shown, and when it first was.
-  const shown = { state, set, steps, cases: CASES, maps: MAPS, framesOf, jointsAt, axesAt, meets, picture: viewPicture, first: 0 };
+  const of = { framesOf, jointsAt, axesAt, meets, byJointOnPlan, byJointHere, besideJoints };
+  const shown = { state, set, steps, cases: CASES, maps: MAPS, ...of, picture: viewPicture, first: 0 };
   requestAnimationFrame(() =>
     requestAnimationFrame(() => {
       shown.first = performance.now();

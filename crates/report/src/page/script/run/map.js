@@ -221,6 +221,15 @@ export function mapCard() {
       drawPlans(plot, g);
     },
     drawOver,
+    rows: () => {
+      const map = currentMap();
+      const states = (/** @type {StateMap} */ of) =>
+        Array.from(of.codes, (_, row) => {
+          const { point, beta, score, isAllowed, posture, reason } = mapState(of, { column: Math.floor(row / of.betaCount), beta: row % of.betaCount });
+          return [point, beta, isAllowed ? +score.toFixed(4) : null, isAllowed ? posture : null, reason];
+        });
+      return [['point', 'beta_deg', 'score_mm', 'posture', 'reason'], ...(map ? states(map) : [])];
+    },
     find: (plot, x, y) => {
       const [map, at] = [currentMap(), under(plot, x, y)];
       return map && at ? { x: at.column, y: mapState(map, at).beta, text: stateText(map, at) } : null;

@@ -1,12 +1,17 @@
-// Where the scored deflection comes from, where more yields than the joints about their axes: by case, and along the path.
+// Where the scored deflection comes from: joint by joint where the tool is, and where more yields than the joints about their axes, by case
+// and along the path.
 
 import { legendOf } from '../draw/chart.js';
 import { card, el } from '../draw/dom.js';
+import { giving } from '../draw/downloads.js';
 import { fixed } from '../draw/scale.js';
 import { alongPath } from './charts.js';
-import { CASES, SHORT_NAMES } from './data.js';
+import { JOINT_COLOURS } from './colour.js';
+import { CASES, ROWS, SHORT_NAMES } from './data.js';
+import { pathPoint } from './path.js';
 import { smallTable } from './small-table.js';
-import { current, onChange, state } from './state.js';
+import { chosenState, current, currentPoint, onChange, state } from './state.js';
+import { HAS_OTHERS, besideJoints, byJointHere } from './yielding.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
 
@@ -26,10 +31,55 @@ const adds = (of, name) => of.entry.by_origin_mm[`${name}_mm`];
 /** The size of the scored part in the mean of a case. mm @param {Case} of */
 const sum = (of) => ORIGINS.reduce((all, [, name]) => all + adds(of, name), 0);
 
+/** What each joint gives of the deflection where the tool is, or at the state that is chosen in the map: a bar each. */
+export function jointSharesCard() {
+  const rows = [...ROWS.map((_, j) => [`A${j + 1}`, JOINT_COLOURS[j]]), ...(HAS_OTHERS ? [['other', '--soft']] : [])].map(([name, colour]) => {
+    const [bar, value] = [el('div.rng'), el('b')];
+    bar.style.background = `var(${colour})`;
+    bar.style.opacity = '1';
+    return { bar, value, host: el('div.g', {}, el('b', {}, name), el('div.rail', {}, bar), value) };
+  });
+  const out = card('Which joint yields', '', el('div.gauges.shares', {}, ...rows.map(({ host }) => host)));
+  const words = /** @type {HTMLElement} */ (out.querySelector('.sub'));
+  onChange(() => {
+    const [chosen, here] = [chosenState(), byJointHere()];
+    const where = chosen ? `point ${chosen.point}, β ${fixed(chosen.beta, 1)}°` : `point ${pathPoint(currentPoint())}`;
+    if (!here) {
+      words.textContent = `${where}: the chosen state is not allowed`;
+      rows.forEach(({ bar, value }) => {
+        bar.style.width = '0';
+        value.textContent = '–';
+      });
+      return;
+    }
+    const others = HAS_OTHERS && !chosen ? [besideJoints(current(), currentPoint())] : [];
+    const parts = [...here, ...others];
+    const all = parts.reduce((a, b) => a + b, 0);
+    const about = HAS_OTHERS && chosen ? 'by the joints about their axes alone' : 'of the scored part';
+    words.textContent = `${where}: ${fixed(all, 4)} mm ${about}; a minus takes from the others`;
+    // Zero in the middle as soon as something takes from the others.
+    const [low, high] = [Math.min(0, ...parts), Math.max(0, ...parts)];
+    const span = high - low || 1;
+    rows.forEach(({ bar, value }, k) => {
+      const part = parts[k];
+      if (part === undefined) {
+        bar.style.width = '0';
+        value.textContent = 'along plans only';
+        return;
+      }
+      bar.style.left = `${((Math.min(part, 0) - low) / span) * 100}%`;
+      bar.style.width = `${(Math.abs(part) / span) * 100}%`;
+      value.textContent = `${fixed(part, 4)} mm, ${fixed(all ? (part / all) * 100 : 0, 0)} %`;
+    });
+  });
+  const figures = () => (byJointHere() ?? []).map((part, j) => [`A${j + 1}`, part]);
+  return giving(out, { rows: () => [['joint', 'of the scored part (mm)'], ...figures()] });
+}
+
 /** @returns {HTMLElement | null} where the run knows more than joints about their axes */
 export function originsCard() {
+  if (!HAS_OTHERS) return null;
   const known = CASES.filter((of) => of.entry.by_origin_mm);
-  if (!known.length) return null;
   const there = ORIGINS.filter(([, name]) => known.some((of) => adds(of, name) !== 0));
   const share = (/** @type {Case} */ of, /** @type {number} */ mm) =>
     `${fixed(mm, 4)} (${fixed(sum(of) > 0 ? (mm / sum(of)) * 100 : 0, 0)} %)`;

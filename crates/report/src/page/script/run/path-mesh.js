@@ -3,7 +3,7 @@
 import { clamp } from '../draw/scale.js';
 import { CASES, COUNT, RAW, REMOVAL, TASK } from './data.js';
 import { inWorkpiece } from './external-axes.js';
-import { add, cross, less, size, times, unit } from './linear.js';
+import { add, dot, less, size, times, unit } from './linear.js';
 import { lathe, mesh } from './mesh.js';
 import { RUNS } from './path.js';
 /** @import { Colouring } from './colour.js' */
@@ -19,11 +19,11 @@ export const SCORED = { wall: 'wall', surface: 'surface', axis: 'floor' }[DIRECT
 
 /** The scored part of the deflection at a point, in the workpiece frame. @param {Case} of @param {number} i @returns {Vec} */
 function errorAt(of, i) {
-  const columns = of.columns;
-  if (DIRECTION === 'wall') return times(unit(cross(TASK.axis[i], TASK.feed[i])), columns.normal_mm[i]);
-  if (DIRECTION === 'axis') return times(TASK.axis[i], columns.axial_mm[i]);
-  const whole = [columns.deflection_x_mm[i], columns.deflection_y_mm[i], columns.deflection_z_mm[i]];
-  return inWorkpiece(of, i, whole);
+  const { deflection_x_mm: x, deflection_y_mm: y, deflection_z_mm: z } = of.columns;
+  const whole = inWorkpiece(of, i, [x[i], y[i], z[i]]);
+  if (TASK.scored.length > 1) return whole;
+  const direction = unit(TASK.scored[0][i]);
+  return times(direction, dot(direction, whole));
 }
 
 /** The extent of the path in the workpiece frame. */
@@ -33,24 +33,26 @@ export const EXTENT = [0, 1, 2].map((k) => {
 });
 export const PATH_SIZE = Math.max(Math.hypot(...EXTENT.map(([low, high]) => high - low)), 50);
 
-/** How many times too large the error is drawn: a round number, the same for all cases, by what 95 of 100 points stay below. */
+/** How many times too large errors can be drawn. */
+export const FACTORS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];
+
+/** That of them which suits the run, the same for all cases, by what 95 of 100 points stay below. */
 export const MAGNIFIED = (() => {
   const high = CASES.map(({ columns }) => {
     const scores = columns.score_mm.slice().sort();
     return scores[Math.floor(0.95 * (scores.length - 1))];
   });
-  const steps = [1000, 500, 200, 100, 50, 20, 10, 5, 2, 1];
-  return steps.find((step) => step * Math.max(...high) < 0.6 * PATH_SIZE) || 1;
+  return FACTORS.filter((factor) => factor <= 1000 && factor * Math.max(...high) < 0.6 * PATH_SIZE).pop() ?? 1;
 })();
 
 /** No more tubes than this: a longer path is drawn by every so many points. */
 const MOST_TUBES = 1500;
 
-/** Both in the workpiece frame. @param {Case} of @param {Colouring} by @returns {{ tube: Mesh, curtain: Mesh }} */
-export function pathMeshes(of, by) {
+/** Both in the workpiece frame. @param {Case} of @param {Colouring} by @param {number} magnified @returns {{ tube: Mesh, curtain: Mesh }} */
+export function pathMeshes(of, by, magnified) {
   const [tube, curtain] = [mesh(), mesh()];
   const tips = TASK.position;
-  const offs = tips.map((tip, i) => add(tip, times(errorAt(of, i), MAGNIFIED)));
+  const offs = tips.map((tip, i) => add(tip, times(errorAt(of, i), magnified)));
   // In a stock the path must not fill the cut.
   const radius = clamp(PATH_SIZE * 0.011, 2, 8) * (REMOVAL ? 0.35 : 1);
   const stride = Math.ceil(COUNT / MOST_TUBES);

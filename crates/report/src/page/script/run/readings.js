@@ -1,6 +1,7 @@
 // The figures of where the tool is: tiles, and a gauge for each joint.
 
 import { card, el } from '../draw/dom.js';
+import { giving } from '../draw/downloads.js';
 import { clamp, fixed } from '../draw/scale.js';
 import { JOINT_COLOURS } from './colour.js';
 import { LIMITS, ROWS } from './data.js';
@@ -109,5 +110,7 @@ export function gauges() {
     });
   });
   const words = AXES.some((axis) => axis.isRail) ? 'deg, rails in mm; shaded: range over the whole path' : 'deg; shaded: range over the whole path';
-  return card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
+  const out = card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
+  const figures = () => rows.map(({ gauge }) => [gauge.name, gauge.low, gauge.now(), gauge.high]);
+  return giving(out, { rows: () => [['axis', 'from', 'now', 'to'], ...figures()] });
 }

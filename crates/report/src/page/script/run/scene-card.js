@@ -1,13 +1,15 @@
 // The card of the view: its switches, its words, and the keys that turn it.
 
 import { choice, el } from '../draw/dom.js';
+import { giving } from '../draw/downloads.js';
 import { rampOf } from '../draw/heat-map.js';
 import { fixed } from '../draw/scale.js';
-import { HAS_ILLUSTRATIONS } from './bodies.js';
+import { ILLUSTRATED } from './bodies.js';
 import { COLOURINGS } from './colour.js';
 import { AXES } from './external-axes.js';
 import { LAYERS, sceneIn } from './scene.js';
 import { reasonText } from './map.js';
+import { FACTORS, MAGNIFIED } from './path-mesh.js';
 import { chosenState, current, onChange, set, state } from './state.js';
 import { HAS_BLOCK } from './surroundings.js';
 /** @import { Scene } from './scene.js' */
@@ -46,6 +48,31 @@ function colouringChoice() {
   return out;
 }
 
+/** How many times too large errors are drawn. */
+function factorSlider() {
+  const words = el('output');
+  const slider = /** @type {HTMLInputElement} */ (
+    el('input', {
+      type: 'range',
+      id: 'magnified',
+      min: 0,
+      max: FACTORS.length - 1,
+      step: 1,
+      'aria-label': 'How many times too large errors are drawn',
+      oninput: () => set({ magnified: FACTORS[+slider.value] }),
+      // Its keys are its own, and no steps along the path.
+      onkeydown: (/** @type {KeyboardEvent} */ event) => event.stopPropagation(),
+    })
+  );
+  onChange(() => {
+    const factor = state.magnified ?? MAGNIFIED;
+    words.textContent = `×${factor}`;
+    slider.value = String(FACTORS.indexOf(factor));
+    slider.setAttribute('aria-valuetext', `${factor} times`);
+  });
+  return el('label.chip.factor', {}, 'errors', slider, words);
+}
+
 /** The card with the view, its switches and its words. */
 export function sceneCard() {
   const view = el('div.view');
@@ -79,13 +106,13 @@ export function sceneCard() {
     return el('label.chip', {}, box, text);
   });
   const words = [
-    HAS_ILLUSTRATIONS ? 'Shapes of arm and spindle are illustrations made from the robot’s rows' : '',
+    ILLUSTRATED ? `Shapes of ${ILLUSTRATED} are illustrations made from the robot’s rows` : '',
     HAS_BLOCK ? 'the block is the extent of the path' : '',
     AXES.length ? 'external axes show how they move, not their looks' : '',
   ];
   host.append(
     el('div.tr', {}, ...views),
-    el('div.bl', {}, colouringChoice(), el('div.tags', {}, ...layers), el('div.sub', {}, words.filter(Boolean).join('; '))),
+    el('div.bl', {}, colouringChoice(), el('div.tags', {}, ...layers, factorSlider()), el('div.sub', {}, words.filter(Boolean).join('; '))),
   );
   view.tabIndex = 0;
   view.setAttribute('role', 'img');
@@ -117,5 +144,11 @@ export function sceneCard() {
     refusal.hidden = !isRefused;
     refusal.textContent = isRefused ? `Not allowed at point ${chosen.point}, β ${fixed(chosen.beta, 1)}°: ${reasonText(chosen.reason)}` : '';
   });
-  return host;
+  // Its figures are those of the plan that is shown.
+  const rows = () => {
+    const { columns } = current();
+    const heads = Object.keys(columns);
+    return [heads, ...Array.from(columns.point, (_, i) => heads.map((name) => columns[name][i]))];
+  };
+  return giving(host, { rows, picture: viewPicture });
 }

@@ -6,10 +6,10 @@ import { isDark, themeRgb } from '../draw/theme.js';
 import { axisTrack, platter } from './axis-tracks.js';
 import { ARM_FRAMES, BODIES, HAS_ENVELOPES, HAS_SURROUNDINGS, SHAPES, STOCKS, bodiesOf } from './bodies.js';
 import { MIDDLE, fieldOf, lookAt, parallel, perspective, placeOf, rayAt, steer, viewOf } from './camera.js';
+import { LARGEST_FORCE, deflectionArrows, forceArrows } from './arrows.js';
 import { COLOURINGS } from './colour.js';
-import { CASES, RAW } from './data.js';
+import { CASES, RAW, REMOVAL } from './data.js';
 import { AXES, axesAt, axisFrame, baseFrame, carriedBy, workpieceFrame } from './external-axes.js';
-import { LARGEST_FORCE, forceArrows } from './forces.js';
 import { buffersOf, free, linesOf, programOf, shadowTarget } from './gpu.js';
 import { FARTHEST, framesOf } from './kinematics.js';
 import { IDENTITY, add, product, times, unit } from './linear.js';
@@ -24,8 +24,9 @@ import { FLOOR, HAS_BLOCK, block, cellEdges, floorGrid, partEdges, reachBall, re
 
 /** What can be left out of the view, with its words, where there is such a thing. */
 export const LAYERS = [
-  { name: 'curtain', words: `${SCORED} error ×${MAGNIFIED}`, isThere: true },
-  { name: 'forces', words: `forces, up to ${fixed(LARGEST_FORCE, 0)} N`, isThere: LARGEST_FORCE > 0 },
+  { name: 'curtain', words: `${SCORED} error`, isThere: true },
+  { name: 'deflection', words: 'whole deflection', isThere: true, isOff: true },
+  { name: 'forces', words: `forces, up to ${fixed(LARGEST_FORCE, 0)} N`, isThere: LARGEST_FORCE > 0, isOff: !REMOVAL },
   { name: 'after', words: 'stock after', isThere: STOCKS.length > 0 },
   { name: 'before', words: 'stock before', isThere: STOCKS.length > 0, isOff: true },
   { name: 'cell', words: 'cell volume', isThere: true },
@@ -71,7 +72,6 @@ function sceneParts(gl) {
     tracks: AXES.map((_, k) => buffersOf(gl, axisTrack(k))),
     part: buffersOf(gl, bodiesOf([...BODIES, ...SHAPES], 'workpiece')),
     stocks: STOCKS.map((body) => buffersOf(gl, body.mesh)),
-    forces: buffersOf(gl, forceArrows()),
     thin: linesOf(gl, thin),
     thick: linesOf(gl, thick),
     floor: buffersOf(gl, { p: corners, n: [], c: [], i: [0, 1, 2, 0, 2, 3] }),
@@ -87,14 +87,17 @@ function caseParts(gl) {
   const of = current();
   const other = CASES.find((one) => one.place !== of.place && one.plan === of.plan);
   const by = COLOURINGS[state.colouring];
-  const { tube, curtain } = pathMeshes(of, by);
+  const magnified = state.magnified ?? MAGNIFIED;
+  const { tube, curtain } = pathMeshes(of, by, magnified);
   return {
+    forces: buffersOf(gl, forceArrows(of)),
+    deflection: buffersOf(gl, deflectionArrows(of, magnified)),
     tube: buffersOf(gl, tube),
     curtain: buffersOf(gl, curtain),
     block: HAS_BLOCK ? buffersOf(gl, block(isDark() ? [104, 118, 134] : [186, 197, 209])) : null,
     edges: linesOf(gl, partEdges()),
     axes: buffersOf(gl, arrows(IDENTITY, FARTHEST * 0.09)),
-    ghost: other ? buffersOf(gl, pathMeshes(other, by).tube) : null,
+    ghost: other ? buffersOf(gl, pathMeshes(other, by, magnified).tube) : null,
     platters: AXES.map((_, k) => buffersOf(gl, platter(of, k))),
     ghostEdges: other ? buffersOf(gl, tubes(partEdges(), FARTHEST * 0.0008)) : null,
   };
@@ -224,7 +227,8 @@ export function sceneIn(host) {
     bodies(program);
     put(program, parts.axes, base);
     put(program, ofCase.axes, part);
-    if (shown.forces) put(program, parts.forces, part);
+    if (shown.forces) put(program, ofCase.forces, part);
+    if (shown.deflection) put(program, ofCase.deflection, part);
     paint(MODE.plain);
     put(program, ofCase.tube, part);
     if (shown.cell) {
@@ -294,7 +298,7 @@ export function sceneIn(host) {
   });
   onChange((changed) => {
     if (gl.isContextLost()) return;
-    if (changed.case || changed.theme || changed.colouring) {
+    if (changed.case || changed.theme || changed.path) {
       Object.values(ofCase).flat().forEach((buffers) => buffers && free(gl, buffers));
       ofCase = caseParts(gl);
     }

@@ -7,14 +7,16 @@ import { jointsAt } from './kinematics.js';
 
 /**
  * @typedef {{ column: number, beta: number }} Chosen a state of the map: number of its column and of its angle
- * @typedef {{ chosen: Chosen | null, case: number, t: number, hover: number | null, colouring: number }} State
+ * @typedef {{
+ *   chosen: Chosen | null, case: number, t: number, hover: number | null, colouring: number, magnified: number | null
+ * }} State magnified: how many times too large errors are drawn, null for what suits the run
  * @typedef {{ theme?: boolean, size?: boolean, scene?: boolean, renewed?: boolean }} Look what changes without the state; `renewed` where
  *   the case is the same and what is known of it is not
- * @typedef {Look & { case?: boolean, colouring?: boolean }} Changes
+ * @typedef {Look & { case?: boolean, path?: boolean }} Changes path: how it is drawn
  */
 
 /** @type {State} */
-export const state = { case: 0, t: 0, chosen: null, hover: null, colouring: 0 };
+export const state = { case: 0, t: 0, chosen: null, hover: null, colouring: 0, magnified: null };
 
 /** @type {((changes: Changes) => void)[]} */
 const listeners = [];
@@ -45,7 +47,8 @@ export function set(to, atOnce = false) {
     changes.case = true;
     state.chosen = null;
   }
-  if (next.colouring !== undefined && next.colouring !== state.colouring) changes.colouring = true;
+  if (next.colouring !== undefined && next.colouring !== state.colouring) changes.path = true;
+  if (next.magnified !== undefined && next.magnified !== state.magnified) changes.path = true;
   if (next.t !== undefined) {
     next.t = clamp(next.t, 0, COUNT - 1);
     if (next.chosen === undefined) next.chosen = null;
