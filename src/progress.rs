@@ -1,7 +1,7 @@
 //! Progress in words, for terminal and page.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use stead_certify::MAX_GAP_PERCENT;
+use stead_certify::{MAX_GAP_PERCENT, Outlook};
 use stead_numerics::monitor::Progress;
 use stead_report::units::figures;
 
@@ -16,7 +16,7 @@ pub(crate) struct Described {
 }
 
 impl Described {
-    pub fn of(progress: &Progress) -> Self {
+    pub fn of(progress: &Progress, outlook: Option<Outlook>) -> Self {
         let (stage, steps, message) = match *progress {
             Progress::Search { stage, done, total, best } => {
                 let best = best.map_or("nothing feasible yet".to_owned(), |best| format!("{:.4} mm", best * 1e3));
@@ -32,7 +32,14 @@ impl Described {
                     "no gap yet".to_owned()
                 };
                 let requested = figures(100.0 * gap);
-                (stage, None, format!("{reached} (asked {requested} %), {open} boxes open, {nodes} evaluated"))
+                let outlook = match outlook {
+                    Some(Outlook::Reached(left)) => {
+                        format!(", about {} s to {requested} %", figures(left.as_secs_f64()))
+                    }
+                    Some(Outlook::Hardly) => ", hardly closing".to_owned(),
+                    None => String::new(),
+                };
+                (stage, None, format!("{reached} (asked {requested} %){outlook}, {open} boxes open, {nodes} evaluated"))
             }
         };
         Self { stage, steps, message }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+use stead_certify::{Forecast, Outlook};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_report::output::Folder;
 
@@ -76,11 +77,21 @@ impl Terminal {
             }
             // Between two reports, and before the first, the time that has passed shows that the job is running.
             bar.enable_steady_tick(TICK);
-            (Monitor::new(move |progress| draw(&drawn, progress)), None)
+            let (forecast, started) = (Mutex::<Forecast>::default(), Instant::now());
+            let show = move |progress: &Progress| {
+                let outlook = locked(&forecast).add(progress, started.elapsed());
+                draw(&drawn, progress, outlook);
+            };
+            (Monitor::new(show), None)
         } else {
             let lines = Lines::start(LINE_EVERY, super::say);
-            let state = Arc::clone(&lines.state);
-            (Monitor::new(move |progress| locked(&state.0).latest = Some(*progress)), Some(lines))
+            let (state, started) = (Arc::clone(&lines.state), Instant::now());
+            let keep = move |progress: &Progress| {
+                let mut state = locked(&state.0);
+                let outlook = state.forecast.add(progress, started.elapsed());
+                state.latest = Some((*progress, outlook));
+            };
+            (Monitor::new(keep), Some(lines))
         };
         Shown { monitor: monitor.with_stop(self.stop.clone()).with_deadline(deadline), bar, _lines: lines }
     }
@@ -94,7 +105,8 @@ struct Lines {
 
 #[derive(Default)]
 struct LineState {
-    latest: Option<Progress>,
+    latest: Option<(Progress, Option<Outlook>)>,
+    forecast: Forecast,
     has_ended: bool,
 }
 
@@ -132,10 +144,10 @@ impl Drop for Lines {
 }
 
 /// How far a job is, as one line.
-fn line(progress: Option<&Progress>, elapsed: Duration) -> String {
+fn line(progress: Option<&(Progress, Option<Outlook>)>, elapsed: Duration) -> String {
     let elapsed = format!("{} s", elapsed.as_secs());
-    let Some(progress) = progress else { return format!("progress: {elapsed}") };
-    let Described { stage, steps, message } = Described::of(progress);
+    let Some((progress, outlook)) = progress else { return format!("progress: {elapsed}") };
+    let Described { stage, steps, message } = Described::of(progress, *outlook);
     let steps = steps.map_or_else(String::new, |(done, total)| format!("{done} of {total}"));
     let parts = [steps, message, elapsed].into_iter().filter(|part| !part.is_empty());
     format!("progress: {stage}: {}", parts.collect::<Vec<_>>().join(", "))
@@ -149,8 +161,8 @@ const STARTING: &str = "        starting {spinner} {elapsed}";
 const STEPS: &str = "{prefix:>16} [{bar:36}] {pos}/{len}  {msg}  {elapsed}";
 const BOUND: &str = "{prefix:>16} {spinner} {msg}  {elapsed}";
 
-fn draw(bar: &ProgressBar, progress: &Progress) {
-    let Described { stage, steps, message } = Described::of(progress);
+fn draw(bar: &ProgressBar, progress: &Progress, outlook: Option<Outlook>) {
+    let Described { stage, steps, message } = Described::of(progress, outlook);
     if bar.prefix() != stage {
         let template = if steps.is_some() { STEPS } else { BOUND };
         if let Ok(style) = ProgressStyle::with_template(template) {
@@ -175,9 +187,14 @@ mod tests {
         let at = Duration::from_millis(30_400);
         assert_eq!(line(None, at), "progress: 30 s");
         let search = Progress::Search { stage: "best placement", done: 3, total: 51, best: Some(1.075e-4) };
-        assert_eq!(line(Some(&search), at), "progress: best placement: 3 of 51, 0.1075 mm, 30 s");
+        assert_eq!(line(Some(&(search, None)), at), "progress: best placement: 3 of 51, 0.1075 mm, 30 s");
         let steps = Progress::Steps { stage: "refining", done: 1, total: 8 };
-        assert_eq!(line(Some(&steps), at), "progress: refining: 1 of 8, 30 s");
+        assert_eq!(line(Some(&(steps, None)), at), "progress: refining: 1 of 8, 30 s");
+        let bound =
+            Progress::Bound { stage: "certifying best", value: 1.0, bound: 0.95, gap: 0.01, open: 12, nodes: 480 };
+        let outlook = Some(Outlook::Reached(Duration::from_secs(40)));
+        let said = line(Some(&(bound, outlook)), at);
+        assert!(said.contains("(asked 1.00 %), about 40.0 s to 1.00 %, 12 boxes open"), "{said}");
     }
 
     #[test]
@@ -187,7 +204,7 @@ mod tests {
             // The test may have gone on.
             let _ = sender.send(line.to_owned());
         });
-        locked(&lines.state.0).latest = Some(Progress::Steps { stage: "refining", done: 1, total: 8 });
+        locked(&lines.state.0).latest = Some((Progress::Steps { stage: "refining", done: 1, total: 8 }, None));
         let is_told = |line: String| line.starts_with("progress: refining: 1 of 8, ");
         assert!(lines_said.iter().any(is_told) && lines_said.iter().any(is_told));
         drop(lines);

@@ -14,6 +14,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Instant;
 use stead_certify::settings::CertificateSettings;
+use stead_certify::{Forecast, Outlook};
 use stead_disk::Existing;
 use stead_numerics::monitor::{Progress, StopHandle};
 use stead_placement::place::{improve, setup_at};
@@ -81,6 +82,9 @@ struct List {
     thread: Option<JoinHandle<()>>,
 }
 
+/// What a job reported last, and when a certificate will be there as far as it can be told.
+type Latest = (Progress, Option<Outlook>);
+
 #[derive(Debug)]
 struct Running {
     id: usize,
@@ -89,7 +93,7 @@ struct Running {
     begun: Instant,
     stop: StopHandle,
     is_stopping: bool,
-    latest: Arc<Mutex<Option<Progress>>>,
+    latest: Arc<Mutex<Option<Latest>>>,
 }
 
 /// What a job comes to.
@@ -149,11 +153,15 @@ impl Jobs {
             return Err(RequestError::new("job", "cannot begin: the session ends", "another session"));
         }
         list.begun += 1;
-        let latest: Arc<Mutex<Option<Progress>>> = Arc::default();
+        let latest: Arc<Mutex<Option<Latest>>> = Arc::default();
         let seen = Arc::clone(&latest);
-        let monitor = Monitor::new(move |progress| *locked(&seen) = Some(*progress));
+        let (forecast, begun) = (Mutex::<Forecast>::default(), Instant::now());
+        let monitor = Monitor::new(move |progress| {
+            let outlook = locked(&forecast).add(progress, begun.elapsed());
+            *locked(&seen) = Some((*progress, outlook));
+        });
         let (id, stop) = (list.begun, monitor.stop_handle());
-        list.running = Some(Running { id, name, page, begun: Instant::now(), stop, is_stopping: false, latest });
+        list.running = Some(Running { id, name, page, begun, stop, is_stopping: false, latest });
         Ok((id, monitor))
     }
 
@@ -184,7 +192,7 @@ impl Running {
     }
 
     fn entry(&self) -> Value {
-        let described = locked(&self.latest).as_ref().map(Described::of);
+        let described = locked(&self.latest).as_ref().map(|(progress, outlook)| Described::of(progress, *outlook));
         let (stage, steps, message) = described
             .map_or(("", None, String::new()), |described| (described.stage, described.steps, described.message));
         json!({

@@ -1,56 +1,55 @@
 //! Which cells of heading are still of interest.
 
-/// Which cells of heading are still of interest: for each point and class one bit a cell.
+/// Which cells of heading are still of interest: for each point and class ranges of neighbouring cells.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ActiveCells {
     /// Level of the table whose cells they are.
     pub level: usize,
     count: usize,
-    words: Vec<u64>,
+    /// Where the ranges of each point and class end; those of the next begin there.
+    ends: Vec<u32>,
+    /// The first cell of each range, and that after its last.
+    ranges: Vec<[u16; 2]>,
 }
 
 impl ActiveCells {
-    /// All cells of the coarsest level, `count` in a turn, a multiple of 64.
+    /// All cells of the coarsest level, `count` in a turn.
     pub fn full(points: usize, count: usize) -> Self {
-        Self { level: 0, count, words: vec![u64::MAX; points * 4 * (count / 64)] }
+        let ranges = vec![[0, count as u16]; 4 * points];
+        Self { level: 0, count, ends: (1..=4 * points as u32).collect(), ranges }
     }
 
-    pub fn cells(&self, point: usize, class: usize) -> impl Iterator<Item = usize> + '_ {
-        let per = self.count / 64;
-        let words = &self.words[(point * 4 + class) * per..][..per];
-        words.iter().enumerate().flat_map(|(w, word)| {
-            let mut left = *word;
-            std::iter::from_fn(move || {
-                if left == 0 {
-                    return None;
+    /// Those of a level with `count` cells in a turn: growing ones of each point, class by class.
+    pub fn of<'a>(level: usize, count: usize, lists: impl Iterator<Item = &'a [u16]>) -> Self {
+        let mut out = Self { level, count, ends: Vec::with_capacity(lists.size_hint().0), ranges: Vec::new() };
+        for cells in lists {
+            let start = out.ranges.len();
+            for cell in cells {
+                match out.ranges[start..].last_mut() {
+                    Some(range) if range[1] == *cell => range[1] += 1,
+                    _ => out.ranges.push([*cell, cell + 1]),
                 }
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
-                Some(w * 64 + bit)
-            })
-        })
+            }
+            out.ends.push(out.ranges.len() as u32);
+        }
+        out
     }
 
-    pub fn clear(&mut self, point: usize, class: usize, cell: usize) {
-        let per = self.count / 64;
-        self.words[(point * 4 + class) * per + cell / 64] &= !(1 << (cell % 64));
-    }
-
-    pub fn clear_all(&mut self, point: usize, class: usize) {
-        let per = self.count / 64;
-        self.words[(point * 4 + class) * per..][..per].fill(0);
+    pub fn cells(&self, point: usize, class: usize) -> impl Iterator<Item = u16> + '_ {
+        let place = 4 * point + class;
+        let start = if place == 0 { 0 } else { self.ends[place - 1] };
+        self.ranges[start as usize..self.ends[place] as usize].iter().flat_map(|[from, to]| *from..*to)
     }
 
     /// The same with cells half as wide.
     pub fn halved(&self) -> Self {
-        let spread = |word: u32| (0..32).filter(|bit| word >> bit & 1 == 1).fold(0u64, |out, bit| out | 3 << (2 * bit));
-        let words = self.words.iter().flat_map(|w| [spread(*w as u32), spread((*w >> 32) as u32)]).collect();
-        Self { level: self.level + 1, count: self.count * 2, words }
+        let ranges = self.ranges.iter().map(|range| range.map(|cell| 2 * cell)).collect();
+        Self { level: self.level + 1, count: self.count * 2, ends: self.ends.clone(), ranges }
     }
 
     /// What it takes. bytes
     pub fn bytes(&self) -> u64 {
-        size_of_val(self.words.as_slice()) as u64
+        (size_of_val(self.ends.as_slice()) + size_of_val(self.ranges.as_slice())) as u64
     }
 
     /// Cells in a turn.

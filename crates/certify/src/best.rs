@@ -1,9 +1,11 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, halves, widest};
+use super::at_rest::without_rails;
+use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, Status, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
+use super::keeps_open::KeepsOpen;
 use super::model::Model;
 use super::region::Region;
 use super::requirements::certifiable;
@@ -33,6 +35,8 @@ pub fn best(
 ) -> Result<Bound, Unsupported> {
     let CertificateSettings { gap, memory, .. } = *settings;
     certifiable(problem, memory)?;
+    let alone = without_rails(problem)?;
+    let problem = alone.as_ref();
     let keeps = if with_limits { Keeps::of(problem) } else { Keeps::NOTHING };
     let (model, whole) = (Model::new(problem, keeps), whole(problem));
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective: model.objective, memory };
@@ -54,6 +58,7 @@ pub fn best(
                 with_turn,
                 nodes: 0,
                 status: stop.into(),
+                keeps_open: None,
                 open,
             });
         }
@@ -67,7 +72,14 @@ pub fn best(
         used: || model.used(),
         bytes: |active: &Arc<ActiveCells>| active.bytes(),
     };
-    Ok(search.explore(all, monitor, |_| None))
+    let (mut bound, known) = search.explore(all, monitor, |_| None);
+    if !matches!(bound.status, Status::Reached | Status::Interrupted) {
+        let mut open: Vec<usize> = (0..known.len()).collect();
+        open.sort_by(|a, b| bound.open[*a].1.total_cmp(&bound.open[*b].1));
+        let open: Vec<_> = open.into_iter().map(|k| (bound.open[k].0, known[k].as_ref())).collect();
+        bound.keeps_open = Some(KeepsOpen::of(&model, &open)).filter(|counted| counted.states > 0);
+    }
+    Ok(bound)
 }
 
 /// The boxes that the coarse tables leave open.

@@ -1,5 +1,6 @@
 //! Boxes of placements, most promising first: the search that bounds from below and from above share.
 
+use super::keeps_open::KeepsOpen;
 use super::load::Objective;
 use super::region::Region;
 use rayon::prelude::*;
@@ -30,6 +31,8 @@ pub struct Bound {
     pub nodes: usize,
     /// How the search ended.
     pub status: Status,
+    /// Where it fell short of what was requested: what is known of the states of the boxes of least bound.
+    pub keeps_open: Option<KeepsOpen>,
     /// Boxes that may hold placements better (of the worst: worse) than `value` by more than the gap requested, each
     /// with its own bound. m
     pub open: Vec<(Region, f64)>,
@@ -214,7 +217,7 @@ impl BranchAndBound {
     /// down, not by cutting all of it. Only from above, where nothing is known of them yet, the boxes to begin with
     /// come before, in the order given. Where boxes are left that tables cannot distinguish, `improve` is asked for a
     /// value further out than the one compared with, from among them; with one the search goes on. The result does not
-    /// depend on the number of threads.
+    /// depend on the number of threads. What is known of the boxes that are left is returned beside them.
     pub fn explore<T: Send + Sync>(
         mut self,
         mut parts: Parts<
@@ -225,7 +228,7 @@ impl BranchAndBound {
         >,
         monitor: &Monitor,
         mut improve: impl FnMut(&[Region]) -> Option<(f64, Placement)>,
-    ) -> Bound {
+    ) -> (Bound, Vec<T>) {
         let mut queue = Queue::new(self.sign(), self.sense, std::mem::take(&mut parts.start));
         let (mut nodes, mut met) = (parts.nodes, None);
         let status = loop {
@@ -250,7 +253,9 @@ impl BranchAndBound {
         let value = |queued: &Queued<T>| self.objective.value(queued.open.bound);
         let open = left.iter().map(|queued| (queued.open.region, value(queued))).collect();
         let Keeps { with_rate, with_turn } = self.keeps;
-        Bound { value: self.value, met, bound, with_rate, with_turn, nodes, status, open }
+        let bound =
+            Bound { value: self.value, met, bound, with_rate, with_turn, nodes, status, keeps_open: None, open };
+        (bound, left.into_iter().map(|queued| queued.open.known).collect())
     }
 
     /// Cuts boxes until none is left, or the bound stays where boxes are that are not to be cut further.

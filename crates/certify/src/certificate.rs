@@ -3,7 +3,7 @@
 use super::branch_and_bound::{Bound, Status};
 use super::region::Region;
 use super::relaxed::relaxed_value;
-use super::requirements::{certifiable, certifiable_from_above};
+use super::requirements::{certifiable, certifiable_from_above, left_out};
 use super::{best::best, worst::worst};
 use crate::settings::CertificateSettings;
 use serde::{Serialize, Serializer};
@@ -58,6 +58,8 @@ pub struct Proof {
     pub bound: Bound,
     /// The constraints of the problem less those that the bound evaluates.
     pub relaxed: Vec<Relaxation>,
+    /// What else it leaves out, in words.
+    pub left_out: Vec<&'static str>,
 }
 
 /// Why there is no bound.
@@ -227,12 +229,14 @@ impl Proof {
     pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound) -> Self {
         let relaxed = relaxed(problem, &evaluated(problem, &bound));
         let (placement, figure) = (bound.met.unwrap_or(placement), figure(&problem.criterion));
-        Self { sense, placement, found: bound.value, figure, bound, relaxed }
+        let left_out = left_out(problem);
+        Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out }
     }
 
-    /// The relaxed constraints in words.
+    /// The relaxed constraints, and what else is left out, in words.
     pub fn relaxed_words(&self) -> Vec<String> {
-        describe(&self.relaxed)
+        let left_out = self.left_out.iter().copied().map(str::to_owned);
+        describe(&self.relaxed).into_iter().chain(left_out).collect()
     }
 
     /// Whether the bound says anything of use: it is above zero, and the gap no wider than [`MAX_GAP_PERCENT`].
@@ -250,6 +254,15 @@ impl Proof {
     /// The gap in per cent as sentences state it.
     pub fn gap_words(&self) -> String {
         fixed(self.gap_percent(), GAP_DECIMALS).trim_end_matches('0').trim_end_matches('.').to_owned()
+    }
+
+    /// What is proved of the best placement, in one plain sentence; `None` where that is nothing of use.
+    pub fn sentence(&self) -> Option<String> {
+        let is_said = self.sense == Sense::Min && self.is_of_use();
+        is_said.then(|| {
+            let gap = self.gap_words();
+            format!("No placement in this cell, however the arm is posed, is better than yours by more than {gap} %.")
+        })
     }
 
     /// The bound in mm, rounded to where it still holds.
@@ -290,7 +303,8 @@ impl Proof {
         let (requested, open) = (figures(settings.gap * 100.0), self.bound.open.len());
         let gap = if self.is_of_use() { format!("a gap of {} %", self.gap_words()) } else { "no gap".to_owned() };
         let boxes = if open == 1 { "box is" } else { "boxes are" };
-        Some(format!("{why}: {gap} is reached, {requested} % was asked for; {open} {boxes} open"))
+        let kept = self.bound.keeps_open.map_or_else(String::new, |kept| format!("; {kept}"));
+        Some(format!("{why}: {gap} is reached, {requested} % was asked for; {open} {boxes} open{kept}"))
     }
 }
 

@@ -73,8 +73,12 @@ pub(super) struct ComplianceTable {
     made: AtomicU64,
 }
 
-/// Nodes that are made when the first of them is needed.
-type Chunk = OnceLock<Box<Nodes>>;
+/// Nodes that are made when the first of them is needed; `None` where all of them are empty.
+type Chunk = OnceLock<Option<Box<Nodes>>>;
+/// The chunks of one radius and height, class by class within each range of headings.
+type Place = OnceLock<Box<[Chunk]>>;
+/// Neighbouring places to each side of a block.
+const BLOCK: usize = 16;
 
 /// Neighbouring nodes, and how they yield to moments, where some act.
 #[derive(Debug)]
@@ -86,9 +90,26 @@ struct Nodes {
 #[derive(Debug)]
 struct Level {
     counts: [usize; 3],
-    /// The chunks of each radius and height, allocated when one of them is needed: all of them together may be
-    /// gigabytes, which take seconds to set up.
-    places: Vec<OnceLock<Box<[Chunk]>>>,
+    /// The places, in blocks, each allocated when one of them is needed: all of them together may be gigabytes, which
+    /// take seconds to set up.
+    blocks: Vec<OnceLock<Box<[Place]>>>,
+}
+
+impl Level {
+    /// Number of blocks along the heights.
+    fn blocks_up(&self) -> usize {
+        self.counts[1].div_ceil(BLOCK)
+    }
+}
+
+/// The nodes of one radius and height.
+#[derive(Clone, Copy)]
+pub(super) struct NodesAt<'a> {
+    table: &'a ComplianceTable,
+    arm: &'a Arm,
+    level: usize,
+    at: [usize; 2],
+    chunks: &'a [Chunk],
 }
 
 impl ComplianceTable {
@@ -98,27 +119,30 @@ impl ComplianceTable {
                 let length = steps.length / (1u64 << level) as f64;
                 let along = |(from, to): (f64, f64)| ((to - from) / length).ceil() as usize + 1;
                 let counts = [along(extent.radius), along(extent.height), steps.headings << level];
-                Level { counts, places: std::iter::repeat_with(OnceLock::new).take(counts[0] * counts[1]).collect() }
+                let blocks = counts[0].div_ceil(BLOCK) * counts[1].div_ceil(BLOCK);
+                Level { counts, blocks: std::iter::repeat_with(OnceLock::new).take(blocks).collect() }
             })
             .collect();
         Self { levels, extent, steps, made: AtomicU64::new(0) }
     }
 
-    /// What it takes at most with the nodes made so far. bytes
+    /// What it takes with what was made so far. bytes
     pub fn used(&self) -> u64 {
-        let empty = Self::bytes(self.extent, self.steps, self.levels.len());
-        empty + self.made.load(Ordering::Relaxed)
+        let empty: usize = self.levels.iter().map(|level| size_of_val(level.blocks.as_slice())).sum();
+        empty as u64 + self.made.load(Ordering::Relaxed)
     }
 
-    /// What a table takes at most beside its nodes. bytes
-    pub fn bytes(extent: Extent, steps: Steps, levels: usize) -> u64 {
-        let along = |(from, to): (f64, f64), length: f64| ((to - from) / length).ceil() + 1.0;
-        let one = |level: usize| {
-            let length = steps.length / (1u64 << level) as f64;
-            let chunks = ((steps.headings << level) / CHUNK * 4) as f64;
-            along(extent.radius, length) * along(extent.height, length) * chunks
-        };
-        ((0..levels).map(one).sum::<f64>() * size_of::<Chunk>() as f64) as u64
+    /// What the nodes of the coarsest level take at most. bytes
+    pub fn bytes(extent: Extent, steps: Steps) -> u64 {
+        // In f64: a cell may be so large that whole numbers overflow.
+        let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() + 1.0;
+        let chunks = along(extent.radius) * along(extent.height) * (steps.headings / CHUNK * 4) as f64;
+        (chunks * (size_of::<Chunk>() + size_of::<Nodes>()) as f64) as u64
+    }
+
+    /// Adds what something new takes.
+    fn count<T>(&self, made: &[T]) {
+        self.made.fetch_add(size_of_val(made) as u64, Ordering::Relaxed);
     }
 
     /// Radii and heights, and steps.
@@ -181,50 +205,63 @@ impl ComplianceTable {
         TAU / self.headings(level) as f64 * (cell as f64 + 0.5)
     }
 
-    /// The node of a cell of heading, without what it tells of moments.
-    #[cfg(test)]
-    pub fn node(&self, arm: &Arm, level: usize, at: [usize; 2], cell: usize, class: PostureClass) -> &Node {
-        self.known(arm, level, at, cell, class).0
+    /// The nodes of a radius and height.
+    #[inline]
+    pub fn nodes_at<'a>(&'a self, arm: &'a Arm, level: usize, at: [usize; 2]) -> NodesAt<'a> {
+        let stored = &self.levels[level];
+        let [i, j] = at;
+        let places = stored.blocks[i / BLOCK * stored.blocks_up() + j / BLOCK].get_or_init(|| {
+            let places: Box<[Place]> = std::iter::repeat_with(OnceLock::new).take(BLOCK * BLOCK).collect();
+            self.count(&places);
+            places
+        });
+        let chunks = places[i % BLOCK * BLOCK + j % BLOCK].get_or_init(|| {
+            let chunks: Box<[Chunk]> =
+                std::iter::repeat_with(OnceLock::new).take(stored.counts[2] / CHUNK * 4).collect();
+            self.count(&chunks);
+            chunks
+        });
+        NodesAt { table: self, arm, level, at, chunks }
     }
 
-    /// The node of a cell of heading, and how it yields to moments, where some act.
-    #[inline]
-    pub fn known(
-        &self,
-        arm: &Arm,
-        level: usize,
-        at: [usize; 2],
-        cell: usize,
-        class: PostureClass,
-    ) -> (&Node, Option<&MomentModel>) {
-        let stored = &self.levels[level];
-        let chunks = stored.places[at[0] * stored.counts[1] + at[1]]
-            .get_or_init(|| std::iter::repeat_with(OnceLock::new).take(stored.counts[2] / CHUNK * 4).collect());
-        let nodes = chunks[cell / CHUNK * 4 + class.index()].get_or_init(|| {
-            let moments = arm.has_moments.then(|| Box::new([None; CHUNK]));
-            let mut nodes = Box::new(Nodes { nodes: [Node::Empty; CHUNK], moments });
-            let bytes = size_of::<Nodes>() + nodes.moments.as_deref().map_or(0, size_of_val);
-            self.made.fetch_add(bytes as u64, Ordering::Relaxed);
-            let first = cell / CHUNK * CHUNK;
-            for start in (0..CHUNK).step_by(WIDTH) {
-                let some = self.made(arm, level, self.place(level, at), first + start, class);
-                for (k, (node, moment)) in some.into_iter().enumerate() {
-                    nodes.nodes[start + k] = node;
-                    if let Some(moments) = &mut nodes.moments {
-                        moments[start + k] = moment;
-                    }
+    /// The nodes of neighbouring cells of heading from `first` on.
+    fn made(&self, arm: &Arm, level: usize, at: [usize; 2], first: usize, class: PostureClass) -> Option<Box<Nodes>> {
+        let half = [self.length(level), self.length(level), PI / self.headings(level) as f64];
+        let [r, z] = self.place(level, at);
+        let moments = arm.has_moments.then(|| Box::new([None; CHUNK]));
+        let mut nodes = Box::new(Nodes { nodes: [Node::Empty; CHUNK], moments });
+        for start in (0..CHUNK).step_by(WIDTH) {
+            let place: [[f64; 3]; WIDTH] = std::array::from_fn(|k| [r, z, self.heading(level, first + start + k)]);
+            for (k, (node, moment)) in known_over(arm, &place, half, class).into_iter().enumerate() {
+                nodes.nodes[start + k] = node;
+                if let Some(moments) = &mut nodes.moments {
+                    moments[start + k] = moment;
                 }
             }
-            nodes
-        });
-        let moments = nodes.moments.as_ref().and_then(|moments| moments[cell % CHUNK].as_ref());
-        (&nodes.nodes[cell % CHUNK], moments)
+        }
+        if nodes.nodes.iter().all(|node| *node == Node::Empty) {
+            return None;
+        }
+        self.count(std::slice::from_ref(nodes.as_ref()));
+        nodes.moments.iter().for_each(|moments| self.count(moments.as_slice()));
+        Some(nodes)
     }
+}
 
-    fn made(&self, arm: &Arm, level: usize, [r, z]: [f64; 2], cell: usize, class: PostureClass) -> [Made; WIDTH] {
-        let half = [self.length(level), self.length(level), PI / self.headings(level) as f64];
-        let place: [[f64; 3]; WIDTH] = std::array::from_fn(|k| [r, z, self.heading(level, cell + k)]);
-        known_over(arm, &place, half, class)
+impl<'a> NodesAt<'a> {
+    /// The node of a cell of heading, and how it yields to moments, where some act.
+    #[inline]
+    pub fn known(&self, cell: usize, class: PostureClass) -> (&'a Node, Option<&'a MomentModel>) {
+        let Self { table, arm, level, at, chunks } = *self;
+        let nodes = chunks[cell / CHUNK * 4 + class.index()]
+            .get_or_init(|| table.made(arm, level, at, cell / CHUNK * CHUNK, class));
+        match nodes {
+            None => (&Node::Empty, None),
+            Some(nodes) => {
+                let moments = nodes.moments.as_ref().and_then(|moments| moments[cell % CHUNK].as_ref());
+                (&nodes.nodes[cell % CHUNK], moments)
+            }
+        }
     }
 }
 
@@ -344,15 +381,17 @@ mod tests {
         let problem = five_segments();
         let extent = Extent { radius: (0.3, 4.3), height: (-1.0, 1.0) };
         let steps = Steps { length: 0.025, headings: 128 };
-        assert!(ComplianceTable::bytes(extent, steps, 4) > 3_000_000_000);
-        let table = ComplianceTable::new(extent, steps, 4);
-        let set_up =
-            || table.levels.iter().flat_map(|level| &level.places).filter(|place| place.get().is_some()).count();
-        assert_eq!(set_up(), 0);
+        let table = ComplianceTable::new(extent, steps, 6);
+        let empty = table.used();
+        assert!(empty < 10_000_000, "{empty}");
         let arm = Arm::new(&problem, &problem.robot, extent.radius.0);
-        for cell in [0, 1023] {
-            table.known(&arm, 3, [700, 300], cell, PostureClass::ALL[0]);
-        }
-        assert_eq!((set_up(), table.made.load(Ordering::Relaxed)), (1, 2 * size_of::<Nodes>() as u64));
+        let nodes = table.nodes_at(&arm, 3, [400, 100]);
+        let all = PostureClass::ALL.into_iter().flat_map(|class| (0..1024).map(move |cell| (cell, class)));
+        let found = all.filter(|(cell, class)| *nodes.known(*cell, *class).0 != Node::Empty).count();
+        let chunks = found.div_ceil(CHUNK)..=found.min(1024 / CHUNK * 4);
+        let fixed = BLOCK * BLOCK * size_of::<Place>() + 1024 / CHUNK * 4 * size_of::<Chunk>();
+        let made = (table.used() - empty) as usize - fixed;
+        assert_eq!(made % size_of::<Nodes>(), 0);
+        assert!(found > 0 && chunks.contains(&(made / size_of::<Nodes>())), "{found} {made}");
     }
 }

@@ -45,7 +45,7 @@ pub(super) struct Turned {
     pub factors: [f64; 6],
     /// Lengths of (d1, d2)'s factors and of (c_rz, c_tz)'s. N
     pub lengths: [f64; 2],
-    /// Joint 1: value, slopes by r and chi, and what they leave out. m
+    /// Joint 1 and the part: value, slopes by r and chi, and what they leave out. m
     pub joint1: [f64; 4],
     /// What it asks of the displacement under a moment, where one acts.
     pub moment: Option<TurnedMoment>,
@@ -84,27 +84,36 @@ impl Direction {
     /// `first` is the compliance of joint 1 (rad/(N m)).
     #[inline(always)]
     pub fn turned(&self, tangent: &Tangent, load: &Load, r: f64, half: [f64; 2], first: f64) -> Turned {
-        let Tangent { plane, turning: [q, w], vertical: [v1, v2], axial, along } = *tangent;
+        let (factors, lengths) = self.factors(tangent);
+        let moment = || TurnedMoment::new(tangent.along, load.moment, (self.sine, self.cosine), r, half, first);
+        let mut joint1 = of_joint1(&factors, lengths[0], r, half, first);
+        joint1[0] += load.of_part(tangent);
+        Turned { factors, lengths, joint1, moment: load.has_moment().then(moment) }
+    }
+
+    /// See [`Turned::factors`] and [`Turned::lengths`].
+    #[inline(always)]
+    pub fn factors(&self, tangent: &Tangent) -> ([f64; 6], [f64; 2]) {
+        let Tangent { plane, turning: [q, w], vertical: [v1, v2], axial, .. } = *tangent;
         let Self { sine, cosine, sine2, cosine2 } = *self;
         let (x, y) = (q * cosine2 - w * sine2, q * sine2 + w * cosine2);
-        let length = (q * q + w * w).sqrt();
-        let [h_r, h_chi] = half;
-        let far = r + h_r;
-        let swing = 2.0 * length * h_chi;
-        // r^2 (S11 + S22 - x) / 2, the tangential part of S.
-        let remainder = first
-            * (0.5 * ((plane - x).abs() + swing) * h_r * h_r
-                + 2.0 * far * (y.abs() + swing) * h_r * h_chi
-                + far * far * (x.abs() + swing) * h_chi * h_chi);
-        let joint1 = [first * r * r * 0.5 * (plane - x), first * r * (plane - x), first * r * r * y, remainder];
         let vertical = [v1 * cosine - v2 * sine, v1 * sine + v2 * cosine];
-        Turned {
-            factors: [plane, x, y, vertical[0], vertical[1], axial],
-            lengths: [length, (v1 * v1 + v2 * v2).sqrt()],
-            joint1,
-            moment: load.has_moment().then(|| TurnedMoment::new(along, load.moment, (sine, cosine), r, half, first)),
-        }
+        ([plane, x, y, vertical[0], vertical[1], axial], [(q * q + w * w).sqrt(), (v1 * v1 + v2 * v2).sqrt()])
     }
+}
+
+/// See [`Turned::joint1`].
+#[inline(always)]
+pub(super) fn of_joint1(factors: &[f64; 6], length: f64, r: f64, [h_r, h_chi]: [f64; 2], first: f64) -> [f64; 4] {
+    let [plane, x, y, ..] = *factors;
+    let far = r + h_r;
+    let swing = 2.0 * length * h_chi;
+    // r^2 (S11 + S22 - x) / 2, the tangential part of S.
+    let remainder = first
+        * (0.5 * ((plane - x).abs() + swing) * h_r * h_r
+            + 2.0 * far * (y.abs() + swing) * h_r * h_chi
+            + far * far * (x.abs() + swing) * h_chi * h_chi);
+    [first * r * r * 0.5 * (plane - x), first * r * (plane - x), first * r * r * y, remainder]
 }
 
 impl Turned {
@@ -242,7 +251,8 @@ impl<'a> PointCost<'a> {
                 self.direction.moved(at, self.load, p.r, self.first)
             }
         };
-        let (sharp, of_error) = self.load.tangents(&self.direction.seen(at, p.r, self.first), by_moment);
+        let (sharp, of_error) =
+            self.load.tangents(&self.load.with_part(self.direction.seen(at, p.r, self.first)), by_moment);
         let least = |tangent: &Tangent| {
             let half = [p.reach[0], p.reach[2]];
             let turned = self.direction.turned(tangent, self.load, p.r, half, self.first);

@@ -298,6 +298,14 @@ impl Number for Enclosure {
         self.value.high().less(ZERO)
     }
     #[inline(always)]
+    fn low(self) -> Lanes {
+        self.value.low()
+    }
+    #[inline(always)]
+    fn high(self) -> Lanes {
+        self.value.high()
+    }
+    #[inline(always)]
     fn assume_above(self, floor: f64, sure: &mut Mask) -> Self {
         let floor = Lanes::splat(floor);
         let fine = floor.less(self.value.low());

@@ -11,6 +11,8 @@ pub(super) struct Kind {
     pub force_spread: f64,
     /// How far the moments are from its own, at most. m
     pub moment_spread: f64,
+    /// How far the compliances of the part are from its own, at most. m/N
+    pub part_spread: f64,
 }
 
 /// Kinds of load that have a table: those of most weight.
@@ -26,13 +28,19 @@ fn unit(load: &Load) -> Option<(Load, f64)> {
     (size > 0.0).then_some((Load { force, moment, error: load.error / size, turn: 0.0, ..*load }, size))
 }
 
-/// How far a load of size 1 is from another one in force and in moment (m), where the same directions are scored.
-fn apart(a: &Load, b: &Load) -> Option<[f64; 2]> {
+/// How far a load of size 1 is from another one in force, in moment (m) and in the compliance of the part (m/N), where
+/// the same directions are scored, and the part yields under both or neither.
+fn apart(a: &Load, b: &Load) -> Option<[f64; 3]> {
     let long = a.directions.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
     let near = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-13 * long);
     let alike = a.directions.iter().zip(&b.directions).all(|(a, b)| near(a, b)) && (a.error - b.error).abs() <= 1e-13;
     let off = |a: &[f64; 3], b: &[f64; 3]| length(&std::array::from_fn(|k| a[k] - b[k]));
-    alike.then(|| [off(&a.force, &b.force), off(&a.moment, &b.moment)])
+    let part = match (a.part, b.part) {
+        (None, None) => 0.0,
+        (Some(a), Some(b)) => a.apart(&b),
+        _ => return None,
+    };
+    alike.then(|| [off(&a.force, &b.force), off(&a.moment, &b.moment), part])
 }
 
 fn length([x, y, z]: &[f64; 3]) -> f64 {
@@ -53,8 +61,9 @@ pub(super) fn kinds(points: &[Point]) -> (Vec<Kind>, Vec<Option<(usize, f64)>>) 
     found.truncate(MAX_KINDS);
     let of = |(load, size): &(Load, f64)| {
         let of_kind = |kind: &Kind| {
-            let [force, moment] = apart(&kind.load, load)?;
-            (force <= kind.force_spread && moment <= kind.moment_spread).then_some(())
+            let [force, moment, part] = apart(&kind.load, load)?;
+            let is_within = force <= kind.force_spread && moment <= kind.moment_spread && part <= kind.part_spread;
+            is_within.then_some(())
         };
         Some((found.iter().position(|kind| of_kind(kind).is_some())?, *size))
     };
@@ -68,17 +77,20 @@ fn kinds_within(loads: &[Option<(Load, f64)>], spread: f64) -> Vec<Kind> {
     for (load, size) in loads.iter().flatten() {
         let is_full = all.len() >= 100;
         let near = all.iter_mut().find_map(|(kind, weight)| {
-            let off = apart(&kind.load, load).filter(|[force, moment]| force + moment <= spread)?;
+            let size = kind.load.part.map_or(1.0, |part| part.size().max(f64::MIN_POSITIVE));
+            let off = apart(&kind.load, load).filter(|[force, moment, part]| force + moment + part / size <= spread)?;
             Some((kind, weight, off))
         });
         match near {
-            Some((kind, weight, [force, moment])) => {
+            Some((kind, weight, [force, moment, part])) => {
                 *weight += size;
                 kind.force_spread = kind.force_spread.max(force);
                 kind.moment_spread = kind.moment_spread.max(moment);
+                kind.part_spread = kind.part_spread.max(part);
             }
             None if !is_full => {
-                all.push((Kind { load: *load, force_spread: 0.0, moment_spread: 0.0 }, *size));
+                let kind = Kind { load: *load, force_spread: 0.0, moment_spread: 0.0, part_spread: 0.0 };
+                all.push((kind, *size));
             }
             None => {}
         }

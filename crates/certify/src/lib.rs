@@ -17,6 +17,8 @@
 //! 5. `model` puts these together. `lower_bound` adds the points up by dynamic programming over cells of heading
 //!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
+//!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls short
+//!    leaves undecided, `forecast` says when a gap will be reached.
 //! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!
@@ -39,6 +41,7 @@
 
 mod active_cells;
 mod arm;
+mod at_rest;
 mod best;
 mod branch_and_bound;
 mod cell;
@@ -48,8 +51,10 @@ mod compliance_table;
 mod continuation;
 mod cost;
 mod enclosure;
+mod forecast;
 mod interval;
 mod interval_simd;
+mod keeps_open;
 mod kind;
 mod load;
 mod lower_bound;
@@ -73,6 +78,8 @@ pub use branch_and_bound::{Bound, Status};
 pub use certificate::{
     BOUND_DECIMALS, Certificate, MAX_GAP_PERCENT, NoProof, OpenBox, Proof, Relaxation, certify, no_certificate,
 };
+pub use forecast::{Forecast, Outlook};
+pub use keeps_open::KeepsOpen;
 pub use region::Region;
 pub use relaxed::relaxed_value;
 pub use requirements::certifiable;

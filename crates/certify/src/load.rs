@@ -28,6 +28,8 @@ pub(super) struct Load {
     pub moment: [f64; 3],
     /// Largest error of the force, times the same. N
     pub error: f64,
+    /// How the part yields, where it does: what it is moved by adds to every score.
+    pub part: Option<Yielding>,
     /// The frame of the load against that of the feed, about axis 1. rad
     pub turn: f64,
 }
@@ -119,7 +121,16 @@ impl Load {
         let force = &problem.task.wrenches()[point].force;
         let error = problem.criterion.force_uncertainty * force.norm() * factor;
         let moment = seen(&problem.task.wrenches()[point].moment).map(|m| m * factor);
-        let mut load = Self { directions, force: seen(force).map(|f| f * factor), moment, error, turn: 0.0 };
+        let part = problem.task.part_compliance(point).map(|matrix| {
+            let column = |k: usize| {
+                // Columns of the frame in the workpiece frame, seen back.
+                let axis = [[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]][k];
+                seen(&(matrix * nalgebra::Vector3::new(axis[0], axis[1] * side, axis[2] * side)))
+            };
+            Yielding::of([column(0), column(1), column(2)])
+        });
+        let force_seen = seen(force).map(|f| f * factor);
+        let mut load = Self { directions, force: force_seen, moment, error, part, turn: 0.0 };
         let weights = &problem.criterion.weights;
         if weights.surface == 0.0 && weights.feed == weights.wall {
             load.turn_to_force();
@@ -135,12 +146,25 @@ impl Load {
         (self.force[0], self.force[1]) = (libm::hypot(x, y), 0.0);
         let ((sine, cosine), [mx, my, _]) = (libm::sincos(self.turn), self.moment);
         (self.moment[0], self.moment[1]) = (mx * cosine + my * sine, my * cosine - mx * sine);
+        self.part = self.part.map(|part| part.turned(self.turn));
         // A turn of deflections that count alike leaves their norm as it is.
     }
 
     /// Whether the point counts for nothing.
     pub fn is_zero(&self) -> bool {
         self.force == [0.0; 3] && !self.has_moment()
+    }
+
+    /// A compliance with that of the part.
+    #[inline(always)]
+    pub fn with_part(&self, at: Yielding) -> Yielding {
+        self.part.map_or(at, |part| at.plus(&part))
+    }
+
+    /// What the part adds to a tangent.
+    #[inline(always)]
+    pub fn of_part(&self, tangent: &Tangent) -> f64 {
+        self.part.map_or(0.0, |part| tangent.of(&part))
     }
 
     /// Whether a moment acts.
@@ -170,7 +194,7 @@ impl Load {
         Tangent::new(self.directions[0], self.force)
     }
 
-    /// The tangents at a compliance: one that is sharp there, and where one direction is scored another one, sharp
+    /// The tangents at a compliance, that of the part included: one that is sharp there, and where one direction is scored another one, sharp
     /// where the deflection without an error vanishes, of what errors of the force alone can do.
     ///
     /// `by_moment` is the displacement there under the moment, in the frame of the load (m).
@@ -206,7 +230,7 @@ impl Load {
         std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum::<f64>() * inverse)
     }
 
-    /// The score under a compliance, by the ascent of [`Self::tangents`]: what the first tangent says there.
+    /// The score under a compliance, that of the part included, by the ascent of [`Self::tangents`]: what the first tangent says there.
     #[cfg(test)]
     pub fn score(&self, at: &Yielding, by_moment: [f64; 3]) -> f64 {
         self.tangents(at, by_moment).0.with(at, by_moment)
@@ -214,6 +238,39 @@ impl Load {
 }
 
 impl Yielding {
+    /// Of a symmetric matrix.
+    fn of([x, y, z]: [[f64; 3]; 3]) -> Self {
+        let v = [0.5 * (x[2] + z[0]), 0.5 * (y[2] + z[1])];
+        Self { m: 0.5 * (x[0] + y[1]), d: [0.5 * (x[0] - y[1]), 0.5 * (x[1] + y[0])], v, zz: z[2] }
+    }
+
+    /// In a frame turned by an angle about axis 1. rad
+    fn turned(&self, angle: f64) -> Self {
+        let ((s, c), (s2, c2)) = (libm::sincos(angle), libm::sincos(2.0 * angle));
+        let ([d0, d1], [v0, v1]) = (self.d, self.v);
+        Self { d: [d0 * c2 + d1 * s2, d1 * c2 - d0 * s2], v: [v0 * c + v1 * s, v1 * c - v0 * s], ..*self }
+    }
+
+    /// The root of the sum of the squares of its entries, which its norm does not exceed. m/N
+    pub fn size(&self) -> f64 {
+        let Self { m, d, v, zz } = self;
+        let square = 2.0 * (m * m + d[0] * d[0] + d[1] * d[1] + v[0] * v[0] + v[1] * v[1]) + zz * zz;
+        libm::sqrt(square)
+    }
+
+    /// How far another one is from it. m/N
+    pub fn apart(&self, o: &Self) -> f64 {
+        let off = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
+        Self { m: self.m - o.m, d: off(self.d, o.d), v: off(self.v, o.v), zz: self.zz - o.zz }.size()
+    }
+
+    /// The sum of two.
+    #[inline(always)]
+    pub fn plus(&self, other: &Self) -> Self {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self { m: self.m + other.m, d: sum(self.d, other.d), v: sum(self.v, other.v), zz: self.zz + other.zz }
+    }
+
     /// The displacement under a force.
     #[inline(always)]
     pub fn times(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {

@@ -6,8 +6,7 @@
 //! some beta of the one is within the limits on beta of some beta of the other.
 
 use super::active_cells::ActiveCells;
-use super::arm::Arm;
-use super::compliance_table::{ComplianceTable, Node};
+use super::compliance_table::{Node, NodesAt};
 use super::cost::{CORNERS, NOTHING, PointCost, cost_at_corners, joined_sets};
 use super::model::Model;
 use super::region::Region;
@@ -45,8 +44,9 @@ impl Model {
             monitor,
             region,
             points: self.point_costs(region),
-            active: active.clone(),
-            neighbours: SlidingMin::new(count),
+            active,
+            neighbours: SlidingMin::default(),
+            targets: Vec::new(),
             width: TAU / count as f64,
         };
         let mut totals = [0.0; CORNERS];
@@ -54,30 +54,35 @@ impl Model {
         for segment in 0..self.segments.len() {
             let mut best = INFINITE;
             for class in PostureClass::ALL {
-                if let Some(ways) = pass.forward(segment, class) {
-                    min_into(&mut best, &ways.end);
-                    all.push(ways);
-                }
+                let ways = pass.forward(segment, class);
+                min_into(&mut best, &ways.end);
+                all.push(ways);
             }
             if best[0] == f64::INFINITY {
-                return LowerBound { sum: f64::INFINITY, active: pass.active };
+                return LowerBound { sum: f64::INFINITY, active: active.clone() };
             }
             totals = joined(aggregate, &totals, &best);
             bests.push(best);
         }
         let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
-        if sum < ceiling {
-            for ways in &all {
-                let best = bests[ways.segment];
-                let others = match aggregate {
-                    Aggregate::Mean | Aggregate::Rms => std::array::from_fn(|k| totals[k] - best[k]),
-                    // Those of the other segments are below the ceiling by themselves.
-                    Aggregate::Max => [0.0; CORNERS],
-                };
-                pass.prune(ways, &others, ceiling);
-            }
+        if sum >= ceiling {
+            return LowerBound { sum, active: active.clone() };
         }
-        LowerBound { sum, active: pass.active }
+        for (ways, best) in all.iter_mut().zip(bests.iter().flat_map(|best| [best; 4])) {
+            let others = match aggregate {
+                Aggregate::Mean | Aggregate::Rms => std::array::from_fn(|k| totals[k] - best[k]),
+                // Those of the other segments are below the ceiling by themselves.
+                Aggregate::Max => [0.0; CORNERS],
+            };
+            pass.prune(ways, &others, ceiling);
+        }
+        let lists = self.segments.iter().zip(all.chunks(4)).flat_map(|(span, classes)| {
+            let rows = move |place: usize| {
+                classes.iter().map(move |ways| ways.rows.get(place).map_or(&[][..], |row| &row.cells[..]))
+            };
+            (0..span.len()).flat_map(rows)
+        });
+        LowerBound { sum, active: ActiveCells::of(active.level, count, lists) }
     }
 
     /// From which to which number of cells a way may step up, to `point` from the one before.
@@ -111,8 +116,10 @@ struct Pass<'a> {
     region: &'a Region,
     /// `None` for a point of which nothing is known.
     points: Vec<Option<PointCost<'a>>>,
-    active: ActiveCells,
+    active: &'a ActiveCells,
     neighbours: SlidingMin,
+    /// The active cells of one point.
+    targets: Vec<u16>,
     /// Width of a cell. rad
     width: f64,
 }
@@ -120,130 +127,143 @@ struct Pass<'a> {
 /// The ways through one segment in one class.
 struct Ways {
     segment: usize,
-    class: usize,
+    /// A row for each point; none where there is no way.
     rows: Vec<Row>,
     /// The least sum at the end.
     end: [f64; CORNERS],
 }
 
-/// The cells of one point, their costs, and for every cell the least sum up to it.
+/// The cells of one point that some way leads to, what they cost, and the least sum up to each.
 struct Row {
-    cells: Vec<usize>,
+    cells: Vec<u16>,
     costs: Vec<[f64; CORNERS]>,
     sums: Vec<[f64; CORNERS]>,
     /// The least of the sums.
     min: [f64; CORNERS],
 }
 
-/// A point with its node, and how far the point is from it in radius and height (m).
-type Answer<'a> = (PointCost<'a>, [usize; 2], [f64; 2]);
+/// A point with the nodes that answer for it under each set of stiffness, and how far it is from them in radius and
+/// height (m).
+struct Answer<'a> {
+    point: PointCost<'a>,
+    nodes: NodesAt<'a>,
+    others: Vec<(PointCost<'a>, NodesAt<'a>)>,
+    off: [f64; 2],
+}
 
 impl<'a> Pass<'a> {
-    /// The ways through a segment from its start; `None`, with all its cells inactive, where there is none.
-    fn forward(&mut self, segment: usize, class: PostureClass) -> Option<Ways> {
+    /// The ways through a segment from its start; infinite where there is none.
+    fn forward(&mut self, segment: usize, class: PostureClass) -> Ways {
+        let none = Ways { segment, rows: Vec::new(), end: INFINITE };
         let span = self.model.segments[segment].clone();
         let mut rows: Vec<Row> = Vec::with_capacity(span.len());
         let mut end = INFINITE;
-        for point in span.clone() {
+        for point in span {
             // Making the nodes of one point takes up to milliseconds, and there are thousands of points.
             if self.monitor.should_stop() {
-                return None;
+                return none;
             }
             let row = self.row(point, class, rows.last());
             end = row.min;
             if end[0] == f64::INFINITY {
-                span.clone().for_each(|point| self.active.clear_all(point, class.index()));
-                return None;
+                return none;
             }
             rows.push(row);
         }
-        Some(Ways { segment, class: class.index(), rows, end })
+        Ways { segment, rows, end }
     }
 
-    /// A point after the row of the one before; cells that no way leads to, or in which nothing is allowed, become
-    /// inactive.
+    /// A point after the row of the one before: the active cells that some way leads to, and in which something is
+    /// allowed.
     fn row(&mut self, point: usize, class: PostureClass, before: Option<&Row>) -> Row {
+        self.targets.clear();
+        self.targets.extend(self.active.cells(point, class.index()));
         if let Some(before) = before {
             let (low, high) = self.model.steps(self.region, &self.points, point, self.width);
-            self.neighbours.compute(&before.sums, -high, -low);
+            let sources = (&before.cells[..], &before.sums[..]);
+            self.neighbours.compute(sources, (-high, -low), self.active.count(), &self.targets);
         }
-        let sums = vec![INFINITE; self.active.count()];
-        let mut row = Row { cells: Vec::new(), costs: Vec::new(), sums, min: INFINITE };
+        let room = self.targets.len();
+        let mut row = Row {
+            cells: Vec::with_capacity(room),
+            costs: Vec::with_capacity(room),
+            sums: Vec::with_capacity(room),
+            min: INFINITE,
+        };
         let answer = self.answer(point);
-        let cells: Vec<usize> = self.active.cells(point, class.index()).collect();
-        for cell in cells {
-            let reached = before.map(|_| self.neighbours.out[cell]);
-            let is_reached = reached.is_none_or(|sum| sum[0] != f64::INFINITY);
-            let Some(cost) = is_reached.then(|| self.cost(answer.as_ref(), cell, class)).flatten() else {
-                self.active.clear(point, class.index(), cell);
+        for (number, cell) in self.targets.iter().enumerate() {
+            let reached = before.map(|_| self.neighbours.out[number]);
+            if reached.is_some_and(|sum| sum[0] == f64::INFINITY) {
                 continue;
-            };
+            }
+            let Some(cost) = self.cost(answer.as_ref(), usize::from(*cell), class) else { continue };
             let sum = reached.map_or(cost, |sum| joined(self.model.objective.aggregate, &sum, &cost));
-            row.sums[cell] = sum;
-            row.cells.push(cell);
+            row.cells.push(*cell);
             row.costs.push(cost);
+            row.sums.push(sum);
             min_into(&mut row.min, &sum);
         }
         row
     }
 
-    /// The node that answers for a point all over the box, if there is one.
+    /// What answers for a point all over the box, if anything does.
     fn answer(&self, point: usize) -> Option<Answer<'a>> {
         let cost = self.points[point]?;
-        let (placed, level, table) = (&cost.placed, self.active.level, &self.model.table);
+        let (placed, level) = (&cost.placed, self.active.level);
+        let Model { table, arm, others, .. } = self.model;
         let answers = table.answers(level, [placed.reach[0], placed.reach[1]]);
         let (at, off) = table.nearest(level, placed.r, placed.z).filter(|_| answers)?;
-        Some((cost, at, off))
+        let others = others.iter().map(|set| (cost.with_first(set.first), set.table.nodes_at(&set.arm, level, at)));
+        Some(Answer { point: cost, nodes: table.nodes_at(arm, level, at), others: others.collect(), off })
     }
 
     /// What a point costs at least in a cell; `None` where none of its states is allowed.
+    #[inline]
     fn cost(&self, answer: Option<&Answer<'_>>, cell: usize, class: PostureClass) -> Option<[f64; CORNERS]> {
-        let Some((point, at, off)) = answer else { return Some([0.0; CORNERS]) };
-        let Model { table, arm, others, over, objective, .. } = self.model;
-        let (level, half, aggregate) = (self.active.level, 0.5 * self.width, objective.aggregate);
-        let least = |table: &ComplianceTable, arm: &Arm, point: &PointCost<'_>| {
-            let (node, moments) = table.known(arm, level, *at, cell, class);
+        let Some(Answer { point, nodes, others, off }) = answer else { return Some([0.0; CORNERS]) };
+        let (half, aggregate) = (0.5 * self.width, self.model.objective.aggregate);
+        let least = |nodes: &NodesAt<'_>, point: &PointCost<'_>| {
+            let (node, moments) = nodes.known(cell, class);
             match node {
                 Node::Empty => None,
                 Node::Unknown => Some(NOTHING),
                 Node::Known(known) => Some(point.least((known, moments), *off, half, self.region)),
             }
         };
-        let own = least(table, arm, point)?;
+        let own = least(nodes, point)?;
         if others.is_empty() {
             return Some(cost_at_corners(own, self.region, aggregate));
         }
         let mut all = vec![own];
-        for set in others {
-            all.push(least(&set.table, &set.arm, &point.with_first(set.first))?);
+        for (point, nodes) in others {
+            all.push(least(nodes, point)?);
         }
-        Some(cost_at_corners(joined_sets(*over, all.into_iter()), self.region, aggregate))
+        Some(cost_at_corners(joined_sets(self.model.over, all.into_iter()), self.region, aggregate))
     }
 
     /// From the end back: cells through which every way costs `ceiling` or more, with `others` for the other segments,
-    /// become inactive.
-    fn prune(&mut self, ways: &Ways, others: &[f64; CORNERS], ceiling: f64) {
-        let (span, aggregate) = (&self.model.segments[ways.segment], self.model.objective.aggregate);
-        let mut after = vec![INFINITE; self.active.count()];
-        for (place, row) in ways.rows.iter().enumerate().rev() {
-            let point = span.start + place;
-            let is_end = place + 1 == span.len();
+    /// are left out of the rows.
+    fn prune(&mut self, ways: &mut Ways, others: &[f64; CORNERS], ceiling: f64) {
+        let (start, aggregate) = (self.model.segments[ways.segment].start, self.model.objective.aggregate);
+        // Of the row after, the cells that are left and the least sum from each to the end.
+        let (mut cells, mut after): (Vec<u16>, Vec<[f64; CORNERS]>) = (Vec::new(), Vec::new());
+        let number = ways.rows.len();
+        for (place, row) in ways.rows.iter_mut().enumerate().rev() {
+            let is_end = place + 1 == number;
             if !is_end {
-                let (low, high) = self.model.steps(self.region, &self.points, point + 1, self.width);
-                self.neighbours.compute(&after, low, high);
+                let steps = self.model.steps(self.region, &self.points, start + place + 1, self.width);
+                self.neighbours.compute((&cells, &after), steps, self.active.count(), &row.cells);
             }
-            after.fill(INFINITE);
-            for (cell, cost) in row.cells.iter().zip(&row.costs) {
-                let onward = if is_end { [0.0; CORNERS] } else { self.neighbours.out[*cell] };
-                let sum = &row.sums[*cell];
+            (cells, after) = (Vec::with_capacity(row.cells.len()), Vec::with_capacity(row.cells.len()));
+            for (number, ((cell, cost), sum)) in row.cells.iter().zip(&row.costs).zip(&row.sums).enumerate() {
+                let onward = if is_end { [0.0; CORNERS] } else { self.neighbours.out[number] };
                 let through = joined(aggregate, &joined(aggregate, sum, &onward), others);
-                let through = through.into_iter().fold(f64::INFINITY, f64::min);
-                if through >= ceiling {
-                    self.active.clear(point, ways.class, *cell);
-                } else {
-                    after[*cell] = joined(aggregate, &onward, cost);
+                if through.into_iter().fold(f64::INFINITY, f64::min) < ceiling {
+                    cells.push(*cell);
+                    after.push(joined(aggregate, &onward, cost));
                 }
             }
+            row.cells.clone_from(&cells);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::arm::Arm;
 use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
-use super::cost::{Direction, Known};
+use super::cost::{Direction, Known, of_joint1};
 use super::kind::Kind;
 use super::load::{Load, Tangent};
 use super::moment::{MomentModel, MomentPart};
@@ -54,8 +54,9 @@ pub(super) fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
     if value <= 0.0 { ZERO } else { Affine { value: value as f32, slope: slope.map(|s| s as f32) } }
 }
 
-/// Second-order parts larger than this share of the compliance are cut up, down to the finest level.
+/// Second-order parts larger than this share of the compliance are cut up, down to the finest of these levels.
 const COARSE: f64 = 0.3;
+const COARSE_LEVELS: usize = 4;
 
 /// What the model of a node leaves out, in the plan or of what is vertical.
 fn coarseness(known: &AffineModel) -> f32 {
@@ -75,8 +76,8 @@ pub(super) fn collect(
     class: PostureClass,
     out: &mut Vec<ModelledRegion>,
 ) -> bool {
-    let finest = level + 1 == table.depth();
-    let (node_at, moments) = table.known(arm, level, at, cell, class);
+    let finest = level + 1 == COARSE_LEVELS.min(table.depth());
+    let (node_at, moments) = table.nodes_at(arm, level, at).known(cell, class);
     match node_at {
         Node::Empty => return true,
         Node::Unknown if finest => return false,
@@ -132,28 +133,50 @@ impl ModelledRegion {
         Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], moments: moments.copied(), half, r, off }
     }
 
+    /// An affine model by radius, height and direction of the load of `<C, S>` in the region, for directions within
+    /// `h_chi` (rad), without what moments add; `vertical` where entries of C out of the plan count.
+    #[inline(always)]
+    fn model(
+        &self,
+        (factors, lengths): &([f64; 6], [f64; 2]),
+        is_vertical: bool,
+        h_chi: f64,
+        first: f64,
+    ) -> AroundRegion {
+        let [plane, x, y, g, h, axial] = *factors;
+        let [length, vertical] = *lengths;
+        let [j_value, j_r, j_chi, j_rest] = of_joint1(factors, length, self.r, [self.half[0], h_chi], first);
+        let mut of: [f64; 4] =
+            std::array::from_fn(|k| plane * self.values[0][k] + x * self.values[1][k] + y * self.values[2][k]);
+        let mut by_chi = 2.0 * (x * self.values[2][0] - y * self.values[1][0]) + j_chi;
+        let mut remainder = self.remainder[0] * plane.abs()
+            + self.remainder[1] * length
+            + h_chi * 2.0 * length * self.moved[0]
+            + h_chi * h_chi * 2.0 * length * self.max_size[0]
+            + j_rest;
+        if is_vertical {
+            let [cr, ct] = [3, 4].map(|f| self.values[f][0]);
+            for (k, of) in of.iter_mut().enumerate() {
+                *of += g * self.values[3][k] + h * self.values[4][k] + axial * self.values[5][k];
+            }
+            by_chi += g * ct - h * cr;
+            remainder += self.remainder[2] * vertical
+                + self.remainder[3] * axial.abs()
+                + h_chi * vertical * self.moved[1]
+                + h_chi * h_chi * 0.5 * vertical * self.max_size[1];
+        }
+        let [value, by_r, by_z, by_heading] = of;
+        AroundRegion { value: value + j_value, slopes: [by_r + j_r, by_z, by_chi], by_heading, remainder }
+    }
+
     /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
     /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
     #[inline(always)]
     fn least(&self, tangent: &Tangent, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
         let turned = direction.turned(tangent, load, self.r, [self.half[0], h_chi], first);
-        let [plane, x, y, g, h, axial] = turned.factors;
-        let [length, vertical] = turned.lengths;
-        let [j_value, j_r, j_chi, j_rest] = turned.joint1;
-        let of = |k: usize| {
-            let v = |f: usize| self.values[f][k];
-            plane * v(0) + x * v(1) + y * v(2) + g * v(3) + h * v(4) + axial * v(5)
-        };
-        let [d1, d2, cr, ct] = [1, 2, 3, 4].map(|f| self.values[f][0]);
-        let by_chi = 2.0 * (x * d2 - y * d1) + g * ct - h * cr + j_chi;
-        let remainder = self.remainder[0] * plane.abs()
-            + self.remainder[1] * length
-            + self.remainder[2] * vertical
-            + self.remainder[3] * axial.abs()
-            + h_chi * (2.0 * length * self.moved[0] + vertical * self.moved[1])
-            + h_chi * h_chi * (2.0 * length * self.max_size[0] + 0.5 * vertical * self.max_size[1])
-            + j_rest;
-        let (value, slopes, by_heading) = (of(0) + j_value - remainder, [of(1) + j_r, of(2), by_chi], of(3));
+        let AroundRegion { value, slopes, by_heading, remainder } =
+            self.model(&(turned.factors, turned.lengths), true, h_chi, first);
+        let value = value + load.of_part(tangent) - remainder;
         // The heading is free within its cell.
         let (Some(turned), Some(known)) = (&turned.moment, &self.moments) else {
             return (value - by_heading.abs() * self.half[2], slopes);
@@ -164,29 +187,45 @@ impl ModelledRegion {
         (value + more - remainder - free, [slopes[0] + r, slopes[1] + z, slopes[2] + by_chi])
     }
 
+    /// The same below the absolute value of what is linear in C, with factors in the radial frame and what the part
+    /// adds.
+    #[inline(always)]
+    fn least_absolute(
+        &self,
+        (turned, of_part): &(([f64; 6], [f64; 2]), f64),
+        is_vertical: bool,
+        h_chi: f64,
+        first: f64,
+    ) -> (f64, [f64; 3]) {
+        let AroundRegion { value, slopes, by_heading, remainder } = self.model(turned, is_vertical, h_chi, first);
+        let value = value + of_part;
+        let sign = if value < 0.0 { -1.0 } else { 1.0 };
+        (value.abs() - remainder - by_heading.abs() * self.half[2], slopes.map(|slope| sign * slope))
+    }
+
     /// By how much the scores of the loads of a kind can differ from that of its own: what the norms of C and D make of
-    /// the differences in force and moment. m
-    #[inline]
+    /// the differences in force, moment and part. m
+    #[inline(never)]
     fn spread(&self, kind: &Kind, first: f64) -> f64 {
-        if kind.force_spread == 0.0 && kind.moment_spread == 0.0 {
-            return 0.0;
-        }
         let far = self.r + self.half[0];
         let up = |f: usize, remainder: f64| {
             let [value, slopes @ ..] = self.values[f];
             value.abs() + (0..3).map(|k| slopes[k].abs() * self.half[k]).sum::<f64>() + remainder
         };
         let plan = 2.0 * up(0, self.remainder[0]) + first * far * far;
-        let c = plan + 2.0 * self.max_size[1] + up(5, self.remainder[3]);
+        let part = kind.load.part.map_or(0.0, |part| part.size());
+        let c = plan + 2.0 * self.max_size[1] + up(5, self.remainder[3]) + part;
         let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + first * far);
         let scored = kind.load.directions.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
-        scored * (c * kind.force_spread + d * kind.moment_spread)
+        // Loads of a kind have forces of size 1.
+        let by_part = kind.part_spread * (1.0 + kind.load.error);
+        scored * (c * kind.force_spread + d * kind.moment_spread + by_part)
     }
 
     /// The same below the score.
     #[inline(always)]
     fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
-        let seen = direction.seen(self.values.map(|value| value[0]), self.r, first);
+        let seen = load.with_part(direction.seen(self.values.map(|value| value[0]), self.r, first));
         let by_moment = self.moments.map_or([0.0; 3], |known| {
             direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, first)
         });
@@ -206,6 +245,40 @@ impl ModelledRegion {
     }
 }
 
+/// An affine model over a region: see [`ModelledRegion::model`].
+struct AroundRegion {
+    /// At the middle. m
+    value: f64,
+    /// By radius, height and direction of the load.
+    slopes: [f64; 3],
+    by_heading: f64,
+    /// How far what is modelled is from it, at most. m
+    remainder: f64,
+}
+
+/// What `of` says of each region, into `space`, and the lowest of it; `None` once that is not above zero.
+// Out of line: each use is a loop that fits into the registers.
+#[inline(never)]
+fn each_least(
+    found: &[ModelledRegion],
+    space: &mut Vec<(f64, [f64; 3])>,
+    of: impl Fn(&ModelledRegion) -> (f64, [f64; 3]),
+) -> Option<(f64, [f64; 3])> {
+    space.clear();
+    let mut lowest = (f64::INFINITY, [0.0; 3]);
+    for region in found {
+        let least = of(region);
+        if least.0 < lowest.0 {
+            lowest = least;
+            if least.0 <= 0.0 {
+                return None;
+            }
+        }
+        space.push(least);
+    }
+    Some(lowest)
+}
+
 /// Below what all of the states cost, for a kind of load and its direction (sine and cosine) within `half` of the node.
 /// `space` is for work.
 pub(super) fn minorant(
@@ -221,19 +294,26 @@ pub(super) fn minorant(
     }
     let direction = Direction::of(direction);
     let h_chi = half[2];
-    space.clear();
-    let mut lowest = (f64::INFINITY, [0.0; 3]);
-    for region in found {
-        let (least, slopes) = region.least_score(&kind.load, &direction, h_chi, first);
-        let least = (least - region.spread(kind, first), slopes);
-        if least.0 < lowest.0 {
-            lowest = least;
-            if least.0 <= 0.0 {
-                return ZERO;
-            }
-        }
-        space.push(least);
-    }
+    let first_tangent = kind.load.of_first();
+    let turned = (direction.factors(&first_tangent), kind.load.of_part(&first_tangent));
+    let is_spread = kind.force_spread != 0.0 || kind.moment_spread != 0.0 || kind.part_spread != 0.0;
+    let lowest = if !kind.load.is_linear() || kind.load.has_moment() {
+        each_least(found, space, |region| {
+            let (least, slopes) = region.least_score(&kind.load, &direction, h_chi, first);
+            (least - if is_spread { region.spread(kind, first) } else { 0.0 }, slopes)
+        })
+    } else if turned.0.1[1] != 0.0 || turned.0.0[5] != 0.0 {
+        each_least(found, space, |region| {
+            let (least, slopes) = region.least_absolute(&turned, true, h_chi, first);
+            (least - if is_spread { region.spread(kind, first) } else { 0.0 }, slopes)
+        })
+    } else {
+        each_least(found, space, |region| {
+            let (least, slopes) = region.least_absolute(&turned, false, h_chi, first);
+            (least - if is_spread { region.spread(kind, first) } else { 0.0 }, slopes)
+        })
+    };
+    let Some(lowest) = lowest else { return ZERO };
     let slope = lowest.1;
     let mut value = f64::INFINITY;
     for (s, (least, slopes)) in found.iter().zip(&*space) {

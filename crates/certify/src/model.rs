@@ -16,7 +16,7 @@ use stead_planning::symmetry::Upright;
 
 /// Steps of the coarsest tables, and their number.
 pub(super) const STEPS: Steps = Steps { length: 0.025, headings: 128 };
-pub(super) const LEVELS: usize = 4;
+pub(super) const LEVELS: usize = 6;
 
 /// The arm with another set of stiffness than the first.
 #[derive(Debug)]

@@ -42,6 +42,10 @@ pub(super) trait Number:
     fn wrist(self, bend: &Bend) -> Self;
     /// Where it is sure to be below zero.
     fn is_negative(self) -> Mask;
+    /// What it is at least.
+    fn low(self) -> Lanes;
+    /// What it is at most.
+    fn high(self) -> Lanes;
     /// The same, where it is sure to be above `floor`; elsewhere the lane leaves `sure`, and anything may come out.
     fn assume_above(self, floor: f64, sure: &mut Mask) -> Self;
 }
@@ -180,6 +184,14 @@ impl Number for Slope {
     #[inline(always)]
     fn is_negative(self) -> Mask {
         self.value.less(ZERO)
+    }
+    #[inline(always)]
+    fn low(self) -> Lanes {
+        self.value
+    }
+    #[inline(always)]
+    fn high(self) -> Lanes {
+        self.value
     }
     #[inline(always)]
     fn assume_above(self, floor: f64, sure: &mut Mask) -> Self {

@@ -1,19 +1,23 @@
 //! What a certificate asks of a problem.
 
-use super::arm::needed_condition;
+use super::arm::{is_base_alike, needed_condition};
+use super::at_rest::without_rails;
 use super::cell::{extent, points_of};
 use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
-use super::model::{LEVELS, STEPS};
+use super::model::STEPS;
+use stead_model::stiffness::whole::yields_elsewhere;
 use stead_planning::criterion::Aggregate;
 use stead_planning::problem::Problem;
 use stead_planning::symmetry::{
-    Unsupported, Upright, require_axial_springs, require_certain_compliances, require_constant, require_free_beta,
-    require_no_travel,
+    Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_no_travel,
 };
 
 /// Whether the best placement of a problem can be certified with tables of at most `memory` bytes when they are empty,
 /// found without work.
+///
+/// What adds to an objective and is never below zero is left out of its bound, and so is what keeps plans from being
+/// better: see [`left_out`].
 ///
 /// # Errors
 /// The first reason why not.
@@ -24,18 +28,17 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if problem.lean.is_some() {
         return Err(Unsupported::Lean);
     }
+    let alone = without_rails(problem)?;
+    let problem = alone.as_ref();
     Upright::of(problem)?;
-    require_no_travel(problem)?;
-    require_free_beta(problem)?;
     require_constant(problem, &[0, 3, 4, 5])?;
-    require_certain_compliances(problem)?;
-    require_axial_springs(problem)?;
+    require_covered_springs(problem)?;
     let extent = extent(problem);
     if let Some(needed) = needed_condition(problem, extent.radius.0) {
         return Err(Unsupported::Conditioning { needed });
     }
     let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
-    let bytes = ComplianceTable::bytes(extent, STEPS, LEVELS)
+    let bytes = ComplianceTable::bytes(extent, STEPS)
         .saturating_mul(problem.scored_robots().len() as u64)
         .saturating_add(coarse);
     if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) }
@@ -48,6 +51,10 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
 /// The first reason why not.
 pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     certifiable(problem, memory)?;
+    Upright::of(problem)?;
+    require_no_travel(problem)?;
+    require_free_beta(problem)?;
+    require_certain_compliances(problem)?;
     let beyond = |key| Err(Unsupported::NotFromAbove { key });
     if problem.criterion.aggregate != Aggregate::Mean {
         beyond("criterion.aggregate")
@@ -60,4 +67,44 @@ pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsu
     } else {
         Ok(())
     }
+}
+
+/// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in words.
+pub(super) fn left_out(problem: &Problem) -> Vec<&'static str> {
+    let mut words = Vec::new();
+    if require_no_travel(problem).is_err() {
+        words.push("travel of the joints in the objective");
+    }
+    if require_certain_compliances(problem).is_err() {
+        words.push("errors of the compliances in the scores");
+    }
+    if require_free_beta(problem).is_err() {
+        words.push("beta that stays along the path");
+    }
+    if !problem.external_axes.is_empty() {
+        words.push("which position of the external axes goes with which x, y and z");
+    }
+    words
+}
+
+/// Requires that what yields beside the joints about their axes turns with the arm, the tool or the part, and does so
+/// under forces alone.
+fn require_covered_springs(problem: &Problem) -> Result<(), Unsupported> {
+    let has_moments = problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0);
+    for robot in problem.scored_robots() {
+        if !is_base_alike(robot) {
+            return Err(Unsupported::YieldsBeside {
+                what: "base and pedestal that are not alike in every direction about axis 1 ([base_compliance])",
+            });
+        }
+        if !robot.flips_yield_alike() {
+            return Err(Unsupported::UnlikeFlips);
+        }
+        if has_moments && yields_elsewhere(robot, &problem.spindle) {
+            return Err(Unsupported::YieldsBeside {
+                what: "springs normal to the axes, base or mount under moments on the tool",
+            });
+        }
+    }
+    Ok(())
 }

@@ -96,9 +96,10 @@ impl<'a> BoxBounds<'a> {
             bounds.max = ANYTHING;
             return bounds;
         };
+        let nodes = table.nodes_at(arm, self.level, at);
         let mut min_size = f64::INFINITY;
         for cell in cells {
-            let (node, moments) = table.known(arm, self.level, at, cell, class);
+            let (node, moments) = nodes.known(cell, class);
             match node {
                 Node::Empty => {}
                 Node::Unknown => bounds.max = ANYTHING,

@@ -64,11 +64,12 @@ pub fn worst(
         bytes: |seen: &Option<Arc<Inherited>>| seen.as_ref().map_or(0, |seen| seen.bytes()),
     };
     let mut known = value;
-    Ok(search.explore(all, monitor, |regions| {
+    let (bound, _) = search.explore(all, monitor, |regions| {
         let met = worse(problem, known, regions, monitor)?;
         known = met.0;
         Some(met)
-    }))
+    });
+    Ok(bound)
 }
 
 /// Values closer than this (relative) are the same.

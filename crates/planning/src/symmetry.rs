@@ -60,9 +60,7 @@ pub enum Unsupported {
     #[error("joint 5 yields normal to its axis off the wrist centre (joints[5].bearing_mm)")]
     UnlikeFlips,
     /// More yields than the joints about their axes, and bounds have no terms for it.
-    #[error(
-        "{what} yield beside the joints about their axes, which bounds do not cover yet: a bound without them would be none"
-    )]
+    #[error("bounds do not cover {what}: a bound without them would be none")]
     YieldsBeside {
         /// What.
         what: &'static str,
@@ -218,29 +216,6 @@ pub fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
         BetaPlan::Free => Ok(()),
         beta => Err(Unsupported::ConstantBeta { beta }),
     }
-}
-
-/// Requires that nothing but the joints about their axes yields.
-///
-/// # Errors
-/// [`Unsupported::YieldsBeside`] at the first thing that does.
-pub fn require_axial_springs(problem: &Problem) -> Result<(), Unsupported> {
-    let robots = || problem.scored_robots().iter();
-    for (what, does_yield) in [
-        (
-            "springs normal to the axes (stiffness_model = \"full\")",
-            robots().any(|robot| robot.normal_springs().is_some()),
-        ),
-        ("base and pedestal ([base_compliance])", robots().any(|robot| robot.base_compliance().is_some())),
-        ("the bolts of the spindle (spindle.mount_matrix)", problem.spindle.mount.is_some()),
-        ("holder and tool (spindle.tip_um_per_n)", problem.spindle.tip.is_some()),
-        ("part and fixture ([part_compliance], part_*_um_per_n)", problem.task.part_yields()),
-    ] {
-        if does_yield {
-            return Err(Unsupported::YieldsBeside { what });
-        }
-    }
-    Ok(())
 }
 
 /// Requires scores to leave out the uncertainty of the compliances.

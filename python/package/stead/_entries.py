@@ -278,6 +278,7 @@ class Certificate(Record):
     memory_gb: float
     nodes: int
     notes: list[str]
+    sentence: str | None
     time_limit_s: float | None
     version: str
     wall_s: float | None

@@ -15,15 +15,27 @@
 //! |N|^2    = (sum |z_j x p_j|^2) / L^2 + 6
 //! |N^-1|^2 = L^2 (sum |q|^2 + Q(w)) + sum |q x t|^2 + Q(1 - w x t)
 //! ```
+//!
+//! Over a region near a singularity that difference is between terms that are nearly alike, and its sign is lost. There
+//! two tests need no difference: every sum in `|N^-1|^2` is above zero, so that each may be enclosed by itself and left
+//! out where it is loose; and for any joint velocity x, `|N^-1| >= |x| / |N x|`, so that
+//! `|N x|^2 / |x|^2 >= min^2 |N|^2 / 36`. See [`super::singularity`] for the velocities of elbow and wrist. Of the
+//! shoulder it is that which turns joint 1 and moves the wrist centre only normal to the plane of the arm, by rho, with
+//! a wrist that undoes the turn: `|N x| = |rho| / L` and `|x|^2 >= 1 + 1 / 2`, since the norm of (z_4, z_5, z_6) is at
+//! most the root of 2.
 
-use super::super::interval_simd::Mask;
-use super::super::number::Number;
+use super::super::interval_simd::{Lanes, Mask};
+use super::super::number::{Number, ZERO};
 use super::constants::Arm;
 use super::inverse::Posed;
 use super::vector::Vector;
 
 /// The wrist centre must be this far from axis 1 to divide by its distance. m
 const MIN_DISTANCE: f64 = 1e-3;
+/// A quotient above this is above 1 whatever the rounding.
+const BEYOND_ROUNDING: f64 = 1.0 + 1e-9;
+/// Divisors are no smaller: above zero, and far below any that counts.
+const TINY: Lanes = Lanes([1e-30; 4]);
 
 /// Lever and axes in the frame of joint 1.
 struct ArmFrame<T> {
@@ -41,6 +53,14 @@ struct InversePosition<T> {
     spin_y: Vector<T>,
 }
 
+/// The parts of |N^-1|^2, both sums of squares.
+struct InverseNorm<T> {
+    /// L^2 sum |q|^2 + sum |q x t|^2, times D^2.
+    arm: T,
+    /// L^2 Q(w) + Q(1 - w x t), times D^2 s^4.
+    turned: T,
+}
+
 /// The inverse wrist as a quadratic form, times the fourth power of its sine.
 struct WristForm<T> {
     xx: T,
@@ -52,18 +72,39 @@ struct WristForm<T> {
 }
 
 impl Arm {
-    /// `D^2 s^4 - |N|^2 (D^2 s^4 |N^-1|^2) min^2 / 36`: not negative where the constraint holds. `regular` loses the
-    /// lanes in which the wrist centre may be too near to axis 1.
+    /// `D^2 s^4 - |N|^2 (D^2 s^4 |N^-1|^2) min^2 / 36`: not negative where the constraint holds; and where it is sure
+    /// to be violated otherwise. `regular` loses the lanes in which the wrist centre may be too near to axis 1.
     #[inline(always)]
-    pub(super) fn conditioning<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> T {
+    pub(super) fn conditioning<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> (T, Mask) {
         let frame = self.arm_frame(posed);
-        let norm2 = self.jacobian_norm2(posed, &frame);
+        let [norm2, norm2_at_least] = self.jacobian_norm2(posed, &frame);
+        let share = self.min_inverse_condition * self.min_inverse_condition / 36.0;
+        let needed = norm2.low().max(norm2_at_least.low()) * share;
+        let is_near = self.is_near_singularity(posed, needed) & *regular;
         let inverse = self.inverse_position(posed, regular);
-        let scaled_inverse_norm2 = self.inverse_norm2(posed, &frame, &inverse);
+        let parts = self.inverse_norm2(posed, &frame, &inverse);
+        let (by_elbow, by_both) = (posed.elbow.sin_delta_squared.high(), posed.wrist.sine5_squared.high());
+        let least = |sum: T| sum.low().max(ZERO);
+        let inverse_norm2 =
+            (least(parts.arm) + least(parts.turned) / (by_both * by_both).max(TINY)) / by_elbow.max(TINY);
+        let is_above = Lanes::splat(BEYOND_ROUNDING).less(needed * inverse_norm2) & *regular;
         let sine5_fourth = posed.wrist.sine5_squared.square();
-        let product = norm2 * scaled_inverse_norm2;
-        sine5_fourth * posed.elbow.sin_delta.square()
-            - product.scale(self.min_inverse_condition * self.min_inverse_condition / 36.0)
+        let product = norm2 * (parts.arm * sine5_fourth + parts.turned);
+        let margin = sine5_fourth * posed.elbow.sin_delta.square() - product.scale(share);
+        (margin, is_near | is_above)
+    }
+
+    /// Where elbow, wrist or shoulder is sure to be nearer to its singularity than `min^2 |N|^2 / 36`, which is at least
+    /// `needed`, allows.
+    #[inline(always)]
+    fn is_near_singularity<T: Number>(&self, posed: &Posed<'_, T>, needed: Lanes) -> Mask {
+        let is_short = |of: Lanes, by: Lanes| (of * BEYOND_ROUNDING).less(needed * by);
+        let elbow = is_short(posed.elbow.sin_delta_squared.high(), posed.elbow.distance2.low() * self.needs.elbow);
+        let same = posed.wrist.dot46.square().plus(1.0);
+        let wrist = is_short(posed.wrist.sine5_squared.high() * self.needs.wrist, same.low());
+        let length2 = self.characteristic_length * self.characteristic_length;
+        let shoulder = is_short(posed.first.forward.square().high(), Lanes::splat(1.5 * length2));
+        elbow | wrist | shoulder
     }
 
     #[inline(always)]
@@ -76,9 +117,9 @@ impl Arm {
         ArmFrame { lever: into(posed.tool.lever), axis4, axis6: into(posed.tool.axis6), along5_squared }
     }
 
-    /// |N|^2.
+    /// |N|^2; and what it is at least, with the lever's part along axis 5 as large as it can be.
     #[inline(always)]
-    fn jacobian_norm2<T: Number>(&self, posed: &Posed<'_, T>, frame: &ArmFrame<T>) -> T {
+    fn jacobian_norm2<T: Number>(&self, posed: &Posed<'_, T>, frame: &ArmFrame<T>) -> [T; 2] {
         let (lever, length) = (frame.lever, self.characteristic_length);
         let (px, py) = (posed.first.forward + lever.x, lever.y.plus(self.geometry.lateral));
         let [p2, p3] = posed.tips;
@@ -87,9 +128,10 @@ impl Arm {
         let along4 = frame.axis4.dot(lever);
         let linear2 =
             px.square() + py.square() + p2.along.square() + p2.up.square() + p3.along.square() + p3.up.square()
-                - along4.square()
-                - frame.along5_squared;
-        linear2.plus(3.0 * lever2 - along6 * along6).scale(1.0 / (length * length)).plus(6.0)
+                - along4.square();
+        let normalised = |sum: T| sum.scale(1.0 / (length * length)).plus(6.0);
+        let exact = (linear2 - frame.along5_squared).plus(3.0 * lever2 - along6 * along6);
+        [normalised(exact), normalised(linear2.plus(2.0 * lever2))]
     }
 
     #[inline(always)]
@@ -112,9 +154,14 @@ impl Arm {
         InversePosition { rows: [q1, q2, q3], spin_y }
     }
 
-    /// D^2 s^4 |N^-1|^2.
+    /// |N^-1|^2.
     #[inline(always)]
-    fn inverse_norm2<T: Number>(&self, posed: &Posed<'_, T>, frame: &ArmFrame<T>, inverse: &InversePosition<T>) -> T {
+    fn inverse_norm2<T: Number>(
+        &self,
+        posed: &Posed<'_, T>,
+        frame: &ArmFrame<T>,
+        inverse: &InversePosition<T>,
+    ) -> InverseNorm<T> {
         let (t, length, lever2) = (frame.lever, self.characteristic_length, self.lever.norm_squared());
         let InversePosition { rows: [q1, q2, q3], spin_y: wy } = *inverse;
         let arm2 = q1.square() + q2.square() + q3.square();
@@ -131,8 +178,8 @@ impl Arm {
             + form.yy * my.square()
             + form.zz * mz.square()
             + (d * (form.xy * my.x + form.xz * mz.x) + form.yz * my.dot(mz)).scale(2.0);
-        let s4 = posed.wrist.sine5_squared.square();
-        (arm2 * s4 + spin2).scale(length * length) + arm_crossed2 * s4 + turned2
+        let length2 = length * length;
+        InverseNorm { arm: arm2.scale(length2) + arm_crossed2, turned: spin2.scale(length2) + turned2 }
     }
 }
 

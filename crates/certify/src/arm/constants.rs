@@ -2,6 +2,7 @@
 
 use super::super::cell::points_of;
 use super::super::continuation::{Bend, Links};
+use super::beside::Beside;
 use super::law::Law;
 use super::singularity::{Limits, Needs, tool_lever};
 use nalgebra::{Matrix3, Vector3};
@@ -34,6 +35,8 @@ pub(in super::super) struct Arm {
     /// Whether any force or scored direction is along axis 1, and whether both can be.
     pub(super) is_vertical: bool,
     pub(super) is_axial: bool,
+    /// What yields beside the joints about their axes.
+    pub(super) beside: Option<Beside>,
     /// Whether any moment acts.
     pub(in super::super) has_moments: bool,
 }
@@ -69,7 +72,9 @@ impl Arm {
         let (upper_arm, forearm) = (geometry.upper_arm, geometry.forearm);
         let (square, twice) = (upper_arm * upper_arm + forearm * forearm, 2.0 * upper_arm * forearm);
         let distances2 = [square - twice * limits.folded, square + twice * limits.stretched];
+        let lever = root_from_flange * tool_lever(problem);
         Self {
+            beside: Beside::of(robot, &problem.spindle, &root_from_flange, &lever),
             geometry,
             needs: limits.needs,
             links: Links { upper_arm, forearm, limits: distances2 },
@@ -77,7 +82,7 @@ impl Arm {
             is_vertical,
             is_axial,
             has_moments: problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0),
-            lever: root_from_flange * tool_lever(problem),
+            lever,
             axis6: root_from_flange.column(2).into_owned(),
             laws: [1, 2].map(|j| Law::of(joint(j))),
             typical: compliances[1].max(compliances[2]) / 3.0,

@@ -64,6 +64,12 @@ impl<T: Number> Tool<T> {
         Self { sine, cosine, lever, axis6 }
     }
 
+    /// Sine and cosine of the heading.
+    #[inline(always)]
+    pub fn heading(&self) -> (T, T) {
+        (self.sine, self.cosine)
+    }
+
     /// R(eta) v.
     #[inline(always)]
     pub fn turned(&self, v: &Vector3<f64>) -> Vector<T> {
@@ -91,6 +97,10 @@ pub(super) struct Elbow<T> {
     /// Elbow from the shoulder: along the arm, and up times `lift`. m
     elbow: [T; 2],
     pub sin_delta: T,
+    /// The square of that, nowhere continued.
+    pub sin_delta_squared: T,
+    /// Squared distance of the wrist centre from the shoulder. m^2
+    pub distance2: T,
     /// Sines and cosines of joints 2 and 3.
     pub angles: [[T; 2]; 2],
     /// Not negative where the bound on conditioning allows the elbow.
@@ -187,7 +197,8 @@ impl Arm {
         let outside = self.is_outside(0, joint_margins[0]) | self.is_outside(1, joint_margins[1]);
         let violated = margin.is_negative() & defined | outside & *regular;
         let angles = [[sin2, cos2], [sin3, cos3]];
-        Elbow { from_shoulder: InPlane { along: u, up }, elbow, sin_delta, angles, margin, joint_margins, violated }
+        let from_shoulder = InPlane { along: u, up };
+        Elbow { from_shoulder, elbow, sin_delta, sin_delta_squared, distance2, angles, margin, joint_margins, violated }
     }
 
     /// sin(theta - min) and sin(max - theta) of joint 2 (0) or 3 (1).

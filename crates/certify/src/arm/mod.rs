@@ -12,7 +12,10 @@
 //! v_2, v_3: h_j (cos phi, sin phi) in plan        v_4 = z_4 x t,  v_5 = (z_4 x z_6) x t / s,  v_6 = z_6 x t
 //! [[m + d1, d2], [d2, m - d1]] = C in plan        c_rz, c_tz = C between the vertical and the plan
 //! ```
+//!
+//! What else yields is in `beside`; the part, which turns with the load, in [`super::load`].
 
+mod beside;
 mod conditioning;
 mod constants;
 mod inverse;
@@ -23,6 +26,7 @@ mod vector;
 use super::interval_simd::Mask;
 use super::moment::MOMENTS;
 use super::number::Number;
+pub(super) use beside::is_base_alike;
 pub(super) use constants::{Arm, LimitSpan};
 use inverse::{Posed, Signs, Tool};
 pub(super) use singularity::needed_condition;
@@ -32,7 +36,7 @@ use vector::{InPlane, Vector};
 /// How the arm yields and what it allows, in one posture class.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ArmCompliance<T> {
-    /// In-plane compliance without joint 1: [[m + d1, d2], [d2, m - d1]]. m/N
+    /// In-plane compliance without joint 1 about its axis: [[m + d1, d2], [d2, m - d1]]. m/N
     pub m: T,
     /// See `m`.
     pub d1: T,
@@ -103,16 +107,26 @@ impl Arm {
             .map(|p| InPlane { along: p.along + lever_along, up: p.up.plus(self.lever.z) });
         let posed = Posed { signs, tool: &tool, first: &first, elbow: &elbow, wrist: &wrist, tips: &tips };
         let mut conditioned = regular;
-        let conditioning = if self.min_inverse_condition > 0.0 {
+        let (conditioning, is_singular) = if self.min_inverse_condition > 0.0 {
             self.conditioning(&posed, &mut conditioned)
         } else {
-            T::constant(1.0)
+            (T::constant(1.0), Mask::splat(false))
         };
-        violated = violated | conditioning.is_negative() & conditioned;
+        violated = violated | is_singular | conditioning.is_negative() & conditioned;
         if violated.all() {
             return None;
         }
-        let (m, d1, d2, vertical, axial) = self.compliance(&posed, &mut regular);
+        let (mut m, mut d1, mut d2, mut vertical, mut axial) = self.compliance(&posed, &mut regular);
+        if let Some(beside) = &self.beside {
+            let more = beside.compliance(&posed, &self.geometry, radius, height);
+            (m, d1, d2) = (m + (more.xx + more.yy).scale(0.5), d1 + (more.xx - more.yy).scale(0.5), d2 + more.xy);
+            if self.is_vertical {
+                vertical = [vertical[0] + more.xz, vertical[1] + more.yz];
+            }
+            if self.is_axial {
+                axial = axial + more.zz;
+            }
+        }
         let moments = self.has_moments.then(|| self.under_moments(&posed, &mut regular));
         let margins = Margins {
             elbow: elbow.margin,

@@ -6,6 +6,7 @@ use super::super::interval_simd::WIDTH;
 use super::super::moment::MomentModel;
 use super::super::region::PolarModel;
 use super::*;
+use stead_model::robot::NormalSprings;
 
 /// A placement in a box, by its shares of the half widths.
 fn inside(region: &Region, s: [f64; 3]) -> [f64; 3] {
@@ -206,4 +207,29 @@ fn broken_costs_are_seen() {
     };
     let (_, setting) = Setting::criteria().into_iter().find(|(name, _)| *name == "total, moments").unwrap();
     assert!(violations(&setting, &rows)[0] > 0, "{} is not seen", rows.name);
+}
+
+#[test]
+fn what_yields_beside_the_joints_is_seen_where_it_is_missing_or_doubled() {
+    let of = |name: &str| Setting::criteria().into_iter().find(|(other, _)| *other == name).unwrap().1;
+    let model = |problem: &Problem| Model::new(problem, Keeps::of(problem));
+    // Parts of either sign add up to the deflection normal to the wall: a bound without some of them is none.
+    let mut setting = of("whole arm");
+    let mut plain = setting.problem.clone();
+    plain.robot = plain.robot.clone().with_normal_springs(None).unwrap();
+    setting.model = model(&plain);
+    assert!(violations(&setting, &SOUND)[0] > 0, "normal springs left out are not seen");
+    let mut setting = of("total, whole arm");
+    setting.model.points.iter_mut().for_each(|point| point.load.part = point.load.part.map(|part| part.plus(&part)));
+    assert!(violations(&setting, &SOUND)[0] > 0, "a part twice as soft is not seen");
+    let mut setting = of("total, whole arm");
+    let mut soft = setting.problem.clone();
+    let springs = soft
+        .robot
+        .normal_springs()
+        .unwrap()
+        .map(|spring| NormalSprings { compliance: spring.compliance.map(|compliance| 1.2 * compliance), ..spring });
+    soft.robot = soft.robot.clone().with_normal_springs(Some(springs)).unwrap();
+    setting.model = model(&soft);
+    assert!(violations(&setting, &SOUND)[0] > 0, "normal springs a fifth softer are not seen");
 }

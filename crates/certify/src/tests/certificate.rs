@@ -3,16 +3,18 @@
 use super::super::branch_and_bound::{Bound, Status};
 use super::super::certificate::{Certificate, NoProof, Proof, certify};
 use super::*;
+use crate::at_rest::without_rails;
 use crate::certifiable;
+use crate::requirements::certifiable_from_above;
 use crate::settings::CertificateSettings;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
 use stead_planning::constraints::ConstraintKind;
 use stead_planning::problem::{BetaPlan, Placement};
 use stead_planning::sense::Sense;
-use stead_planning::setup::Setup;
+use stead_planning::setup::{AxisPositions, Setup};
 use stead_planning::symmetry::Unsupported;
-use stead_planning::testing::{Beside, with_beside};
+use stead_planning::testing::Beside;
 
 const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
 
@@ -25,6 +27,7 @@ fn proof(problem: &Problem, with_rate: bool) -> Proof {
         with_turn: false,
         nodes: 1,
         status: Status::Reached,
+        keeps_open: None,
         open: Vec::new(),
     };
     Proof::new(problem, Sense::Min, PLACEMENT, bound)
@@ -77,50 +80,94 @@ fn why_there_is_no_bound_is_told() {
     let alone = certify(&problem, &PLACEMENT, 0.0, None, settings, &Monitor::silent());
     assert_eq!((alone.worst.unwrap_err(), alone.warnings.len()), (NoProof::NotLookedFor, 1));
     let mut still = problem;
-    still.redundancy.beta = BetaPlan::Constant;
-    let reason = || NoProof::Unsupported(Unsupported::ConstantBeta { beta: BetaPlan::Constant });
+    still.constraints.min_inverse_condition = 1e-3;
+    let reason = || NoProof::Unsupported(certifiable(&still, u64::MAX).unwrap_err());
+    assert!(matches!(reason(), NoProof::Unsupported(Unsupported::Conditioning { .. })));
     assert_eq!(run(&still, 1e-4, settings, &Monitor::silent()), (reason(), reason(), vec!["no-certificate"]));
 }
 
-#[test]
-fn external_axes_are_refused() {
+/// The path of the paper beside a rail.
+fn on_rail(carries: Carried, axis_use: AxisUse) -> Problem {
     let mut problem = five_segments();
-    let (direction, point) = (Vector3::x(), Vector3::zeros());
     problem.external_axes = vec![ExternalAxis {
         name: "rail".to_owned(),
         kind: AxisKind::Rail,
-        carries: Carried::Robot,
-        direction,
-        point,
-        min: 0.0,
-        max: 1.0,
+        carries,
+        direction: Vector3::new(0.6, 0.8, 0.0),
+        point: Vector3::zeros(),
+        min: -0.2,
+        max: 0.1,
         max_speed: Some(0.5),
-        axis_use: AxisUse::Fixed,
+        axis_use,
     }];
     problem.setup = Setup::at_rest(&problem.external_axes);
-    assert_eq!(certifiable(&problem, u64::MAX), Err(Unsupported::ExternalAxes));
+    problem
 }
 
 #[test]
-fn whatever_yields_beside_the_joints_is_refused() {
-    for (beside, word) in
-        [(Beside::Alike, "springs normal"), (Beside::Pairs, "springs normal"), (Beside::Matrices, "base")]
-    {
-        let problem = with_beside(five_segments(), beside);
-        let error = certifiable(&problem, u64::MAX).unwrap_err();
-        assert!(matches!(error, Unsupported::YieldsBeside { what } if what.starts_with(word)), "{error}");
-        assert!(error.to_string().contains("a bound without them would be none"));
-        let settings = CertificateSettings::new(0.05);
-        let certificate = certify(&problem, &PLACEMENT, 1e-4, None, settings, &Monitor::silent());
-        assert_eq!(certificate.best.unwrap_err(), NoProof::Unsupported(error));
+fn rails_at_one_place_are_part_of_the_cell_and_others_are_refused() {
+    for axis_use in [AxisUse::Indexed, AxisUse::Continuous] {
+        let problem = on_rail(Carried::Robot, axis_use);
+        assert_eq!(certifiable(&problem, u64::MAX), Err(Unsupported::ExternalAxes));
     }
-    let whole = with_beside(five_segments(), Beside::Matrices);
-    let with = |change: &dyn Fn(&mut Problem)| {
-        let mut problem = five_segments();
-        change(&mut problem);
-        certifiable(&problem, u64::MAX).unwrap_err().to_string()
-    };
-    assert!(with(&|problem| problem.spindle.mount = whole.spindle.mount).contains("spindle.mount_matrix"));
-    assert!(with(&|problem| problem.spindle.tip = whole.spindle.tip).contains("spindle.tip_um_per_n"));
-    assert!(with(&|problem| problem.task = whole.task.clone()).contains("part_compliance"));
+    for carries in [Carried::Robot, Carried::Workpiece] {
+        let problem = on_rail(carries, AxisUse::Fixed);
+        assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
+        let alone = without_rails(&problem).unwrap();
+        assert!(alone.external_axes.is_empty());
+        // Wherever the rail stands, the workpiece is seen by the robot at a placement of the cell that is certified.
+        let mut ends = [[false; 2]; 2];
+        for at in [-0.2, 0.0, 0.1] {
+            let mut there = problem.clone();
+            there.setup.positions = AxisPositions::Same(vec![at]);
+            for corner in 0..4 {
+                let side = |k: usize| {
+                    let range = there.cell.position[k];
+                    if corner >> k & 1 == 1 { range.max } else { range.min }
+                };
+                let placement = Placement { x: side(0), y: side(1), z: -0.3, yaw: 0.2 };
+                let seen = there.at(&placement).base_from_workpiece(0).translation;
+                for k in 0..2 {
+                    let Interval { min, max } = alone.cell.position[k];
+                    assert!(seen[k] >= min - 1e-12 && seen[k] <= max + 1e-12, "{carries:?} {at} {seen}");
+                    ends[k][0] |= seen[k] <= min + 1e-12;
+                    ends[k][1] |= seen[k] >= max - 1e-12;
+                }
+            }
+        }
+        assert_eq!(ends, [[true; 2]; 2], "the cell is larger than needed");
+        // From above, what a rail adds is not covered.
+        assert_eq!(certifiable_from_above(&problem, u64::MAX), Err(Unsupported::ExternalAxes));
+        assert!(proof(&problem, true).relaxed_words().iter().any(|words| words.contains("external axes")));
+    }
+}
+
+#[test]
+fn what_a_bound_leaves_out_of_the_objective_is_named() {
+    let mut problem = five_segments();
+    problem.redundancy.beta = BetaPlan::Constant;
+    problem.criterion.joint_travel_weight = 1e-6;
+    assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
+    assert_eq!(certifiable_from_above(&problem, u64::MAX), Err(Unsupported::JointTravel));
+    let words = proof(&problem, true).relaxed_words();
+    assert_eq!(words[words.len() - 2..], ["travel of the joints in the objective", "beta that stays along the path"]);
+}
+
+#[test]
+fn what_yields_beside_the_joints_is_covered_or_refused() {
+    use stead_planning::testing::with_beside;
+    let refused = |problem: &Problem| certifiable(problem, u64::MAX).unwrap_err();
+    // A base that is not alike in every direction, and a joint 5 that yields beside the wrist centre.
+    let error = refused(&with_beside(five_segments(), Beside::Matrices));
+    assert!(error.to_string().contains("base_compliance") && error.to_string().contains("would be none"), "{error}");
+    assert_eq!(refused(&with_beside(five_segments(), Beside::Pairs)), Unsupported::UnlikeFlips);
+    for beside in [Beside::Alike, Beside::Pairs, Beside::Everything] {
+        let whole = whole_arm(five_segments(), beside);
+        assert_eq!(certifiable(&whole, u64::MAX), Ok(()));
+        let mut with_moments = whole;
+        let moment = Wrench { force: Vector3::x(), moment: Vector3::x() };
+        let wrenches = vec![moment; with_moments.task.points().len()];
+        with_moments.task = Task::new(with_moments.task.path().clone(), wrenches).unwrap();
+        assert!(refused(&with_moments).to_string().contains("under moments"));
+    }
 }

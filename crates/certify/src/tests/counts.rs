@@ -70,7 +70,7 @@ fn counted(name: &str, problem: Problem) -> String {
             let Some(placed) = model.placed(point, region) else { continue };
             let Some((at, _)) = model.table.nearest(level, placed.r, placed.z) else { continue };
             for cell in 0..model.table.headings(level) {
-                match model.table.known(&model.arm, level, at, cell, class).0 {
+                match model.table.nodes_at(&model.arm, level, at).known(cell, class).0 {
                     Node::Empty => kinds[0] += 1,
                     Node::Unknown => kinds[3] += 1,
                     Node::Known(known) if known.sure => kinds[1] += 1,

@@ -30,7 +30,7 @@ fn load(random: &mut ChaCha8Rng, k: usize) -> Load {
     let force = vector(random).map(|f| 100.0 * f);
     let size = Vector3::from(force).norm();
     let error = [0.0, 0.1, 0.4][k / 3 % 3] * size;
-    Load { directions, force, moment: [0.0; 3], error, turn: 0.0 }
+    Load { directions, force, moment: [0.0; 3], error, part: None, turn: 0.0 }
 }
 
 /// The score by the criterion's own maximum over errors of the force.

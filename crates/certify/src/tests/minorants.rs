@@ -50,7 +50,7 @@ pub const SOUND: Mutation =
 fn kind_of(model: &Model, point: usize, spread: Option<f64>) -> (Kind, f32) {
     let own = model.points[point].load;
     let Some(times) = spread else {
-        return (Kind { load: own, force_spread: 0.0, moment_spread: 0.0 }, 1.0);
+        return (Kind { load: own, force_spread: 0.0, moment_spread: 0.0, part_spread: 0.0 }, 1.0);
     };
     let far = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
     let size = far(own.force, [0.0; 3]);
@@ -63,7 +63,8 @@ fn kind_of(model: &Model, point: usize, spread: Option<f64>) -> (Kind, f32) {
         ..own
     };
     let (force_spread, moment_spread) = (far(load.force, unit(own.force)), far(load.moment, unit(own.moment)));
-    (Kind { load, force_spread: times * force_spread, moment_spread: times * moment_spread }, size as f32)
+    let (force_spread, moment_spread) = (times * force_spread, times * moment_spread);
+    (Kind { load, force_spread, moment_spread, part_spread: 0.0 }, size as f32)
 }
 
 /// The states about the only node of a table, with their models changed.
@@ -72,7 +73,7 @@ fn states(model: &Model, class: PostureClass, mutation: &Mutation) -> Option<Vec
     let node = table.place(0, [1, 1]);
     let mut found = Vec::new();
     for cell in 0..table.headings(0) {
-        let (node_at, moments) = table.known(&model.arm, 0, [1, 1], cell, class);
+        let (node_at, moments) = table.nodes_at(&model.arm, 0, [1, 1]).known(cell, class);
         match node_at {
             Node::Empty => {}
             Node::Unknown => return None,
@@ -219,7 +220,7 @@ fn regions_cut_up_are_below_the_cost_too() {
         let half = [COARSE.length, COARSE.length, turn];
         let load = &model.points[point].load;
         let direction = libm::sincos(place[2] + load.turn);
-        let kind = Kind { load: *load, force_spread: 0.0, moment_spread: 0.0 };
+        let kind = Kind { load: *load, force_spread: 0.0, moment_spread: 0.0, part_spread: 0.0 };
         let e = minorant(&found, &kind, direction, model.first, half, &mut Vec::new());
         for _ in 0..6 {
             let s = shares(&mut random);

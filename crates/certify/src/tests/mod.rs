@@ -18,18 +18,18 @@ use super::branch_and_bound::Keeps;
 use super::cell::whole;
 use super::model::Model;
 use super::region::{Point, Region};
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3, Vector6};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::testing::robot_from;
-use stead_model::robot::{Compliance, Frames, PostureClass, Robot};
-use stead_model::stiffness::displacement;
+use stead_model::robot::{BaseCompliance, Compliance, Frames, PostureClass, Robot};
+use stead_model::stiffness::whole::WholeArm;
 use stead_model::task::{Task, Wrench};
 use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
 use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::testing::{compensated, five_segments, hanging, slanted, with_laws};
+use stead_planning::testing::{Beside, compensated, five_segments, hanging, slanted, with_beside, with_laws};
 
 /// What is broken on purpose, and how.
 type Breaking<T> = (&'static str, fn(&mut T));
@@ -51,6 +51,8 @@ pub struct Truth {
     pub cost: f64,
     /// The score as bounds have it: of the load of the point, which has its weight in it. m
     pub score: f64,
+    /// 1/kappa_F.
+    pub inverse_condition: f64,
 }
 
 impl Setting {
@@ -83,7 +85,7 @@ impl Setting {
         let weighed = Weights { feed: 0.3, wall: 1.0, axis: 0.5, surface: 0.7 };
         let plain = Weights { feed: 0.4, axis: 0.9, ..Weights::NONE };
         type Of = (&'static str, fn() -> Problem, Weights, Aggregate, f64);
-        let all: [Of; 14] = [
+        let all: [Of; 16] = [
             ("wall, force errors", slanted, Weights::WALL, Aggregate::Mean, 0.1),
             ("total", hanging_arm, Weights::TOTAL, Aggregate::Mean, 0.0),
             ("total, force errors", odd_arm, Weights::TOTAL, Aggregate::Mean, 0.1),
@@ -98,6 +100,8 @@ impl Setting {
             ("wall, moments, force errors", with_moments, Weights::WALL, Aggregate::Mean, 0.1),
             ("weights, moments", with_moments, plain, Aggregate::Rms, 0.0),
             ("largest", slanted, Weights::TOTAL, Aggregate::Max, 0.1),
+            ("total, whole arm", || whole_arm(odd_arm(), Beside::Everything), Weights::TOTAL, Aggregate::Mean, 0.0),
+            ("total, whole hanging arm", whole_hanging, Weights::TOTAL, Aggregate::Mean, 0.1),
         ];
         let setting = |(name, of, weights, aggregate, force_uncertainty): Of| {
             let mut problem = of();
@@ -106,8 +110,14 @@ impl Setting {
                 Criterion { weights, aggregate, force_uncertainty, segment_weights, ..Criterion::default() };
             (name, Self::new(problem))
         };
-        let linear = ("wall, moments", Self::new(with_moments()));
-        all.map(setting).into_iter().chain([linear]).collect()
+        let linear = [
+            ("wall, moments", with_moments()),
+            ("normal springs", whole_arm(slanted(), Beside::Alike)),
+            ("normal springs in pairs, hanging arm", whole_arm(hanging_arm(), Beside::Pairs)),
+            ("whole arm", whole_arm(odd_arm(), Beside::Everything)),
+        ];
+        let linear = linear.map(|(name, problem)| (name, Self::new(problem)));
+        all.map(setting).into_iter().chain(linear).collect()
     }
 
     fn side(&self) -> f64 {
@@ -166,7 +176,8 @@ impl Setting {
         compliances[0] = 0.0;
         let radial = Vector3::new(cosine, side * sine, 0.0);
         let tangential = Vector3::new(-sine, side * cosine, 0.0);
-        let moved = |force: &Vector3<f64>| displacement(&frames, &tip, &compliances, force, &Vector3::zeros()).linear;
+        let arm = WholeArm::new(&self.problem.robot, &self.problem.spindle, &frames, compliances, tip);
+        let moved = |force: &Vector3<f64>| arm.displacement(force, &Vector3::zeros()).linear;
         let (by_radial, by_tangential) = (moved(&radial), moved(&tangential));
         let (rr, tt) = (by_radial.dot(&radial), by_tangential.dot(&tangential));
         let up = Vector3::new(0.0, 0.0, side);
@@ -174,7 +185,8 @@ impl Setting {
         let values = [(rr + tt) / 2.0, (rr - tt) / 2.0, crossed, turned[0], turned[1], moved(&up).dot(&up)];
         let cost = self.problem.point_cost(point, state.score());
         let is_squared = self.problem.criterion.aggregate == Aggregate::Rms;
-        Some(Truth { values, cost, score: if is_squared { cost.sqrt() } else { cost } })
+        let score = if is_squared { cost.sqrt() } else { cost };
+        Some(Truth { values, cost, score, inverse_condition: state.inverse_condition })
     }
 
     /// The class, and a heading of a random allowed state at a placement.
@@ -243,6 +255,35 @@ fn hanging_arm() -> Problem {
     problem.robot = Robot::new("hanging", joints).unwrap();
     problem.cell.position[2] = Interval { min: -1.4, max: -1.0 };
     problem
+}
+
+/// A base that is alike in every direction about axis 1 of an arm, on that axis.
+fn alike_base(robot: &Robot) -> BaseCompliance {
+    let (e, g) = (3e-8, -2e-8);
+    let mut matrix = Matrix6::from_diagonal(&Vector6::new(6e-8, 6e-8, 3e-8, 2e-7, 2e-7, 4e-7));
+    for (row, column, value) in [(0, 3, e), (1, 4, e), (0, 4, g), (1, 3, -g), (2, 5, 5e-8)] {
+        (matrix[(row, column)], matrix[(column, row)]) = (value, value);
+    }
+    let root = robot.geometry().root_in_base;
+    BaseCompliance::new(root + Vector3::new(0.0, 0.0, -0.3), matrix).unwrap()
+}
+
+/// The same problem with more that yields than the joints about their axes, as far as bounds cover it.
+pub fn whole_arm(problem: Problem, beside: Beside) -> Problem {
+    let mut problem = with_beside(problem, beside);
+    let mut springs = *problem.robot.normal_springs().unwrap();
+    springs[4].bearing = 0.0;
+    problem.robot = problem.robot.clone().with_normal_springs(Some(springs)).unwrap();
+    if beside == Beside::Everything {
+        let base = alike_base(&problem.robot);
+        problem.robot = problem.robot.clone().with_base_compliance(Some(base));
+    }
+    problem
+}
+
+/// The same, upside down.
+fn whole_hanging() -> Problem {
+    whole_arm(hanging_arm(), Beside::Everything)
 }
 
 /// Joints 2 and 3 yield by their angles, far more than those of any arm do.

@@ -2,7 +2,7 @@
 
 use super::super::active_cells::ActiveCells;
 use super::super::cost::{CORNERS, PointCost};
-use super::super::sliding_min::{INFINITE, SlidingMin};
+use super::super::sliding_min::{INFINITE, SlidingMin, min_into};
 use super::minorants::local;
 use super::*;
 use crate::compliance_table::Steps;
@@ -17,20 +17,29 @@ use stead_planning::testing::corners;
 #[test]
 fn windows_hold_the_least_of_their_neighbours() {
     let mut random = seeded(41);
-    for _ in 0..300 {
-        let count = 64;
-        let values: Vec<[f64; CORNERS]> = (0..count)
-            .map(|_| if random.random_range(0..3) == 0 { INFINITE } else { std::array::from_fn(|_| random.random()) })
-            .collect();
+    let count = 64;
+    let some = |random: &mut ChaCha8Rng| -> Vec<u16> {
+        let share = random.random_range(0..5);
+        (0..count as u16).filter(|_| random.random_range(0..4) < share).collect()
+    };
+    let mut sliding = SlidingMin::default();
+    for _ in 0..1000 {
+        let (cells, targets) = (some(&mut random), some(&mut random));
+        let values: Vec<[f64; CORNERS]> = cells.iter().map(|_| std::array::from_fn(|_| random.random())).collect();
         let low = random.random_range(-90..90_i32) as isize;
         let high = low + random.random_range(-1..70_i32) as isize;
-        let mut sliding = SlidingMin::new(count);
-        sliding.compute(&values, low, high);
-        for k in 0..count as isize {
-            for corner in 0..CORNERS {
-                let all = (low..=high).map(|d| values[(k + d).rem_euclid(count as isize) as usize][corner]);
-                assert_eq!(sliding.out[k as usize][corner], all.fold(f64::INFINITY, f64::min));
+        sliding.compute((&cells, &values), (low, high), count, &targets);
+        assert_eq!(sliding.out.len(), targets.len());
+        for (target, out) in targets.iter().zip(&sliding.out) {
+            let is_near = |cell: u16| {
+                (low..=high)
+                    .any(|d| (isize::try_from(*target).unwrap() + d).rem_euclid(count as isize) == cell as isize)
+            };
+            let mut least = INFINITE;
+            for (_, value) in cells.iter().zip(&values).filter(|(cell, _)| is_near(**cell)) {
+                min_into(&mut least, value);
             }
+            assert_eq!(*out, least);
         }
     }
 }

@@ -54,7 +54,9 @@ fn violations(tamper: impl Fn(&mut AffineModel)) -> (usize, usize) {
         let class = PostureClass::ALL[random.random_range(0..4)];
         let pointwise = over.points[point].as_ref().unwrap();
         let (at, off) = model.table.nearest(over.level, pointwise.placed.r, pointwise.placed.z).unwrap();
-        let Node::Known(mut known) = *model.table.node(&model.arm, over.level, at, cell, class) else { continue };
+        let Node::Known(mut known) = *model.table.nodes_at(&model.arm, over.level, at).known(cell, class).0 else {
+            continue;
+        };
         tamper(&mut known);
         if !known.sure {
             continue;

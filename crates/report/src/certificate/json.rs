@@ -21,6 +21,8 @@ records! {
         time_limit_s: Option<f64> = certificate.settings.time_limit,
         /// Memory that it may use. GB
         memory_gb: f64 = certificate.settings.memory as f64 / 1e9,
+        /// What is proved of the best placement in one sentence; null where that is nothing of use.
+        sentence: Option<String> = best.as_ref().ok().and_then(Proof::sentence),
         /// The proof of the best placement; null where nothing is known.
         best: Option<ProofFigures> = best.as_ref().ok().map(Into::into),
         /// Why there is none, or why the bound is farther off than requested.

@@ -10,8 +10,9 @@ use stead_planning::sense::Sense;
 fn proof(sense: Sense, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {
     let (value, bound) = (value_mm / 1e3, bound_mm / 1e3);
     let status = if open.is_empty() { Status::Reached } else { Status::TimeLimit };
+    let with_rate = sense == Sense::Min;
     let bound =
-        Bound { value, met: None, bound, with_rate: sense == Sense::Min, with_turn: false, nodes: 7, status, open };
+        Bound { value, met: None, bound, with_rate, with_turn: false, nodes: 7, status, keeps_open: None, open };
     Proof::new(problem(), sense, outcome().cases.best.placement, bound)
 }
 

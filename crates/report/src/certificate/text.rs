@@ -32,8 +32,9 @@ fn stated(proof: &Proof) -> String {
     }
     let claim = match proof.sense {
         Sense::Min => format!(
-            "Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a \
-             {figure} below {bound} mm; yours has {value} mm: none is better by more than {gap} %."
+            "{}Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a \
+             {figure} below {bound} mm; yours has {value} mm: none is better by more than {gap} %.",
+            proof.sentence().map_or_else(String::new, |sentence| format!("{sentence} "))
         ),
         Sense::Max => {
             let found = Unit::DEFLECTION_MM.text(proof.found);

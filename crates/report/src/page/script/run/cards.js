@@ -197,7 +197,7 @@ function certificateCard() {
     ['Worst', found.worst, found.worst_reason],
   ]);
   const rows = [];
-  const words = [];
+  const words = found.sentence ? [String(found.sentence)] : [];
   for (const [name, side, reason] of sides) {
     if (side) {
       const gap = `${fixed(side.gap_percent, 3)} %`;

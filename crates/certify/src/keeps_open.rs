@@ -1,0 +1,104 @@
+//! Why boxes stay open: what is known of the states that their bounds still count.
+
+use super::active_cells::ActiveCells;
+use super::arm::Margins;
+use super::compliance_table::{AffineModel, Node, enclosed};
+use super::enclosure::Enclosure;
+use super::interval_simd::WIDTH;
+use super::model::Model;
+use super::region::Region;
+use serde::Serialize;
+use std::f64::consts::PI;
+use std::fmt;
+use stead_model::robot::PostureClass;
+
+/// What is known of the states that the bounds of the boxes of least bound still count: of path points, cells of heading
+/// and posture classes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct KeepsOpen {
+    /// States looked at.
+    pub states: usize,
+    /// Of these, those of which nothing is known: too near to a singularity.
+    pub unknown: usize,
+    /// Those that count as allowed because a constraint is not decided over all of them.
+    pub undecided: usize,
+    /// How many of these each constraint leaves undecided: the elbow's, the wrist's and the general share of
+    /// conditioning, and the limits of joints 2, 3 and 5.
+    pub by: [usize; 6],
+}
+
+/// Names of the constraints, in the order of [`KeepsOpen::by`].
+const NAMES: [&str; 6] =
+    ["elbow near its singularity", "wrist near its singularity", "conditioning", "joint 2", "joint 3", "joint 5"];
+/// Boxes, and path points of each, that are looked at.
+const BOXES: usize = 8;
+const POINTS: usize = 8;
+
+impl KeepsOpen {
+    /// Of open boxes, those of least bound first.
+    pub(super) fn of(model: &Model, open: &[(Region, &ActiveCells)]) -> Self {
+        let mut counted = Self::default();
+        let points = model.points.len();
+        for (region, active) in open.iter().take(BOXES) {
+            for point in (0..points).step_by(points.div_ceil(POINTS)) {
+                counted.add_point(model, region, active, point);
+            }
+        }
+        counted
+    }
+
+    fn add_point(&mut self, model: &Model, region: &Region, active: &ActiveCells, point: usize) {
+        let Model { table, arm, .. } = model;
+        let level = active.level;
+        let Some(placed) = model.placed(point, region) else { return };
+        if !table.answers(level, [placed.reach[0], placed.reach[1]]) {
+            return;
+        }
+        let Some((at, _)) = table.nearest(level, placed.r, placed.z) else { return };
+        let (nodes, [r, z]) = (table.nodes_at(arm, level, at), table.place(level, at));
+        let half = [table.length(level), table.length(level), PI / table.headings(level) as f64];
+        for class in PostureClass::ALL {
+            for cell in active.cells(point, class.index()).map(usize::from) {
+                match nodes.known(cell, class).0 {
+                    Node::Empty => {}
+                    Node::Unknown => (self.states, self.unknown) = (self.states + 1, self.unknown + 1),
+                    Node::Known(AffineModel { sure: true, .. }) => self.states += 1,
+                    Node::Known(_) => {
+                        (self.states, self.undecided) = (self.states + 1, self.undecided + 1);
+                        let place = [r, z, table.heading(level, cell)];
+                        let Some(y) = enclosed(arm, &[place; WIDTH], half, class) else { continue };
+                        for (count, is_open) in self.by.iter_mut().zip(undecided(&y.margins)) {
+                            *count += usize::from(is_open);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// A share of the states in per cent.
+    fn percent(&self, count: usize) -> usize {
+        (100 * count + self.states / 2) / self.states.max(1)
+    }
+}
+
+/// Which constraints are not sure to hold over a region.
+fn undecided(margins: &Margins<Enclosure>) -> [bool; 6] {
+    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = margins;
+    let of = |margin: &Enclosure| margin.value.low().0[0] < 0.0;
+    let either = |pair: &[Enclosure; 2]| of(&pair[0]) || of(&pair[1]);
+    [of(elbow), of(wrist), of(conditioning), either(second), either(third), of(joint5)]
+}
+
+impl fmt::Display for KeepsOpen {
+    /// `of the states still counted 3 % unknown, 61 % undecided (conditioning 60 %, joint 3 2 %)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [unknown, undecided] = [self.unknown, self.undecided].map(|count| self.percent(count));
+        write!(f, "of the states that still count {unknown} % are unknown and {undecided} % undecided")?;
+        let mut by: Vec<(usize, &str)> = self.by.iter().map(|count| self.percent(*count)).zip(NAMES).collect();
+        by.retain(|(share, _)| *share > 0);
+        by.sort_by_key(|(share, _)| std::cmp::Reverse(*share));
+        let named: Vec<String> = by.iter().map(|(share, name)| format!("{name} {share} %")).collect();
+        if named.is_empty() { Ok(()) } else { write!(f, " ({})", named.join(", ")) }
+    }
+}

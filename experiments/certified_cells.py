@@ -1,0 +1,154 @@
+"""Gaps of certificates over cells of six arms: `python3 experiments/certified_cells.py [STEAD [NAME ..]]` (a quarter of an
+hour on two cores; NAME .. are parts of the names of cells). STEAD is the command, by default `target/release/stead`.
+
+Every cell is placed with the criterion that `stead init` writes (the whole deflection, force errors of 10 % covered, the
+turn of the spindle limited) where its name does not say otherwise, and certified to 1 % within 60 s on the clock.
+"""
+
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SLANTED = [[0.0, -0.70710678, 0.70710678], [1.0, 0.0, 0.0], [0.0, 0.70710678, 0.70710678]]
+ALONG = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+ACROSS = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]
+TURNED_60 = [[0.5, 0.0, 0.8660254037844386], [0.0, 1.0, 0.0], [-0.8660254037844386, 0.0, 0.5]]
+TOTAL = 'direction = "total"\nforce_uncertainty = 0.1'
+WALL = 'direction = "wall"\nforce_uncertainty = 0.0'
+PUBLISHED = ([-300, 300], [-2240, -1640], [-602, -214])
+
+# Name, robot, task, rotation and place of the tool (mm), cell (mm), least inverse condition, criterion, changes of the
+# robot file.
+CELLS = [
+    ("KR 270, spindle at 45 deg", "kuka-kr270-2", "five-segments", SLANTED, [0, 0, 684], PUBLISHED, 0.2, TOTAL, []),
+    ("KR 270, the same, plain wall", "kuka-kr270-2", "five-segments", SLANTED, [0, 0, 684], PUBLISHED, 0.2, WALL, []),
+    ("KR 270, the same, conditioning 0.1", "kuka-kr270-2", "five-segments", SLANTED, [0, 0, 684], PUBLISHED, 0.1, TOTAL,
+     []),
+    ("KR 270, spindle along the flange", "kuka-kr270-2", "five-segments", ALONG, [0, 0, 684], PUBLISHED, 0.2, TOTAL, []),
+    ("KR 270, lateral offset of 150 mm, across", "kuka-kr270-2", "raster", ACROSS, [0, 200, 350],
+     ([-300, 300], [-2000, -1500], [-600, -200]), 0.1, WALL, [2]),
+    ("KR 10, spindle across", "kuka-kr10-r1100", "raster", ACROSS, [0, 80, 60], ([400, 800], [-300, 300], [100, 400]), 0.1,
+     TOTAL, []),
+    ("TX200, spindle at 60 deg, beside", "staubli-tx200", "raster", TURNED_60, [201, 0, 317],
+     ([700, 1300], [-500, 500], [100, 600]), 0.1, TOTAL, []),
+    ("KR 210, beside the flange", "kuka-kr210-r2700", "raster", SLANTED, [250, 0, 350],
+     ([1000, 1600], [-400, 400], [300, 700]), 0.1, TOTAL, []),
+    ("KR 500, joint 2 yields by its angle", "kuka-kr500", "raster", SLANTED, [0, 0, 400],
+     ([1100, 1700], [-400, 400], [300, 700]), 0.1, TOTAL, []),
+    ("KR 360, spindle across", "kuka-kr360-l240", "raster", ACROSS, [0, 250, 150], ([1200, 1800], [-400, 400], [400, 800]),
+     0.2, TOTAL, []),
+    ("KR 210-2, whole arm", "kuka-kr210-2-full", "five-segments", SLANTED, [0, 0, 454],
+     ([-300, 300], [-2240, -1640], [148, 536]), 0.2, TOTAL, []),
+    ("KR 270, 500 points", "kuka-kr270-2", "many", SLANTED, [0, 0, 684],
+     ([-200, 200], [-2240, -1640], [-500, -300]), 0.2, TOTAL, []),
+    ("KR 270, 3+2: tool leans 20 deg", "kuka-kr270-2", "leaning", SLANTED, [0, 0, 684], PUBLISHED, 0.2, TOTAL, []),
+]
+
+
+def robot(name, folder, changes):
+    """The robot file, with the second row shifted sideways where asked for."""
+    source = ROOT / "configs/robots" / f"{name}.toml"
+    if not changes:
+        return source
+    rows = source.read_text().split("[[joints]]")
+    for row in changes:
+        lines = [line for line in rows[row].splitlines() if not line.startswith("d_mm")]
+        rows[row] = "\n".join([lines[0], "d_mm = 150.0", *lines[1:]]) + "\n"
+    target = folder / f"{name}-offset.toml"
+    target.write_text("[[joints]]".join(rows))
+    return target
+
+
+def task(name, folder):
+    """The task file: a shipped one, or one made of it."""
+    if (ROOT / f"tasks/{name}.csv").exists():
+        return ROOT / f"tasks/{name}.csv"
+    target = folder / f"{name}.csv"
+    head = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n"
+    rows = []
+    if name == "many":
+        for line in range(10):
+            side = 1 if line % 2 == 0 else -1
+            for k in range(50):
+                x, y = side * (-245 + 10 * k), -90 + 20 * line
+                rows.append(f"{line + 1},{x},{y},0,{side},0,0,0,0,1,{-120 * side},{-80 * side},-40")
+    else:
+        for row in (ROOT / "tasks/raster.csv").read_text().splitlines()[1:]:
+            cells = row.split(",")
+            cells[7:10] = ["0", "-0.342020143325669", "0.939692620785908"]
+            rows.append(",".join(cells))
+    target.write_text("\n".join([head, *rows]) + "\n")
+    return target
+
+
+def run_file(cell, folder):
+    name, arm, path, rotation, place, (x, y, z), condition, criterion, changes = cell
+    target = folder / "run.toml"
+    target.write_text(f"""robot = "{robot(arm, folder, changes)}"
+task = "{task(path, folder)}"
+[spindle]
+xyz_mm = {[float(v) for v in place]}
+rotation = {rotation}
+[cell]
+x_mm = {x}
+y_mm = {y}
+z_mm = {z}
+[constraints]
+min_inverse_condition = {condition}
+characteristic_length_mm = 682.0
+[criterion]
+{criterion}
+[redundancy]
+beta_step_deg = 3.0
+feed_mm_per_s = 50.0
+max_spindle_turn_deg_per_mm = 0.9
+[search]
+seed = 1
+[certificate]
+gap_percent = 1.0
+time_limit_s = 60.0
+[output]
+maps = false
+""")
+    return target
+
+
+def main():
+    stead = sys.argv[1] if len(sys.argv) > 1 else ROOT / "target/release/stead"
+    wanted = sys.argv[2:]
+    print("| cell | m3 | gap | ended | seconds | what keeps it open |\n|---|---|---|---|---|---|", flush=True)
+    for cell in CELLS:
+        if wanted and not any(part in cell[0] for part in wanted):
+            continue
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            file = run_file(cell, folder)
+            size = 1.0
+            for low, high in cell[5]:
+                size *= (high - low) / 1e3
+            begun = time.time()
+            out = folder / "out"
+            done = subprocess.run([str(stead), "place", str(file), "--out", str(out), "--no-worst"], capture_output=True,
+                                  text=True)
+            if done.returncode != 0:
+                print(f"| {cell[0]} | {size:.2f} | {done.stderr.strip()[-200:]} |", flush=True)
+                continue
+            found = json.loads((out / "certificate.json").read_text())
+            best = found.get("best")
+            if best is None:
+                print(f"| {cell[0]} | {size:.2f} | none | {found.get('best_reason')} | | |", flush=True)
+                continue
+            gap = "none" if best["bound_mm"] <= 0 else f"{best['gap_percent']:.2f} %"
+            print(f"| {cell[0]} | {size:.2f} | {gap} | {best['status']} | {time.time() - begun:.0f} |"
+                  f" {best.get('keeps_open') or ''} |", flush=True)
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
+    print(f"\nMemory at most {peak:.1f} GB.")
+
+
+if __name__ == "__main__":
+    main()
