@@ -81,6 +81,13 @@ impl Session {
     pub fn new(options: LiveOptions, folder: Folder, monitor: &Monitor) -> Result<Self, Error> {
         let LiveOptions { file, values, placement_of } = options;
         let plain = Run::read_with(&file, values.clone(), monitor)?;
+        if plain.problem().lean.is_some() {
+            let told =
+                "a placement that is moved by hand is planned with the tool axis of the task, and the run has [lean]";
+            return Err(Error::Argument(format!(
+                "{told}; allowed: a run without [lean], or `stead place` and `stead score`"
+            )));
+        }
         let mut notes = Vec::new();
         let kept = kept_in(&folder);
         let edits: Vec<FieldOverride> = strings(&kept["edits"]).iter().flat_map(|text| edits::parsed(text)).collect();

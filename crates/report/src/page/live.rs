@@ -114,7 +114,8 @@ impl<'a> LivePage<'a> {
     /// # Errors
     /// [`ReportError::Format`] when a table cannot be read.
     pub fn html(&self, title: &str, shown: Option<&Answer>, live: &Value) -> Result<Vec<u8>, ReportError> {
-        let run = RunOf { transfer: &self.context.transfer, removal: self.context.removal.as_deref() };
+        let run =
+            RunOf { transfer: &self.context.transfer, removal: self.context.removal.as_deref(), study_case: None };
         let mut data = page_data(self.context.document(), content::SCORE, self.problem, &run, &[], &[]);
         if let Some(chosen) = &self.drawn {
             content::keep_points(&mut data, chosen);
@@ -176,6 +177,7 @@ impl<'a> LivePage<'a> {
             deviation: self.problem.robot.uncertainty().map(|_| 0.0),
             by_origin: self.problem.yields_beside().then(ScoredByOrigin::default),
             clearance: None,
+            lean: None,
         };
         let count = task.points().len();
         let plan = Plan {
