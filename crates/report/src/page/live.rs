@@ -114,8 +114,11 @@ impl<'a> LivePage<'a> {
     /// # Errors
     /// [`ReportError::Format`] when a table cannot be read.
     pub fn html(&self, title: &str, shown: Option<&Answer>, live: &Value) -> Result<Vec<u8>, ReportError> {
-        let run =
-            RunOf { transfer: &self.context.transfer, removal: self.context.removal.as_deref(), study_case: None };
+        let run = RunOf {
+            transfer: &self.context.transfer,
+            removal: self.context.removal.as_deref(),
+            study_case: self.context.study_case.as_ref(),
+        };
         let mut data = page_data(self.context.document(), content::SCORE, self.problem, &run, &[], &[]);
         if let Some(chosen) = &self.drawn {
             content::keep_points(&mut data, chosen);
