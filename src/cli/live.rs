@@ -62,6 +62,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 
 pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
+    let run = options.run.read(&terminal, None)?;
     let out = out_folder_named(options.out.as_deref(), &options.run.config, "-live")?;
     terminal.holds(&out.folder);
     let requested = LiveOptions {
@@ -70,7 +71,7 @@ pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
         placement_of: options.placement_of.clone().map(|results| (results, options.case.unwrap_or(1))),
     };
     let shown = terminal.show(None);
-    let session = Session::new(requested, out.folder, &shown.monitor)?;
+    let session = Session::new(run, requested, out.folder, &shown.monitor)?;
     drop(shown);
     let run = session.run();
     say_notes(run.notes());

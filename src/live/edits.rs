@@ -51,10 +51,14 @@ pub(super) fn save(
         return Err(RequestError::new("name", format!("is no name of a file, found {name}"), "a name without folders"));
     }
     let file = session.file.with_file_name(format!("{named}.toml"));
-    let refused = |problem: String| RequestError::new("name", problem, "a name that no file has yet");
-    let text = std::fs::read_to_string(&session.file).map_err(|error| refused(error.to_string()))?;
+    if file.exists() {
+        let problem = format!("{} is there already", file.display());
+        return Err(RequestError::new("name", problem, "a name that no file has yet"));
+    }
+    let refused = |error: &dyn std::fmt::Display| RequestError::of_file("name", error);
+    let text = std::fs::read_to_string(&session.file).map_err(|error| refused(&error))?;
     let text = composed(&text, session.given.iter().chain(&reading.edits), place.map(|place| (reading, place)))?;
-    write_new(&file, &text, Existing::Kept).map_err(|error| refused(error.to_string()))?;
+    write_new(&file, &text, Existing::Kept).map_err(|error| refused(&error))?;
     if let Err(error) = Run::read(&file) {
         // It is ours, and of no use.
         let _ = std::fs::remove_file(&file);

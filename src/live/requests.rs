@@ -8,17 +8,22 @@ use stead_planning::setup::AxisPositions;
 
 /// Why a request is not answered: the field, what was found there and what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{field}: {problem}; allowed: {allowed}")]
+#[error("{message}")]
 pub struct RequestError {
     /// The field of the body, or `body` where it cannot be read at all.
     pub field: String,
-    problem: String,
-    allowed: String,
+    message: String,
 }
 
 impl RequestError {
     pub(super) fn new(field: impl Into<String>, problem: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Self { field: field.into(), problem: problem.into(), allowed: allowed.into() }
+        let (field, problem, allowed) = (field.into(), problem.into(), allowed.into());
+        Self { message: format!("{field}: {problem}; allowed: {allowed}"), field }
+    }
+
+    /// One that says itself what is allowed, as those of files do.
+    pub(super) fn of_file(field: &str, error: impl std::fmt::Display) -> Self {
+        Self { field: field.to_owned(), message: error.to_string() }
     }
 }
 

@@ -74,24 +74,21 @@ pub(super) struct Known {
 }
 
 impl Session {
-    /// Reads a run, and what an earlier session has left in the folder.
+    /// A session of a run as it was read from a file, with what an earlier one has left in the folder.
     ///
     /// # Errors
-    /// As [`Run::read_with`] and [`Run::set_up_as_in`].
-    pub fn new(options: LiveOptions, folder: Folder, monitor: &Monitor) -> Result<Self, Error> {
+    /// As [`Run::set_up_as_in`].
+    pub fn new(run: Run, options: LiveOptions, folder: Folder, monitor: &Monitor) -> Result<Self, Error> {
         let LiveOptions { file, values, placement_of } = options;
-        let plain = Run::read_with(&file, values.clone(), monitor)?;
-        if plain.problem().lean.is_some() {
-            let told =
-                "a placement that is moved by hand is planned with the tool axis of the task, and the run has [lean]";
-            return Err(Error::Argument(format!(
-                "{told}; allowed: a run without [lean], or `stead place` and `stead score`"
-            )));
+        if run.problem().lean.is_some() {
+            let told = "a placement that is moved by hand is planned with the tool axis of the task";
+            let allowed = "a run without [lean], or `stead place` and `stead score`";
+            return Err(Error::Argument(format!("{told}, and the run has [lean]; allowed: {allowed}")));
         }
         let mut notes = Vec::new();
         let kept = kept_in(&folder);
         let edits: Vec<FieldOverride> = strings(&kept["edits"]).iter().flat_map(|text| edits::parsed(text)).collect();
-        let mut reading = Reading::new(1, plain, Vec::new());
+        let mut reading = Reading::new(1, run, Vec::new());
         if !edits.is_empty() {
             let shown = edits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
             match Run::read_with(&file, [values.clone(), edits.clone()].concat(), monitor) {
@@ -244,10 +241,9 @@ impl Session {
         let body = Body::read(body)?;
         let edits = body.texts("edits")?;
         let edits = edits.iter().map(|text| edits::allowed(text)).collect::<Result<Vec<_>, _>>()?;
-        let refused =
-            |error: Error| RequestError::new("edits", error.to_string(), "as the guide has the keys of the file");
         let values = [self.given.clone(), edits.clone()].concat();
-        let run = Run::read_with(&self.file, values, &Monitor::silent()).map_err(refused)?;
+        let run = Run::read_with(&self.file, values, &Monitor::silent())
+            .map_err(|error| RequestError::of_file("edits", error))?;
         {
             let mut known = self.known();
             let version = known.reading.version + 1;

@@ -63,7 +63,8 @@ impl Drop for Bench {
 fn session(folder: &Path) -> Arc<Session> {
     let options = LiveOptions { file: folder.join("run.toml"), ..LiveOptions::default() };
     let out = Folder::create(&folder.join("out")).unwrap();
-    let session = Arc::new(Session::new(options, out, &Monitor::silent()).unwrap());
+    let run = Run::read(&options.file).unwrap();
+    let session = Arc::new(Session::new(run, options, out, &Monitor::silent()).unwrap());
     session.start().unwrap();
     session
 }
@@ -119,10 +120,11 @@ fn the_next_session_begins_where_the_last_one_ended() {
     let before = bench.session.state();
     bench.session.close();
     let options = LiveOptions { file: bench.path("run.toml"), ..LiveOptions::default() };
+    let run = Run::read(&options.file).unwrap();
     // The first session still holds the folder; what it has left is read from a copy.
     let copy = bench.path("copy");
     copy_all(&bench.path("out"), &copy);
-    let next = Session::new(options, Folder::create(&copy).unwrap(), &Monitor::silent()).unwrap();
+    let next = Session::new(run, options, Folder::create(&copy).unwrap(), &Monitor::silent()).unwrap();
     assert_eq!(next.state()["pins"], before["pins"]);
     assert_eq!(next.state()["edits"], json!(["cell.z_mm=[-500, -214]"]));
     assert!(next.notes()[0].contains("cell.z_mm=[-500, -214]"));

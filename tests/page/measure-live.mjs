@@ -9,8 +9,37 @@ const MOVES = 60;
 const EVERY_MS = 100;
 const [run, ...more] = process.argv.slice(2);
 const session = startLive(run, more);
+const address = new URL(await session.address);
+
+/** Times of the server alone, without a browser: the median of moved placements, one at rest, the whole map. ms */
+const ask = (path, body) =>
+  fetch(new URL(path, address.origin), {
+    method: 'POST',
+    headers: { 'X-Stead-Token': address.searchParams.get('token') },
+    body: JSON.stringify({ page: 'measured', ...body }),
+  }).then((answer) => answer.json());
+const timed = async (work) => {
+  const begun = performance.now();
+  await work();
+  return performance.now() - begun;
+};
+const html = await (await fetch(address)).text();
+const { placement_exact: at0, ...setup } = JSON.parse(html.match(/id="data">([^]*?)<\/script>/)[1]).live.place;
+const placed = (id) => ({ ...at0, ...setup, z_mm: at0.z_mm - (id % 20) / 10, id });
+const previews = [];
+for (let k = 0; k < 40; k++) previews.push(await timed(() => ask('/preview', placed(k))));
+previews.sort((a, b) => a - b);
+const scored = await timed(() => ask('/whole', placed(0)));
+const mapped = await timed(async () => {
+  for (let from = 0, made = 1; made; from += made) made = (await ask('/map', { ...placed(0), from })).columns.points.length;
+});
+console.log(
+  `${run}: the server alone: a moved placement ${previews[20].toFixed(1)} ms in the median, ${previews[38].toFixed(0)} ms at the 95th percentile; ` +
+    `one at rest ${scored.toFixed(0)} ms, its map ${mapped.toFixed(0)} ms; load ${loadavg()[0].toFixed(1)}`,
+);
+
 const browser = await launch();
-const { page, close } = await openLive(browser, await session.address);
+const { page, close } = await openLive(browser, address.href);
 await atRest(page);
 const first = await page.evaluate(() => window.stead.first);
 

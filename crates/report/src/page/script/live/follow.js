@@ -31,8 +31,8 @@ const isCurrent = (/** @type {any} */ answer) => !answer.is_superseded && answer
 
 /** Draws part and arm. */
 const drawScene = paced(() => set({ scene: true }), 2);
-/** Draws charts and map anew, too. */
-const redraw = paced(() => set({ renewed: true }), 4);
+/** Draws charts, map and path anew, too: while the part is moved hardly ever where that is slow. */
+const redraw = { atRest: paced(() => set({ renewed: true }), 1), moving: paced(() => set({ renewed: true }), 25) };
 
 /** @param {any} answer */
 function show(answer) {
@@ -48,7 +48,7 @@ function show(answer) {
   moveCase();
   tell();
   drawScene();
-  redraw();
+  (shown.isFollowing || !shown.isWhole ? redraw.moving : redraw.atRest)();
 }
 
 /** The part is drawn where it is, whatever is known of it. */
@@ -83,7 +83,7 @@ async function map(id) {
     const answer = await ask('/map', { ...asked(id), from });
     if (id !== wanted || !isCurrent(answer)) return;
     from = putColumns(answer);
-    redraw();
+    redraw.atRest();
   }
 }
 
