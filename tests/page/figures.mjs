@@ -62,6 +62,7 @@ export const figures = (folder, plans) => ({
   },
 
   'errors are drawn by the factor of the slider': async (page) => {
+    await frame(page);
     const slider = page.locator('#magnified');
     const said = () => page.locator('.factor output').textContent();
     const [usual, first] = [await said(), await view(page)];
