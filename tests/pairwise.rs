@@ -36,6 +36,12 @@ const LEFT_OUT: &[(&str, &str)] = &[
     ("run:spindle.inertia_kg_m2.yz", "of simulation and stability"),
     ("robot:price_eur", "shown by assess"),
     ("robot:unverified", "a note"),
+    ("surroundings:visual.name", "drawn, and held against nothing"),
+    ("surroundings:visual.attached", "drawn, and held against nothing"),
+    ("surroundings:visual.mesh", "drawn, and held against nothing"),
+    ("surroundings:visual.unit", "drawn, and held against nothing"),
+    ("surroundings:visual.color", "drawn, and held against nothing"),
+    ("surroundings:visual.xyz_mm", "drawn, and held against nothing"),
 ];
 
 /// Shapes, zones and their clearance are tables of the run file too, with the same keys.

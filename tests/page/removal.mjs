@@ -10,7 +10,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import assert from 'node:assert/strict';
 import { inShort, launch, withScript } from './browser.mjs';
 import { violations } from './axe.mjs';
-import { open, table } from './suite.mjs';
+import { frame, open, table } from './suite.mjs';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
 const stead = process.env.STEAD ?? join(root, 'target/debug/stead');
@@ -126,7 +126,7 @@ async function colours(page) {
   const seen = new Map();
   for (const name of ['error', 'force', 'removed']) {
     await pick(page, 'Colour of the path', name);
-    await page.waitForTimeout(50);
+    await frame(page);
     seen.set(await picture(page), await legend());
   }
   assert.equal(seen.size, 3);
@@ -177,7 +177,7 @@ await check(
 const html = readFileSync(at('out/report.html'), 'utf8');
 for (const [part, test, change] of [
   ['arrows', layers, (script) => script.replace('if (shown.forces) put(program, ofCase.forces, part);', '')],
-  ['colours', colours, (script) => script.replace(/COLOURINGS\[state\.colouring\](;\s*const \{ tube)/, 'COLOURINGS[0]$1')],
+  ['colours', colours, (script) => script.replace(/COLOURINGS\[state\.colouring\](;\s*const magnified)/, 'COLOURINGS[0]$1')],
   ['charts', charts, (script) => script.replace("['mean over a turn', FORCES,", "['mean over a turn', of.chip_n,")],
 ]) {
   const file = at(`${part}.html`);

@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn what_is_left_by_the_solver_is_no_accuracy() {
-        assert_eq!([0.0, 9e-7, 1.25e-6, 2e-4].map(millimetres), ["below 0.001", "below 0.001", "0.00125", "0.2"]);
+        assert_eq!([0.0, 9e-7, 1.25e-6, 2e-4].map(millimetres), ["below 0.001", "below 0.001", "0.00125", "0.200"]);
         let of = |mean: f64| MeanAndMax { mean, max: mean };
         assert_eq!(change([of(1e-3), of(1e-12)]), None);
         assert_eq!(change([of(1e-3), of(25e-5)]).as_deref(), Some("75.0 % less"));

@@ -145,8 +145,8 @@ fn state(problem: &Problem, placement: &Placement, point: usize, beta: f64, post
 }
 
 /// The map as the page's script wants it: the entry of `page-data.json` with the states of its table: `codes`, one for
-/// each (the posture, or 16 and the number of its reason), as [`Runs`], and the `scores` of the allowed ones. Of the table only the
-/// rows that are shown are kept: that of a long path has millions.
+/// each (the posture, or 16 and the number of its reason), as [`Runs`], and the `scores` of the allowed ones. Of the
+/// table only the rows that are shown are kept: that of a long path has millions.
 pub(super) fn content(entry: &Value, table: &Table<'_>) -> Result<Value, PageError> {
     let wrong = || PageError::data("maps", "is no description of a deflection map");
     let points = entry["points"].as_array().ok_or_else(wrong)?;

@@ -147,8 +147,8 @@ mod tests {
         chart.curve([[0.0, 0.0], [1.0, 2.5], [10.0, 5.0]], ORANGE);
         // In quarters of a pixel: (10, 70), (20, 45), (110, 20).
         assert_eq!(
-            drawn(&chart, "#D6141E"),
-            ["<polyline fill=\"none\" stroke=\"#D6141E\" stroke-width=\"8\" points=\"40,280 80,180 440,80 \"/>"]
+            drawn(&chart, "#D55E00"),
+            ["<polyline fill=\"none\" stroke=\"#D55E00\" stroke-width=\"8\" points=\"40,280 80,180 440,80 \"/>"]
         );
     }
 

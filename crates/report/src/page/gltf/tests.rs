@@ -333,3 +333,22 @@ fn external_axes_move_what_they_carry() {
     };
     assert_eq!((material("fence"), material("platter")), ("BLEND".into(), Value::Null));
 }
+
+/// Links that are no illustrations are drawn; collision shapes about them are not.
+#[test]
+fn real_links_are_drawn_and_their_collision_shapes_are_not() {
+    let mut files = files();
+    let (_, bytes) = files.iter_mut().find(|(name, _)| name == "page-data.json").unwrap();
+    let mut data: Value = serde_json::from_slice(bytes).unwrap();
+    let arm = data["bodies"].as_array_mut().unwrap().iter_mut().find(|body| body["frame"] == "link_2").unwrap();
+    arm["is_illustration"] = false.into();
+    arm["name"] = "real link".into();
+    let mut cover = arm.clone();
+    cover["name"] = "cover".into();
+    data["surroundings"].as_array_mut().unwrap().push(cover);
+    *bytes = data.to_string().into_bytes();
+    let read = Read::new(&scene(&files).unwrap());
+    let is_there = |name: &str| read.nodes().iter().any(|node| node["name"] == name);
+    assert!(is_there("real link") && !is_there("cover"));
+    assert!(read.nodes()[read.named("real link")]["extras"].is_null());
+}

@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn arms_have_the_paint_of_their_makers() {
         let of = |name: &str| {
-            body_color(&Robot::new(name, *kr270().joints()).unwrap()).map(|part| (part * 255.0).round() as u8)
+            body_color(&Robot::new(name, kr270().joints().clone()).unwrap()).map(|part| (part * 255.0).round() as u8)
         };
         assert_eq!(of("KUKA KR270-2"), [232, 112, 38]);
         assert_eq!(of("abb_irb6640_185_280"), [226, 226, 220]);

@@ -17,7 +17,7 @@ fn labels_are_short_and_fit() {
 fn what_is_on_the_front_is_green_with_the_number_of_its_case() {
     let analysis = analysis();
     let svg = front(analysis.front.as_ref().unwrap(), &analysis.layouts);
-    let green = svg.lines().filter(|line| line.starts_with("<circle") && line.contains("#00AA3C"));
+    let green = svg.lines().filter(|line| line.starts_with("<circle") && line.contains("#009E73"));
     // The legend, and cases 1 and 2.
     assert_eq!(green.count(), 3);
     assert!(svg.contains("on the front: 2") && svg.contains("\n1\n") && svg.contains("\n2\n"));
