@@ -144,8 +144,10 @@ def main():
                 print(f"| {cell[0]} | {size:.2f} | none | {found.get('best_reason')} | | |", flush=True)
                 continue
             gap = "none" if best["bound_mm"] <= 0 else f"{best['gap_percent']:.2f} %"
-            print(f"| {cell[0]} | {size:.2f} | {gap} | {best['status']} | {time.time() - begun:.0f} |"
-                  f" {best.get('keeps_open') or ''} |", flush=True)
+            kept = (found.get("best_reason") or "").partition("; of the states")[2]
+            kept = f"of the states{kept}" if kept else ""
+            seconds = time.time() - begun
+            print(f"| {cell[0]} | {size:.2f} | {gap} | {best['status']} | {seconds:.0f} | {kept} |", flush=True)
     peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
     print(f"\nMemory at most {peak:.1f} GB.")
 

@@ -335,6 +335,11 @@ def checked(run, results, count, seed, raised=None):
         for row in csv.DictReader(file):
             if row["search"] == "best":
                 boxes.append({key: float(text) for key, text in row.items() if key != "search" and text})
+    closed = bound
+    asked = json.loads((results / "certificate.json").read_text())["gap_percent_asked"] / 100
+    if not raised:
+        closed = value * (1 - asked) * (1 - 1e-6)
+
     a0 = run.robot.a[0]
     violations = []
 
@@ -352,12 +357,7 @@ def checked(run, results, count, seed, raised=None):
                     and off <= half):
                 inside.append(box["bound_mm"] / 1e3)
         # Outside all open boxes nothing is better by more than the gap that was asked for.
-        return max(bound, min(inside)) if inside or not boxes else max(bound, closed)
-
-    closed = bound
-    asked = json.loads((results / "certificate.json").read_text())["gap_percent_asked"] / 100
-    if boxes and not raised:
-        closed = value * (1 - asked) * (1 - 1e-6)
+        return max(bound, min(inside) if inside else closed)
 
     def ask(placement):
         figure = run.figure(placement)

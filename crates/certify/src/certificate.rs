@@ -205,7 +205,8 @@ fn figure(criterion: &Criterion) -> String {
         0.0 => String::new(),
         share => format!(", force errors of {} % covered,", short(share * 100.0)),
     };
-    format!("{aggregate} {part}{errors}")
+    let travel = if criterion.joint_travel_weight == 0.0 { "" } else { ", with the travel of the joints," };
+    format!("{aggregate} {part}{errors}{travel}")
 }
 
 /// A number to six digits, without zeros at its end.

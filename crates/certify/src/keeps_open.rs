@@ -1,7 +1,7 @@
 //! Why boxes stay open: what is known of the states that their bounds still count.
 
 use super::active_cells::ActiveCells;
-use super::arm::Margins;
+use super::arm::{Arm, LimitSpan, Margins};
 use super::compliance_table::{AffineModel, Node, enclosed};
 use super::enclosure::Enclosure;
 use super::interval_simd::WIDTH;
@@ -67,7 +67,7 @@ impl KeepsOpen {
                         (self.states, self.undecided) = (self.states + 1, self.undecided + 1);
                         let place = [r, z, table.heading(level, cell)];
                         let Some(y) = enclosed(arm, &[place; WIDTH], half, class) else { continue };
-                        for (count, is_open) in self.by.iter_mut().zip(undecided(&y.margins)) {
+                        for (count, is_open) in self.by.iter_mut().zip(undecided(arm, &y.margins)) {
                             *count += usize::from(is_open);
                         }
                     }
@@ -83,11 +83,15 @@ impl KeepsOpen {
 }
 
 /// Which constraints are not sure to hold over a region.
-fn undecided(margins: &Margins<Enclosure>) -> [bool; 6] {
+fn undecided(arm: &Arm, margins: &Margins<Enclosure>) -> [bool; 6] {
     let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = margins;
     let of = |margin: &Enclosure| margin.value.low().0[0] < 0.0;
-    let either = |pair: &[Enclosure; 2]| of(&pair[0]) || of(&pair[1]);
-    [of(elbow), of(wrist), of(conditioning), either(second), either(third), of(joint5)]
+    let outside = |joint: usize, [min, max]: &[Enclosure; 2]| match arm.limit_span(joint) {
+        LimitSpan::Full => false,
+        LimitSpan::Wide => of(min) && of(max),
+        LimitSpan::Narrow => of(min) || of(max),
+    };
+    [of(elbow), of(wrist), of(conditioning), outside(0, second), outside(1, third), of(joint5)]
 }
 
 impl fmt::Display for KeepsOpen {

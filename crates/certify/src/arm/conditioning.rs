@@ -19,8 +19,8 @@
 //! Over a region near a singularity that difference is between terms that are nearly alike, and its sign is lost. There
 //! two tests need no difference: every sum in `|N^-1|^2` is above zero, so that each may be enclosed by itself and left
 //! out where it is loose; and for any joint velocity x, `|N^-1| >= |x| / |N x|`, so that
-//! `|N x|^2 / |x|^2 >= min^2 |N|^2 / 36`. See [`super::singularity`] for the velocities of elbow and wrist. Of the
-//! shoulder it is that which turns joint 1 and moves the wrist centre only normal to the plane of the arm, by rho, with
+//! `|N x|^2 / |x|^2 >= min^2 |N|^2 / 36`. See [`super::singularity`] for the velocities of elbow, wrist and joint 2. Of
+//! the shoulder it is that which turns joint 1 and moves the wrist centre only normal to the plane of the arm, by rho, with
 //! a wrist that undoes the turn: `|N x| = |rho| / L` and `|x|^2 >= 1 + 1 / 2`, since the norm of (z_4, z_5, z_6) is at
 //! most the root of 2.
 
@@ -28,6 +28,7 @@ use super::super::interval_simd::{Lanes, Mask};
 use super::super::number::{Number, ZERO};
 use super::constants::Arm;
 use super::inverse::Posed;
+use super::singularity::UNDONE;
 use super::vector::Vector;
 
 /// The wrist centre must be this far from axis 1 to divide by its distance. m
@@ -103,8 +104,10 @@ impl Arm {
         let same = posed.wrist.dot46.square().plus(1.0);
         let wrist = is_short(posed.wrist.sine5_squared.high() * self.needs.wrist, same.low());
         let length2 = self.characteristic_length * self.characteristic_length;
-        let shoulder = is_short(posed.first.forward.square().high(), Lanes::splat(1.5 * length2));
-        elbow | wrist | shoulder
+        let least2 = Lanes::splat(UNDONE * length2);
+        let shoulder = is_short(posed.first.forward.square().high(), least2);
+        let reach = is_short(posed.elbow.distance2.high(), least2);
+        elbow | wrist | shoulder | reach
     }
 
     #[inline(always)]

@@ -3,7 +3,10 @@
 //! For any joint velocity x, `|N^-1| >= |x| / |N x|` with N the normalised Jacobian, and `|N|^2 >= 6 + r^2 / L^2`. With
 //! joints 2 and 3 moving the wrist centre least, and joints 4 and 6 turning against each other,
 //! `6 / (|N| |N^-1|) >= min` gives bounds on the sines of the elbow and of the wrist that have no singularities of
-//! their own.
+//! their own. Joint 2 with a wrist that undoes its turn moves the tool centre point as far as the wrist centre:
+//! `|N x| = |S| / L` with S the wrist centre from the shoulder, and `|x|^2 >= 1 + 1 / 2`, since the norm of
+//! (z_4, z_5, z_6) is at most the root of 2. So S is never shorter than a length, which folded arms of nearly equal
+//! links would come to.
 
 use super::super::number::Number;
 use nalgebra::Vector3;
@@ -11,6 +14,8 @@ use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_planning::problem::Problem;
 
+/// Squared velocities of a joint that turns by 1 and a wrist that undoes the turn, at least.
+pub(super) const UNDONE: f64 = 1.5;
 /// Squared sine of elbow and wrist below which too little is known.
 const MIN_SINE2: f64 = 1e-4;
 
@@ -64,10 +69,14 @@ impl Limits {
         let shift = TAU * ((min + max) / (2.0 * TAU)).round();
         let widest = (min - shift).abs().max((max - shift).abs()) + ANGLE_ROUNDING;
         let by_joint = if widest >= PI { 1.0 } else { -libm::cos(widest) };
+        // S is no shorter than that.
+        let least2 = UNDONE * length * length * needed;
+        let by_distance =
+            (g.upper_arm * g.upper_arm + g.forearm * g.forearm - least2) / (2.0 * g.upper_arm * g.forearm);
         let at = |distance2: f64| cosine(needed * needs.elbow * distance2);
         Self {
             needs,
-            folded: at((g.upper_arm - g.forearm) * (g.upper_arm - g.forearm)).min(by_joint).max(0.0),
+            folded: at((g.upper_arm - g.forearm) * (g.upper_arm - g.forearm)).min(by_joint).min(by_distance).max(0.0),
             stretched: at(g.upper_arm * g.upper_arm + g.forearm * g.forearm),
             in_line: cosine(needed / needs.wrist),
         }

@@ -176,7 +176,7 @@ fn nodes_hold_every_allowed_state_around_them() {
 fn lost_at_the_limit(times: f64, sizes: &[f64]) -> [usize; 3] {
     let mut random = seeded(10);
     let mut counts = [0; 3];
-    for mut problem in [five_segments(), hanging_arm(), odd_arm()] {
+    for mut problem in [five_segments(), hanging_arm(), odd_arm(), equal_links()] {
         problem.constraints.min_inverse_condition = 0.04;
         let setting = Setting::new(problem.clone());
         let nearest = setting.model.table.grid().0.radius.0;

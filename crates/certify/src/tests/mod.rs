@@ -307,6 +307,21 @@ fn odd_arm() -> Problem {
     problem
 }
 
+/// An arm of two links of the same length that folds until they meet, near its shoulder.
+fn equal_links() -> Problem {
+    let mut problem = slanted();
+    problem.robot = robot_from([
+        (0.0, 0.0, 0.5, -350.0, 350.0, 1.0),
+        (-90.0, 0.2, 0.0, -200.0, 160.0, 2.0),
+        (0.0, 0.6, 0.0, -350.0, 350.0, 3.0),
+        (90.0, 0.0, 0.6, -350.0, 350.0, 4.0),
+        (-90.0, 0.0, 0.0, -350.0, 350.0, 5.0),
+        (90.0, 0.0, 0.1, -350.0, 350.0, 6.0),
+    ]);
+    problem.cell.position = [(-0.3, 0.3), (-0.9, -0.4), (-0.6, 0.2)].map(|(min, max)| Interval { min, max });
+    problem
+}
+
 #[test]
 fn placements_are_seen_along_axis_1() {
     for (name, setting) in Setting::all() {
