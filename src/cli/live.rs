@@ -51,7 +51,7 @@ pub(super) const MANUAL: Manual = Manual {
     ],
     remarks: "The server answers on 127.0.0.1 alone, and only the page that is opened with the address printed. Nothing \
               leaves the machine. Ctrl-C ends it; a job that runs then ends with what it has, which is kept.",
-    done: "ended by Ctrl-C",
+    done: "done: ended by Ctrl-C",
     failed: "another session writes to the folder, or a file could not be written",
     refused: "wrong usage, bad input, a port that is taken, or a folder that cannot be written to",
     ..Manual::NEW
