@@ -18,8 +18,8 @@ pub(super) struct LiveCommand {
     /// Folder for the placements that are kept [default: results/<name of the run file>-live]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Results folder of `stead place` from the same run file: its placement is begun at [default: where the last
-    /// session in the folder ended, else the middle of the cell]
+    /// Results of `stead place` from the same run file, to begin at [default: the middle of the cell, or as left in the
+    /// folder]
     #[arg(long, value_name = "RESULTS")]
     placement_of: Option<PathBuf>,
     /// Case of these results: 1, the best placement, or 3, the worst [default: 1]
