@@ -18,8 +18,8 @@ pub(super) struct LiveCommand {
     /// Folder for the placements that are kept [default: results/<name of the run file>-live]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Results folder of `stead place` from the same run file: its placement is begun at [default: where the last
-    /// session in the folder ended, else the middle of the cell]
+    /// Results of `stead place` from the same run file, to begin at [default: the middle of the cell, or as left in the
+    /// folder]
     #[arg(long, value_name = "RESULTS")]
     placement_of: Option<PathBuf>,
     /// Case of these results: 1, the best placement, or 3, the worst [default: 1]
@@ -51,7 +51,7 @@ pub(super) const MANUAL: Manual = Manual {
     ],
     remarks: "The server answers on 127.0.0.1 alone, and only the page that is opened with the address printed. Nothing \
               leaves the machine. Ctrl-C ends it; a job that runs then ends with what it has, which is kept.",
-    done: "ended by Ctrl-C",
+    done: "done: ended by Ctrl-C",
     failed: "another session writes to the folder, or a file could not be written",
     refused: "wrong usage, bad input, a port that is taken, or a folder that cannot be written to",
     ..Manual::NEW

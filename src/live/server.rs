@@ -118,8 +118,8 @@ fn serve(session: &Arc<Session>, guard: &Guard, mut request: Request) {
         },
     };
     let bytes = bytes_of(answer, &asking.method);
-    // In one piece: in two, the second waits some 40 ms until the first is acknowledged. A page that has gone away is no
-    // error.
+    // In one piece: in two, the second waits some 40 ms until the first is acknowledged. A page that has gone away is
+    // no error.
     let mut out = request.into_writer();
     let _ = out.write_all(&bytes).and_then(|()| out.flush());
 }

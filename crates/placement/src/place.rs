@@ -4,8 +4,7 @@
 //! what blocks a placement that is refused. `long_path` and `long_refinement` do the same by subsets of a long path,
 //! `preview` and `from_here` are for a placement that is moved by hand: what it comes to at once, and the best one near
 //! it. `setups` and `axes` choose among orientations and positions of external axes, `lean` how the tool leans, `sets`
-//! covers several stiffnesses, and
-//! `calmer` tells whether a calmer plan costs little.
+//! covers several stiffnesses, and `calmer` tells whether a calmer plan costs little.
 
 use super::evaluator::Evaluator;
 use super::outcome::{Case, Cases, ForceSensitivity, Outcome};

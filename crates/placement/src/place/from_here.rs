@@ -91,8 +91,8 @@ mod tests {
     fn a_start_without_a_plan_is_left_first_and_one_with_none_near_is_refused() {
         let mut problem = five_segments();
         // Some points are too far out, and steps inwards make them fewer.
-        problem.cell.position[1].min = -2.9;
-        let start = Placement::from([0.0, -2.7, -0.4, 1.378]);
+        problem.cell.position[1].min = -3.3;
+        let start = Placement::from([0.0, -3.12, -0.4, 1.378]);
         assert!(mean(&problem, &start).is_infinite());
         let end = improve(&problem, &start, &Monitor::silent()).unwrap();
         assert!(mean(&problem, &end).is_finite() && problem.cell.contains(&end));
