@@ -1,8 +1,9 @@
-"""Gaps of certificates over cells of six arms: `python3 experiments/certified_cells.py [STEAD [NAME ..]]` (a quarter of an
-hour on two cores; NAME .. are parts of the names of cells). STEAD is the command, by default `target/release/stead`.
+"""Gaps of certificates over cells of six arms: `python3 experiments/certified_cells.py [STEAD [NAME ..]]` (a quarter of
+an hour on two cores; NAME .. are parts of the names of cells). STEAD is the command, by default
+`target/release/stead`.
 
-Every cell is placed with the criterion that `stead init` writes (the whole deflection, force errors of 10 % covered, the
-turn of the spindle limited) where its name does not say otherwise, and certified to 1 % within 60 s on the clock.
+Every cell is placed with the criterion that `stead init` writes (the whole deflection, force errors of 10 % covered,
+the turn of the spindle limited) where its name does not say otherwise, and certified to 1 % within 60 s on the clock.
 """
 
 import json
@@ -29,19 +30,20 @@ CELLS = [
     ("KR 270, the same, plain wall", "kuka-kr270-2", "five-segments", SLANTED, [0, 0, 684], PUBLISHED, 0.2, WALL, []),
     ("KR 270, the same, conditioning 0.1", "kuka-kr270-2", "five-segments", SLANTED, [0, 0, 684], PUBLISHED, 0.1, TOTAL,
      []),
-    ("KR 270, spindle along the flange", "kuka-kr270-2", "five-segments", ALONG, [0, 0, 684], PUBLISHED, 0.2, TOTAL, []),
+    ("KR 270, spindle along the flange", "kuka-kr270-2", "five-segments", ALONG, [0, 0, 684], PUBLISHED, 0.2, TOTAL,
+     []),
     ("KR 270, lateral offset of 150 mm, across", "kuka-kr270-2", "raster", ACROSS, [0, 200, 350],
      ([-300, 300], [-2000, -1500], [-600, -200]), 0.1, WALL, [2]),
-    ("KR 10, spindle across", "kuka-kr10-r1100", "raster", ACROSS, [0, 80, 60], ([400, 800], [-300, 300], [100, 400]), 0.1,
-     TOTAL, []),
+    ("KR 10, spindle across", "kuka-kr10-r1100", "raster", ACROSS, [0, 80, 60],
+     ([400, 800], [-300, 300], [100, 400]), 0.1, TOTAL, []),
     ("TX200, spindle at 60 deg, beside", "staubli-tx200", "raster", TURNED_60, [201, 0, 317],
      ([700, 1300], [-500, 500], [100, 600]), 0.1, TOTAL, []),
     ("KR 210, beside the flange", "kuka-kr210-r2700", "raster", SLANTED, [250, 0, 350],
      ([1000, 1600], [-400, 400], [300, 700]), 0.1, TOTAL, []),
     ("KR 500, joint 2 yields by its angle", "kuka-kr500", "raster", SLANTED, [0, 0, 400],
      ([1100, 1700], [-400, 400], [300, 700]), 0.1, TOTAL, []),
-    ("KR 360, spindle across", "kuka-kr360-l240", "raster", ACROSS, [0, 250, 150], ([1200, 1800], [-400, 400], [400, 800]),
-     0.2, TOTAL, []),
+    ("KR 360, spindle across", "kuka-kr360-l240", "raster", ACROSS, [0, 250, 150],
+     ([1200, 1800], [-400, 400], [400, 800]), 0.2, TOTAL, []),
     ("KR 210-2, whole arm", "kuka-kr210-2-full", "five-segments", SLANTED, [0, 0, 454],
      ([-300, 300], [-2240, -1640], [148, 536]), 0.2, TOTAL, []),
     ("KR 270, 500 points", "kuka-kr270-2", "many", SLANTED, [0, 0, 684],
@@ -133,8 +135,8 @@ def main():
                 size *= (high - low) / 1e3
             begun = time.time()
             out = folder / "out"
-            done = subprocess.run([str(stead), "place", str(file), "--out", str(out), "--no-worst"], capture_output=True,
-                                  text=True)
+            command = [str(stead), "place", str(file), "--out", str(out), "--no-worst"]
+            done = subprocess.run(command, capture_output=True, text=True)
             if done.returncode != 0:
                 print(f"| {cell[0]} | {size:.2f} | {done.stderr.strip()[-200:]} |", flush=True)
                 continue

@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 use std::fmt;
 use stead_model::robot::PostureClass;
 
-/// What is known of the states that the bounds of the boxes of least bound still count: of path points, cells of heading
-/// and posture classes.
+/// What is known of the states that the bounds of the boxes of least bound still count: of path points, cells of
+/// heading and posture classes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct KeepsOpen {
     /// States looked at.

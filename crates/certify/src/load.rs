@@ -194,8 +194,9 @@ impl Load {
         Tangent::new(self.directions[0], self.force)
     }
 
-    /// The tangents at a compliance, that of the part included: one that is sharp there, and where one direction is scored another one, sharp
-    /// where the deflection without an error vanishes, of what errors of the force alone can do.
+    /// The tangents at a compliance, that of the part included: one that is sharp there, and where one direction is
+    /// scored another one, sharp where the deflection without an error vanishes, of what errors of the force alone can
+    /// do.
     ///
     /// `by_moment` is the displacement there under the moment, in the frame of the load (m).
     pub fn tangents(&self, at: &Yielding, by_moment: [f64; 3]) -> (Tangent, Option<Tangent>) {
@@ -230,7 +231,8 @@ impl Load {
         std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum::<f64>() * inverse)
     }
 
-    /// The score under a compliance, that of the part included, by the ascent of [`Self::tangents`]: what the first tangent says there.
+    /// The score under a compliance, that of the part included, by the ascent of [`Self::tangents`]: what the first
+    /// tangent says there.
     #[cfg(test)]
     pub fn score(&self, at: &Yielding, by_moment: [f64; 3]) -> f64 {
         self.tangents(at, by_moment).0.with(at, by_moment)

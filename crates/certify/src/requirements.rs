@@ -69,7 +69,8 @@ pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsu
     }
 }
 
-/// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in words.
+/// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in
+/// words.
 pub(super) fn left_out(problem: &Problem) -> Vec<&'static str> {
     let mut words = Vec::new();
     if require_no_travel(problem).is_err() {

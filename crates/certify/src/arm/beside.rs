@@ -32,7 +32,8 @@ pub(super) struct Beside {
     base_height: f64,
 }
 
-/// A part of the base's matrix: it moves by `shift + turn x r` and the force does as much work on it. In the root frame.
+/// A part of the base's matrix: it moves by `shift + turn x r` and the force does as much work on it. In the root
+/// frame.
 #[derive(Debug, Clone, Copy)]
 struct BaseSpring {
     compliance: f64,

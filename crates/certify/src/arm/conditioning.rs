@@ -20,9 +20,9 @@
 //! two tests need no difference: every sum in `|N^-1|^2` is above zero, so that each may be enclosed by itself and left
 //! out where it is loose; and for any joint velocity x, `|N^-1| >= |x| / |N x|`, so that
 //! `|N x|^2 / |x|^2 >= min^2 |N|^2 / 36`. See [`super::singularity`] for the velocities of elbow, wrist and joint 2. Of
-//! the shoulder it is that which turns joint 1 and moves the wrist centre only normal to the plane of the arm, by rho, with
-//! a wrist that undoes the turn: `|N x| = |rho| / L` and `|x|^2 >= 1 + 1 / 2`, since the norm of (z_4, z_5, z_6) is at
-//! most the root of 2.
+//! the shoulder it is that which turns joint 1 and moves the wrist centre only normal to the plane of the arm, by rho,
+//! with a wrist that undoes the turn: `|N x| = |rho| / L` and `|x|^2 >= 1 + 1 / 2`, since the norm of (z_4, z_5, z_6)
+//! is at most the root of 2.
 
 use super::super::interval_simd::{Lanes, Mask};
 use super::super::number::{Number, ZERO};
@@ -95,8 +95,8 @@ impl Arm {
         (margin, is_near | is_above)
     }
 
-    /// Where elbow, wrist or shoulder is sure to be nearer to its singularity than `min^2 |N|^2 / 36`, which is at least
-    /// `needed`, allows.
+    /// Where elbow, wrist or shoulder is sure to be nearer to its singularity than `min^2 |N|^2 / 36`, which is at
+    /// least `needed`, allows.
     #[inline(always)]
     fn is_near_singularity<T: Number>(&self, posed: &Posed<'_, T>, needed: Lanes) -> Mask {
         let is_short = |of: Lanes, by: Lanes| (of * BEYOND_ROUNDING).less(needed * by);

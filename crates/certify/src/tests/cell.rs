@@ -171,8 +171,8 @@ fn nodes_hold_every_allowed_state_around_them() {
     }
 }
 
-/// How many states that just meet a limit on conditioning are lost by an arm that asks for `times` as much: over regions
-/// of every size, with the state at a corner; and how many were drawn, and of these near a singularity.
+/// How many states that just meet a limit on conditioning are lost by an arm that asks for `times` as much: over
+/// regions of every size, with the state at a corner; and how many were drawn, and of these near a singularity.
 fn lost_at_the_limit(times: f64, sizes: &[f64]) -> [usize; 3] {
     let mut random = seeded(10);
     let mut counts = [0; 3];
