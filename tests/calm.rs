@@ -109,9 +109,12 @@ fn a_weight_on_joint_travel_is_in_the_objective_and_makes_calmer_plans() {
     bench.replace(RUN, "generations = 3\nbasins = 2", "generations = 0\nbasins = 1");
     bench.replace(RUN, "[reference]", "[output]\nmaps = false\npage = false\n[reference]");
     bench.replace(RUN, "force_uncertainty = 0.0", "joint_travel_weight_mm_per_rad = 0.2");
-    let ended = bench.stead(&["place", RUN, "--out", "out", "--certify", "1", "--json"]);
+    let ended = bench.stead(&["place", RUN, "--out", "out", "--certify", "60", "--json"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    ended.assert_says(&["warning: no certificate: the objective has the travel of the joints in it"]);
+    ended.assert_says(&["no certificate for the worst placement: the objective has the travel of the joints in it"]);
+    let certificate: Value = serde_json::from_str(&bench.read("out/certificate.json")).unwrap();
+    let relaxed = certificate["best"]["limits_relaxed"].to_string();
+    assert!(relaxed.contains("travel of the joints in the objective"), "{relaxed}");
     let case = ended.json()["cases"][0].clone();
     let added =
         0.2 * number(&case, "/joint_travel/total_deg").to_radians() / (number(&case, "/joint_travel/length_mm") / 10.0);
@@ -130,9 +133,13 @@ fn a_spindle_that_stays_has_one_beta_in_the_segment_or_the_path() {
         // None of the limits on beta is needed then.
         bench.replace(RUN, "max_beta_rate_deg_per_mm = 0.9", &stays);
         bench.replace(RUN, "[reference]", "[output]\nmaps = false\npage = false\n[reference]");
-        let ended = bench.stead(&["place", RUN, "--out", "out", "--certify", "1", "--json"]);
+        let ended = bench.stead(&["place", RUN, "--out", "out", "--certify", "60", "--json"]);
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        ended.assert_says(&[&format!("warning: no certificate: beta stays (redundancy.beta = \"{beta}\")")]);
+        let reason = format!("no certificate for the worst placement: beta stays (redundancy.beta = \"{beta}\")");
+        ended.assert_says(&[&reason]);
+        let certificate: Value = serde_json::from_str(&bench.read("out/certificate.json")).unwrap();
+        let relaxed = certificate["best"]["limits_relaxed"].to_string();
+        assert!(relaxed.contains("beta that stays along the path"), "{relaxed}");
         let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
         assert_eq!(summary["redundancy"]["beta"], beta, "{}", summary["redundancy"]);
         for plan in ["best.csv", "worst-worst-plan.csv"] {

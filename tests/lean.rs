@@ -1,5 +1,5 @@
-//! A tool that leans, from outside: what `place` and `score` plan is never worse than with the axis of the task, the judge
-//! agrees, and what reads the results again finds the same pose.
+//! A tool that leans, from outside: what `place` and `score` plan is better than with the axis of the task, the judge
+//! agrees, and what reads the results again finds the same plan.
 
 use crate::common::{Bench, Ended};
 use serde_json::Value;

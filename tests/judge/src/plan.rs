@@ -322,7 +322,11 @@ impl Plan<'_> {
         verdict.holds("columns by what yields", || self.at(i), stated.is_some() == self.cell.yields_beside());
         let Some(stated) = stated else { return };
         let size: f64 = found.iter().map(|part| part.abs()).sum();
-        for ((name, found), stated) in ORIGINS.iter().zip(found).zip(stated) {
+        // Where the parts add up to nothing their common sign is that of a rounding error.
+        let is_cancelled = found.iter().sum::<f64>().abs() <= slack + OF_DIGITS * size;
+        let is_other: f64 = found.iter().zip(stated).map(|(found, stated)| found * stated).sum();
+        let found = if is_cancelled && is_other < 0.0 { (*found).map(|part| -part) } else { *found };
+        for ((name, found), stated) in ORIGINS.iter().zip(&found).zip(stated) {
             let told = || format!("{} from {name}", self.at(i));
             verdict.close("part by what yields (m)", told, *stated, *found, slack + OF_DIGITS * size);
         }

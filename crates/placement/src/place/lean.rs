@@ -2,9 +2,9 @@
 //!
 //! The search knows the axis of the path alone. From the best placements that it finds, or where it finds none from
 //! placements drawn over the cell, lead and tilt are planned together with beta
-//! ([`LeanPlanner`](stead_planning::redundancy::lean_path::LeanPlanner)), first over their whole ranges, then off that
-//! grid; the placement is refined with the tool leaning so, and lead and tilt are planned anew, by turns. A step is only
-//! taken to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
+//! ([`LeanPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
+//! so, and lead and tilt are planned anew, by turns. A step is only taken to a plan that is better, so that where the
+//! axis of the path is allowed the result is never worse than with it.
 
 use super::axes::{Improved, between, kept_points, refined};
 use super::infeasible::Infeasible;

@@ -169,7 +169,8 @@ impl Job<'_> {
 }
 
 /// The setup in which a given placement is best, the part as it lies in the problem's: each axis first on a grid over
-/// its range, then improved; then the tool leans where it may. The problem's own where no position that is tried has a plan.
+/// its range, then improved; then the tool leans where it may. The problem's own where no position that is tried has a
+/// plan.
 pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Setup {
     let pinned = problem.without_tie_rule().in_cell(Cell::at(placement));
     let at = |setup: &Setup| {
