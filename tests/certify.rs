@@ -176,7 +176,7 @@ fn memory_used_up_on_the_way_leaves_the_bound_reached() {
 fn what_cannot_be_certified_is_said_and_placed_all_the_same() {
     let bench = bench();
     bench.write("out/open-region.svg", "of an earlier certificate");
-    bench.replace(RUN, "[cell]", "[mount]\nrpy_deg = [0.0, 2.0, 0.0]\n\n[cell]");
+    bench.replace(RUN, "[cell]", "[mount]\nxyz_mm = [0.0, 0.0, 0.0]\nrpy_deg = [0.0, 2.0, 0.0]\n\n[cell]");
     let ended = place(&bench, &["--certify", "1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let reason = "axis 1 of the robot leans 2.000 deg from the vertical";

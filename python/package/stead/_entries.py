@@ -133,7 +133,6 @@ class PlanEntries(Record):
     deflection_mm: Deflections
     feed: CutFeed
     joint_travel: JointTravel
-    leans_deg: list[list[float]] | None
     max_mm: float
     mean_mm: float
     mean_std_mm: float | None
@@ -218,6 +217,7 @@ class CaseEntries(Record):
     external_axes: ExternalAxes | None
     feed: CutFeed
     joint_travel: JointTravel
+    leans_deg: list[list[float]] | None
     max_mm: float
     mean_mm: float
     mean_std_mm: float | None

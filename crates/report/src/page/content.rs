@@ -166,11 +166,11 @@ struct Content {
 
 /// Points of a long path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-struct Thinned {
+pub(super) struct Thinned {
     /// All.
-    points: usize,
+    pub points: usize,
     /// Those shown.
-    shown: usize,
+    pub shown: usize,
 }
 
 /// For `best` and `worst` the ends of radius, z and yaw less azimuth.

@@ -1,6 +1,7 @@
 //! The page of a placement that is moved by hand, `stead live`: what is in it when it is opened, and the answers that
 //! it is given later. Both are made of the same parts as the page of a results folder, so that its script shows them.
 
+use super::content::Thinned;
 use super::data::{RunOf, page_data};
 use super::map_data::{MapColumns, columns};
 use super::moves::moves;
@@ -41,6 +42,35 @@ pub struct Answer {
     /// How the part is turned before it is placed, where it may lie in several ways.
     #[serde(skip_serializing_if = "Option::is_none")]
     part_turn: Option<[[f64; 3]; 3]>,
+}
+
+/// The best plan of a placement of which nothing is known.
+#[derive(Debug, Serialize)]
+struct BlankPlan {
+    mean_mm: f64,
+    max_mm: f64,
+    postures: [u8; 0],
+    cutting_s: f64,
+    cycle_s: Option<f64>,
+    transfers: [u8; 0],
+    joint_travel: Option<f64>,
+    deflection_mm: BlankDeflection,
+}
+
+/// Its deflection.
+#[derive(Debug, Serialize)]
+struct BlankDeflection {
+    total: MeanAndMax,
+}
+
+/// Such a placement.
+#[derive(Debug, Serialize)]
+struct BlankPlacement<'a> {
+    best: BlankPlan,
+    placement: &'a Value,
+    placement_exact: &'a Value,
+    orientation: &'a Value,
+    feasible: bool,
 }
 
 /// What is shown of a run beyond a single placement.
@@ -128,7 +158,7 @@ impl<'a> LivePage<'a> {
             None => (self.blank_document(&live["place"]), vec![self.blank()?], self.part_turn(self.problem)),
         };
         let [points, all] = [self.drawn.as_ref().map_or(0, Vec::len), self.problem.task.points().len()];
-        data["thinned"] = if points > 0 { serde_json::json!({ "shown": points, "points": all }) } else { Value::Null };
+        data["thinned"] = if points > 0 { value(&Thinned { points: all, shown: points }) } else { Value::Null };
         data["document"] = document;
         // Until the worst plan is known, the best one stands for it.
         data["plans"] = [plans.first(), plans.last()].into_iter().flatten().cloned().collect();
@@ -144,17 +174,20 @@ impl<'a> LivePage<'a> {
 
     /// The document of a placement of which nothing is known.
     fn blank_document(&self, place: &Value) -> Value {
-        let none = value(&MeanAndMax { mean: 0.0, max: 0.0 });
-        let best = serde_json::json!({
-            "mean_mm": 0.0, "max_mm": 0.0, "postures": [], "cutting_s": 0.0, "cycle_s": null, "transfers": [],
-            "joint_travel": null, "deflection_mm": { "total": none },
-        });
+        let best = BlankPlan {
+            mean_mm: 0.0,
+            max_mm: 0.0,
+            postures: [],
+            cutting_s: 0.0,
+            cycle_s: None,
+            transfers: [],
+            joint_travel: None,
+            deflection_mm: BlankDeflection { total: MeanAndMax { mean: 0.0, max: 0.0 } },
+        };
         let exact = &place["placement_exact"];
-        let figures = serde_json::json!({
-            "best": best, "placement": exact, "placement_exact": exact, "orientation": place["orientation"],
-            "feasible": false,
-        });
-        self.context.document().with(figures)
+        let orientation = &place["orientation"];
+        let placement = BlankPlacement { best, placement: exact, placement_exact: exact, orientation, feasible: false };
+        self.context.document().with(value(&placement))
     }
 
     /// The columns of a plan that is not known: no deflection, and the arm in the middle of its ranges.

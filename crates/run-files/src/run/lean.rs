@@ -279,7 +279,7 @@ mod tests {
         refused(
             &format!("{BALL}{LEAN}lead_step_deg = 0.2\ntilt_step_deg = 0.2\n"),
             None,
-            &["lean.tilt_step_deg: makes", "a wider step"],
+            &["lean.lead_step_deg: makes", "a wider step"],
         );
         refused(&format!("{BALL}{LEAN}[[lean.segment]]\nnumber = 2\n"), None, &["is no segment of the task", "1 to 1"]);
         refused(&format!("{FLAT}[lean]\nlead_deg = [1, 5]\nscallop_mm = 0.01\n"), None, &["scallop_mm", "whole range"]);

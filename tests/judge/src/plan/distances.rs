@@ -60,11 +60,13 @@ impl Plan<'_> {
         let [start, end] = [self.stand(i - 1), self.stand(i)].map(|stand| stand.part.inverse() * stand.tool);
         let turn = (end.rotation * start.rotation.inverse()).scaled_axis();
         let way = (end.translation.vector - start.translation.vector).norm();
+        // By what the path states of the tip, which digits of joint angles do not blur.
+        let told_way = (self.wanted(i).translation.vector - self.wanted(i - 1).translation.vector).norm();
         let most = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
         let steps = (way / 0.01).max(most / 0.02).ceil().clamp(2.0, 60.0) as usize;
         let mut joints = from.joints;
         let allowed = |speed: Option<f64>, moved: f64| match speed.filter(|_| !self.is_in_place(i)) {
-            Some(speed) => speed * way / steps as f64 / (moved.abs() - ROUNDED).max(1e-12),
+            Some(speed) => speed * told_way / steps as f64 / (moved.abs() - ROUNDED).max(1e-12),
             None => f64::INFINITY,
         };
         let axes = cell.axes.iter().zip(from.positions.iter().zip(&to.positions));
