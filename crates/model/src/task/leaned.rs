@@ -47,6 +47,15 @@ impl ToolPath {
         }
     }
 
+    /// Distance of the tip to a point from the one before, both in one segment: that along the path but for a tool that
+    /// leans. m
+    pub fn tip_length(&self, point: usize) -> f64 {
+        match &self.leaned {
+            Some(_) => (self.points[point].position - self.points[point - 1].position).norm(),
+            None => self.step_length(point),
+        }
+    }
+
     /// How the tool leans at every point; none where it does not.
     pub fn leans(&self) -> Option<&[Lean]> {
         self.leaned.as_ref().map(|leaned| leaned.leans.as_slice())

@@ -11,7 +11,7 @@ use stead_numerics::scalar::Dual;
 const MAX_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// The largest change of the speed of a joint between these poses, by its limit, beside the largest speed of any joint
 /// by its own.
-const MAX_CHANGE: f64 = 0.1;
+const MAX_CHANGE: f64 = 0.2;
 /// A step is halved this often at the most.
 const MAX_HALVINGS: usize = 10;
 /// A pose of a step.
