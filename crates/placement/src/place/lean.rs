@@ -140,7 +140,8 @@ impl Job<'_> {
         Some(best)
     }
 
-    /// The best placements with the axis of the path, each with its setup, or drawn ones where there are none.
+    /// The best placements with the axis of the path, each with its setup, or drawn ones where there are none; in that
+    /// case the last is the worst of those drawn.
     fn starts(&self, closed: Result<&Outcome, &Infeasible>, seed: u64) -> Vec<(Setup, Placement)> {
         let Ok(outcome) = closed else { return self.drawn(seed) };
         let best = &outcome.cases.best;
@@ -155,7 +156,8 @@ impl Job<'_> {
         starts
     }
 
-    /// Of placements drawn over the cell those with the best ways on some points of the path.
+    /// Of placements drawn over the cell those with the best ways on some points of the path, and last the one with the
+    /// worst.
     fn drawn(&self, seed: u64) -> Vec<(Setup, Placement)> {
         let setup = Setup { leans: [].into(), ..self.problem.setup.clone() };
         let upright = self.problem.in_setup(&setup);
@@ -177,8 +179,9 @@ impl Job<'_> {
             found.extend(planner.path(&placement).map(|path| (path.objective, placement)));
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let worst = found.last().copied();
         found.truncate(STARTS);
-        found.into_iter().map(|(_, placement)| (setup.clone(), placement)).collect()
+        found.into_iter().chain(worst).map(|(_, placement)| (setup.clone(), placement)).collect()
     }
 }
 
@@ -208,6 +211,7 @@ pub(super) fn place_leaned(
     let without_tie_rule = problem.without_tie_rule();
     let job = Job { problem: &without_tie_rule, space, monitor };
     let starts = job.starts(closed.as_ref(), settings.seed);
+    let worst_drawn = if closed.is_err() { starts.last().cloned() } else { None };
     let mut best: Option<Improved> = None;
     for (number, (setup, placement)) in starts.iter().enumerate() {
         if best.is_some() && monitor.should_stop() {
@@ -235,12 +239,20 @@ pub(super) fn place_leaned(
     };
     let of_best = cases(best, Sense::Min);
     let upright = closed.as_ref().ok().map(|outcome| outcome.cases.best.plan.objective);
-    // The worst placement is the one with the axis of the path, with the tool leaning as well as it can there.
-    let worst = closed.as_ref().ok().and_then(|outcome| outcome.cases.worst.as_ref()).map(|worst| {
-        let known = &worst.best;
-        let found = (!monitor.should_stop()).then(|| job.at(&known.setup, &known.placement, None)).flatten();
-        found.map_or_else(|| worst.clone(), |found| cases(found, Sense::Max))
-    });
+    // The worst placement is the one with the axis of the path, or else of those drawn, with the tool leaning as well as
+    // it can there.
+    let worst = match &closed {
+        Ok(outcome) => outcome.cases.worst.as_ref().map(|worst| {
+            let known = &worst.best;
+            let found = (!monitor.should_stop()).then(|| job.at(&known.setup, &known.placement, None)).flatten();
+            found.map_or_else(|| worst.clone(), |found| cases(found, Sense::Max))
+        }),
+        Err(_) => {
+            let drawn = worst_drawn.filter(|_| settings.worst);
+            let found = drawn.and_then(|(setup, placement)| job.at(&setup, &placement, None));
+            found.map(|found| cases(found, Sense::Max))
+        }
+    };
     let mut outcome = match closed {
         Ok(outcome) => outcome,
         Err(_) => {

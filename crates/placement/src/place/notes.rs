@@ -96,10 +96,12 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
             ),
         });
     }
-    let worst = if has_worst {
-        "; the worst placement is the worst with the axis of the path, with the tool leaning as well as it can there"
-    } else {
-        ""
+    let worst = match (has_worst, upright) {
+        (false, _) => "",
+        (true, Some(_)) => {
+            "; the worst placement is the worst with the axis of the path, with the tool leaning as well as it can there"
+        }
+        (true, None) => "; the worst placement is the worst of those that were drawn",
     };
     notes.push(format!(
         "lead and tilt are planned at placements that are good with the axis of the path, and refined by turns with the placement: \
