@@ -159,7 +159,7 @@ impl LeanSpace {
         let normal = path.surface_normals()?[point];
         let (at, range) = (&path.points()[point], &self.ranges[point]);
         let seen = at.workpiece_from_point().tr_mul(&normal);
-        let lean = Lean { lead: libm::atan2(seen.x, seen.z), tilt: libm::asin(seen.y.max(-1.0).min(1.0)) };
+        let lean = Lean { lead: libm::atan2(seen.x, seen.z), tilt: libm::asin(seen.y.clamp(-1.0, 1.0)) };
         let lean = range.nearest(&lean);
         match self.rule.check(at, Some(&normal), &lean) {
             Err(error @ LeanError::ThroughNormal { .. }) => Some((lean, error)),

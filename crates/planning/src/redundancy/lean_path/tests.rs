@@ -46,7 +46,7 @@ fn drawn(seed: u64) -> (Problem, Placement) {
     ranges[3] = LeanRange::NONE;
     ranges[5] = range([2.0, 9.0], [-8.0, 3.0]);
     let space = LeanSpace {
-        rule: LeanRule { force: if seed % 2 == 0 { LeanForce::Feed } else { LeanForce::Tool }, ..BALL },
+        rule: LeanRule { force: if seed.is_multiple_of(2) { LeanForce::Feed } else { LeanForce::Tool }, ..BALL },
         ranges,
         max_lean: Some(11.0_f64.to_radians()),
         steps: [6.0_f64.to_radians(), 4.0_f64.to_radians()],
@@ -58,7 +58,7 @@ fn drawn(seed: u64) -> (Problem, Placement) {
     parts.task = task;
     parts.redundancy.beta_count = 36;
     parts.redundancy.max_beta_rate = Some(random.random_range(900.0..2500.0_f64).to_radians());
-    parts.redundancy.max_spindle_turn = (seed % 3 == 0).then_some(1800.0_f64.to_radians());
+    parts.redundancy.max_spindle_turn = seed.is_multiple_of(3).then_some(1800.0_f64.to_radians());
     parts.lean = Some(Arc::new(space));
     parts.constraints.min_inverse_condition = 0.17;
     let cell = &parts.cell;
@@ -140,7 +140,9 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
             let is_edge = |old: &&Node| {
                 let turned = stead_numerics::rotation::rotation_vector(&(old.flange.transpose() * node.flange)).norm();
                 let length = path.step_length(point);
-                let turns = limits.max_spindle_turn.is_none_or(|limit| turned <= (limit * length).min(1.5708) + 1e-9);
+                let turns = limits
+                    .max_spindle_turn
+                    .is_none_or(|limit| turned <= (limit * length).min(std::f64::consts::FRAC_PI_2) + 1e-9);
                 let rate = wrap(node.beta - old.beta).abs() <= limits.max_beta_rate.unwrap() * length + 1e-9;
                 // A ball leaves its line by r d^2 / 6.
                 let d = libm::acos(old.axis.dot(&node.axis).min(1.0));
