@@ -17,7 +17,7 @@ use stead_planning::symmetry::{
 /// found without work.
 ///
 /// What adds to an objective and is never below zero is left out of its bound, and so is what keeps plans from being
-/// better: see [`left_out`].
+/// better: see `left_out`.
 ///
 /// # Errors
 /// The first reason why not.
