@@ -239,8 +239,8 @@ pub(super) fn place_leaned(
     };
     let of_best = cases(best, Sense::Min);
     let upright = closed.as_ref().ok().map(|outcome| outcome.cases.best.plan.objective);
-    // The worst placement is the one with the axis of the path, or else of those drawn, with the tool leaning as well as
-    // it can there.
+    // The worst placement is the one with the axis of the path, or else of those drawn, with the tool leaning as well
+    // as it can there.
     let worst = match &closed {
         Ok(outcome) => outcome.cases.worst.as_ref().map(|worst| {
             let known = &worst.best;
