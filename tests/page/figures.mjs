@@ -100,6 +100,8 @@ export const figures = (folder, plans) => ({
 
   'every card gives its picture and its figures': async (page) => {
     const bytes = async (button) => {
+      // As slowly as by hand: of many downloads within a second or two Chromium leaves one out.
+      await page.waitForTimeout(400);
       const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
       return [download.suggestedFilename(), readFileSync(await download.path())];
     };
