@@ -2,7 +2,7 @@
 
 import { card, el } from '../draw/dom.js';
 import { RAW } from '../run/data.js';
-import { tell, tried } from './jobs.js';
+import { chip, tell, tried } from './jobs.js';
 import { place } from './place.js';
 import { ask } from './server.js';
 
@@ -59,7 +59,6 @@ export function editsCard() {
     const saved = await tried(() => ask('/save', { name: name.value.trim(), is_placement: alone.checked, ...place }));
     if (saved) tell(`saved as ${saved.file}`);
   };
-  const chip = (/** @type {string} */ id, /** @type {string} */ text, /** @type {() => void} */ onclick) => el('button.chip', { type: 'button', id, onclick }, text);
   return card(
     'Values of the run',
     before.length ? `changed: ${before.join(', ')}` : 'as the file has them',

@@ -61,9 +61,11 @@ function ended(job) {
 /** Begins a job at the place of now. @param {string} job @param {Record<string, any>} [more] */
 export const begin = (job, more = {}) => tried(() => ask('/job', { job, ...place, ...more })).then(look);
 
+/** A button with a name of its own. @param {string} id @param {string} text @param {() => void} onclick */
+export const chip = (id, text, onclick) => el('button.chip', { type: 'button', id, onclick }, text);
+
 /** The card of the jobs. */
 export function jobsCard() {
-  const button = (/** @type {string} */ id, /** @type {string} */ text, /** @type {() => void} */ onclick) => el('button.chip', { type: 'button', id, onclick }, text);
   const gap = /** @type {HTMLInputElement} */ (el('input', { type: 'number', id: 'gap', value: 1, min: 0.0001, max: 99, step: 'any' }));
   const label = /** @type {HTMLInputElement} */ (el('input', { type: 'text', id: 'label', maxlength: 60, placeholder: 'name' }));
   const keep = () => {
@@ -71,15 +73,15 @@ export function jobsCard() {
     void begin('keep', text ? { is_labelled: true, label: text } : {});
   };
   const starts = [
-    button('search-here', 'Search from here', () => void begin('search_here')),
-    button('search-cell', 'Search the cell', () => void begin('search_cell')),
-    ...(AXES.length ? [button('set-up', 'Axes where it is best', () => void begin('set_up'))] : []),
-    button('certify', 'Certify', () => void begin('certify', { gap_percent: gap.valueAsNumber })),
-    button('keep', 'Pin this placement', keep),
+    chip('search-here', 'Search from here', () => void begin('search_here')),
+    chip('search-cell', 'Search the cell', () => void begin('search_cell')),
+    ...(AXES.length ? [chip('set-up', 'Axes where it is best', () => void begin('set_up'))] : []),
+    chip('certify', 'Certify', () => void begin('certify', { gap_percent: gap.valueAsNumber })),
+    chip('keep', 'Pin this placement', keep),
   ];
   const bar = /** @type {HTMLProgressElement} */ (el('progress', { 'aria-label': 'Progress' }));
   const words = el('span.sub', { id: 'job-words' });
-  const stop = button('stop', 'Stop', () => void tried(() => ask('/stop')).then(look));
+  const stop = chip('stop', 'Stop', () => void tried(() => ask('/stop')).then(look));
   const running = el('div.row', { id: 'job', hidden: true }, bar, words, stop);
   const log = el('ul');
   const logged = el('div.log', { id: 'log', role: 'log', 'aria-label': 'What jobs came to', tabindex: 0, hidden: true }, log);
