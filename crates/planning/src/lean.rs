@@ -9,6 +9,9 @@ const ROUNDING: f64 = 1e-9;
 /// The tool axis turns by no more than this from one point to the next, where that of the path turns by less. rad
 const MOST_TURN: f64 = std::f64::consts::PI / 12.0;
 
+/// Points of a path on which lead and tilt are planned, at the most.
+pub const MOST_PLANNED_POINTS: usize = 400;
+
 /// Lead and tilt that a point allows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeanRange {
@@ -225,6 +228,15 @@ impl LeanSpace {
             (most / step - ROUNDING).ceil().max(0.0) as usize
         };
         [half(&|range| range.lead, self.steps[0]), half(&|range| range.tilt, self.steps[1])]
+    }
+
+    /// About how much memory planning takes with so many values of beta. Bytes
+    pub fn memory(&self, beta_count: usize) -> u64 {
+        let leans: usize = self.half_counts().iter().map(|half| 2 * half + 1).product();
+        // Where each state of a class came from, and the scores and joint angles of two points, their rows continued.
+        let links = MOST_PLANNED_POINTS.min(self.ranges.len()) * 4 * 4;
+        let rows = 2 * 4 * 13 * 3 * 8;
+        ((links + rows) * leans * beta_count) as u64
     }
 
     /// Values of lead and tilt of a point, so many to either side of the middle: of zero, where it is in the range.

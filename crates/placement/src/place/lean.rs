@@ -19,7 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::lean::LeanSpace;
+use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
 use stead_planning::problem::{Interval, Placement, Problem};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::lean_path::{LeanGrid, LeanPath, LeanPlanner};
@@ -39,8 +39,6 @@ const GAIN: f64 = 1e-4;
 const HALVINGS: usize = 6;
 /// Steps to either side in a halving.
 const NEAR: i32 = 1;
-/// Points on which lead and tilt are planned, at the most.
-const MOST_POINTS: usize = 400;
 /// Placements drawn where none has a plan with the axis of the path, and the points on which they are told apart.
 const DRAWN: (usize, usize) = (48, 60);
 
@@ -78,8 +76,9 @@ impl Job<'_> {
         let mut best = known.or_else(|| self.upright(setup, placement));
         let upright = self.problem.in_setup(&Setup { leans: [].into(), ..setup.clone() });
         let step = self.space.steps[0].max(self.space.steps[1]);
-        let kept =
-            kept_points(&upright, MOST_POINTS, |time| slowest(&upright).map_or(0.0, |speed| step / (speed * time)));
+        let kept = kept_points(&upright, MOST_PLANNED_POINTS, |time| {
+            slowest(&upright).map_or(0.0, |speed| step / (speed * time))
+        });
         let thinned =
             (kept.len() < upright.task.points().len()).then(|| PathSubset::of_points(kept.clone()).of(&upright));
         let coarse = thinned.as_ref().unwrap_or(&upright);
@@ -91,7 +90,8 @@ impl Job<'_> {
         let mut steps = self.space.steps;
         for _ in 0..=HALVINGS {
             let Some(leans) = way.take().filter(|_| best.is_none() || !self.monitor.should_stop()) else { break };
-            let candidate = self.planned(setup, placement, self.spread(&upright, &kept, &leans));
+            let spread = self.spread(&upright, &kept, &leans);
+            let candidate = spread.and_then(|leans| self.planned(setup, placement, leans));
             if let Some(candidate) = candidate
                 && best.as_ref().is_none_or(|best| candidate.solution.objective < best.solution.objective)
             {
@@ -103,23 +103,17 @@ impl Job<'_> {
         best
     }
 
-    /// Leans at every point, from those at some of them.
-    fn spread(&self, upright: &Problem, kept: &[usize], leans: &[Lean]) -> Vec<Lean> {
+    /// Leans at every point, from those at some of them; none where one between these is not allowed.
+    fn spread(&self, upright: &Problem, kept: &[usize], leans: &[Lean]) -> Option<Vec<Lean>> {
         let path = upright.task.path();
-        let mut rows = vec![vec![0.0; 2]; path.points().len()];
-        for (number, values) in
-            [leans.iter().map(|lean| lean.lead).collect(), leans.iter().map(|lean| lean.tilt).collect()]
-                .into_iter()
-                .enumerate()
-        {
-            let values: Vec<f64> = values;
-            rows = between(upright, &rows, number, kept, &values);
-        }
-        let lean = |(point, row): (usize, Vec<f64>)| {
+        let rows = vec![vec![0.0; 2]; path.points().len()];
+        let rows = between(upright, &rows, 0, kept, &leans.iter().map(|lean| lean.lead).collect::<Vec<f64>>());
+        let rows = between(upright, &rows, 1, kept, &leans.iter().map(|lean| lean.tilt).collect::<Vec<f64>>());
+        let lean = |(point, row): (usize, &Vec<f64>)| {
             let lean = self.space.ranges[point].nearest(&Lean { lead: row[0], tilt: row[1] });
-            if self.space.allows(path, point, &lean) { lean } else { self.space.ranges[point].nearest(&Lean::NONE) }
+            self.space.allows(path, point, &lean).then_some(lean)
         };
-        rows.into_iter().enumerate().map(lean).collect()
+        rows.iter().enumerate().map(lean).collect()
     }
 
     /// Leans and placement by turns, from a placement.

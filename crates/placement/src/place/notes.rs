@@ -60,7 +60,7 @@ pub(super) fn best_alone() -> String {
     "the worst placement was not looked for: there is nothing to compare the best one with".to_owned()
 }
 
-/// Notes on a tool that leans: by how much, what it gains, and what was not looked at.
+/// Notes on a tool that leans: by how much, what it gains, and what was not searched.
 pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_worst: bool) -> Vec<String> {
     let Some(space) = &problem.lean else { return Vec::new() };
     let mm = |value: f64| figures(value * 1e3);

@@ -2,37 +2,31 @@
 //!
 //! A state of a path point is a grid value of beta, one of the leans that the point may have, and a posture class, with
 //! joint angles modulo a turn. From one point to the next the axis may turn as far as the contact stays near its line
-//! ([`LeanSpace::allows_step`]), beta as far as its limits allow between these two leans, and each joint by its step.
-//! All states and all steps are looked at, so that what is found is the cheapest of its grid but for what flips and
-//! turns of the wrist forbid. The plan itself is made afterwards, with the tool leaning along the way found here
-//! ([`Setup::leans`]), so nothing of what is printed rests on this grid.
+//! ([`LeanSpace::allows_step`](crate::lean::LeanSpace::allows_step)), beta as far as its limits allow between these two
+//! leans, and each joint by its step. All states and all steps are evaluated, so that what is found is the cheapest of
+//! its grid but for what flips and turns of the wrist forbid. The plan itself is made afterwards, with the tool leaning
+//! along the way found here ([`Setup::leans`](crate::setup::Setup::leans)), so nothing of what is printed rests on this
+//! grid.
 //!
-//! Where something hits, the states of the points at which the plan hits are looked at, all of them, and the plan is
+//! Where something hits, all states of the points at which the plan hits are checked for collisions, and the plan is
 //! made again without those that hit, until it is free.
+
+mod grid;
+
+pub use grid::LeanGrid;
 
 use super::state_set::kinds_left;
 use super::transition::{self, advance};
-use super::{BetaChange, Resolution, SegmentPlanner, StateSet};
+use super::{Resolution, SegmentPlanner, StateSet};
 use crate::evaluate::batch::StateGrid;
-use crate::lean::LeanSpace;
 use crate::problem::{Placement, Problem};
 use crate::sense::Sense;
-use crate::setup::Setup;
-use nalgebra::Matrix3;
+use grid::{Before, steps_to};
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use stead_cell::Proximity;
 use stead_model::robot::{Posture, PostureClass};
 use stead_model::task::lean::Lean;
-
-/// The leans that the tool may have along a path: of each number one for every point, or none there.
-#[derive(Debug, Clone)]
-pub struct LeanGrid<'a> {
-    /// The problem, in a setup that says where part and external axes stand.
-    problem: &'a Problem,
-    space: &'a LeanSpace,
-    leans: Vec<Vec<Option<Lean>>>,
-}
 
 /// How the tool leans along the path.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,59 +38,6 @@ pub struct LeanPath {
     /// How often the path was planned until nothing hit.
     pub rounds: usize,
 }
-
-impl<'a> LeanGrid<'a> {
-    /// All that the tool may do in a problem, in the steps of its [`LeanSpace`]; none where it may not lean.
-    pub fn new(problem: &'a Problem) -> Option<Self> {
-        let space = problem.lean.as_deref()?;
-        let half = space.half_counts();
-        let rows: Vec<Vec<Lean>> = (0..space.ranges.len()).map(|point| space.grid(point, half)).collect();
-        Some(Self::of_rows(problem, space, rows))
-    }
-
-    /// What is near to given leans: with up to `half` steps of lead and of tilt (rad) to either side.
-    pub fn near(problem: &'a Problem, leans: &[Lean], steps: [f64; 2], half: i32) -> Option<Self> {
-        let space = problem.lean.as_deref()?;
-        let around = |(point, lean): (usize, &Lean)| -> Vec<Lean> {
-            let at = |l: i32, t: i32| Lean {
-                lead: lean.lead + steps[0] * f64::from(l),
-                tilt: lean.tilt + steps[1] * f64::from(t),
-            };
-            // The lean itself first, so that of equally good ones it stays.
-            let mut all: Vec<(i32, i32)> = (-half..=half).flat_map(|l| (-half..=half).map(move |t| (l, t))).collect();
-            all.sort_by_key(|(l, t)| l.abs() + t.abs());
-            all.into_iter().map(|(l, t)| space.ranges[point].nearest(&at(l, t))).collect()
-        };
-        Some(Self::of_rows(problem, space, leans.iter().enumerate().map(around).collect()))
-    }
-
-    fn of_rows(problem: &'a Problem, space: &'a LeanSpace, rows: Vec<Vec<Lean>>) -> Self {
-        let path = problem.task.upright().path();
-        let count = rows.first().map_or(0, Vec::len);
-        let at = |number: usize, point: usize| {
-            let lean = rows[point][number];
-            let is_new = !rows[point][..number].contains(&lean);
-            (is_new && space.allows(path, point, &lean)).then_some(lean)
-        };
-        let leans = (0..count).map(|number| (0..rows.len()).map(|point| at(number, point)).collect()).collect();
-        Self { problem, space, leans }
-    }
-
-    /// The problem with the tool in the lean of one number at every point, and upright where there is none.
-    fn problem_at(&self, number: usize) -> Problem {
-        let leans = self.leans[number].iter().map(|lean| lean.unwrap_or(Lean::NONE)).collect();
-        let setup = Setup { leans, ..self.problem.setup.clone() };
-        self.problem.in_setup(&setup).into_owned()
-    }
-
-    /// The problems of all leans, which a [`LeanPlanner`] plans.
-    pub fn problems(&self) -> Vec<Problem> {
-        (0..self.leans.len()).map(|number| self.problem_at(number)).collect()
-    }
-}
-
-/// A lean at the point before, and how beta may change from there.
-type Before = (u16, BetaChange);
 
 /// The planner of a [`LeanGrid`]: what does not change from one placement to the next.
 #[derive(Debug, Clone)]
@@ -123,6 +64,15 @@ struct LeanPass {
 struct Link {
     lean: u16,
     shift: i16,
+}
+
+/// Space of one thread for the states of a point in a lean: their own scores, the smallest costs of ways to them, and
+/// the steps of beta back along these.
+#[derive(Debug, Default)]
+struct Reached {
+    own: Vec<f64>,
+    best: Vec<f64>,
+    shifts: Vec<i16>,
 }
 
 /// The states at the points of a segment: of each point the number of its lean and that of its beta.
@@ -162,14 +112,14 @@ impl<'a> LeanPlanner<'a> {
         }
         let spans = problem.task.segments();
         let mut forbidden = vec![StateSet::default(); self.planners.len()];
-        let mut looked_at = vec![[false; 4]; problem.task.points().len()];
+        let mut checked = vec![[false; 4]; problem.task.points().len()];
         let mut found: Vec<Vec<Found>> =
             spans.iter().map(|span| self.segment(span, placement, &forbidden)).collect::<Option<_>>()?;
         for rounds in 1.. {
             let chosen = self.chosen(&found)?;
             let mut again = Vec::new();
             for (index, (span, way)) in spans.iter().zip(&chosen).enumerate() {
-                if self.forbid_hits(span, placement, way, &mut looked_at, &mut forbidden) {
+                if self.forbid_hits(span, placement, way, &mut checked, &mut forbidden) {
                     again.push(index);
                 }
             }
@@ -234,7 +184,7 @@ impl<'a> LeanPlanner<'a> {
         let mut now = before.clone();
         for (point, row) in span.clone().zip(links.chunks_mut(4 * number * beta_count)) {
             let states = now.par_iter_mut().zip(row.par_chunks_mut(4 * beta_count)).enumerate();
-            states.for_each(|(lean, (states, links))| {
+            states.for_each_init(Reached::default, |reached, (lean, (states, links))| {
                 self.evaluate(evaluator, point, lean, placement, classes, forbidden, states);
                 for class in PostureClass::ALL {
                     let links = &mut links[class.index() * beta_count..][..beta_count];
@@ -243,7 +193,7 @@ impl<'a> LeanPlanner<'a> {
                     }
                     if point == span.start {
                         transition::begin(states, class, 1.0);
-                    } else if !self.reach(point, lean, class, &before, states, links) {
+                    } else if !self.reach((point, lean, class), &before, states, links, reached) {
                         states.clear(class);
                         continue;
                     }
@@ -289,27 +239,29 @@ impl<'a> LeanPlanner<'a> {
     /// reached.
     fn reach(
         &self,
-        point: usize,
-        lean: usize,
-        class: PostureClass,
+        (point, lean, class): (usize, usize, PostureClass),
         before: &[StateGrid],
         states: &mut StateGrid,
         links: &mut [Link],
+        reached: &mut Reached,
     ) -> bool {
         let step = self.planners[lean].step(point, Sense::Min);
         let (pad, count) = (states.pad(), states.count());
-        let own = states.scores(class).to_vec();
-        let mut best = vec![f64::INFINITY; count];
-        let mut shifts = vec![0_i16; count];
+        let Reached { own, best, shifts } = reached;
+        own.clear();
+        own.extend_from_slice(states.scores(class));
+        best.clear();
+        best.resize(count, f64::INFINITY);
+        shifts.resize(count, 0);
         let mut is_reached = false;
         for (from, change) in &self.before[point][lean] {
             let known = &before[usize::from(*from)];
             if !known.is_alive(class) {
                 continue;
             }
-            states.scores_mut(class).copy_from_slice(&own);
+            states.scores_mut(class).copy_from_slice(own);
             let step = transition::Step { change: *change, ..step };
-            if !advance(known, states, class, &step, &mut shifts) {
+            if !advance(known, states, class, &step, shifts) {
                 continue;
             }
             is_reached = true;
@@ -321,7 +273,7 @@ impl<'a> LeanPlanner<'a> {
                 }
             }
         }
-        states.scores_mut(class)[pad..pad + count].copy_from_slice(&best);
+        states.scores_mut(class)[pad..pad + count].copy_from_slice(best);
         is_reached
     }
 
@@ -345,7 +297,7 @@ impl<'a> LeanPlanner<'a> {
         span: &Span<usize>,
         placement: &Placement,
         found: &Found,
-        looked_at: &mut [[bool; 4]],
+        checked: &mut [[bool; 4]],
         forbidden: &mut [StateSet],
     ) -> bool {
         if self.grid.problem.scene.is_none() {
@@ -370,9 +322,9 @@ impl<'a> LeanPlanner<'a> {
         let near = |place: &usize| place.saturating_sub(NEIGHBOURS)..(place + NEIGHBOURS + 1).min(span.len());
         let mut points: Vec<usize> = places.iter().flat_map(near).map(|place| span.start + place).collect();
         points.dedup();
-        points.retain(|point| !looked_at[*point][class.index()]);
+        points.retain(|point| !checked[*point][class.index()]);
         for point in &points {
-            looked_at[*point][class.index()] = true;
+            checked[*point][class.index()] = true;
         }
         let classes = PostureClass::ALL.map(|other| other == class);
         let found: Vec<Vec<(usize, usize)>> = (0..self.planners.len())
@@ -406,47 +358,8 @@ impl<'a> LeanPlanner<'a> {
     }
 }
 
-/// Points to either side of one that hits that are looked at with it: what hits at one mostly hits at the next.
+/// Points to either side of one that hits that are checked with it: what hits at one mostly hits at the next.
 const NEIGHBOURS: usize = 3;
-
-/// For each lean at a point those at the point before it from which the tool may come, with the changes of beta.
-fn steps_to(grid: &LeanGrid<'_>, point: usize) -> Vec<Vec<Before>> {
-    let (problem, space) = (grid.problem, grid.space);
-    let path = problem.task.upright().path();
-    let at = |point: usize| {
-        let frame = |leans: &Vec<Option<Lean>>| {
-            let lean = leans[point]?;
-            let normal = path.surface_normals().map(|normals| &normals[point]);
-            Some((lean, space.rule.leaned(&path.points()[point], normal, &lean).workpiece_from_point()))
-        };
-        grid.leans.iter().map(frame).collect::<Vec<Option<(Lean, Matrix3<f64>)>>>()
-    };
-    let [before, now] = [at(point - 1), at(point)];
-    let limits = &problem.redundancy;
-    let to = |state: &Option<(Lean, Matrix3<f64>)>| {
-        let Some((lean, axes)) = state else { return Vec::new() };
-        let mut all: Vec<(f64, Before)> = Vec::new();
-        for (number, known) in before.iter().enumerate() {
-            let Some((old, old_axes)) = known.as_ref().filter(|known| space.allows_step(path, point, [&known.0, lean]))
-            else {
-                continue;
-            };
-            let change = BetaChange::of(problem.beta_step_between(point, limits, [old_axes, axes]), limits);
-            if !change.is_none() {
-                all.push((apart(old, lean), (number as u16, change)));
-            }
-        }
-        // Of equally cheap ones the first is taken: that in which the axis turns least.
-        all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.cmp(&b.1.0)));
-        all.into_iter().map(|(_, before)| before).collect()
-    };
-    now.iter().map(to).collect()
-}
-
-/// How far two leans are apart: the sum of the differences of lead and tilt. rad
-fn apart(a: &Lean, b: &Lean) -> f64 {
-    (a.lead - b.lead).abs() + (a.tilt - b.tilt).abs()
-}
 
 #[cfg(test)]
 mod tests;

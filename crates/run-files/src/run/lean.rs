@@ -37,8 +37,6 @@ const TOLERANCE_MM: f64 = 0.005;
 const MOST_LEANS: usize = 1681;
 /// Memory for the states of a path at the most. Bytes
 const MOST_MEMORY: f64 = 4e9;
-/// Points on which leans are planned at the most, whatever the path.
-const MOST_POINTS: usize = 400;
 
 /// How far the tool may lean from the axis that the task states. Without lead and tilt it keeps to that axis.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -158,10 +156,7 @@ impl LeanTable {
         };
         space.check(path).map_err(|error| at.error(format!("cannot be: {error}"), "leans that the cutter allows"))?;
         let [lead, tilt] = space.half_counts().map(|half| 2 * half + 1);
-        let leans = lead * tilt;
-        // A number for each state of a path, and sines and cosines of two points in rows that are continued.
-        let memory = (MOST_POINTS.min(path.points().len()) * 4 * leans * beta_count * 4) as f64
-            + (2 * leans * 4 * 13 * 3 * beta_count * 8) as f64;
+        let (leans, memory) = (lead * tilt, space.memory(beta_count) as f64);
         if leans > MOST_LEANS || memory > MOST_MEMORY {
             let key = if lead > tilt { "lead_step_deg" } else { "tilt_step_deg" };
             let problem =

@@ -1,11 +1,12 @@
-//! The plan over (beta, lead, tilt) against a reference: every pair of neighbouring states, with the limits asked one
+//! The plan over (beta, lead, tilt) against a reference: every pair of neighbouring states, with the limits tested one
 //! by one, and every state with the tool leaning there and nowhere else.
 
 use super::*;
 use crate::cell::Interval;
-use crate::lean::LeanRange;
+use crate::lean::{LeanRange, LeanSpace};
 use crate::problem::ProblemParts;
 use crate::redundancy::joint_turns::is_allowed;
+use crate::setup::Setup;
 use crate::testing::five_segments;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
