@@ -149,6 +149,46 @@ const tests = {
     assert.equal(await page.locator('#redo').isDisabled(), false);
   },
 
+  'one request at a time follows the part, the newest next, and charts and map are drawn at rest': async (page) => {
+    await go(page, BEST);
+    await atRest(page);
+    const from = await partAt(page);
+    await page.evaluate(() => {
+      const ask = window.fetch;
+      window.asked = { now: 0, most: 0, places: [], ask };
+      window.fetch = async (path, options) => {
+        const { asked } = window;
+        if (path !== '/preview') return ask(path, options);
+        asked.places.push(JSON.parse(options.body));
+        asked.most = Math.max(asked.most, ++asked.now);
+        await new Promise((done) => setTimeout(done, 80));
+        const answer = await ask(path, options);
+        asked.now--;
+        return answer;
+      };
+    });
+    await page.mouse.move(...from);
+    await page.mouse.down();
+    const before = await page.evaluate(() => ({ ...window.stead.steps }));
+    for (let k = 1; k <= 30; k++) await page.mouse.move(from[0] + k, from[1] + k / 2);
+    await page.waitForFunction(() => window.asked.places.length > 2 && window.stead.shown.answer.id === window.asked.places.at(-1).id);
+    const held = await page.evaluate(() => ({ ...window.stead.steps, asked: window.asked, canvas: document.querySelector('.view canvas').width }));
+    assert.ok(held.count > before.count, 'the part is not drawn where it is');
+    assert.equal(held.beyond, before.beyond, 'more is drawn than the part');
+    assert.equal(held.asked.most, 1);
+    assert.ok(held.asked.places.length < 30, `${held.asked.places.length} requests`);
+    await page.mouse.up();
+    await atRest(page);
+    const rest = await page.evaluate(() => ({ ...window.stead.steps, place: window.stead.place, answer: window.stead.shown.answer.place, at: window.stead.cases[0].at }));
+    assert.ok(rest.beyond > held.beyond, 'charts and map are not drawn at rest');
+    for (const [field, short] of [['x_mm', 'x'], ['y_mm', 'y'], ['z_mm', 'z']]) {
+      assert.ok(Math.abs(rest.answer.placement_exact[field] - rest.place[field]) < 1e-6, field);
+      assert.equal(rest.at[short], rest.place[field]);
+    }
+    await page.waitForFunction((width) => document.querySelector('.view canvas').width > width, held.canvas);
+    await page.evaluate(() => (window.fetch = window.asked.ask));
+  },
+
   'beside the part the view is turned and the part stays': async (page) => {
     const before = await page.evaluate(() => JSON.stringify(window.stead.place));
     const box = await page.locator('.view').boundingBox();

@@ -43,17 +43,33 @@ const { page, close } = await openLive(browser, address.href);
 await atRest(page);
 const first = await page.evaluate(() => window.stead.first);
 
-/** Of every move of the pointer the time until the frame with its mean, and until all of it is known after the last. */
+/**
+ * Of every move of the pointer, from its own time on, the time until the frame with the mean of the place that it led to, or of a later one;
+ * of the last also the time until all of it is known.
+ */
 await page.evaluate(() => {
   const times = [];
-  let moved = 0;
-  addEventListener('pointermove', (event) => event.buttons && (moved = event.timeStamp), { capture: true });
-  const mean = document.getElementById('live-mean');
+  let [moves, isAnswered] = [[], false];
+  const moved = (event) => event.buttons && moves.push({ at: event.timeStamp, id: Infinity });
+  // A movement is told twice where the browser tells it at once, too.
+  addEventListener('onpointerrawupdate' in window ? 'pointerrawupdate' : 'pointermove', moved, { capture: true });
+  const ask = window.fetch;
+  window.fetch = (path, options) => {
+    if (path === '/preview') moves.forEach((move) => (move.id = Math.min(move.id, JSON.parse(options.body).id)));
+    return ask(path, options);
+  };
   new MutationObserver(() => {
-    const since = moved;
-    if (since) requestAnimationFrame(() => times.push(performance.now() - since));
-    moved = 0;
-  }).observe(mean, { childList: true, characterData: true, subtree: true });
+    if (isAnswered) return;
+    isAnswered = true;
+    requestAnimationFrame(() =>
+      setTimeout(() => {
+        isAnswered = false;
+        const { id } = window.stead.shown.answer;
+        times.push(...moves.filter((move) => move.id <= id).map((move) => performance.now() - move.at));
+        moves = moves.filter((move) => move.id > id);
+      }),
+    );
+  }).observe(document.getElementById('live-mean'), { childList: true, characterData: true, subtree: true });
   window.measured = { times };
 });
 const at = await partAt(page);

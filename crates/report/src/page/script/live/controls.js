@@ -5,6 +5,7 @@ import { fixed } from '../draw/scale.js';
 import { RAW } from '../run/data.js';
 import { AXES } from '../run/external-axes.js';
 import { hand } from './drag.js';
+import { onAnswer } from './follow.js';
 import { canRedo, canUndo, goTo, move, onPlace, place, redo, remember, undo } from './place.js';
 /** @import { Place } from './place.js' */
 
@@ -56,7 +57,9 @@ function numberField(id, name, step, get, put, more = {}) {
   const show = () => {
     if (!isTyping) field.value = fixed(get(), 3).replace('–', '').replace(/\.?0+$/, '') || '0';
   };
-  onPlace(show);
+  // While the part is held, with the figures: what is drawn before them would be in their way.
+  onPlace((isMoving) => isMoving || show());
+  onAnswer(show);
   show();
   return el('label.field', {}, el('span', {}, name), field);
 }

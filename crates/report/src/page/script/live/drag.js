@@ -5,7 +5,7 @@ import { axesAt, carriedBy, workpieceFrame } from '../run/external-axes.js';
 import { inverseOf, less, moved, turned } from '../run/linear.js';
 import { EXTENT, PATH_SIZE } from '../run/path-mesh.js';
 import { viewRay } from '../run/scene-card.js';
-import { state } from '../run/state.js';
+import { set, state } from '../run/state.js';
 import { blockBox } from '../run/surroundings.js';
 import { move, place, remember } from './place.js';
 /** @import { Ray } from '../run/camera.js' */
@@ -15,6 +15,9 @@ import { move, place, remember } from './place.js';
 
 /** What dragging the part does. @type {{ way: Way }} */
 export const hand = { way: 'move' };
+
+/** Movements as they happen, where the browser tells; else as often as it draws, which may be seldom. */
+const MOVES = 'onpointerrawupdate' in window ? 'pointerrawupdate' : 'pointermove';
 
 /** Where a ray meets the part, along it; null where it passes. @param {Ray} ray @returns {number | null} */
 function hit(ray) {
@@ -57,26 +60,25 @@ export function draggable(view) {
       view.focus();
       event.target.setPointerCapture(event.pointerId);
       remember();
+      set({ scene: true, isHeld: true });
       const at = ray.from.map((value, k) => value + distance * ray.along[k]);
       const start = [place.x_mm, place.y_mm, place.z_mm];
       held = { pointer: event.pointerId, x: event.clientX, y: event.clientY, way: wayOf(event), at, distance, start, yaw: place.yaw_deg, last: null, turned: 0 };
     },
     { capture: true },
   );
-  view.addEventListener(
-    'pointermove',
-    (event) => {
-      if (held?.pointer !== event.pointerId) return;
-      stop(event);
-      const by = dragged(held, event, view);
-      if (by) move(by, true);
-    },
-    { capture: true },
-  );
+  const follow = (/** @type {PointerEvent} */ event) => {
+    if (held?.pointer !== event.pointerId) return;
+    stop(event);
+    const by = event.type === MOVES && dragged(held, event, view);
+    if (by) move(by, true);
+  };
+  new Set([MOVES, 'pointermove']).forEach((type) => view.addEventListener(type, /** @type {any} */ (follow), { capture: true }));
   const end = (/** @type {PointerEvent} */ event) => {
     if (held?.pointer !== event.pointerId) return;
     stop(event);
     held = null;
+    set({ scene: true, isHeld: false });
     move({});
   };
   view.addEventListener('pointerup', end, { capture: true });

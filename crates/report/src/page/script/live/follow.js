@@ -19,20 +19,22 @@ export const onAnswer = (watch) => void watchers.push(watch);
 const tell = () => watchers.forEach((watch) => watch());
 
 /** Between the last move and what takes longer. ms */
-const REST_MS = 120;
+const REST_MS = 200;
+/** An answer that takes longer is waited for in view of the user. ms */
+const LATE_MS = 150;
 
 /** The number of the last place asked about, and of that whose answer is shown. */
 let [wanted, answered] = [0, -1];
 let isAsking = false;
-let restTimer = 0;
+let [restTimer, lateTimer] = [0, 0];
 
 const asked = (/** @type {number} */ id) => ({ ...place, id });
 const isCurrent = (/** @type {any} */ answer) => !answer.is_superseded && answer.version === RAW.live.state.version;
 
-/** Draws part and arm. */
+/** Draws part and arm; while the part is moved, no more often than leaves time for the figures. */
 const drawScene = paced(() => set({ scene: true }), 2);
-/** Draws charts, map and path anew, too: while the part is moved hardly ever where that is slow. */
-const redraw = { atRest: paced(() => set({ renewed: true }), 1), moving: paced(() => set({ renewed: true }), 25) };
+/** Draws charts, map and path anew: at rest alone. */
+const redraw = paced(() => set({ renewed: true }), 1);
 
 /** @param {any} answer */
 function show(answer) {
@@ -44,11 +46,12 @@ function show(answer) {
     answer,
     reasons: answer.reasons ?? [],
   });
+  inTime();
   if (answer.feasible) putAnswer(answer, 0, 'This placement');
   moveCase();
   tell();
-  drawScene();
-  (shown.isFollowing || !shown.isWhole ? redraw.moving : redraw.atRest)();
+  if (answer.is_whole) redraw();
+  else seen(drawScene);
 }
 
 /** The part is drawn where it is, whatever is known of it. */
@@ -56,8 +59,12 @@ function moveCase() {
   for (const of of CASES.slice(0, 2)) of.at = { x: place.x_mm, y: place.y_mm, z: place.z_mm, yaw: place.yaw_deg };
 }
 
+/** Does something when the figures of now are on the screen. @param {() => void} then */
+const seen = (then) => requestAnimationFrame(() => setTimeout(then));
+
 /** What goes wrong with a request is said where the figures are. @param {unknown} error */
 function failed(error) {
+  inTime();
   Object.assign(shown, { isFeasible: false, reasons: [error instanceof Refusal ? error.message : 'the session does not answer'], isFollowing: false });
   tell();
 }
@@ -83,7 +90,7 @@ async function map(id) {
     const answer = await ask('/map', { ...asked(id), from });
     if (id !== wanted || !isCurrent(answer)) return;
     from = putColumns(answer);
-    redraw.atRest();
+    redraw();
   }
 }
 
@@ -99,6 +106,17 @@ async function rest() {
   }
 }
 
+function inTime() {
+  clearTimeout(lateTimer);
+  lateTimer = 0;
+}
+
+function late() {
+  lateTimer = 0;
+  tell();
+  drawScene();
+}
+
 /** Begins to follow the part. */
 export function follow() {
   const moved = () => {
@@ -106,9 +124,9 @@ export function follow() {
     clearTimeout(restTimer);
     shown.isFollowing = true;
     moveCase();
-    tell();
-    drawScene();
+    // What is drawn before the answer is there would be in its way.
     if (!isAsking) void preview();
+    lateTimer ||= window.setTimeout(late, LATE_MS);
   };
   onPlace(moved);
   moved();

@@ -10,7 +10,7 @@ import { AXES } from './external-axes.js';
 import { LAYERS, sceneIn } from './scene.js';
 import { reasonText } from './map.js';
 import { FACTORS, MAGNIFIED } from './path-mesh.js';
-import { chosenState, current, onChange, set, state } from './state.js';
+import { chosenState, current, onChange, onScene, set, state } from './state.js';
 import { HAS_BLOCK } from './surroundings.js';
 /** @import { Scene } from './scene.js' */
 
@@ -126,13 +126,12 @@ export function sceneCard() {
     event.preventDefault();
     event.stopPropagation();
   });
-  onChange(({ case: isOther }) => {
-    if (!isOther) return;
-    const { x, y, z, yaw } = current().at;
-    title.textContent = current().name;
-    const { orientation } = current().entry;
-    const lies = orientation ? `, part “${orientation}”` : '';
-    where.textContent = `x ${fixed(x, 1)}  y ${fixed(y, 1)}  z ${fixed(z, 1)} mm, yaw ${fixed(yaw, 1)}°${lies}`;
+  onScene(() => {
+    const { name, at, entry } = current();
+    const lies = entry.orientation ? `, part “${entry.orientation}”` : '';
+    const words = `x ${fixed(at.x, 1)}  y ${fixed(at.y, 1)}  z ${fixed(at.z, 1)} mm, yaw ${fixed(at.yaw, 1)}°${lies}`;
+    if (title.textContent !== name) title.textContent = name;
+    if (where.textContent !== words) where.textContent = words;
   });
   // A state that is not allowed: the arm stays where it was, in grey, and the view says why.
   const refusal = el('div.refusal', { id: 'refusal', hidden: true });

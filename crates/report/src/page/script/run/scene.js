@@ -16,7 +16,7 @@ import { IDENTITY, add, product, times, unit } from './linear.js';
 import { arrows, tubes } from './mesh.js';
 import { MAGNIFIED, SCORED, pathMeshes } from './path-mesh.js';
 import { DEPTH_FRAGMENT, FRAGMENT, MODE, VERTEX } from './shaders.js';
-import { current, currentJoints, onChange, set, state } from './state.js';
+import { current, currentJoints, onScene, set, state } from './state.js';
 import { FLOOR, HAS_BLOCK, block, cellEdges, floorGrid, partEdges, reachBall, reachLines, wallEdges } from './surroundings.js';
 /** @import { Buffers, Program } from './gpu.js' */
 /** @import { Ray } from './camera.js' */
@@ -119,14 +119,15 @@ export function sceneIn(host) {
   let ofCase = caseParts(gl);
   const hand = steer(canvas, eye, () => set({ scene: true }));
 
-  // Software draws four samples of a pixel too slowly while things move: one then, four at rest.
+  // Software draws too slowly while things move: without soft shadows and the ball of the reach then, with few pixels
+  // while something is held, and with four samples of each at rest.
   let isSlow = /swiftshader|llvmpipe|softpipe|basic render/i.test(rendererOf(gl));
   let isCoarse = isSlow;
   let [restTimer, lastFrame, slowFrames] = [0, 0, 0];
 
   const resize = () => {
     const box = host.getBoundingClientRect();
-    const ratio = isCoarse ? Math.min(devicePixelRatio, 1) : 2;
+    const ratio = isCoarse ? (state.isHeld ? 0.6 : 1) * Math.min(devicePixelRatio, 1) : 2;
     const [width, height] = [Math.max(1, Math.round(box.width * ratio)), Math.max(1, Math.round(box.height * ratio))];
     if (canvas.width !== width || canvas.height !== height) {
       [canvas.width, canvas.height] = [width, height];
@@ -149,7 +150,7 @@ export function sceneIn(host) {
     if (isSlow) {
       isCoarse = true;
       clearTimeout(restTimer);
-      restTimer = window.setTimeout(settle, clamp(3 * since, 500, 2000));
+      if (!state.isHeld) restTimer = window.setTimeout(settle, clamp(3 * since, 500, 2000));
     }
     resize();
   };
@@ -217,6 +218,7 @@ export function sceneIn(host) {
     gl.uniform4f(program.at('fade'), middle[0], middle[1], 0.6 * far, 1.4 * far);
     gl.uniform1f(program.at('dark'), isDark() ? 1 : 0);
     gl.uniform1i(program.at('depths'), 0);
+    gl.uniform1i(program.at('soft'), isCoarse ? 0 : 1);
     const paint = (/** @type {number} */ mode, tint = [1, 1, 1], alpha = 1) => {
       gl.uniform1i(program.at('mode'), mode);
       gl.uniform3fv(program.at('tint'), tint);
@@ -285,7 +287,7 @@ export function sceneIn(host) {
       paint(MODE.plain, soft, 0.45);
       put(program, parts.reach, base);
       paint(MODE.rim, soft, isDark() ? 0.4 : 0.16);
-      put(program, parts.ball, base);
+      if (!isCoarse) put(program, parts.ball, base);
     }
     gl.depthMask(true);
   };
@@ -296,7 +298,7 @@ export function sceneIn(host) {
     ofCase = caseParts(gl);
     draw();
   });
-  onChange((changed) => {
+  onScene((changed) => {
     if (gl.isContextLost()) return;
     if (changed.case || changed.theme || changed.path) {
       Object.values(ofCase).flat().forEach((buffers) => buffers && free(gl, buffers));

@@ -24,7 +24,7 @@ in vec4 inSun;
 uniform vec3 eye, tint, sun;
 uniform vec4 fade; // middle of the floor, and where the grid begins and ends to fade
 uniform float alpha, dark;
-uniform int mode;
+uniform int mode, soft; // soft: how many depths about a place its shadow is taken from, to each side
 uniform sampler2DShadow depths;
 out vec4 seen;
 
@@ -32,10 +32,10 @@ float lit() {
   vec3 at = inSun.xyz / inSun.w * 0.5 + 0.5;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
   float sum = 0.0;
-  for (int x = -1; x <= 1; x++)
-    for (int y = -1; y <= 1; y++)
+  for (int x = -soft; x <= soft; x++)
+    for (int y = -soft; y <= soft; y++)
       sum += texture(depths, vec3(at.xy + vec2(x, y) * 0.0009, at.z - 0.0012));
-  return sum / 9.0;
+  return sum / float((2 * soft + 1) * (2 * soft + 1));
 }
 
 void main() {
@@ -53,8 +53,9 @@ void main() {
   } else {
     if (dot(facing, toEye) < 0.0) facing = -facing;
     vec3 linear = pow(colour, vec3(2.2));
-    float direct = lit() * max(dot(facing, sun), 0.0);
-    float shine = pow(max(dot(facing, normalize(sun + toEye)), 0.0), 48.0) * 0.38 * lit();
+    float sunlit = lit();
+    float direct = sunlit * max(dot(facing, sun), 0.0);
+    float shine = pow(max(dot(facing, normalize(sun + toEye)), 0.0), 48.0) * 0.38 * sunlit;
     float rim = pow(1.0 - max(dot(facing, toEye), 0.0), 4.0) * 0.22;
     vec3 sky = mix(vec3(0.30, 0.32, 0.36), vec3(0.72, 0.76, 0.84), facing.z * 0.5 + 0.5) * mix(0.62, 0.46, dark);
     vec3 fill = max(dot(facing, normalize(vec3(-0.7, -0.5, 0.15))), 0.0) * vec3(0.20, 0.23, 0.28);

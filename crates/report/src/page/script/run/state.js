@@ -8,41 +8,50 @@ import { jointsAt } from './kinematics.js';
 /**
  * @typedef {{ column: number, beta: number }} Chosen a state of the map: number of its column and of its angle
  * @typedef {{
- *   chosen: Chosen | null, case: number, t: number, hover: number | null, colouring: number, magnified: number | null
- * }} State magnified: how many times too large errors are drawn, null for what suits the run
+ *   chosen: Chosen | null, case: number, t: number, hover: number | null, colouring: number, magnified: number | null, isHeld: boolean
+ * }} State magnified: how many times too large errors are drawn, null for what suits the run; isHeld: whether something is being moved by hand
  * @typedef {{ theme?: boolean, size?: boolean, scene?: boolean, renewed?: boolean }} Look what changes without the state; `renewed` where
  *   the case is the same and what is known of it is not
- * @typedef {Look & { case?: boolean, path?: boolean }} Changes path: how it is drawn
+ * @typedef {Look & { case?: boolean, path?: boolean, beyond?: boolean }} Changes path: how it is drawn; beyond: more than the view of the cell
  */
 
 /** @type {State} */
-export const state = { case: 0, t: 0, chosen: null, hover: null, colouring: 0, magnified: null };
+export const state = { case: 0, t: 0, chosen: null, hover: null, colouring: 0, magnified: null, isHeld: false };
 
 /** @type {((changes: Changes) => void)[]} */
 const listeners = [];
+/** @type {((changes: Changes) => void)[]} */
+const sceneListeners = [];
 /** @type {Changes} */
-let changes = { case: true, theme: true, size: true };
+let changes = { case: true, theme: true, size: true, beyond: true };
 let frame = 0;
 
-/** Steps shown so far and the time that they took in JavaScript, for measurements. */
-export const steps = { count: 0, ms: 0 };
+/** Steps shown so far, those of them beyond the view of the cell, and the time that they took in JavaScript, for measurements. */
+export const steps = { count: 0, beyond: 0, ms: 0 };
 
 /** @param {(changes: Changes) => void} listener */
 export const onChange = (listener) => void listeners.push(listener);
+
+/** @param {(changes: Changes) => void} listener told also where nothing but the view of the cell changes */
+export const onScene = (listener) => void sceneListeners.push(listener);
 
 function show() {
   cancelAnimationFrame(frame);
   frame = 0;
   const [now, begun] = [changes, performance.now()];
   changes = {};
-  listeners.forEach((listener) => listener(now));
+  if (now.beyond) {
+    listeners.forEach((listener) => listener(now));
+    steps.beyond++;
+  }
+  sceneListeners.forEach((listener) => listener(now));
   steps.count++;
   steps.ms += performance.now() - begun;
 }
 
 /** Changes the state; what shows it is drawn in the next frame, or at once. @param {Partial<State> & Look} to @param {boolean} [atOnce] */
 export function set(to, atOnce = false) {
-  const { theme, size: resized, scene, renewed, ...next } = to;
+  const { theme, size: resized, scene, renewed, isHeld, ...next } = to;
   if (next.case !== undefined && next.case !== state.case) {
     changes.case = true;
     state.chosen = null;
@@ -60,7 +69,8 @@ export function set(to, atOnce = false) {
   changes.theme ||= theme;
   changes.size ||= resized;
   changes.scene ||= scene;
-  Object.assign(state, next);
+  changes.beyond ||= !scene || theme || resized || renewed || Object.keys(next).length > 0;
+  Object.assign(state, next, isHeld === undefined ? {} : { isHeld });
   if (atOnce) show();
   else frame ||= requestAnimationFrame(show);
 }
