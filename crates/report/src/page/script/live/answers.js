@@ -10,38 +10,40 @@ import { SEGMENT, pathPoint } from '../run/path.js';
 function spread(some) {
   if (some.point.length === COUNT) return some;
   const points = some.point;
-  /** @type {[number, number, number][]} the kept points around each, and the share of the second */
-  const around = [];
+  // Of each drawn point the kept points around it, and the share of the second.
+  const [low, high, share] = [new Uint32Array(COUNT), new Uint32Array(COUNT), new Float32Array(COUNT)];
   let k = 0;
   for (let i = 0; i < COUNT; i++) {
     const point = pathPoint(i);
     while (k + 1 < points.length && points[k + 1] <= point) k++;
     const isIn = (/** @type {number} */ at) => at >= 0 && at < points.length && some.segment[at] === SEGMENT[i];
-    const [low, high] = [isIn(k) ? k : k + 1, isIn(k + 1) ? k + 1 : k];
-    const wide = points[high] - points[low];
-    around.push(isIn(low) && isIn(high) ? [low, high, wide > 0 ? Math.min(Math.max((point - points[low]) / wide, 0), 1) : 0] : [k, k, 0]);
+    [low[i], high[i]] = [isIn(k) ? k : k + 1, isIn(k + 1) ? k + 1 : k];
+    const wide = points[high[i]] - points[low[i]];
+    if (!isIn(low[i]) || !isIn(high[i])) low[i] = high[i] = k;
+    else if (wide > 0) share[i] = Math.min(Math.max((point - points[low[i]]) / wide, 0), 1);
   }
   return Object.fromEntries(
     Object.entries(some).map(([name, values]) => {
-      if (name === 'point') return [name, Float32Array.from(around, (_, i) => pathPoint(i))];
-      if (!(values instanceof Float32Array)) return [name, /** @type {any} */ (around.map(([low]) => values[low]))];
+      if (name === 'point') return [name, Float32Array.from(low, (_, i) => pathPoint(i))];
+      if (!(values instanceof Float32Array)) return [name, /** @type {any} */ (Array.from(low, (at) => values[at]))];
+      const out = new Float32Array(COUNT);
       const isStep = name === 'posture' || name === 'segment' || name.startsWith('turn_');
-      const at = ([low, high, share] = around[0]) => {
-        if (isStep) return values[low];
-        let by = values[high] - values[low];
-        // Beta goes round.
-        if (name === 'beta_deg') by -= 360 * Math.round(by / 360);
-        return values[low] + share * by;
-      };
-      return [name, Float32Array.from(around, at)];
+      // Beta goes round.
+      const turn = name === 'beta_deg' ? 360 : Infinity;
+      for (let i = 0; i < COUNT; i++) {
+        out[i] = values[low[i]];
+        if (isStep) continue;
+        let by = values[high[i]] - values[low[i]];
+        if (Math.abs(by) > turn / 2) by -= turn * Math.round(by / turn);
+        out[i] += share[i] * by;
+      }
+      return [name, out];
     }),
   );
 }
 
-/** The case of one plan of an answer. @param {any} answer @param {number} plan @param {number} place @param {string} name @returns {Case} */
-function caseIn(answer, plan, place, name) {
-  const { document, plans, moves } = answer;
-  const columns = spread(columnsOf(plans[Math.min(plan, plans.length - 1)]));
+/** The case of one plan of an answer. @param {any} answer @param {number} plan @param {number} place @param {Columns} columns @returns {Case} */
+function caseIn({ document, moves }, plan, place, columns) {
   const figures = (plan === 1 && document.worst) || document.best;
   const entry = { ...figures, placement: document.placement, orientation: document.orientation, case: 2 * place + plan + 1 };
   return caseOf(entry, 2 * place + plan, columns, moves ? moves[plan] : []);
@@ -49,8 +51,9 @@ function caseIn(answer, plan, place, name) {
 
 /** Shows an answer as the placement of a number: 0 that which is moved, 1 that which it is compared with. @param {any} answer @param {number} place @param {string} name */
 export function putAnswer(answer, place, name) {
+  const columns = answer.plans.map((/** @type {any} */ packed) => spread(columnsOf(packed)));
   for (const plan of [0, 1]) {
-    const made = caseIn(answer, plan, place, name);
+    const made = caseIn(answer, plan, place, columns[Math.min(plan, columns.length - 1)]);
     CASES[2 * place + plan] = { ...made, name: plan ? `${name}, worst plan` : name };
     if (PART_TURNS && answer.part_turn) PART_TURNS[2 * place + plan] = poseOf(answer.part_turn, [0, 0, 0]);
   }

@@ -33,8 +33,11 @@ const isCurrent = (/** @type {any} */ answer) => !answer.is_superseded && answer
 
 /** Draws part and arm; while the part is moved, no more often than leaves time for the figures. */
 const drawScene = paced(() => set({ scene: true }), 2);
+const renew = () => set({ renewed: true });
 /** Draws charts, map and path anew: at rest alone. */
-const redraw = paced(() => set({ renewed: true }), 1);
+const redraw = paced(renew, 1);
+/** The same for columns of the map, of which more come. */
+const redrawMeanwhile = paced(renew, 5);
 
 /** @param {any} answer */
 function show(answer) {
@@ -90,7 +93,7 @@ async function map(id) {
     const answer = await ask('/map', { ...asked(id), from });
     if (id !== wanted || !isCurrent(answer)) return;
     from = putColumns(answer);
-    redraw();
+    (from === null ? redraw : redrawMeanwhile)();
   }
 }
 
