@@ -23,7 +23,7 @@ pub(super) struct InitOptions {
     /// With forces: tool path (CLDATA, G-code or CSV) that a forces file is written for
     #[arg(long, value_name = "FILE", requires = "out", conflicts_with_all = ["robot", "task"])]
     pub path: Option<PathBuf>,
-    /// With forces: closed mesh (STL, OBJ) of the stock
+    /// With forces: closed mesh (STL, OBJ, DAE) of the stock
     #[arg(long, value_name = "FILE", requires = "path")]
     pub stock: Option<PathBuf>,
     /// The file (TOML) to write: for --robot and --task, or for --path

@@ -33,6 +33,8 @@ pub enum Reader {
     Stl,
     /// Meshes as OBJ.
     Obj,
+    /// Meshes as DAE.
+    Dae,
     /// Robot files (TOML).
     Robot,
     /// Run files (TOML), read as if they lay in `configs/` of the repository, with the files there that they name.
@@ -50,6 +52,7 @@ impl Reader {
     pub fn check(self, bytes: &[u8]) -> Result<bool, String> {
         let file = Path::new(match self {
             Self::Obj => "file.obj",
+            Self::Dae => "file.dae",
             Self::Run | Self::Forces => concat!(env!("CARGO_MANIFEST_DIR"), "/../../configs/file.toml"),
             _ => "file",
         });
@@ -66,7 +69,7 @@ impl Reader {
                 })
             }
             Self::Task => parse_csv(file, bytes).map(drop),
-            Self::Stl | Self::Obj => match read_mesh(file, bytes, MeshUnit::Metre) {
+            Self::Stl | Self::Obj | Self::Dae => match read_mesh(file, bytes, MeshUnit::Metre) {
                 Ok(mesh) => {
                     used(&Arc::new(mesh))?;
                     Ok(())
@@ -187,6 +190,7 @@ mod tests {
           path = '../crates/format/src/cam/fixtures/three_axes.nc'\n\
           [before.tool]\ncutter_diameter_mm = 20\nteeth = 2\nflute_length_mm = 40\n",
     ];
+    const DAE: [&[u8]; 2] = [include_bytes!("../../format/src/mesh/fixtures/wedge.dae"); 2];
     const OBJ: [&[u8]; 2] = [
         include_bytes!("../../format/src/mesh/fixtures/wedge.obj"),
         include_bytes!("../../format/src/mesh/fixtures/house.obj"),
@@ -245,6 +249,7 @@ mod tests {
             (Reader::Task, TASK),
             (Reader::Stl, STL),
             (Reader::Obj, OBJ),
+            (Reader::Dae, DAE),
             (Reader::Robot, ROBOT),
             (Reader::Run, RUN),
             (Reader::Forces, FORCES),

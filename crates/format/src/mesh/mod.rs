@@ -1,8 +1,9 @@
-//! Mesh files: STL, binary and ASCII, and OBJ.
+//! Mesh files: STL, binary and ASCII, OBJ, and DAE.
 //!
-//! Neither format states its unit. What else a file can get wrong is refused with its name, the line or the triangle,
+//! Only DAE states its unit, which is taken into account. What a file can get wrong is refused with its name, the line or the triangle,
 //! and the value.
 
+mod dae;
 mod obj;
 #[cfg(test)]
 mod shipped_part;
@@ -35,6 +36,9 @@ impl MeshUnit {
     }
 }
 
+/// Endings of the names of mesh files that are read.
+pub(crate) const ENDINGS: [&str; 3] = ["stl", "obj", "dae"];
+
 /// Vertices as a file has them, and triangles of three of them, from 0.
 #[derive(Debug, Default)]
 struct Triangles {
@@ -48,18 +52,25 @@ const LARGEST: f64 = 1e3;
 const MAX_TRIANGLES: usize = 1_000_000;
 const THINNER: &str = "at most 1000000 triangles: a mesh for collision checks needs no more than some thousands";
 
-/// The triangles of a mesh file: OBJ where its name ends with `.obj`, else STL. Vertices at one place are one, and the
+/// The triangles of a mesh file: OBJ where its name ends with `.obj`, DAE where it ends with `.dae`, whose metres by its
+/// own unit are taken in the unit given, else STL. Vertices at one place are one, and the
 /// triangles of a closed mesh face outwards.
 ///
 /// # Errors
-/// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL or OBJ, a file that is cut
+/// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL, OBJ or DAE, a file that is cut
 /// off, a number that is not finite, coordinates beyond 1000 m, no triangles, or none with an area.
 pub fn read_mesh(file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<TriangleMesh, InputError> {
     if FileKind::of(bytes) == Some(FileKind::Step) {
         return Err(FileKind::Step.refused(file));
     }
-    let is_obj = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"));
-    let read = if is_obj { obj::read(file, bytes)? } else { stl::read(file, bytes)? };
+    let is = |ending: &str| file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+    let read = if is("obj") {
+        obj::read(file, bytes)?
+    } else if is("dae") {
+        dae::read(file, bytes)?
+    } else {
+        stl::read(file, bytes)?
+    };
     let vertices: Vec<Vector3<f64>> = read.vertices.iter().map(|vertex| vertex * unit.metres()).collect();
     if let Some(far) = vertices.iter().position(|vertex| vertex.iter().any(|c| c.abs() > LARGEST)) {
         let found =

@@ -35,7 +35,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
     binary(file, &bytes[HEADER..])
 }
 
-const KINDS: &str = "an STL, binary or ASCII, or an OBJ in a file named .obj";
+const KINDS: &str = "an STL, binary or ASCII, or an OBJ in a file named .obj, or a DAE in one named .dae";
 
 fn check_count(file: &Path, count: usize) -> Result<(), InputError> {
     if count <= MAX_TRIANGLES {
@@ -63,7 +63,7 @@ fn binary(file: &Path, records: &[u8]) -> Result<Triangles, InputError> {
 }
 
 impl Triangles {
-    fn push(&mut self, vertices: [Vector3<f64>; 3]) {
+    pub(super) fn push(&mut self, vertices: [Vector3<f64>; 3]) {
         let first = self.vertices.len() as u32;
         self.vertices.extend(vertices);
         self.triangles.push([first, first + 1, first + 2]);

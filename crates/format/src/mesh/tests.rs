@@ -4,6 +4,7 @@ const BINARY: &[u8] = include_bytes!("fixtures/wedge.stl");
 const ASCII: &str = include_str!("fixtures/wedge-ascii.stl");
 const OBJ: &str = include_str!("fixtures/wedge.obj");
 const HOUSE: &str = include_str!("fixtures/house.obj");
+const DAE: &str = include_str!("fixtures/wedge.dae");
 
 fn read(file: &str, bytes: &[u8]) -> Result<TriangleMesh, String> {
     read_mesh(file.as_ref(), bytes, MeshUnit::Millimetre).map_err(|error| error.to_string())
@@ -16,9 +17,14 @@ fn area(mesh: &TriangleMesh) -> f64 {
 }
 
 #[test]
-fn one_wedge_in_four_files_is_one_mesh() {
-    let files: [(&str, &[u8]); 4] =
-        [("a.stl", BINARY), ("a.STL", ASCII.as_bytes()), ("a.obj", OBJ.as_bytes()), ("a.OBJ", HOUSE.as_bytes())];
+fn one_wedge_in_five_files_is_one_mesh() {
+    let files: [(&str, &[u8]); 5] = [
+        ("a.stl", BINARY),
+        ("a.STL", ASCII.as_bytes()),
+        ("a.obj", OBJ.as_bytes()),
+        ("a.OBJ", HOUSE.as_bytes()),
+        ("a.dae", DAE.as_bytes()),
+    ];
     for (file, bytes) in files {
         let mesh = read(file, bytes).unwrap();
         assert!(mesh.is_closed(), "{file}");
@@ -86,6 +92,52 @@ fn what_is_no_obj_is_refused_where_it_stops_being_one() {
             assert!(message.contains(part), "{part} in {message}");
         }
     }
+}
+
+#[test]
+fn what_is_no_dae_is_refused_where_it_stops_being_one() {
+    let changed = |from: &str, to: &str| {
+        assert!(DAE.contains(from), "{from}");
+        DAE.replacen(from, to, 1)
+    };
+    for (text, parts) in [
+        (String::new(), &["is no XML"][..]),
+        (changed("</scene>", ""), &[":62:", "is no XML"]),
+        ("<robot/>".to_owned(), &["is no COLLADA file"]),
+        (changed("meter=\"0.01\"", "meter=\"0\""), &[":4:", "attribute meter", "no length above 0"]),
+        (changed("meter=\"0.01\"", "meter=\"nan\""), &[":4:", "attribute meter", "no"]),
+        (changed("1000 0 0", "1000 inf 0"), &[":12:", "no finite number", "found 'inf'"]),
+        (changed("0 0 1 0 2 0", "0 0 1 0 6 0"), &[":22:", "names vertex 6, and there are 6"]),
+        (changed("0 0 1 0 2 0", "0 0 1 0 -1 0"), &["no number of a vertex", "found '-1'"]),
+        (changed("<vcount>4 4 4", "<vcount>4 4 9"), &[":37:", "fewer corners than <vcount> says"]),
+        (changed("url=\"#sides\"", "url=\"#nowhere\""), &[":53:", "names nothing of this file", "#nowhere"]),
+        (changed("url=\"#sides\"", "url=\"other.dae#sides\""), &["names nothing of this file"]),
+        (changed("<instance_geometry url=\"#sides\"/>", "<instance_node url=\"#turned\"/>"), &["too many nodes"]),
+        (changed("<rotate>0 0 1 90", "<rotate>0 0 0 90"), &[":50:", "has not the numbers of such a transform"]),
+        (changed("<translate>0 0 0<", "<translate>0 0<"), &[":49:", "has not the numbers of such a transform"]),
+        (changed("<translate>0 0 0</translate>", "<skew>1 0 0 1 0 1 0</skew>"), &["<skew>: is not read"]),
+        (changed("instance_geometry url=\"#ends\"", "instance_controller url=\"#ends\""), &["deformed surface"]),
+        (changed("url=\"#all\"", "url=\"#vertices\""), &["shows no triangles"]),
+    ] {
+        let message = read("a.dae", text.as_bytes()).unwrap_err();
+        for part in parts.iter().chain(&["a.dae", "; allowed: "]) {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+    }
+}
+
+#[test]
+fn a_dae_without_a_scene_and_one_that_is_mirrored_are_whole() {
+    let from = DAE.find("  <scene>").unwrap();
+    let until = DAE.find("</COLLADA>").unwrap();
+    let loose = format!("{}{}", &DAE[..from], &DAE[until..]);
+    // The two geometries as they are, not placed: five faces that do not meet.
+    let mesh = read("a.dae", loose.as_bytes()).unwrap();
+    assert_eq!((mesh.vertices().len(), mesh.triangles().len(), mesh.is_closed()), (12, 8, false));
+    let mirrored = DAE.replacen("<scale>10 10 10", "<scale>10 -10 10", 1);
+    let mesh = read("a.dae", mirrored.as_bytes()).unwrap();
+    assert!(mesh.is_closed() && (volume(&mesh) * 1e9 - 120_000.0).abs() < 1e-6);
+    assert!(mesh.vertices().iter().all(|at| at.y < 1e-9));
 }
 
 /// Triangles that face inwards are turned, so that the inside of a closed mesh is inside.

@@ -26,7 +26,7 @@ pub struct StockTable {
     pub box_mm: Option<Vector<Mm<Positive>>>,
     /// A cylinder along z about the origin of the stock.
     pub cylinder_mm: Option<CylinderTable>,
-    /// A closed mesh (STL, OBJ), relative to the folder of this file.
+    /// A closed mesh (STL, OBJ, DAE), relative to the folder of this file.
     pub mesh: Option<String>,
     /// The unit of the mesh file, which does not state it: `mm` (where left out) or `m`.
     pub unit: Option<Word<MeshUnit>>,
@@ -55,7 +55,7 @@ pub struct StockTable {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PartTable {
-    /// A closed mesh (STL, OBJ), relative to the folder of this file.
+    /// A closed mesh (STL, OBJ, DAE), relative to the folder of this file.
     pub mesh: String,
     /// The unit of the mesh file, which does not state it: `mm` (where left out) or `m`.
     pub unit: Option<Word<MeshUnit>>,

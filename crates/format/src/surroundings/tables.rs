@@ -70,9 +70,9 @@ pub struct ShapeTable {
     pub cylinder_mm: Option<CylinderTable>,
     /// A capsule along z.
     pub capsule_mm: Option<CapsuleTable>,
-    /// The convex hull of the vertices of a mesh file (STL, OBJ), relative to the folder of this file.
+    /// The convex hull of the vertices of a mesh file (STL, OBJ, DAE), relative to the folder of this file.
     pub hull: Option<String>,
-    /// The triangles of a mesh file (STL, OBJ), relative to the folder of this file; a closed mesh is solid.
+    /// The triangles of a mesh file (STL, OBJ, DAE), relative to the folder of this file; a closed mesh is solid.
     pub mesh: Option<String>,
     /// The unit of the mesh file, which does not state it: `mm` (where left out) or `m`.
     pub unit: Option<Word<MeshUnit>>,
@@ -127,7 +127,7 @@ pub struct VisualTable {
     /// What it moves with: `base` (the base of the robot, wherever that is carried), `flange`, or a link, `link_1` to
     /// `link_6`, in the frame of its row.
     pub attached: String,
-    /// A mesh file (STL, OBJ), relative to the folder of this file.
+    /// A mesh file (STL, OBJ, DAE), relative to the folder of this file.
     pub mesh: String,
     /// The unit of the mesh file, which does not state it: `mm` (where left out) or `m`.
     pub unit: Option<Word<MeshUnit>>,

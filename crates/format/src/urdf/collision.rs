@@ -1,7 +1,7 @@
 //! The `<collision>` shapes of a URDF as surroundings: each attached to a link of the arm, in the frame of its row.
 
 use super::bodies::{attached_to, row_from_links};
-use super::meshes::found;
+use super::meshes::{found, is_read};
 use super::read::{Geometry, Urdf};
 use super::rows::Rows;
 use super::tree::Chain;
@@ -9,7 +9,7 @@ use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::surroundings::{CLEARANCE, attachment};
 use nalgebra::Vector3;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use stead_cell::collider::Collider;
 use stead_cell::scene::PairKind;
@@ -122,9 +122,9 @@ impl Reading<'_> {
     /// The form that a mesh file makes; nothing for a file that is not read.
     fn mesh(&mut self, name: &str, file: &str, scale: &Vector3<f64>) -> Result<Option<Form>, InputError> {
         let here = Pose::identity();
-        let is_read = |ending: &str| Path::new(file).extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
-        if !is_read("stl") && !is_read("obj") {
-            self.notes.push(format!("mesh {} of {name:?} is neither STL nor OBJ: the shape is left out", quoted(file)));
+        if !is_read(file) {
+            let problem = "is none of STL, OBJ and DAE: the shape is left out";
+            self.notes.push(format!("mesh {} of {name:?} {problem}", quoted(file)));
             return Ok(None);
         }
         let Some(path) = found(self.urdf, file) else {

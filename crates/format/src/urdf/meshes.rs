@@ -1,7 +1,13 @@
 //! Where the files of the shapes are.
 
 use super::read::Urdf;
+use crate::mesh::ENDINGS;
 use std::path::{Path, PathBuf};
+
+/// Whether a mesh file is of a format that is read.
+pub(super) fn is_read(file: &str) -> bool {
+    Path::new(file).extension().is_some_and(|own| ENDINGS.iter().any(|ending| own.eq_ignore_ascii_case(ending)))
+}
 
 /// The files of the shapes that are not found.
 pub(super) fn missing(urdf: &Urdf) -> Vec<String> {

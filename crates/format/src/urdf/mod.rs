@@ -29,7 +29,7 @@ mod summary;
 mod toml_text;
 mod tree;
 mod visual;
-mod xml;
+pub(crate) mod xml;
 
 pub use collision::{LinkShape, LinkShapes};
 pub use deviation::{Deviation, POSTURES};

@@ -3,14 +3,14 @@
 
 use super::bodies::{attached_to, row_from_links};
 use super::collision::LinkShapes;
-use super::meshes::found;
+use super::meshes::{found, is_read};
 use super::read::{Geometry, Urdf};
 use super::rows::Rows;
 use super::tree::Chain;
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
 use nalgebra::Vector3;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid, Visual};
 use stead_disk::files;
@@ -91,9 +91,8 @@ impl Reading<'_> {
             return Err("it is no mesh but a box, a cylinder or a sphere".to_owned());
         };
         let name = quoted(file.rsplit(['/', '\\']).next().unwrap_or(file));
-        let is_read = |ending: &str| Path::new(file).extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
-        if !is_read("stl") && !is_read("obj") {
-            return Err(format!("mesh {name} is neither STL nor OBJ"));
+        if !is_read(file) {
+            return Err(format!("mesh {name} is none of STL, OBJ and DAE"));
         }
         if scale.iter().any(|factor| *factor < 0.0) {
             return Err(format!("mesh {name} is mirrored by a scale of {:?}", scale.as_slice()));

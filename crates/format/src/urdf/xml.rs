@@ -4,12 +4,12 @@
 use roxmltree::Node;
 use std::path::Path;
 use stead_disk::input::InputError;
-pub(super) use stead_disk::quote::one_line;
+pub(crate) use stead_disk::quote::one_line;
 use stead_disk::quote::{GARBLED, garbles};
 
 /// An element, and the file that it is in.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element<'a> {
+pub(crate) struct Element<'a> {
     pub file: &'a Path,
     pub node: Node<'a, 'a>,
 }

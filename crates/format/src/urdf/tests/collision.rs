@@ -19,6 +19,7 @@ pub(super) fn fixture_folder() -> tempfile::TempDir {
     std::fs::create_dir_all(folder.path().join("wide_arm_k_support/urdf")).unwrap();
     let wedge = include_str!("../../mesh/fixtures/wedge.obj");
     std::fs::write(meshes.join("wedge.obj"), wedge).unwrap();
+    std::fs::write(meshes.join("wedge.dae"), include_str!("../../mesh/fixtures/wedge.dae")).unwrap();
     let in_metres: String = wedge.lines().fold(String::new(), |text, line| match line.strip_prefix("v ") {
         Some(numbers) => {
             let numbers: Vec<String> =
@@ -66,7 +67,7 @@ fn shaped() -> String {
         ("link_3", mesh("metres.OBJ", "")),
         ("link_4", "<cylinder radius=\"0.1\" length=\"0.5\"/>".to_owned()),
         ("link_5", mesh("corner.obj", " scale=\"0.1 0.1 0.2\"")),
-        ("link_6", mesh("wedge.dae", "")),
+        ("link_6", mesh("wedge.ply", "")),
     ] {
         text = with(&text, link, &geometry);
     }
@@ -140,9 +141,11 @@ fn forms_names_notes_and_pairs_are_those_of_the_urdf() {
         assert!((mesh.vertices()[2] - Vector3::new(0.1, 0.06, 0.0)).norm() < 1e-12);
     }
     let notes = shapes.notes.join("\n");
-    for part in
-        ["neither STL nor OBJ", "scaled by [0.1, 0.1, 0.2]: the box around it", "link \"link_6\" has no <collision>"]
-    {
+    for part in [
+        "none of STL, OBJ and DAE",
+        "scaled by [0.1, 0.1, 0.2]: the box around it",
+        "link \"link_6\" has no <collision>",
+    ] {
         assert!(notes.contains(part), "{part} in {notes}");
     }
     let corner = with(&fixture("kuka"), "link_5", &format!("<mesh filename=\"{PACKAGE}/corner.obj\"/>"));

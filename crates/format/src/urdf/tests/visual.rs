@@ -69,15 +69,32 @@ fn meshes_that_can_be_drawn_are_kept_and_read_by_a_run() {
     }
 }
 
+/// The wedge is 100 x 60 x 40 mm, its file in cm.
+#[test]
+fn a_dae_is_drawn_in_the_unit_that_it_states() {
+    let folder = fixture_folder();
+    let text = looking(&[("link_1", mesh("wedge.dae", " scale=\"0.001 0.001 0.001\""), "")]);
+    let imported = import_in(folder.path(), &text).unwrap();
+    let [visual] = &imported.link_visuals[..] else { panic!("{:?}", imported.notes) };
+    let size = visual.visual.mesh.vertices().iter().fold(Vector3::zeros(), |size: Vector3<f64>, at| size.sup(at));
+    assert!((size - Vector3::new(0.1, 0.06, 0.04)).norm() < 1e-12, "{size}");
+    let out = folder.path().join("arms/arm.toml");
+    imported.write(&out, Existing::Kept).unwrap();
+    let cell = std::fs::read_to_string(folder.path().join("arms/arm-cell.toml")).unwrap();
+    assert!(cell.contains("wedge.dae\"\nxyz_mm"), "{cell}");
+}
+
 #[test]
 fn meshes_that_cannot_be_drawn_are_noted_by_name() {
     let folder = fixture_folder();
     let meshes = folder.path().join("wide_arm_k_support/meshes/collision");
+    std::fs::write(meshes.join("broken.dae"), "<COLLADA><scene>").unwrap();
     std::fs::write(meshes.join("broken.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
     std::fs::write(meshes.join("nan.obj"), "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     for (geometry, parts) in [
         (mesh("nowhere.stl", ""), vec!["nowhere.stl", "is not found"]),
-        (mesh("wedge.dae", ""), vec!["wedge.dae", "neither STL nor OBJ"]),
+        (mesh("wedge.ply", ""), vec!["wedge.ply", "none of STL, OBJ and DAE"]),
+        (mesh("broken.dae", ""), vec!["broken.dae", "is no XML"]),
         (mesh("broken.obj", ""), vec!["broken.obj"]),
         (mesh("nan.obj", ""), vec!["nan.obj"]),
         (mesh("wedge.obj", " scale=\"0.001 -0.001 0.001\""), vec!["wedge.obj", "mirrored"]),
@@ -96,7 +113,7 @@ fn meshes_that_cannot_be_drawn_are_noted_by_name() {
     }
     // What is drawn of a link whose look cannot be read is its collision mesh.
     let text = with(&bare(), "link_2", &mesh("metres.OBJ", ""));
-    let text = with_visual(&text, "link_2", &mesh("wedge.dae", ""), "");
+    let text = with_visual(&text, "link_2", &mesh("wedge.ply", ""), "");
     let imported = import_in(folder.path(), &text).unwrap();
     assert_eq!(imported.link_visuals.len(), 1);
     assert!(imported.notes.iter().any(|note| note == "link \"link_2\" is drawn by its collision mesh"));
