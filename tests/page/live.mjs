@@ -153,6 +153,11 @@ const tests = {
     await go(page, BEST);
     await atRest(page);
     const from = await partAt(page);
+    // All of it is drawn, the view in its best quality.
+    await page.waitForFunction(() => {
+      const canvas = document.querySelector('.view canvas');
+      return canvas.width > 1.9 * canvas.clientWidth;
+    });
     await page.evaluate(() => {
       const ask = window.fetch;
       window.asked = { now: 0, most: 0, places: [], ask };
@@ -171,9 +176,12 @@ const tests = {
     await page.mouse.down();
     const before = await page.evaluate(() => ({ ...window.stead.steps }));
     for (let k = 1; k <= 30; k++) await page.mouse.move(from[0] + k, from[1] + k / 2);
-    await page.waitForFunction(() => window.asked.places.length > 2 && window.stead.shown.answer.id === window.asked.places.at(-1).id);
+    // The part is drawn where it is.
+    await page.waitForFunction((count) => {
+      const { asked, stead } = window;
+      return asked.places.length > 2 && stead.shown.answer.id === asked.places.at(-1).id && stead.steps.count > count;
+    }, before.count);
     const held = await page.evaluate(() => ({ ...window.stead.steps, asked: window.asked, canvas: document.querySelector('.view canvas').width }));
-    assert.ok(held.count > before.count, 'the part is not drawn where it is');
     assert.equal(held.beyond, before.beyond, 'more is drawn than the part');
     assert.equal(held.asked.most, 1);
     assert.ok(held.asked.places.length < 30, `${held.asked.places.length} requests`);
@@ -326,6 +334,33 @@ if (isMain) {
     await atRest(phone.page);
     const [is, may] = await phone.page.evaluate(() => [document.scrollingElement.scrollWidth, innerWidth]);
     assert.ok(is <= may, `${is} pixels in ${may}`);
+    await phone.close();
+  });
+
+  await checked('a finger on the part moves it, and one elsewhere scrolls', async () => {
+    const phone = await openLive(browser, address, { width: 390, height: 844, touch: true });
+    await go(phone.page, { ...BEST, y_mm: -1800, z_mm: -400 });
+    await atRest(phone.page);
+    const client = await phone.page.context().newCDPSession(phone.page);
+    const swipe = async (x, y) => {
+      const touch = (type, ...touchPoints) => client.send('Input.dispatchTouchEvent', { type, touchPoints });
+      const now = () => phone.page.evaluate(() => ({ at: window.stead.place, y: scrollY }));
+      const before = await now();
+      await touch('touchStart', { x, y });
+      for (let k = 1; k <= 12; k++) await touch('touchMove', { x: x + k, y: y - 5 * k });
+      await touch('touchEnd');
+      await phone.page.waitForTimeout(300);
+      const after = await now();
+      return { by: ['x_mm', 'y_mm', 'z_mm', 'yaw_deg'].map((field) => Math.abs(after.at[field] - before.at[field]) > 1), scrolled: after.y - before.y };
+    };
+    const part = await partAt(phone.page);
+    assert.ok(part, 'the part is not seen');
+    assert.deepEqual(await swipe(...part), { by: [true, true, false, false], scrolled: 0 });
+    await atRest(phone.page);
+    const view = await phone.page.locator('.view').boundingBox();
+    const beside = await swipe(view.x + 15, view.y + view.height - 25);
+    assert.deepEqual(beside.by, [false, false, false, false]);
+    assert.ok(beside.scrolled > 20, `scrolled by ${beside.scrolled}`);
     await phone.close();
   });
 

@@ -26,6 +26,7 @@ const LATE_MS = 150;
 /** The number of the last place asked about, and of that whose answer is shown. */
 let [wanted, answered] = [0, -1];
 let isAsking = false;
+let isAtRest = false;
 let [restTimer, lateTimer] = [0, 0];
 
 const asked = (/** @type {number} */ id) => ({ ...place, id });
@@ -33,7 +34,7 @@ const isCurrent = (/** @type {any} */ answer) => !answer.is_superseded && answer
 
 /** Draws part and arm; while the part is moved, no more often than leaves time for the figures. */
 const drawScene = paced(() => set({ scene: true }), 2);
-const renew = () => set({ renewed: true });
+const renew = () => isAtRest && set({ renewed: true });
 /** Draws charts, map and path anew: at rest alone. */
 const redraw = paced(renew, 1);
 /** The same for columns of the map, of which more come. */
@@ -99,6 +100,7 @@ async function map(id) {
 
 async function rest() {
   const id = wanted;
+  isAtRest = true;
   try {
     const columns = map(id);
     const answer = await ask('/whole', asked(id));
@@ -125,6 +127,7 @@ export function follow() {
   const moved = () => {
     wanted++;
     clearTimeout(restTimer);
+    isAtRest = false;
     shown.isFollowing = true;
     moveCase();
     // What is drawn before the answer is there would be in its way.

@@ -65,6 +65,7 @@ export function pinsCard() {
   const head = el('thead', {}, el('tr', {}, el('th.words', { scope: 'col' }, 'Figure'), el('th', { scope: 'col' }, selects.a), el('th', { scope: 'col' }, selects.b), el('th', { scope: 'col' }, 'difference')));
   const body = el('tbody', {}, ...rows.map(({ name, cells }) => el('tr', {}, el('th.words', { scope: 'row' }, name), ...cells)));
   const table = el('table', { id: 'comparison' }, el('caption.sr', {}, 'Two placements side by side'), head, body);
+  const comparison = el('div.scroll', { tabindex: 0, role: 'group', 'aria-label': 'Comparison', hidden: true }, table);
   const compare = () => {
     const [a, b] = [figuresOf(sides.a), figuresOf(sides.b)];
     ROWS.forEach(([, value, digits, unit], k) => {
@@ -90,10 +91,11 @@ export function pinsCard() {
     if (isNew) sides.b = pins[pins.length - 1].name;
     refill();
     compare();
+    comparison.hidden = !pins.length;
     if (isNew) void drawCompared();
   });
   onAnswer(compare);
-  return card('Pinned placements', 'each a folder as `stead score --out` writes it', list, el('div.scroll', { tabindex: 0, role: 'group', 'aria-label': 'Comparison' }, table));
+  return card('Pinned placements', 'each a folder as `stead score --out` writes it', list, comparison);
 }
 
 /** @returns {HTMLElement} */
