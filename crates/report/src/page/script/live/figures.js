@@ -50,6 +50,8 @@ export function figuresCard() {
     const put = (/** @type {any} */ best) => {
       shownValue.textContent = best ? value(best) : '–';
       shownMore.textContent = best ? more(best) : '';
+      // There is one line for it, which may be too short.
+      shownMore.title = shownMore.textContent ?? '';
     };
     return { tile: el('div.tile', {}, el('div.k', {}, name), shownValue, shownMore), put };
   });
