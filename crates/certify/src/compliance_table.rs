@@ -388,9 +388,7 @@ fn margin_of(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3
         let remainder: f64 = PAIR
             .into_iter()
             .zip(&margin.second)
-            .map(|((i, j), second)| {
-                second.magnitude().0[lane] * half[i] * half[j] * if i == j { 0.5 } else { 1.0 }
-            })
+            .map(|((i, j), second)| second.magnitude().0[lane] * half[i] * half[j] * if i == j { 0.5 } else { 1.0 })
             .sum();
         let spread = (0..3).map(|k| by[k].abs() * half[k]).sum::<f64>();
         let remainder = (remainder + 1e-7 * (middle.abs() + spread)) * (1.0 + 1e-6);

@@ -251,13 +251,7 @@ impl<'a> PointCost<'a> {
     /// where the point is from the node, in radius and height. Its value in the middle of the box (m), and slopes; zero
     /// where the score may be. `None` where nothing is allowed.
     #[inline]
-    pub fn least(
-        &self,
-        known: Known<'_>,
-        off: [f64; 2],
-        half_cell: f64,
-        region: &Region,
-    ) -> Option<(f64, [f64; 3])> {
+    pub fn least(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> Option<(f64, [f64; 3])> {
         let margin = (!known.0.sure).then(|| self.margin(known.0, off));
         if margin.as_ref().is_some_and(|margin| margin.is_negative(half_cell, region)) {
             return None;

@@ -188,9 +188,8 @@ impl ModelledRegion {
             value - multiple * (margin + remainder),
             [slopes[0] - multiple * by_r, slopes[1] - multiple * by_z, slopes[2]],
         );
-        let lowest = |(value, slopes): &(f64, [f64; 3])| {
-            value - slopes[0].abs() * self.half[0] - slopes[1].abs() * self.half[1]
-        };
+        let lowest =
+            |(value, slopes): &(f64, [f64; 3])| value - slopes[0].abs() * self.half[0] - slopes[1].abs() * self.half[1];
         if cut.0 > plain.0 && lowest(&cut) > lowest(&plain) { cut } else { plain }
     }
 
