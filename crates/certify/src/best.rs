@@ -44,7 +44,10 @@ pub fn best(
     let ceiling = search.ceiling();
     let mut nodes = 0;
     let coarse = CoarseBounds::new(&model, monitor, || search.report(monitor, 0.0, 1, 0));
-    let left = coarse.and_then(|coarse| survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor));
+    let left = coarse.and_then(|coarse| {
+        let left = survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor)?;
+        Ok((coarse, left))
+    });
     let left = match left {
         Ok(left) => left,
         Err(stop) => {
@@ -63,20 +66,21 @@ pub fn best(
             });
         }
     };
-    let active = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
-    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: Arc::clone(&active) }).collect();
+    let (coarse, left) = left;
+    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: None }).collect();
     let all = Parts {
         start,
         nodes,
-        of: |open: &Open<Arc<ActiveCells>>| parts(&model, open, ceiling, monitor),
-        used: || model.used(),
-        bytes: |active: &Arc<ActiveCells>| active.bytes(),
+        of: |open: &Open<Known>| parts(&model, &coarse, open, ceiling, monitor),
+        used: || model.used() + coarse.used(),
+        bytes: |active: &Known| active.as_ref().map_or(0, |active| active.bytes()),
     };
     let (mut bound, known) = search.explore(all, monitor, |_| None);
     if !matches!(bound.status, Status::Reached | Status::Interrupted) {
         let mut open: Vec<usize> = (0..known.len()).collect();
         open.sort_by(|a, b| bound.open[*a].1.total_cmp(&bound.open[*b].1));
-        let open: Vec<_> = open.into_iter().map(|k| (bound.open[k].0, known[k].as_ref())).collect();
+        let full = ActiveCells::full(model.points.len(), model.table.headings(0));
+        let open: Vec<_> = open.into_iter().map(|k| (bound.open[k].0, known[k].as_deref().unwrap_or(&full))).collect();
         bound.keeps_open = Some(KeepsOpen::of(&model, &open)).filter(|counted| counted.states > 0);
     }
     Ok(bound)
@@ -119,22 +123,51 @@ fn survivors(
     Ok(left)
 }
 
+/// The cells of heading that are still of interest in a box, once they have been asked for.
+type Known = Option<Arc<ActiveCells>>;
+
 /// The halves of a box with their bounds; `None` where it is not to be cut further.
+///
+/// As long as the coarse tables distinguish halves these alone are asked: a bound by them takes a thousandth of the
+/// time. Then come the cells of heading, and with them the limits on beta.
 fn parts(
     model: &Model,
-    open: &Open<Arc<ActiveCells>>,
+    coarse: &CoarseBounds,
+    open: &Open<Known>,
     ceiling: f64,
     monitor: &Monitor,
-) -> Option<Vec<Open<Arc<ActiveCells>>>> {
-    let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
-    let bounds = halves.map(|region| {
-        let level = model.level(&region).unwrap_or(0);
-        let mut active = (*open.known).clone();
-        while active.level < level {
-            active = active.halved();
+) -> Option<Vec<Open<Known>>> {
+    let Some(active) = &open.known else {
+        if widest(&open.region).1 > coarse.smallest() {
+            let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
+            let bounds = halves.map(|region| {
+                let bound = coarse.lower_bound(model, &region).unwrap_or(0.0).max(open.bound);
+                Open { bound, region, known: None }
+            });
+            return Some(bounds.collect());
         }
-        let found = model.lower_bound(&region, &active, ceiling, monitor);
-        Open { bound: found.sum.max(open.bound), region, known: Arc::new(found.active) }
-    });
-    Some(bounds.collect())
+        let full = ActiveCells::full(model.points.len(), model.table.headings(0));
+        return Some(vec![bounded(model, open.region, &full, open.bound, ceiling, monitor)]);
+    };
+    let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
+    Some(halves.map(|region| bounded(model, region, active, open.bound, ceiling, monitor)).collect())
+}
+
+/// A box with its bound on the level of its size: cells that a coarser level leaves out are left out.
+fn bounded(
+    model: &Model,
+    region: Region,
+    active: &ActiveCells,
+    at_least: f64,
+    ceiling: f64,
+    monitor: &Monitor,
+) -> Open<Known> {
+    let level = model.level(&region).unwrap_or(0);
+    let mut found = model.lower_bound(&region, active, ceiling, monitor);
+    let mut bound = found.sum.max(at_least);
+    while found.active.level < level && bound < ceiling {
+        found = model.lower_bound(&region, &found.active.halved(), ceiling, monitor);
+        bound = found.sum.max(bound);
+    }
+    Open { bound, region, known: Some(Arc::new(found.active)) }
 }

@@ -10,20 +10,27 @@ use super::region::{Point, Region};
 use super::sliding_min::joined;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_planning::criterion::Aggregate;
 
-/// Coarse tables, one for each kind of load, in ever coarser levels.
-#[derive(Debug, Clone)]
+/// Coarse tables, one for each kind of load, in ever coarser levels; and finer ones, of which a part is made when it is
+/// first needed.
+#[derive(Debug)]
 pub(super) struct CoarseBounds {
     pub levels: Vec<Level>,
+    finer: Vec<FinerLevel>,
+    /// What the parts of the finer levels made so far take. bytes
+    made: AtomicU64,
     extent: Extent,
     steps: Steps,
     /// For each path point the number of its kind of load and how many times as large its own is; `None` where it is
     /// left out.
     kind_of: Vec<Option<(usize, f64)>>,
-    kinds: usize,
+    kinds: Vec<Kind>,
 }
 
 #[derive(Debug, Clone)]
@@ -31,6 +38,23 @@ pub(super) struct Level {
     pub counts: [usize; 3],
     pub entries: Vec<Affine>,
 }
+
+/// A level with smaller steps than the coarsest one of the table of compliances.
+#[derive(Debug)]
+struct FinerLevel {
+    /// The level of that table with the same steps.
+    level: usize,
+    counts: [usize; 3],
+    /// Of each radius and height the parts: a kind of load, and neighbouring directions of it.
+    rows: Vec<OnceLock<Box<[Part]>>>,
+}
+
+/// Neighbouring directions of one kind of load, each in all classes.
+type Part = OnceLock<Box<[[Affine; 4]]>>;
+/// Directions of a part.
+const PART: usize = 16;
+/// Finer levels.
+const FINER: usize = 2;
 
 /// Rows computed between two questions whether to go on.
 const ROWS: usize = 64;
@@ -59,7 +83,7 @@ impl CoarseBounds {
             entries.extend(rows.into_iter().flatten());
         }
         let mut levels = vec![Level { counts, entries }];
-        let mut half = [steps.length, steps.length, TAU / steps.headings as f64];
+        let mut half = half_of(steps, 0);
         for _ in 0..2 {
             let next = levels.last().map(|level| level.coarser(half, kinds.len(), monitor));
             if let Some(stop) = stop() {
@@ -68,7 +92,52 @@ impl CoarseBounds {
             levels.extend(next);
             half = half.map(|h| 2.0 * h);
         }
-        Ok(Self { levels, extent, steps, kind_of, kinds: kinds.len() })
+        let finest = FINER.min(model.table.depth().saturating_sub(1));
+        let finer = (1..=finest).map(|level| FinerLevel::new(extent, steps, level)).collect();
+        Ok(Self { levels, finer, made: AtomicU64::new(0), extent, steps, kind_of, kinds })
+    }
+
+    /// The finest level whose entries answer for a box so many times as large as the coarsest steps of the table of
+    /// compliances: below zero a finer one, above zero a coarser one.
+    fn finest(&self, ratio: f64) -> Option<i32> {
+        let coarsest = self.levels.len() as i32 - 1;
+        let finest = -(self.finer.len() as i32);
+        (finest..=coarsest).find(|number| ratio <= libm::exp2(f64::from(*number)))
+    }
+
+    /// The entries of a level at a radius, height and direction, of a kind of load, in all classes.
+    #[inline]
+    fn entries(&self, model: &Model, number: i32, [i, j, k]: [usize; 3], kind: usize) -> &[Affine] {
+        if let Some(level) = usize::try_from(number).ok().and_then(|number| self.levels.get(number)) {
+            let at = (((i * level.counts[1] + j) * level.counts[2] + k) * self.kinds.len() + kind) * 4;
+            return &level.entries[at..at + 4];
+        }
+        let FinerLevel { level, counts, rows } = &self.finer[number.unsigned_abs() as usize - 1];
+        let parts = counts[2] / PART;
+        let row = rows[i * counts[1] + j].get_or_init(|| {
+            let row: Box<[Part]> = std::iter::repeat_with(OnceLock::new).take(self.kinds.len() * parts).collect();
+            self.made.fetch_add(size_of_val(&*row) as u64, Ordering::Relaxed);
+            row
+        });
+        let part = row[kind * parts + k / PART].get_or_init(|| {
+            let first = k / PART * PART;
+            let kinds = std::slice::from_ref(&self.kinds[kind]);
+            let part = part_of(model, kinds, (*level, [i, j]), first..first + PART, self.steps);
+            let part: Box<[[Affine; 4]]> = part.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]).collect();
+            self.made.fetch_add(size_of_val(&*part) as u64, Ordering::Relaxed);
+            part
+        });
+        &part[k % PART]
+    }
+
+    /// The size of boxes that the finest level is for, in terms of those that the table of compliances begins with.
+    pub fn smallest(&self) -> f64 {
+        libm::exp2(-(self.finer.len() as f64))
+    }
+
+    /// What was made so far of the finer levels. bytes
+    pub fn used(&self) -> u64 {
+        self.made.load(Ordering::Relaxed)
     }
 
     /// What they take. bytes
@@ -94,22 +163,17 @@ impl CoarseBounds {
                 let ratio =
                     (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
                         * 2.0;
-                let number = if ratio <= 1.0 {
-                    0
-                } else if ratio <= 2.0 {
-                    1
-                } else if ratio <= 4.0 {
-                    2
-                } else {
-                    return None;
+                let Some(number) = self.finest(ratio) else { return None };
+                let size = libm::exp2(f64::from(number));
+                let counts = match usize::try_from(number) {
+                    Ok(number) => self.levels[number].counts,
+                    Err(_) => self.finer[number.unsigned_abs() as usize - 1].counts,
                 };
-                let level = &self.levels[number];
-                let size = (1usize << number) as f64;
                 let (length, turn) = (self.steps.length * size, heading * size);
                 let along = [(p.r, self.extent.radius.0), (p.z, self.extent.height.0)]
                     .map(|(value, from)| (value - from) / length + 0.5);
                 let [i, j] = along.map(|k| k as usize);
-                if along.iter().any(|k| *k < 0.0) || i >= level.counts[0] || j >= level.counts[1] {
+                if along.iter().any(|k| *k < 0.0) || i >= counts[0] || j >= counts[1] {
                     return None;
                 }
                 let chi = (p.chi + model.points[point].load.turn).rem_euclid(TAU);
@@ -119,9 +183,8 @@ impl CoarseBounds {
                     p.z - self.extent.height.0 - length * j as f64,
                     chi - turn * k as f64,
                 ];
-                let at = (((i * level.counts[1] + j) * level.counts[2] + k % level.counts[2]) * self.kinds + kind) * 4;
-                for class in 0..4 {
-                    let e = &level.entries[at + class];
+                let at = [i, j, k % counts[2]];
+                for (class, e) in self.entries(model, number, at, kind).iter().enumerate() {
                     let sum = &mut sums[class];
                     if e.value == f32::INFINITY {
                         sum[0] = f64::INFINITY;
@@ -211,10 +274,41 @@ impl Level {
     }
 }
 
+impl FinerLevel {
+    fn new(extent: Extent, steps: Steps, level: usize) -> Self {
+        let counts = counts(extent, finer(steps, level));
+        let rows = std::iter::repeat_with(OnceLock::new).take(counts[0] * counts[1]).collect();
+        Self { level, counts, rows }
+    }
+}
+
+/// The steps of a level of the table of compliances.
+fn finer(Steps { length, headings }: Steps, level: usize) -> Steps {
+    Steps { length: length / (1u64 << level) as f64, headings: headings << level }
+}
+
+/// How far from a node of a level its entry is true, in radius, height and direction of the load.
+fn half_of(steps: Steps, level: usize) -> [f64; 3] {
+    let Steps { length, headings } = finer(steps, level);
+    [length, length, TAU / headings as f64]
+}
+
 /// All directions and kinds of load, and classes, at one radius and height.
 fn row_of(model: &Model, kinds: &[Kind], at: [usize; 2], steps: Steps) -> Vec<Affine> {
-    let own = row_of_set((&model.arm, &model.table, model.first), kinds, at, steps);
-    let others = model.others.iter().map(|set| row_of_set((&set.arm, &set.table, set.first), kinds, at, steps));
+    part_of(model, kinds, (0, at), 0..steps.headings, steps)
+}
+
+/// Some directions of kinds of load, in all classes, at a radius and height of a level of the table of compliances.
+fn part_of(
+    model: &Model,
+    kinds: &[Kind],
+    (level, at): (usize, [usize; 2]),
+    some: Range<usize>,
+    steps: Steps,
+) -> Vec<Affine> {
+    let of = |arm, table, first| part_of_set((arm, table, first), kinds, (level, at), some.clone(), steps);
+    let own = of(&model.arm, &model.table, model.first);
+    let others = model.others.iter().map(|set| of(&set.arm, &set.table, set.first));
     let mut sets: Vec<Vec<Affine>> = std::iter::once(own).chain(others).collect();
     if sets.len() == 1 {
         return sets.swap_remove(0);
@@ -227,31 +321,30 @@ fn row_of(model: &Model, kinds: &[Kind], at: [usize; 2], steps: Steps) -> Vec<Af
         let wide = |e: Affine| (f64::from(e.value), e.slope.map(f64::from));
         let wide: Vec<_> = all.by_ref().map(wide).collect();
         let (value, slope) = joined_sets(model.over, wide.into_iter());
-        let half = [steps.length, steps.length, TAU / steps.headings as f64];
-        rounded(value, slope, half)
+        rounded(value, slope, half_of(steps, level))
     };
     (0..sets[0].len()).map(joined).collect()
 }
 
 /// The same under one set of stiffness: an arm, its table, and the compliance of its joint 1 (rad/(N m)).
-fn row_of_set(
+fn part_of_set(
     (arm, table, first): (&Arm, &ComplianceTable, f64),
     kinds: &[Kind],
-    at: [usize; 2],
+    (level, at): (usize, [usize; 2]),
+    some: Range<usize>,
     steps: Steps,
 ) -> Vec<Affine> {
-    let node = table.place(0, at);
-    let step = TAU / steps.headings as f64;
-    let half = [steps.length, steps.length, step];
-    let mut out = vec![EMPTY; steps.headings * kinds.len() * 4];
+    let node = table.place(level, at);
+    let half = half_of(steps, level);
+    let mut out = vec![EMPTY; some.len() * kinds.len() * 4];
     // sin and cos of the directions of the load.
-    let directions: Vec<(f64, f64)> = (0..steps.headings).map(|k| libm::sincos(step * k as f64)).collect();
+    let directions: Vec<(f64, f64)> = some.map(|k| libm::sincos(half[2] * k as f64)).collect();
     let mut space = Vec::new();
     for class in PostureClass::ALL {
         let mut found: Vec<ModelledRegion> = Vec::new();
         let mut unknown = false;
-        for cell in 0..steps.headings {
-            unknown |= !collect(arm, table, 0, at, cell, node, class, &mut found);
+        for cell in 0..table.headings(level) {
+            unknown |= !collect(arm, table, level, at, cell, node, class, &mut found);
         }
         for (number, kind) in kinds.iter().enumerate() {
             for (k, (sine, cosine)) in directions.iter().enumerate() {

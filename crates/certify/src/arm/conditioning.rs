@@ -103,11 +103,17 @@ impl Arm {
         let elbow = is_short(posed.elbow.sin_delta_squared.high(), posed.elbow.distance2.low() * self.needs.elbow);
         let same = posed.wrist.dot46.square().plus(1.0);
         let wrist = is_short(posed.wrist.sine5_squared.high() * self.needs.wrist, same.low());
-        let length2 = self.characteristic_length * self.characteristic_length;
-        let least2 = Lanes::splat(UNDONE * length2);
-        let shoulder = is_short(posed.first.forward.square().high(), least2);
-        let reach = is_short(posed.elbow.distance2.high(), least2);
+        let shoulder = self.is_too_near(posed.first.forward_squared_high, needed);
+        let reach = self.is_too_near(posed.elbow.distance2.high(), needed);
         elbow | wrist | shoulder | reach
+    }
+
+    /// Where the square of the wrist centre's distance from axis 1 along the arm, or from axis 2, is at most so large
+    /// (m^2), and `min^2 |N|^2 / 36`, which is at least `needed`, does not allow that.
+    #[inline(always)]
+    pub(super) fn is_too_near(&self, distance2: Lanes, needed: Lanes) -> Mask {
+        let length2 = self.characteristic_length * self.characteristic_length;
+        (distance2 * BEYOND_ROUNDING).less(needed * (UNDONE * length2))
     }
 
     #[inline(always)]

@@ -17,7 +17,7 @@
 //!
 //! See [`stead_model::robot::Robot::inverse`] for the same with angles.
 
-use super::super::interval_simd::Mask;
+use super::super::interval_simd::{Lanes, Mask};
 use super::super::number::Number;
 use super::constants::{Arm, LimitSpan};
 use super::vector::{InPlane, Vector};
@@ -86,6 +86,8 @@ fn turned<T: Number>(sine: T, cosine: T, v: &Vector3<f64>) -> Vector<T> {
 pub(super) struct FirstJoint<T> {
     /// Distance of the wrist centre from axis 1 along the arm, rho. m
     pub forward: T,
+    /// What its square is at most, true wherever the wrist centre is. m^2
+    pub forward_squared_high: Lanes,
     pub cosine: T,
     pub sine: T,
 }
@@ -155,7 +157,9 @@ impl Arm {
         let lateral = self.geometry.lateral;
         let (wx, wy) = (radius - tool.lever.x, -tool.lever.y);
         let radius2 = wx.square() + wy.square();
-        let forward = radius2.plus(-lateral * lateral).assume_above(MIN_LENGTH2, regular).sqrt().scale(signs.side);
+        let forward2 = radius2.plus(-lateral * lateral);
+        let forward_squared_high = forward2.high();
+        let forward = forward2.assume_above(MIN_LENGTH2, regular).sqrt().scale(signs.side);
         let (cosine, sine) = if lateral == 0.0 {
             let inverse = radius2.assume_above(MIN_LENGTH2, regular).inverse_sqrt().scale(signs.side);
             (wx * inverse, wy * inverse)
@@ -163,7 +167,7 @@ impl Arm {
             let inverse = radius2.assume_above(MIN_LENGTH2, regular).reciprocal();
             ((wx * forward + wy.scale(lateral)) * inverse, (wy * forward - wx.scale(lateral)) * inverse)
         };
-        FirstJoint { forward, cosine, sine }
+        FirstJoint { forward, forward_squared_high, cosine, sine }
     }
 
     /// Joints 2 and 3, for the tool centre point at `height` (m) and what [`super::singularity::Needs`] says there.
@@ -195,7 +199,8 @@ impl Arm {
         let cos3 = cos_delta.scale(cos_bar) + sin_delta.scale(signs.elbow * sin_bar);
         let joint_margins = [self.limit_margins(0, sin2, cos2), self.limit_margins(1, sin3, cos3)];
         let outside = self.is_outside(0, joint_margins[0]) | self.is_outside(1, joint_margins[1]);
-        let violated = margin.is_negative() & defined | outside & *regular;
+        let is_folded = self.is_too_near(distance2.high(), needed.low());
+        let violated = (margin.is_negative() | is_folded) & defined | outside & *regular;
         let angles = [[sin2, cos2], [sin3, cos3]];
         let from_shoulder = InPlane { along: u, up };
         Elbow { from_shoulder, elbow, sin_delta, sin_delta_squared, distance2, angles, margin, joint_margins, violated }

@@ -92,8 +92,13 @@ impl Arm {
         let tool = Tool::new(self, sine, cosine);
         let first = self.first_joint(radius, &tool, signs, &mut regular);
         let needed = self.needs.at(radius);
+        // Where the wrist centre is that near to axis 1 the closed form is not regular, and nothing else would tell.
+        let is_above_axis = self.is_too_near(first.forward_squared_high, needed.low());
+        if is_above_axis.all() {
+            return None;
+        }
         let elbow = self.elbow(first.forward, height, needed, signs, &mut regular);
-        let mut violated = elbow.violated;
+        let mut violated = is_above_axis | elbow.violated;
         if violated.all() {
             return None;
         }

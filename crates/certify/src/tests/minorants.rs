@@ -324,6 +324,12 @@ fn sums_over_boxes_are_below_what_the_planner_finds() {
             assert!(below > 0.5 * lowest, "no power: {below} of {lowest}");
         }
     }
+    // A box of half the size is for the finer level, which says more of it.
+    let region = Region { middle: placement, half: [0.0045, 0.00625, 0.00785] };
+    let lone = local(&setting, over(0), over(1), COARSE, 1);
+    let without = CoarseBounds::new(&lone, &Monitor::silent(), || None).expect("nobody ends it");
+    let [with, without] = [(&coarse, &model), (&without, &lone)].map(|(all, model)| all.lower_bound(model, &region));
+    assert!(with > without && without > Some(0.0) && coarse.used() > 0, "{with:?} {without:?}");
     // Every level reaches so far and no farther: never infeasible, but nothing to say.
     let wide = Region { middle: placement, half: [0.2, 0.0, 0.0] };
     assert_eq!(coarse.lower_bound(&model, &wide), None);
