@@ -67,7 +67,9 @@ pub fn best(
         }
     };
     let (coarse, left) = left;
-    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: None }).collect();
+    // Parts of finer tables are for many boxes each: for a few the cells of heading take less time.
+    let few = (left.len() < MANY).then(|| Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0))));
+    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: few.clone() }).collect();
     let all = Parts {
         start,
         nodes,
@@ -123,13 +125,16 @@ fn survivors(
     Ok(left)
 }
 
-/// The cells of heading that are still of interest in a box, once they have been asked for.
+/// Boxes left by the coarse tables from which on their finer levels are used.
+const MANY: usize = 500;
+
+/// The cells of heading that are still of interest in a box, once they are used.
 type Known = Option<Arc<ActiveCells>>;
 
 /// The halves of a box with their bounds; `None` where it is not to be cut further.
 ///
-/// As long as the coarse tables distinguish halves these alone are asked: a bound by them takes a thousandth of the
-/// time. Then come the cells of heading, and with them the limits on beta.
+/// As long as the coarse tables have a level for the halves their bound is by these alone, which takes a thousandth of
+/// the time. Then come the cells of heading, and with them the limits on beta.
 fn parts(
     model: &Model,
     coarse: &CoarseBounds,
