@@ -3,10 +3,11 @@
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
 //! ([`LeanPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
-//! so, external axes are moved, and lead and tilt are planned anew, by turns. A step is only taken to a plan that is
-//! better, so that where the axis of the path is allowed the result is never worse than with it.
+//! so, and lead and tilt are planned anew, by turns. External axes stay where they are best with the axis of the path,
+//! those that move along it too. A step is only taken to a plan that is better, so that where the axis of the path is
+//! allowed the result is never worse than with it.
 
-use super::axes::{Improved, between, improved as with_axes, kept_points, refined};
+use super::axes::{Improved, between, kept_points, refined};
 use super::infeasible::Infeasible;
 use super::refined::Refined;
 use super::{notes, stated_cases};
@@ -59,7 +60,7 @@ struct Job<'a> {
 /// How the tool leans best at a placement, with the plan; none where no lean that was tried has one.
 pub(super) fn leaned_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<Improved> {
     let space = problem.lean.as_deref()?;
-    Job { problem, space, monitor }.improved(&problem.setup, placement)
+    Job { problem, space, monitor }.at(&problem.setup, placement, None)
 }
 
 impl Job<'_> {
@@ -147,7 +148,7 @@ impl Job<'_> {
         steps.all(|point| self.space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
     }
 
-    /// Leans, placement and external axes by turns, from a placement.
+    /// Leans and placement by turns, from a placement.
     fn improved(&self, setup: &Setup, placement: &Placement) -> Option<Improved> {
         let mut best = self.at(setup, placement, None)?;
         for _ in 0..ROUNDS {
@@ -155,11 +156,7 @@ impl Job<'_> {
             if self.monitor.should_stop() {
                 break;
             }
-            let mut moved = refined(self.problem, &best, self.monitor);
-            let from = moved.as_ref().unwrap_or(&best);
-            let set_up = self.problem.in_setup(&from.setup);
-            moved = with_axes(&set_up, &from.solution, self.monitor).or(moved);
-            let Some(moved) = moved else { break };
+            let Some(moved) = refined(self.problem, &best, self.monitor) else { break };
             let placement = moved.solution.placement;
             best = self.at(&moved.setup.clone(), &placement, Some(moved)).unwrap_or(best);
             if before - best.solution.objective < GAIN * before {
@@ -184,8 +181,8 @@ impl Job<'_> {
         starts
     }
 
-    /// Placements drawn over the cell that have a plan on a coarse grid of leans, the best first; the one of a cell that
-    /// holds no other in any case.
+    /// Placements drawn over the cell that have a plan on a coarse grid of leans, the best first; in any case the one
+    /// of a cell that holds no other.
     fn drawn(&self, setup: &Setup, seed: u64) -> Vec<Start> {
         let setup = Setup { leans: [].into(), ..setup.clone() };
         if let Some(placement) = self.problem.cell.pinned() {

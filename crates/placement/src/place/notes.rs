@@ -96,6 +96,9 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
             ),
         });
     }
+    if problem.moves_axes_along_segments() {
+        notes.push("external axes move along the path as is best with the axis of the path; lead and tilt are planned with them so".to_owned());
+    }
     let worst = match (has_worst, upright) {
         (false, _) => "",
         (true, Some(_)) => {

@@ -128,7 +128,8 @@ pub struct ProgramCheck {
     pub position: Option<Largest>,
     /// The largest angle of the tool to how it should be turned. deg
     pub angle: Option<Largest>,
-    /// The largest distance of the contact of a leaning tool, from tip and axis in the program, from that of the task. mm
+    /// The largest distance of the contact of a leaning tool, by tip and axis in the program, from that of the task.
+    /// mm
     pub contact: Option<Largest>,
     /// The largest that is allowed. mm
     pub contact_allowed: f64,
@@ -143,7 +144,7 @@ pub struct ProgramCheck {
 }
 
 impl ProgramCheck {
-    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg, and a leaning tool touches where it should.
+    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg, and a leaning tool touches where it has to.
     pub fn is_sound(&self) -> bool {
         let within = |largest: &Option<Largest>, limit: f64| largest.as_ref().is_some_and(|found| found.value <= limit);
         let touches = self.contact.as_ref().is_none_or(|found| found.value <= self.contact_allowed);

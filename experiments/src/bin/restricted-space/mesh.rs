@@ -1,10 +1,10 @@
-//! How far the free angle about the tool axis alone gets along two lines inside a half-closed box, and what stands in the
-//! way: the obstacle mesh of *A Benchmark for Robotic Milling in Restricted Spaces* (Su et al. 2026, IJMTM 215, 104364;
-//! its public repository; binary STL in metres, y up), which is not part of this repository. The arm is the KUKA KR
-//! 210-2 of the catalogue (the paper has an ABB IRB 6660, whose geometry is not public); base column, shoulder and links
-//! are capsules along its rows. The box stands with its slot, above the inclined front wall, towards the robot. The
-//! spindle is square to axis 6, its tip 600 mm from that: straight on that axis, the free angle would turn joint 6 and
-//! move nothing else.
+//! How far the free angle about the tool axis alone gets along two lines inside a half-closed box, and what stands in
+//! the way: the obstacle mesh of *A Benchmark for Robotic Milling in Restricted Spaces* (Su et al. 2026, IJMTM 215,
+//! 104364; its public repository; binary STL in metres, y up), which is not part of this repository. The arm is the
+//! KUKA KR 210-2 of the catalogue (the paper has an ABB IRB 6660, whose geometry is not public); base column,
+//! shoulder and links are capsules along its rows. The box stands with its slot, above the inclined front wall,
+//! towards the robot. The spindle is square to axis 6, its tip 600 mm from that: straight on that axis, the free
+//! angle would turn joint 6 and move nothing else.
 //!
 //! Both lines run along the whole length of the box (1.3 m, 651 points, 2 mm apart) with the tool upright. The place of
 //! the paper's line is in the paper only; ours are

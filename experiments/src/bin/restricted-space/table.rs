@@ -1,10 +1,10 @@
 //! What a leaning tool reaches in the box of `configs/restricted-space.toml`: two lines of 900 mm, both mounts of the
 //! spindle, the box where searches found the most, with beta alone, with lead and with cones of 15 and 30 deg.
 //!
-//! - *points*: of 131 along the line those at which any state is allowed, each looked at by itself: the axis every 7.5 deg
-//!   off that of the task in 12 directions, beta every 15 deg, all postures, every shape;
-//! - *way*: the longest chain of such states in one posture over every second of these points (13.8 mm), the axis turning
-//!   by at most 9 deg and beta by 15 deg from one to the next, each joint as fast as it may at 20 mm/s;
+//! - *points*: of 131 along the line those at which any state is allowed, each looked at by itself: the axis every
+//!   7.5 deg off that of the task in 12 directions, beta every 15 deg, all postures, every shape;
+//! - *way*: the longest chain of such states in one posture over every second of these points (13.8 mm), the axis
+//!   turning by at most 9 deg and beta by 15 deg from one to the next, each joint as fast as it may at 20 mm/s;
 //! - *plan*: what `stead score` makes of that stretch with a point every 2 mm, all limits of the run included: the mean
 //!   deflection, the least clearance with its pair, and how long it took.
 
