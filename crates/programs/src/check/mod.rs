@@ -144,7 +144,8 @@ pub struct ProgramCheck {
 }
 
 impl ProgramCheck {
-    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg, and a leaning tool touches where it has to.
+    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg, and a leaning tool touches where it does
+    /// in the task.
     pub fn is_sound(&self) -> bool {
         let within = |largest: &Option<Largest>, limit: f64| largest.as_ref().is_some_and(|found| found.value <= limit);
         let touches = self.contact.as_ref().is_none_or(|found| found.value <= self.contact_allowed);
