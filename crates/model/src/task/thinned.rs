@@ -156,4 +156,21 @@ mod tests {
             (kept[span.start].point + 1..=kept[span.end - 1].point).map(|p| task.path().step_length(p)).sum();
         assert!((along - whole).abs() < 1e-12 && along > 0.0);
     }
+
+    #[test]
+    fn a_step_of_the_whole_path_is_a_part_of_the_way_between_kept_points() {
+        let task = five_segments();
+        let span = task.segments()[0].clone();
+        let all =
+            |points: Vec<usize>| points.into_iter().map(|point| KeptPoint { point, weight: 1.0 }).collect::<Vec<_>>();
+        let rest = task.segments().iter().skip(1).map(|span| span.start);
+        let thinned = task.thinned(&all(span.clone().step_by(4).chain(rest).collect()));
+        let path = thinned.path();
+        for (point, before) in span.clone().step_by(4).skip(1).zip(1..) {
+            let steps: Vec<f64> = (point - 3..=point).map(|point| task.path().step_length(point)).collect();
+            let longest = steps.iter().copied().fold(0.0, f64::max);
+            assert!((path.largest_part(before) - longest / steps.iter().sum::<f64>()).abs() < 1e-12);
+        }
+        assert_eq!(task.path().largest_part(1), 1.0);
+    }
 }
