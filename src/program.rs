@@ -151,8 +151,8 @@ impl CheckedProgram {
         &self.check
     }
 
-    /// The result, if the program is that of the plan within 0.01 mm and 0.01 deg, and none of its moves between
-    /// segments hits what stands around, and the arm can follow all others.
+    /// The result, if the program is that of the plan within 0.01 mm and 0.01 deg, a leaning tool touches where it
+    /// should, none of the moves between segments hits what stands around, and the arm can follow all others.
     ///
     /// # Errors
     /// [`Error::Failed`] where it is not.
@@ -175,6 +175,13 @@ impl CheckedProgram {
         }
         if self.check.is_sound() {
             return Ok(());
+        }
+        if let Some(off) = self.check.contact.as_ref().filter(|off| off.value > self.check.contact_allowed) {
+            return Err(Error::Failed(format!(
+                "{file}: the leaning tool touches {:.4} mm beside the contact of the task at point {}; allowed: {} mm, \
+                 lean.contact_tolerance_mm",
+                off.value, off.at.point, self.check.contact_allowed
+            )));
         }
         Err(Error::Failed(format!(
             "{file}: is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \

@@ -60,6 +60,26 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let again = again["best"]["objective_mm"].as_f64().unwrap();
     assert!((again / leaned - 1.0).abs() < 1e-3, "{again} {leaned}");
     ok(&bench, &["export", RUN, "leaned/best.csv", "--format", "csv", "--out", "program/part"]);
+    the_program_touches_where_the_task_does(&bench);
     let refused = bench.stead(&["place", RUN, "--certify", "5", "--no-page", "--out", "certified"]);
     assert!(refused.stderr.contains("the tool may lean"), "{}", refused.stderr);
+}
+
+/// The contact is rebuilt from the program alone: one whose tips are all moved is refused for it.
+fn the_program_touches_where_the_task_does(bench: &Bench) {
+    let check = ["export", RUN, "leaned/best.csv", "--check", "program/part.csv", "--json"];
+    let document = ok(bench, &check).json();
+    let off = document["contact_mm"]["value"].as_f64().unwrap();
+    assert!(off <= document["allowed_contact_mm"].as_f64().unwrap(), "{document}");
+    // With a tip moved by 0.05 mm it is beside.
+    let program = bench.read("program/part.csv");
+    let mut rows: Vec<Vec<String>> = program.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect();
+    let z = rows[0].iter().position(|name| name == "z_mm").unwrap();
+    assert_eq!(rows[2][2], "linear");
+    rows[2][z] = (rows[2][z].parse::<f64>().unwrap() + 0.05).to_string();
+    bench.write("program/part.csv", &rows.iter().map(|row| row.join(",") + "\n").collect::<String>());
+    let ended = bench.stead(&check);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    let off = ended.json()["contact_mm"]["value"].as_f64().unwrap();
+    assert!((off - 0.05).abs() < 0.005, "{off}");
 }

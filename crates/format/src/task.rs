@@ -1,7 +1,12 @@
 //! Tool paths from CSV (one row per point; the columns are listed in [`read_csv`]).
 
+mod lean;
+
+pub use lean::{LEAN, PointLean};
+
 use crate::compliance_matrix::SEMIDEFINITE;
 use crate::file_kind::FileKind;
+use lean::LeanColumns;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 use stead_disk::files;
@@ -21,6 +26,8 @@ pub struct Imported {
     pub wrenches: Option<Vec<Wrench>>,
     /// How the part yields at every point, where the file has columns for it. m/N
     pub part: Option<Vec<Matrix3<f64>>>,
+    /// How far the tool may lean at every point, where the file has columns for it.
+    pub leans: Option<Vec<PointLean>>,
     /// Line of each point in the file, from 1.
     pub lines: Vec<usize>,
 }
@@ -46,8 +53,8 @@ pub const PART: [&str; 6] = [
 /// `force_x_n,force_y_n,force_z_n` (what the workpiece does to the tool) and with them
 /// `moment_x_nm,moment_y_nm,moment_z_nm`, `normal_x,normal_y,normal_z`, the normal of the surface that is cut,
 /// `feed_mm_per_s`, the feed of the move to the point, `scored`, 0 for a point that only has to be reached and else 1,
-/// and `part_xx_um_per_n` .. `part_yz_um_per_n`, how the part yields at the point; in any order, all in the workpiece
-/// frame.
+/// `part_xx_um_per_n` .. `part_yz_um_per_n`, how the part yields at the point, and `lead_min_deg,lead_max_deg` and
+/// `tilt_min_deg,tilt_max_deg`, how far the tool may lean there; in any order, all in the workpiece frame.
 ///
 /// # Errors
 /// [`InputError`] naming line and column: a file that cannot be read, a missing, doubled or unknown column, a value
@@ -72,6 +79,7 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let mut normals = columns.normal.map(|_| Vec::new());
     let mut feeds = columns.feed.map(|_| Vec::new());
     let mut part = columns.part.map(|_| Vec::new());
+    let mut leans = columns.lean.is_there().then(Vec::new);
     let mut lines = Vec::new();
     while let Some(row) = table.next_row()? {
         let segment = segment(&row, columns.required[0])?;
@@ -91,6 +99,9 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
         if let (Some(part), Some(entries)) = (part.as_mut(), columns.part) {
             part.push(part_compliance(&row, entries)?);
         }
+        if let Some(leans) = leans.as_mut() {
+            leans.push(columns.lean.of(&row)?);
+        }
         lines.push(row.line());
     }
     let with_normals = |path: ToolPath| match normals {
@@ -103,7 +114,7 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     };
     let path = ToolPath::partly_scored(points).and_then(with_normals).and_then(with_feeds);
     let path = path.map_err(|e| locate(file, &lines, &e))?;
-    Ok(Imported { path, wrenches, part, lines })
+    Ok(Imported { path, wrenches, part, leans, lines })
 }
 
 /// Where each column of the contract stands in this file.
@@ -115,11 +126,13 @@ struct Columns {
     feed: Option<usize>,
     scored: Option<usize>,
     part: Option<[usize; 6]>,
+    lean: LeanColumns,
 }
 
 impl Columns {
     fn find(table: &CsvTable<'_>) -> Result<Self, InputError> {
-        let all = || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL).chain(&FOLLOWING).chain(&PART);
+        let all =
+            || REQUIRED.iter().chain(&FORCE).chain(&MOMENT).chain(&NORMAL).chain(&FOLLOWING).chain(&PART).chain(&LEAN);
         let allowed = all().copied().collect::<Vec<_>>().join(",");
         let fail = |column: &str, problem: &str| table.fail(column, problem, &allowed);
         for name in table.header() {
@@ -159,7 +172,8 @@ impl Columns {
             Some(_) => None,
             None => Some(part.map(Option::unwrap_or_default)),
         };
-        Ok(Self { required, force, moment, normal, feed, scored, part })
+        let lean = LeanColumns::find(table, &fail)?;
+        Ok(Self { required, force, moment, normal, feed, scored, part, lean })
     }
 }
 

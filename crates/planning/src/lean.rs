@@ -205,6 +205,7 @@ impl LeanSpace {
 
     /// Whether the tool axis may go from one lean to another between two points of an upright path, the second of which
     /// is told: as far as the contact stays near its line between them, and as the axis of the path turns in any case.
+    /// In a thinned path the axis turns evenly over the steps that are left out.
     pub fn allows_step(&self, path: &ToolPath, point: usize, leans: [&Lean; 2]) -> bool {
         let at = [point - 1, point].map(|point| &path.points()[point]);
         let [from, to] = [0, 1].map(|k| leans[k].axis(at[k]));
@@ -212,9 +213,44 @@ impl LeanSpace {
         if turn <= between(&at[0].axis, &at[1].axis) + ROUNDING {
             return true;
         }
+        let part = path.largest_part(point);
+        if turn * part > MOST_TURN + ROUNDING {
+            return false;
+        }
         let normal = |k: usize| path.surface_normals().map_or(at[k].axis, |normals| normals[point - 1 + k]);
-        let error = |k: usize| self.rule.error_between(&normal(k), [&from, &to]);
-        turn <= MOST_TURN + ROUNDING && error(0).max(error(1)) <= self.contact_tolerance * (1.0 + ROUNDING)
+        let pieces = (1.0 / part - ROUNDING).ceil() as usize;
+        let along = |piece: usize| {
+            let share = piece as f64 / pieces as f64;
+            (from * libm::sin((1.0 - share) * turn) + to * libm::sin(share * turn)).normalize()
+        };
+        (0..pieces).all(|piece| {
+            let axes = if pieces == 1 { [from, to] } else { [along(piece), along(piece + 1)] };
+            let error = |k: usize| self.rule.error_between(&normal(k), [&axes[0], &axes[1]]);
+            error(0).max(error(1)) <= self.contact_tolerance * (1.0 + ROUNDING)
+        })
+    }
+
+    /// About how far the tool axis may turn in one step of a path, from the middle of the ranges of its points. rad
+    pub fn usual_turn(&self, path: &ToolPath) -> f64 {
+        let allows = |turn: f64| {
+            let at_point = |(point, range): (usize, &LeanRange)| {
+                let at = &path.points()[point];
+                let normal = path.surface_normals().map_or(at.axis, |normals| normals[point]);
+                let middle = Lean { lead: middle(&range.lead), tilt: middle(&range.tilt) };
+                let ends = [-0.5, 0.5].map(|half| Lean { lead: middle.lead + half * turn, ..middle }.axis(at));
+                self.rule.error_between(&normal, [&ends[0], &ends[1]]) <= self.contact_tolerance
+            };
+            self.ranges.iter().enumerate().filter(|(_, range)| !range.is_none()).all(at_point)
+        };
+        let (mut low, mut high) = (0.0, MOST_TURN);
+        if allows(high) {
+            return high;
+        }
+        for _ in 0..20 {
+            let half = (low + high) / 2.0;
+            if allows(half) { low = half } else { high = half }
+        }
+        low
     }
 
     /// Steps to either side of the middle of lead and tilt, with which none is larger than the given ones.
@@ -252,11 +288,16 @@ impl LeanSpace {
 
 /// Values of a range, `half` to either side of the middle.
 fn values(range: &Interval, half: usize) -> Vec<f64> {
-    let middle = if range.min <= 0.0 && range.max >= 0.0 { 0.0 } else { (range.min + range.max) / 2.0 };
+    let middle = middle(range);
     let at = |k: usize| match k.cmp(&half) {
         std::cmp::Ordering::Equal => middle,
         std::cmp::Ordering::Less => middle + (range.min - middle) * ((half - k) as f64 / half as f64),
         std::cmp::Ordering::Greater => middle + (range.max - middle) * ((k - half) as f64 / half as f64),
     };
     (0..=2 * half).map(at).collect()
+}
+
+/// Zero, where it is in a range, or else its middle.
+fn middle(range: &Interval) -> f64 {
+    if range.min <= 0.0 && range.max >= 0.0 { 0.0 } else { (range.min + range.max) / 2.0 }
 }

@@ -117,6 +117,9 @@ records! {
         position_mm: Option<LargestFigures> = check.position.as_ref().map(LargestFigures::of),
         /// Largest deviation of an angle. deg
         angle_deg: Option<LargestFigures> = check.angle.as_ref().map(LargestFigures::of),
+        /// Largest deviation of the contact of a leaning tool, from tip and axis in the program. mm
+        #[serde(skip_serializing_if = "Option::is_none")]
+        contact_mm: Option<LargestFigures> = check.contact.as_ref().map(LargestFigures::of),
         /// Why the program is another one.
         mismatch: Option<String> = check.mismatch.as_ref().map(ToString::to_string),
         /// Moves that hit.
@@ -127,6 +130,9 @@ records! {
         allowed_mm: f64 = POSITION_MM,
         /// Largest deviation of an angle that is allowed. deg
         allowed_deg: f64 = ANGLE_DEG,
+        /// Largest deviation of the contact that is allowed, where the tool leans. mm
+        #[serde(skip_serializing_if = "Option::is_none")]
+        allowed_contact_mm: Option<f64> = check.contact.as_ref().map(|_| check.contact_allowed),
     }
 
     /// Where a move is.
@@ -179,7 +185,8 @@ pub fn program_check_text(check: &ProgramCheck) -> String {
         check.joint_moves,
         check.expected_moves
     );
-    let parts = [("position", "mm", &check.position), ("angle", "deg", &check.angle)];
+    let parts =
+        [("position", "mm", &check.position), ("angle", "deg", &check.angle), ("contact", "mm", &check.contact)];
     for (name, unit, largest) in parts {
         let Some(Largest { value, at }) = largest else { continue };
         let retracted = if at.is_retracted { ", retracted" } else { "" };

@@ -84,7 +84,7 @@ pub(crate) fn judge(verdict: &mut Verdict, name: &str, run: &Table, points: &[Po
         let own = sections(table, "segment").into_iter().find(|t| number(t, "number") == Some(point.segment as f64));
         for (k, key) in ["lead_deg", "tilt_deg"].into_iter().enumerate() {
             let stated = own.and_then(|own| ends(own, key)).or_else(|| ends(table, key));
-            let [low, high] = stated.filter(|_| point.is_scored).unwrap_or([0.0; 2]);
+            let [low, high] = point.leans[k].or(stated).filter(|_| point.is_scored).unwrap_or([0.0; 2]);
             let beyond = (low - lean[k]).max(lean[k] - high);
             verdict.within("range of the lean (rad)", || format!("{name} point {i} {key}"), beyond, 1e-6);
         }

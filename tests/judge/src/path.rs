@@ -22,6 +22,8 @@ pub(crate) struct Point {
     /// m/s
     pub speed: Option<f64>,
     pub is_scored: bool,
+    /// Ranges of lead and tilt, where the task says so. rad
+    pub leans: [Option<[f64; 2]>; 2],
 }
 
 /// Beside a run with `[stock]`: the task with the forces along it and the points that they add, as `stead forces`
@@ -89,6 +91,10 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
             part: part(&value),
             speed: value("feed_mm_per_s").map(|speed| speed * 1e-3),
             is_scored: value("scored").is_none_or(|scored| scored != 0.0),
+            leans: ["lead", "tilt"].map(|of| {
+                let end = |end: &str| value(&format!("{of}_{end}_deg")).map(f64::to_radians);
+                Some([end("min")?, end("max")?])
+            }),
         });
     }
     if !has_forces && !run.contains_key("stock") {

@@ -21,6 +21,8 @@ pub(super) struct Thinned {
     steps: Vec<f64>,
     /// Whether the tool turns in place on the way from the point before.
     turns: Vec<bool>,
+    /// The largest part of that way that one step of the whole path takes.
+    parts: Vec<f64>,
 }
 
 impl ToolPath {
@@ -30,6 +32,7 @@ impl ToolPath {
         let mut segments = Vec::with_capacity(self.segments.len());
         let mut steps = Vec::with_capacity(kept.len());
         let mut turns = Vec::with_capacity(kept.len());
+        let mut parts = Vec::with_capacity(kept.len());
         let mut feeds = self.feeds.as_ref().map(|_| Vec::with_capacity(kept.len()));
         for (place, KeptPoint { point, .. }) in kept.iter().enumerate() {
             let segment = self.segment_of(*point);
@@ -39,6 +42,8 @@ impl ToolPath {
                     let passed = before + 1..=*point;
                     let length: f64 = passed.clone().map(|p| self.step_length(p)).sum();
                     steps.push(length);
+                    let longest = passed.clone().map(|p| self.step_length(p)).fold(0.0, f64::max);
+                    parts.push(if length > 0.0 { longest / length } else { 1.0 });
                     turns.push(passed.clone().any(|p| self.turns_in_place(p)));
                     if let (Some(feeds), Some(own)) = (feeds.as_mut(), &self.feeds) {
                         let time: f64 = passed.map(|p| self.step_length(p) / own[p]).sum();
@@ -47,6 +52,7 @@ impl ToolPath {
                 }
                 None => {
                     steps.push(0.0);
+                    parts.push(1.0);
                     turns.push(false);
                     if let (Some(feeds), Some(own)) = (feeds.as_mut(), &self.feeds) {
                         feeds.push(own[*point]);
@@ -68,7 +74,7 @@ impl ToolPath {
             feeds,
             scored: self.scored.as_ref().map(|scored| kept.iter().map(|kept| scored[kept.point]).collect()),
             leaned: self.leaned.as_ref().map(|leaned| leaned.thinned(kept)),
-            thinned: Some(Thinned { weights: kept.iter().map(|kept| kept.weight).collect(), steps, turns }),
+            thinned: Some(Thinned { weights: kept.iter().map(|kept| kept.weight).collect(), steps, turns, parts }),
         }
     }
 
@@ -80,6 +86,12 @@ impl ToolPath {
             (None, Some(leaned)) => leaned.step(point),
             (None, None) => (self.points[point].position - self.points[point - 1].position).norm(),
         }
+    }
+
+    /// The largest part of the way to a point from the one before, both in one segment, that one step of the whole path
+    /// takes: 1 but in a thinned path.
+    pub fn largest_part(&self, point: usize) -> f64 {
+        self.thinned.as_ref().map_or(1.0, |thinned| thinned.parts[point])
     }
 
     /// How many scored points a point stands for: 1 but in a thinned path, 0 where it is not scored.
@@ -143,5 +155,22 @@ mod tests {
         let whole: f64 =
             (kept[span.start].point + 1..=kept[span.end - 1].point).map(|p| task.path().step_length(p)).sum();
         assert!((along - whole).abs() < 1e-12 && along > 0.0);
+    }
+
+    #[test]
+    fn a_step_of_the_whole_path_is_a_part_of_the_way_between_kept_points() {
+        let task = five_segments();
+        let span = task.segments()[0].clone();
+        let all =
+            |points: Vec<usize>| points.into_iter().map(|point| KeptPoint { point, weight: 1.0 }).collect::<Vec<_>>();
+        let rest = task.segments().iter().skip(1).map(|span| span.start);
+        let thinned = task.thinned(&all(span.clone().step_by(4).chain(rest).collect()));
+        let path = thinned.path();
+        for (point, before) in span.clone().step_by(4).skip(1).zip(1..) {
+            let steps: Vec<f64> = (point - 3..=point).map(|point| task.path().step_length(point)).collect();
+            let longest = steps.iter().copied().fold(0.0, f64::max);
+            assert!((path.largest_part(before) - longest / steps.iter().sum::<f64>()).abs() < 1e-12);
+        }
+        assert_eq!(task.path().largest_part(1), 1.0);
     }
 }

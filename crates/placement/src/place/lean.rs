@@ -1,10 +1,11 @@
 //! How the tool leans along the path, at placements that are promising.
 //!
-//! The search knows the axis of the path alone. From the best placements that it finds, or where it finds none from
-//! placements drawn over the cell, lead and tilt are planned together with beta
+//! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
+//! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
 //! ([`LeanPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
-//! so, and lead and tilt are planned anew, by turns. A step is only taken to a plan that is better, so that where the
-//! axis of the path is allowed the result is never worse than with it.
+//! so, and lead and tilt are planned anew, by turns. External axes stay where they are best with the axis of the path,
+//! those that move along it too. A step is only taken to a plan that is better, so that where the axis of the path is
+//! allowed the result is never worse than with it.
 
 use super::axes::{Improved, between, kept_points, refined};
 use super::infeasible::Infeasible;
@@ -16,6 +17,9 @@ use crate::refine::planned;
 use crate::settings::SearchSettings;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+use std::sync::Arc;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
@@ -39,8 +43,12 @@ const GAIN: f64 = 1e-4;
 const HALVINGS: usize = 6;
 /// Steps to either side in a halving.
 const NEAR: i32 = 1;
-/// Placements drawn where none has a plan with the axis of the path, and the points on which they are told apart.
-const DRAWN: (usize, usize) = (48, 60);
+/// Placements drawn over the cell, so many at a time, and what they are told apart on: points of the path, steps to
+/// either side in lead and in tilt, and the smallest step of beta (rad).
+const DRAWN: (usize, usize) = (192, 16);
+const DRAWN_ON: (usize, usize, f64) = (40, 2, PI / 12.0);
+/// A drawn placement that is worse by this factor on the coarse grid than the best that is known is not a start.
+const HOPELESS: f64 = 1.25;
 
 /// What is leaned.
 struct Job<'a> {
@@ -72,16 +80,38 @@ impl Job<'_> {
     }
 
     /// The best lean at a placement, in the setup given but for its leans, no worse than what is known there.
+    ///
+    /// Where the contact or the joints do not allow a step of the grid from one point to the next, lead and tilt are
+    /// planned on fewer points, and once more on all of them.
     fn at(&self, setup: &Setup, placement: &Placement, known: Option<Improved>) -> Option<Improved> {
         let mut best = known.or_else(|| self.upright(setup, placement));
         let upright = self.problem.in_setup(&Setup { leans: [].into(), ..setup.clone() });
         let step = self.space.steps[0].max(self.space.steps[1]);
-        let kept = kept_points(&upright, MOST_PLANNED_POINTS, |time| {
-            slowest(&upright).map_or(0.0, |speed| step / (speed * time))
+        let turn = self.space.usual_turn(upright.task.path());
+        let sparse = kept_points(&upright, MOST_PLANNED_POINTS, |time| {
+            slowest(&upright).map_or(0.0, |speed| step / (speed * time)).max(step / turn)
         });
+        let dense = kept_points(&upright, MOST_PLANNED_POINTS, |_| 0.0);
+        let is_one = sparse == dense;
+        best = self.on_points(setup, placement, &upright, &sparse, best);
+        if !is_one && (best.is_none() || !self.monitor.should_stop()) {
+            best = self.on_points(setup, placement, &upright, &dense, best);
+        }
+        best
+    }
+
+    /// The best lean at a placement with lead and tilt planned on some points, in proportion between them.
+    fn on_points(
+        &self,
+        setup: &Setup,
+        placement: &Placement,
+        upright: &Problem,
+        kept: &[usize],
+        mut best: Option<Improved>,
+    ) -> Option<Improved> {
         let thinned =
-            (kept.len() < upright.task.points().len()).then(|| PathSubset::of_points(kept.clone()).of(&upright));
-        let coarse = thinned.as_ref().unwrap_or(&upright);
+            (kept.len() < upright.task.points().len()).then(|| PathSubset::of_points(kept.to_vec()).of(upright));
+        let coarse = thinned.as_ref().unwrap_or(upright);
         let of_grid = |grid: LeanGrid<'_>| -> Option<LeanPath> {
             let problems = grid.problems();
             LeanPlanner::new(&grid, &problems).path(placement)
@@ -90,7 +120,7 @@ impl Job<'_> {
         let mut steps = self.space.steps;
         for _ in 0..=HALVINGS {
             let Some(leans) = way.take().filter(|_| best.is_none() || !self.monitor.should_stop()) else { break };
-            let spread = self.spread(&upright, &kept, &leans);
+            let spread = self.spread(upright, kept, &leans);
             let candidate = spread.and_then(|leans| self.planned(setup, placement, leans));
             if let Some(candidate) = candidate
                 && best.as_ref().is_none_or(|best| candidate.solution.objective < best.solution.objective)
@@ -103,7 +133,7 @@ impl Job<'_> {
         best
     }
 
-    /// Leans at every point, from those at some of them; none where one between these is not allowed.
+    /// Leans at every point, from those at some of them; none where one between these is not allowed, or a step.
     fn spread(&self, upright: &Problem, kept: &[usize], leans: &[Lean]) -> Option<Vec<Lean>> {
         let path = upright.task.path();
         let rows = vec![vec![0.0; 2]; path.points().len()];
@@ -113,7 +143,9 @@ impl Job<'_> {
             let lean = self.space.ranges[point].nearest(&Lean { lead: row[0], tilt: row[1] });
             self.space.allows(path, point, &lean).then_some(lean)
         };
-        rows.iter().enumerate().map(lean).collect()
+        let leans: Vec<Lean> = rows.iter().enumerate().map(lean).collect::<Option<_>>()?;
+        let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
+        steps.all(|point| self.space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
     }
 
     /// Leans and placement by turns, from a placement.
@@ -134,49 +166,72 @@ impl Job<'_> {
         Some(best)
     }
 
-    /// The best placements with the axis of the path, each with its setup, or drawn ones where there are none; in that
-    /// case the last is the worst of those drawn.
-    fn starts(&self, closed: Result<&Outcome, &Infeasible>, seed: u64) -> Vec<(Setup, Placement)> {
-        let Ok(outcome) = closed else { return self.drawn(seed) };
+    /// The best placements with the axis of the path, each with its setup.
+    fn basins(&self, outcome: &Outcome) -> Vec<Start> {
         let best = &outcome.cases.best;
-        let mut starts = vec![(best.setup.clone(), best.placement)];
+        let start = |placement: Placement| Start { setup: best.setup.clone(), placement, coarse: None };
+        let mut starts = vec![start(best.placement)];
         let mut others: Vec<_> = outcome.refinements.iter().filter(|one| one.sense == Sense::Min).collect();
         others.sort_by(|a, b| a.end_mean.total_cmp(&b.end_mean));
         for other in others {
-            if starts.len() < STARTS && starts.iter().all(|start| is_apart(&start.1, &other.end)) {
-                starts.push((best.setup.clone(), other.end));
+            if starts.len() < STARTS && starts.iter().all(|start| is_apart(&start.placement, &other.end)) {
+                starts.push(start(other.end));
             }
         }
         starts
     }
 
-    /// Of placements drawn over the cell those with the best ways on some points of the path, and last the one with the
-    /// worst.
-    fn drawn(&self, seed: u64) -> Vec<(Setup, Placement)> {
-        let setup = Setup { leans: [].into(), ..self.problem.setup.clone() };
+    /// Placements drawn over the cell that have a plan on a coarse grid of leans, the best first; in any case the one
+    /// of a cell that holds no other.
+    fn drawn(&self, setup: &Setup, seed: u64) -> Vec<Start> {
+        let setup = Setup { leans: [].into(), ..setup.clone() };
+        if let Some(placement) = self.problem.cell.pinned() {
+            return vec![Start { setup, placement, coarse: None }];
+        }
         let upright = self.problem.in_setup(&setup);
-        let coarse = PathSubset::new(&upright.task, DRAWN.1).of(&upright);
+        let (points, half, step) = DRAWN_ON;
+        let few = PathSubset::new(&upright.task, points).of(&upright);
+        let [lead, tilt] = self.space.half_counts().map(|all| all.max(half) as f64 / half as f64);
+        let coarse = few.changed(|parts| {
+            parts.redundancy.beta_count = parts.redundancy.beta_count.min((2.0 * PI / step) as usize);
+            if let Some(space) = &mut parts.lean {
+                let wide = Arc::make_mut(space);
+                wide.steps = [wide.steps[0] * lead, wide.steps[1] * tilt];
+            }
+        });
+        let coarse = coarse.unwrap_or(few);
         let Some(grid) = LeanGrid::new(&coarse) else { return Vec::new() };
         let problems = grid.problems();
         let planner = LeanPlanner::new(&grid, &problems);
         let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut placement = || {
+            let mut within = |ends: &Interval| ends.min + (ends.max - ends.min) * random.random_range(0.0..1.0);
+            let [x, y, z] = [0, 1, 2].map(|k| within(&self.problem.cell.position[k]));
+            Placement { x, y, z, yaw: within(&self.problem.cell.yaw) }
+        };
+        let placements: Vec<Placement> = (0..DRAWN.0).map(|_| placement()).collect();
         let mut found: Vec<(f64, Placement)> = Vec::new();
-        for number in 0..DRAWN.0 {
-            let within = |ends: &Interval, share: f64| ends.min + (ends.max - ends.min) * share;
-            let [x, y, z] =
-                std::array::from_fn(|k| within(&self.problem.cell.position[k], random.random_range(0.0..1.0)));
-            let placement = Placement { x, y, z, yaw: within(&self.problem.cell.yaw, random.random_range(0.0..1.0)) };
+        for (number, some) in placements.chunks(DRAWN.1).enumerate() {
             if self.monitor.should_stop() {
                 break;
             }
-            self.monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: DRAWN.0 });
-            found.extend(planner.path(&placement).map(|path| (path.objective, placement)));
+            let done = number * DRAWN.1;
+            self.monitor.report(Progress::Steps { stage: "placements for a leaning tool", done, total: DRAWN.0 });
+            let planned = some.par_iter().map(|at| planner.path(at).map(|path| (path.objective, *at)));
+            found.extend(planned.collect::<Vec<_>>().into_iter().flatten());
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let worst = found.last().copied();
-        found.truncate(STARTS);
-        found.into_iter().chain(worst).map(|(_, placement)| (setup.clone(), placement)).collect()
+        let start = |(coarse, placement)| Start { setup: setup.clone(), placement, coarse: Some(coarse) };
+        found.into_iter().map(start).collect()
     }
+}
+
+/// Where the tool is led along the path.
+struct Start {
+    setup: Setup,
+    placement: Placement,
+    /// What a coarse grid of leans gives there, where it was drawn. m
+    coarse: Option<f64>,
 }
 
 /// Whether two placements are apart in some coordinate.
@@ -204,21 +259,33 @@ pub(super) fn place_leaned(
     let Some(space) = problem.lean.as_deref() else { return closed };
     let without_tie_rule = problem.without_tie_rule();
     let job = Job { problem: &without_tie_rule, space, monitor };
-    let starts = job.starts(closed.as_ref(), settings.seed);
-    let worst_drawn = if closed.is_err() { starts.last().cloned() } else { None };
+    let basins = closed.as_ref().map_or_else(|_| Vec::new(), |outcome| job.basins(outcome));
+    let mut drawn = job.drawn(basins.first().map_or(&problem.setup, |start| &start.setup), settings.seed);
+    let worst_drawn =
+        if closed.is_err() { drawn.last().map(|start| (start.setup.clone(), start.placement)) } else { None };
+    let mut apart: Vec<Placement> = basins.iter().map(|start| start.placement).collect();
+    drawn.retain(|start| {
+        let is_new = apart.len() < basins.len() + STARTS && apart.iter().all(|known| is_apart(known, &start.placement));
+        apart.extend(is_new.then_some(start.placement));
+        is_new
+    });
+    let starts: Vec<Start> = basins.into_iter().chain(drawn).collect();
     let mut best: Option<Improved> = None;
-    for (number, (setup, placement)) in starts.iter().enumerate() {
+    for (number, start) in starts.iter().enumerate() {
+        let known = best.as_ref().map_or(f64::INFINITY, |best| best.solution.objective);
         if best.is_some() && monitor.should_stop() {
             break;
         }
+        if start.coarse.is_some_and(|coarse| coarse > HOPELESS * known) {
+            continue;
+        }
         monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: starts.len() });
-        let found = job.improved(setup, placement);
-        let known = best.as_ref().map_or(f64::INFINITY, |best| best.solution.objective);
+        let found = job.improved(&start.setup, &start.placement);
         best = found.filter(|found| found.solution.objective < known).or(best);
     }
     let Some(best) = best else {
         return Err(closed.err().unwrap_or_else(|| Infeasible {
-            placement: starts[0].1,
+            placement: starts.first().map_or(Placement::from([0.0; 4]), |start| start.placement),
             searched: true,
             findings: Vec::new(),
             collisions: Vec::new(),

@@ -96,6 +96,9 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
             ),
         });
     }
+    if problem.moves_axes_along_segments() {
+        notes.push("external axes move along the path as is best with the axis of the path; lead and tilt are planned with them so".to_owned());
+    }
     let worst = match (has_worst, upright) {
         (false, _) => "",
         (true, Some(_)) => {
@@ -104,8 +107,8 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
         (true, None) => "; the worst placement is the worst of those that were drawn",
     };
     notes.push(format!(
-        "lead and tilt are planned at placements that are good with the axis of the path, and refined by turns with the placement: \
-         a place that is good only with a leaning tool may have been missed{worst}"
+        "lead and tilt are planned at placements that are good with the axis of the path and at the best of some drawn over the cell, and \
+         refined by turns with the placement: a place that is good only with a leaning tool may have been missed{worst}"
     ));
     notes
 }

@@ -6,6 +6,7 @@
 //! mechanism stands still, whatever external axes do. Either way the flange is found first, and then the tool of the
 //! run on it, so that a wrong tool frame in the program is found, too.
 
+mod contact;
 mod expected;
 mod fanuc;
 mod free;
@@ -127,6 +128,11 @@ pub struct ProgramCheck {
     pub position: Option<Largest>,
     /// The largest angle of the tool to how it should be turned. deg
     pub angle: Option<Largest>,
+    /// The largest distance of the contact of a leaning tool, by tip and axis in the program, from that of the task.
+    /// mm
+    pub contact: Option<Largest>,
+    /// The largest that is allowed. mm
+    pub contact_allowed: f64,
     /// The first way in which the moves are others than the plan's, but for their places.
     pub mismatch: Option<String>,
     /// The moves between segments that hit what stands around.
@@ -138,10 +144,12 @@ pub struct ProgramCheck {
 }
 
 impl ProgramCheck {
-    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg.
+    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg, and a leaning tool touches where it does
+    /// in the task.
     pub fn is_sound(&self) -> bool {
         let within = |largest: &Option<Largest>, limit: f64| largest.as_ref().is_some_and(|found| found.value <= limit);
-        self.mismatch.is_none() && within(&self.position, POSITION_MM) && within(&self.angle, ANGLE_DEG)
+        let touches = self.contact.as_ref().is_none_or(|found| found.value <= self.contact_allowed);
+        self.mismatch.is_none() && touches && within(&self.position, POSITION_MM) && within(&self.angle, ANGLE_DEG)
     }
 }
 
@@ -197,6 +205,10 @@ pub fn check(
         blend: blend * 1e3,
     };
     let mut result = arm.compared(&source, &written.all, &expected)?;
+    if let Some(space) = problem.lean.as_deref().filter(|_| corrected.is_none()) {
+        result.contact_allowed = contact::allowed(space);
+        result.contact = contact::largest(&arm, &problem, &space.rule, &plan.placement, &written.all, &expected)?;
+    }
     result.hits = free::hits(&problem, &plan.placement, &transfer_paths, &written.all, &expected);
     let unfollowed = written.all.iter().zip(&expected).filter(|(_, wanted)| !wanted.is_joint && !wanted.is_retracted);
     let unfollowed = unfollowed.filter_map(|(one, wanted)| {
@@ -250,6 +262,8 @@ impl Arm<'_> {
             expected_moves: expected.len(),
             position: None,
             angle: None,
+            contact: None,
+            contact_allowed: 0.0,
             mismatch: None,
             hits: Vec::new(),
             unfollowed: Vec::new(),

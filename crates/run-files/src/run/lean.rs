@@ -1,5 +1,9 @@
 //! The table `[lean]`: how far the tool may lean from the axis of the path.
 
+mod of_points;
+
+pub(super) use of_points::PointLeans;
+
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -88,10 +92,11 @@ impl LeanTable {
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: a cutter that is not described, a lean that it does not allow, a
-    /// segment that is not there, more states than memory holds.
+    /// segment that is not there, a point that asks for more than these tables allow, more states than memory holds.
     pub(super) fn space(
         &self,
         task: &Task,
+        of_points: &PointLeans,
         tool: Option<&ToolTable>,
         beta_count: usize,
         at: &Place<'_>,
@@ -142,12 +147,13 @@ impl LeanTable {
         }
         let path = task.path();
         let range = |point: usize| {
-            if path.is_scored(point) { segments[path.segment_of(point)] } else { LeanRange::NONE }
+            let is_scored = path.is_scored(point);
+            of_points.range(point, is_scored.then(|| segments[path.segment_of(point)]))
         };
         let step = |step: Option<Deg<LeanStep>>| step.map_or(STEP_DEG.to_radians(), Quantity::si);
         let space = LeanSpace {
             rule: LeanRule { end, contact, force: self.force.map_or_else(LeanForce::default, |word| word.0) },
-            ranges: (0..path.points().len()).map(range).collect(),
+            ranges: (0..path.points().len()).map(range).collect::<Result<_, _>>()?,
             max_lean: self.max_lean_deg.map(Quantity::si),
             steps: [step(self.lead_step_deg), step(self.tilt_step_deg)],
             step_over: self.step_over_mm.map(Quantity::si),
@@ -203,80 +209,4 @@ impl LeanTable {
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::testing::{RUN, folder};
-    use stead_disk::input::InputError;
-    use stead_model::task::lean::{ContactRule, LeanForce};
-    use stead_runs::Run;
-
-    const BALL: &str = "[tool]\ncutter_diameter_mm = 16\ncorner_radius_mm = 8\n";
-    const BULL: &str = "[tool]\ncutter_diameter_mm = 25\ncorner_radius_mm = 5\n";
-    const FLAT: &str = "[tool]\ncutter_diameter_mm = 20\n";
-    const LEAN: &str = "[lean]\nlead_deg = [-5, 20]\ntilt_deg = [-15, 15]\n";
-
-    /// A run with tables added, and with columns of a normal where one is given.
-    fn read(tables: &str, normal: Option<[f64; 3]>) -> Result<Run, InputError> {
-        let folder = folder();
-        if let Some([x, y, z]) = normal {
-            let file = folder.path().join("task.csv");
-            let text = std::fs::read_to_string(&file).unwrap();
-            let rows = text.lines().enumerate().map(|(k, line)| match k {
-                0 => format!("{line},normal_x,normal_y,normal_z\n"),
-                _ => format!("{line},{x},{y},{z}\n"),
-            });
-            std::fs::write(&file, rows.collect::<String>()).unwrap();
-        }
-        let file = folder.path().join("run.toml");
-        std::fs::write(&file, format!("{RUN}{tables}")).unwrap();
-        crate::read_run(&file)
-    }
-
-    fn refused(tables: &str, normal: Option<[f64; 3]>, parts: &[&str]) {
-        let message = read(tables, normal).unwrap_err().to_string();
-        for part in parts.iter().chain(&["; allowed: "]) {
-            assert!(message.contains(part), "{part} in {message}");
-        }
-    }
-
-    #[test]
-    fn a_tool_leans_as_its_end_allows() {
-        let run = read(&format!("{BALL}{LEAN}[[lean.segment]]\nnumber = 1\ntilt_deg = [0, 5]\n"), None).unwrap();
-        let space = run.problem.lean.as_deref().unwrap();
-        assert_eq!((space.rule.contact, space.rule.force), (ContactRule::Centre, LeanForce::Feed));
-        assert!((space.ranges[0].lead.max - 20_f64.to_radians()).abs() < 1e-12);
-        assert!((space.ranges[1].tilt.max - 5_f64.to_radians()).abs() < 1e-12 && space.ranges[1].tilt.min == 0.0);
-        let closed = read(&format!("{BALL}[lean]\nmax_lean_deg = 10\n"), None).unwrap();
-        assert!(closed.problem.lean.is_none());
-        assert!(closed.notes.iter().any(|note| note.contains("neither lead nor tilt")), "{:?}", closed.notes);
-        let plane = read(&format!("{BULL}{LEAN}"), None).unwrap();
-        assert_eq!(plane.problem.lean.as_deref().unwrap().rule.contact, ContactRule::Plane);
-        assert!(plane.notes.iter().any(|note| note.contains("lean.step_over_mm bounds that")), "{:?}", plane.notes);
-    }
-
-    #[test]
-    fn what_no_tool_can_do_is_refused() {
-        refused(LEAN, None, &["lean: is there without the cutter", "a table [tool]"]);
-        refused(&format!("{FLAT}{LEAN}"), None, &["lean: cannot be: point 1", "a flat end mill leans in lead only"]);
-        let contact = format!("{BULL}{LEAN}rule = 'contact'\n");
-        refused(&contact, None, &["needs normal_x to normal_z or rule = \"plane\""]);
-        refused(&contact, Some([0.0, 0.0, 1.0]), &["the contact jumps by up to 15 mm"]);
-        refused(&format!("{BULL}{LEAN}"), Some([0.0, 1.0, 0.0]), &["the contact is on the flank"]);
-        refused(&format!("{BULL}{LEAN}"), Some([0.6, 0.0, -0.8]), &["points away from the tool"]);
-        refused(&format!("{BULL}{LEAN}rule = 'centre'\n"), None, &["the centre stays for a ball alone"]);
-        let tapered = BALL.replace("corner", "taper_deg = 3\ncorner");
-        refused(&format!("{tapered}{LEAN}"), None, &["leans a tapered cutter"]);
-        let wide = BALL.replace("16", "12");
-        refused(&format!("{wide}{LEAN}"), None, &["corner is larger than its radius", "at most 6"]);
-        refused(&format!("{BALL}[lean]\nlead_deg = [20, -5]\n"), None, &["lead_deg"]);
-        refused(&format!("{BALL}[lean]\nlead_deg = [0, 80]\n"), None, &["lead_deg", "60"]);
-        refused(&format!("{BALL}[lean]\nlead_deg = [nan, 5]\n"), None, &["lead_deg"]);
-        refused(&format!("{BALL}[lean]\nlead_deg = [10, 20]\nmax_lean_deg = 5\n"), None, &["max_lean_deg"]);
-        refused(
-            &format!("{BALL}{LEAN}lead_step_deg = 0.2\ntilt_step_deg = 0.2\n"),
-            None,
-            &["lean.lead_step_deg: makes", "a wider step"],
-        );
-        refused(&format!("{BALL}{LEAN}[[lean.segment]]\nnumber = 2\n"), None, &["is no segment of the task", "1 to 1"]);
-        refused(&format!("{FLAT}[lean]\nlead_deg = [1, 5]\nscallop_mm = 0.01\n"), None, &["scallop_mm", "whole range"]);
-    }
-}
+mod tests;

@@ -36,7 +36,7 @@ use crate::stated::stated;
 use criterion::ReadSets;
 use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
-use lean::LeanTable;
+use lean::{LeanTable, PointLeans};
 use notes::{direction_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
@@ -235,6 +235,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         input_file("robot", robot_file.name, robot_source.bytes()),
         input_file("task", &task_file.name, &task_file.bytes),
     ];
+    let of_points = PointLeans::taken(&mut imported, &task_file.file, run.stock.is_some(), &at)?;
     let part = part_compliances(&mut imported, run.part_compliance.as_ref(), run.stock.is_some(), &at)?;
     let is_for_stability = run.stability.is_some();
     let tables = ForceTables { forces: run.forces.as_ref(), cutting: cutting.as_ref(), is_for_stability };
@@ -293,8 +294,11 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let orientations = run.cell.orientations(&task, &at.key("cell"))?;
     let task = orientations.first().map_or(task, |first| (*first.task).clone());
     let lean = match &run.lean {
-        Some(table) => Some(table.space(&task, tool, redundancy.beta_count, &at.key("lean"))?),
-        None => None,
+        Some(table) => Some(table.space(&task, &of_points, tool, redundancy.beta_count, &at.key("lean"))?),
+        None => {
+            notes.extend(of_points.unused());
+            None
+        }
     };
     let has_computed_forces = removal.is_some() || run.cut.is_some();
     notes.extend(

@@ -10,7 +10,7 @@ use stead_format::document::Document;
 use stead_format::field::{FieldOverride, FieldPath};
 use stead_format::place::Place;
 use stead_format::sources::Sources;
-use stead_format::task::Imported;
+use stead_format::task::{Imported, PointLean};
 use stead_model::task::ToolPath;
 
 /// What takes the place of the task of the run file.
@@ -148,7 +148,7 @@ fn joined(parts: Vec<Imported>) -> Result<Imported, String> {
         return Err("have compliances of the part in some files and none in others".to_owned());
     }
     let (mut points, mut wrenches, mut normals, mut lines) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut compliances = Vec::new();
+    let (mut compliances, mut leans) = (Vec::new(), Vec::new());
     let mut segments = 0;
     for part in &parts {
         let numbered = |index: usize| part.path.segment_of(index) as u32 + 1 + segments;
@@ -156,6 +156,10 @@ fn joined(parts: Vec<Imported>) -> Result<Imported, String> {
         wrenches.extend(part.wrenches.iter().flatten().copied());
         normals.extend(part.path.surface_normals().into_iter().flatten().copied());
         compliances.extend(part.part.iter().flatten().copied());
+        match &part.leans {
+            Some(own) => leans.extend(own),
+            None => leans.extend(part.lines.iter().map(|_| PointLean::default())),
+        }
         lines.extend(&part.lines);
         segments += part.path.segments().len() as u32;
     }
@@ -163,5 +167,6 @@ fn joined(parts: Vec<Imported>) -> Result<Imported, String> {
     let path = if normals.is_empty() { Ok(path) } else { path.with_surface_normals(normals) };
     let path = path.map_err(|error| error.to_string())?;
     let part = (!compliances.is_empty()).then_some(compliances);
-    Ok(Imported { path, wrenches: (!wrenches.is_empty()).then_some(wrenches), part, lines })
+    let leans = parts.iter().any(|part| part.leans.is_some()).then_some(leans);
+    Ok(Imported { path, wrenches: (!wrenches.is_empty()).then_some(wrenches), part, leans, lines })
 }

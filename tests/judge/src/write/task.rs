@@ -87,6 +87,7 @@ impl Writer<'_> {
         let load = self.of("load");
         let (has_forces, has_moments) = (matches!(load, "task" | "moments"), load == "moments");
         let has_part = self.of("part yields") == "columns";
+        let has_leans = self.of("lean") == "bull plane";
         let (has_feeds, has_scored) = (self.of("feeds") == "task", self.of("unscored") != "none");
         let mut text =
             "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,normal_x,normal_y,normal_z".to_owned();
@@ -95,12 +96,13 @@ impl Writer<'_> {
             (has_moments, ",moment_x_nm,moment_y_nm,moment_z_nm"),
             (has_feeds, ",feed_mm_per_s"),
             (has_part, PART),
+            (has_leans, ",lead_min_deg,lead_max_deg"),
             (has_scored, ",scored"),
         ] {
             text.push_str(if is_there { names } else { "" });
         }
         text.push('\n');
-        for step in &steps {
+        for (number, step) in steps.iter().enumerate() {
             let normal = (step.axis + step.feed.cross(&step.axis) * 0.5).normalize();
             let mut numbers: Vec<f64> =
                 [step.place, step.feed, step.axis, normal].iter().flat_map(|v| [v.x, v.y, v.z]).collect();
@@ -115,6 +117,10 @@ impl Writer<'_> {
             }
             if has_part {
                 numbers.extend(self.part_columns());
+            }
+            if has_leans {
+                let narrow = if number % 2 == 0 { [2.0, 8.0] } else { [3.0, 6.0] };
+                numbers.extend(if step.scored { narrow } else { [0.0, 0.0] });
             }
             let words: Vec<String> = numbers.iter().map(|number| format!("{number:.9}")).collect();
             let _ = write!(text, "{},{}", step.segment, words.join(","));

@@ -1,12 +1,10 @@
-//! Milling in a restricted space: how far the free angle about the tool axis alone gets along two lines inside a
-//! half-closed box, and what stands in the way.
-//!
-//! `cargo run --release -p stead-experiments --bin restricted-space -- MESH` with the obstacle mesh of *A Benchmark for
-//! Robotic Milling in Restricted Spaces* (Su et al. 2026, IJMTM 215, 104364; its public repository; binary STL in
-//! metres, y up): it is not part of this repository. The arm is the KUKA KR 210-2 of the catalogue (the paper has an
-//! ABB IRB 6660, whose geometry is not public); base column, shoulder and links are capsules along its rows. The box
-//! stands with its slot, above the inclined front wall, towards the robot. The spindle is square to axis 6, its tip 600
-//! mm from that: straight on that axis, the free angle would turn joint 6 and move nothing else.
+//! How far the free angle about the tool axis alone gets along two lines inside a half-closed box, and what stands in
+//! the way: the obstacle mesh of *A Benchmark for Robotic Milling in Restricted Spaces* (Su et al. 2026, IJMTM 215,
+//! 104364; its public repository; binary STL in metres, y up), which is not part of this repository. The arm is the
+//! KUKA KR 210-2 of the catalogue (the paper has an ABB IRB 6660, whose geometry is not public); base column,
+//! shoulder and links are capsules along its rows. The box stands with its slot, above the inclined front wall,
+//! towards the robot. The spindle is square to axis 6, its tip 600 mm from that: straight on that axis, the free
+//! angle would turn joint 6 and move nothing else.
 //!
 //! Both lines run along the whole length of the box (1.3 m, 651 points, 2 mm apart) with the tool upright. The place of
 //! the paper's line is in the paper only; ours are
@@ -18,10 +16,8 @@
 //!
 //! The box stands where a search found a plan for the first of them, and is not moved for the second.
 
-#![allow(clippy::print_stdout, reason = "an experiment prints")]
-
 use std::collections::BTreeMap;
-use std::env;
+use std::env::temp_dir;
 use std::error::Error;
 use std::fmt::Write;
 use std::fs;
@@ -98,10 +94,10 @@ clearance_mm = 0.0
 ignore = [["link_2", "link_4"], ["base column", "upper arm"], ["base column", "shoulder"]]
 "#;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let mesh = env::args().nth(1).ok_or("usage: restricted-space MESH")?;
+/// What the free angle alone does in the box of a mesh file.
+pub fn study_mesh(mesh: &str) -> Result<(), Box<dyn Error>> {
     let mesh = fs::canonicalize(mesh)?;
-    let folder = env::temp_dir().join(format!("restricted-space-{}", std::process::id()));
+    let folder = temp_dir().join(format!("restricted-space-{}", std::process::id()));
     fs::create_dir_all(&folder)?;
     let found = LINES.iter().try_for_each(|line| study(&folder, &mesh, *line));
     fs::remove_dir_all(&folder)?;

@@ -1,0 +1,124 @@
+//! Tests of the table.
+
+use crate::testing::{RUN, folder};
+use stead_disk::input::InputError;
+use stead_model::task::lean::{ContactRule, LeanForce};
+use stead_runs::Run;
+
+const BALL: &str = "[tool]\ncutter_diameter_mm = 16\ncorner_radius_mm = 8\n";
+const BULL: &str = "[tool]\ncutter_diameter_mm = 25\ncorner_radius_mm = 5\n";
+const FLAT: &str = "[tool]\ncutter_diameter_mm = 20\n";
+const LEAN: &str = "[lean]\nlead_deg = [-5, 20]\ntilt_deg = [-15, 15]\n";
+
+/// A run with tables added, and with columns of a normal where one is given.
+fn read(tables: &str, normal: Option<[f64; 3]>) -> Result<Run, InputError> {
+    let folder = folder();
+    if let Some([x, y, z]) = normal {
+        let file = folder.path().join("task.csv");
+        let text = std::fs::read_to_string(&file).unwrap();
+        let rows = text.lines().enumerate().map(|(k, line)| match k {
+            0 => format!("{line},normal_x,normal_y,normal_z\n"),
+            _ => format!("{line},{x},{y},{z}\n"),
+        });
+        std::fs::write(&file, rows.collect::<String>()).unwrap();
+    }
+    let file = folder.path().join("run.toml");
+    std::fs::write(&file, format!("{RUN}{tables}")).unwrap();
+    crate::read_run(&file)
+}
+
+fn refused(tables: &str, normal: Option<[f64; 3]>, parts: &[&str]) {
+    let message = read(tables, normal).unwrap_err().to_string();
+    for part in parts.iter().chain(&["; allowed: "]) {
+        assert!(message.contains(part), "{part} in {message}");
+    }
+}
+
+#[test]
+fn a_tool_leans_as_its_end_allows() {
+    let run = read(&format!("{BALL}{LEAN}[[lean.segment]]\nnumber = 1\ntilt_deg = [0, 5]\n"), None).unwrap();
+    let space = run.problem.lean.as_deref().unwrap();
+    assert_eq!((space.rule.contact, space.rule.force), (ContactRule::Centre, LeanForce::Feed));
+    assert!((space.ranges[0].lead.max - 20_f64.to_radians()).abs() < 1e-12);
+    assert!((space.ranges[1].tilt.max - 5_f64.to_radians()).abs() < 1e-12 && space.ranges[1].tilt.min == 0.0);
+    let closed = read(&format!("{BALL}[lean]\nmax_lean_deg = 10\n"), None).unwrap();
+    assert!(closed.problem.lean.is_none());
+    assert!(closed.notes.iter().any(|note| note.contains("neither lead nor tilt")), "{:?}", closed.notes);
+    let plane = read(&format!("{BULL}{LEAN}"), None).unwrap();
+    assert_eq!(plane.problem.lean.as_deref().unwrap().rule.contact, ContactRule::Plane);
+    assert!(plane.notes.iter().any(|note| note.contains("lean.step_over_mm bounds that")), "{:?}", plane.notes);
+}
+
+#[test]
+fn what_no_tool_can_do_is_refused() {
+    refused(LEAN, None, &["lean: is there without the cutter", "a table [tool]"]);
+    refused(&format!("{FLAT}{LEAN}"), None, &["lean: cannot be: point 1", "a flat end mill leans in lead only"]);
+    let contact = format!("{BULL}{LEAN}rule = 'contact'\n");
+    refused(&contact, None, &["needs normal_x to normal_z or rule = \"plane\""]);
+    refused(&contact, Some([0.0, 0.0, 1.0]), &["the contact jumps by up to 15 mm"]);
+    refused(&format!("{BULL}{LEAN}"), Some([0.0, 1.0, 0.0]), &["the contact is on the flank"]);
+    refused(&format!("{BULL}{LEAN}"), Some([0.6, 0.0, -0.8]), &["points away from the tool"]);
+    refused(&format!("{BULL}{LEAN}rule = 'centre'\n"), None, &["the centre stays for a ball alone"]);
+    let tapered = BALL.replace("corner", "taper_deg = 3\ncorner");
+    refused(&format!("{tapered}{LEAN}"), None, &["leans a tapered cutter"]);
+    let wide = BALL.replace("16", "12");
+    refused(&format!("{wide}{LEAN}"), None, &["corner is larger than its radius", "at most 6"]);
+    refused(&format!("{BALL}[lean]\nlead_deg = [20, -5]\n"), None, &["lead_deg"]);
+    refused(&format!("{BALL}[lean]\nlead_deg = [0, 80]\n"), None, &["lead_deg", "60"]);
+    refused(&format!("{BALL}[lean]\nlead_deg = [nan, 5]\n"), None, &["lead_deg"]);
+    refused(&format!("{BALL}[lean]\nlead_deg = [10, 20]\nmax_lean_deg = 5\n"), None, &["max_lean_deg"]);
+    refused(
+        &format!("{BALL}{LEAN}lead_step_deg = 0.2\ntilt_step_deg = 0.2\n"),
+        None,
+        &["lean.lead_step_deg: makes", "a wider step"],
+    );
+    refused(&format!("{BALL}{LEAN}[[lean.segment]]\nnumber = 2\n"), None, &["is no segment of the task", "1 to 1"]);
+    refused(&format!("{FLAT}[lean]\nlead_deg = [1, 5]\nscallop_mm = 0.01\n"), None, &["scallop_mm", "whole range"]);
+}
+
+/// A run whose task has more columns: their names, and what a row of the task has in them.
+fn with_columns(tables: &str, columns: &str, row: impl Fn(usize) -> String) -> Result<Run, InputError> {
+    let folder = folder();
+    let file = folder.path().join("task.csv");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let rows = text.lines().enumerate().map(|(k, line)| match k {
+        0 => format!("{line},{columns}\n"),
+        _ => format!("{line},{}\n", row(k)),
+    });
+    std::fs::write(&file, rows.collect::<String>()).unwrap();
+    let file = folder.path().join("run.toml");
+    std::fs::write(&file, format!("{RUN}{tables}")).unwrap();
+    crate::read_run(&file)
+}
+
+#[test]
+fn points_narrow_the_ranges() {
+    let all = format!("{BALL}{LEAN}");
+    let tilt = |k: usize| if k == 2 { "-3,0".to_owned() } else { "-15,15".to_owned() };
+    let run = with_columns(&all, "tilt_min_deg,tilt_max_deg", tilt).unwrap();
+    let ranges = &run.problem.lean.as_deref().unwrap().ranges;
+    assert!((ranges[0].tilt.max - 15_f64.to_radians()).abs() < 1e-12);
+    assert!((ranges[1].tilt.min + 3_f64.to_radians()).abs() < 1e-12 && ranges[1].tilt.max == 0.0);
+    assert_eq!(ranges[0].lead, ranges[1].lead);
+    let unused = with_columns("", "tilt_min_deg,tilt_max_deg", tilt).unwrap();
+    assert!(unused.notes.iter().any(|note| note.contains("count for nothing")), "{:?}", unused.notes);
+}
+
+#[test]
+fn points_that_ask_for_more_are_refused_at_their_line() {
+    let all = format!("{BALL}{LEAN}");
+    let lead = |value: &'static str| move |k: usize| if k == 2 { value.to_owned() } else { "0,5".to_owned() };
+    for (value, parts) in [
+        ("-6,5", [":3:", "lead_min_deg", "-6", "-5 to 20"]),
+        ("0,21", [":3:", "lead_max_deg", "21", "-5 to 20"]),
+        ("4,3", [":3:", "lead_min_deg", "above the end", "at most"]),
+    ] {
+        let message = with_columns(&all, "lead_min_deg,lead_max_deg", lead(value)).unwrap_err().to_string();
+        parts.iter().for_each(|part| assert!(message.contains(part), "{part} in {message}"));
+    }
+    let unscored = |k: usize| if k == 1 { "0,2,5".to_owned() } else { "1,2,5".to_owned() };
+    let message = with_columns(&all, "scored,lead_min_deg,lead_max_deg", unscored).unwrap_err().to_string();
+    for part in [":2:", "lead_min_deg", "is not scored", "at most 0"] {
+        assert!(message.contains(part), "{part} in {message}");
+    }
+}
