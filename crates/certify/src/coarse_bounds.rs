@@ -163,7 +163,7 @@ impl CoarseBounds {
                 let ratio =
                     (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
                         * 2.0;
-                let Some(number) = self.finest(ratio) else { return None };
+                let number = self.finest(ratio)?;
                 let size = libm::exp2(f64::from(number));
                 let counts = match usize::try_from(number) {
                     Ok(number) => self.levels[number].counts,

@@ -47,8 +47,11 @@ const TURN: f64 = 9.0 / 180.0 * PI;
 /// A way of fewer points is not planned.
 const LEAST_WAY: usize = 3;
 
-/// A line, its depth and height in the box (mm), and the places of the box: origin (mm) and yaw (deg).
-const LINES: [(&str, [f64; 2], [[f64; 4]; 2]); 2] = [
+/// A place of the box: origin (mm) and yaw (deg).
+type Place = [f64; 4];
+
+/// A line, its depth and height in the box (mm), and places of the box.
+const LINES: [(&str, [f64; 2], [Place; 2]); 2] = [
     ("A", [0.0, 30.0], [[637.9, -2592.6, 319.4, 160.8], [780.9, -2343.3, 18.4, 170.5]]),
     ("B", [380.0, 300.0], [[754.1, -1990.1, 230.5, 228.3], [793.7, -2049.9, 203.7, 219.6]]),
 ];
@@ -195,7 +198,10 @@ fn plan(run: &Run, placement: &Placement) -> String {
 }
 
 /// The leans of a cone, and of every point the allowed states in them.
-fn states(problem: &Problem, placement: &Placement) -> Result<(Vec<Lean>, Vec<Vec<Allowed>>), Box<dyn Error>> {
+type LeanStates = (Vec<Lean>, Vec<Vec<Allowed>>);
+
+/// See [`LeanStates`].
+fn states(problem: &Problem, placement: &Placement) -> Result<LeanStates, Box<dyn Error>> {
     let space = problem.lean.as_deref().ok_or("the tool leans")?;
     let path = problem.task.upright().path();
     let round = |tilt: usize| (0..AZIMUTHS).map(move |k| (RING * tilt as f64, TAU * k as f64 / AZIMUTHS as f64));
