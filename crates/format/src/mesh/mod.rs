@@ -1,7 +1,7 @@
 //! Mesh files: STL, binary and ASCII, OBJ, and DAE.
 //!
-//! Only DAE states its unit, which is taken into account. What a file can get wrong is refused with its name, the line or the triangle,
-//! and the value.
+//! Only DAE states its unit, which is taken into account. What a file can get wrong is refused with its name, the line
+//! or the triangle, and the value.
 
 mod dae;
 mod obj;
@@ -52,13 +52,13 @@ const LARGEST: f64 = 1e3;
 const MAX_TRIANGLES: usize = 1_000_000;
 const THINNER: &str = "at most 1000000 triangles: a mesh for collision checks needs no more than some thousands";
 
-/// The triangles of a mesh file: OBJ where its name ends with `.obj`, DAE where it ends with `.dae`, whose metres by its
-/// own unit are taken in the unit given, else STL. Vertices at one place are one, and the
-/// triangles of a closed mesh face outwards.
+/// The triangles of a mesh file: OBJ where its name ends with `.obj`, DAE where it ends with `.dae`, whose metres by
+/// its own unit are taken in the unit given, else STL. Vertices at one place are one, and the triangles of a closed
+/// mesh face outwards.
 ///
 /// # Errors
-/// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL, OBJ or DAE, a file that is cut
-/// off, a number that is not finite, coordinates beyond 1000 m, no triangles, or none with an area.
+/// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL, OBJ or DAE, a file that is
+/// cut off, a number that is not finite, coordinates beyond 1000 m, no triangles, or none with an area.
 pub fn read_mesh(file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<TriangleMesh, InputError> {
     if FileKind::of(bytes) == Some(FileKind::Step) {
         return Err(FileKind::Step.refused(file));
