@@ -36,10 +36,6 @@ pub(super) struct AffineModel {
     pub remainder: [f32; REMAINDERS],
     /// Whether all the states are sure to be allowed.
     pub sure: bool,
-    /// Of the constraints that are not decided over all the states the one that leaves most of them out: value and
-    /// gradient of its margin at the node, and what these leave out. Where all is allowed, 1.
-    pub margin: [f32; 4],
-    pub margin_remainder: f32,
 }
 
 /// The extent of a table: what placements of the cell can ask for.
@@ -349,9 +345,7 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
     if !remainder.iter().all(|r| *r < 1e30) {
         return (Node::Unknown, None);
     }
-    let (margin, margin_remainder) = if sure { DECIDED } else { margin_of(arm, y, lane, half) };
-    let values = values.map(|v| v.map(|x| x as f32));
-    let known = Node::Known(AffineModel { values, remainder, sure, margin, margin_remainder });
+    let known = Node::Known(AffineModel { values: values.map(|v| v.map(|x| x as f32)), remainder, sure });
     let Some(moments) = &y.moments else { return (known, None) };
     let values: [[f64; 4]; MOMENTS] = std::array::from_fn(|f| of(&moments[f]));
     let max_second = |f: usize, p: usize| moments[f].second[p].magnitude().0[lane];
@@ -359,45 +353,6 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         Some(moments) => (known, Some(moments)),
         None => (Node::Unknown, None),
     }
-}
-
-/// A margin that leaves nothing out.
-const DECIDED: ([f32; 4], f32) = ([1.0, 0.0, 0.0, 0.0], 0.0);
-
-/// Of the margins that must not be negative, and are not sure to be above zero, that which leaves most of a region out:
-/// value and gradient in its middle, and what these leave out.
-fn margin_of(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> ([f32; 4], f32) {
-    let margins = &y.margins;
-    let conditioning = y.conditioned.lane(lane).then_some(&margins.conditioning);
-    let limits = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
-        (LimitSpan::Narrow, [min, max]) => [Some(min), Some(max)],
-        // One of the two must hold: it is known which where the other one is sure not to.
-        (LimitSpan::Wide, [min, max]) => {
-            let fails = |margin: &Enclosure| margin.value.high().0[lane] < 0.0;
-            [Some(min).filter(|_| fails(max)), Some(max).filter(|_| fails(min))]
-        }
-        (LimitSpan::Full, _) => [None; 2],
-    };
-    let ([min2, max2], [min3, max3]) = (limits(0), limits(1));
-    let joints = [min2, max2, min3, max3, Some(&margins.joint5)];
-    let all = [Some(&margins.elbow), Some(&margins.wrist), conditioning].into_iter().chain(joints).flatten();
-    let undecided = all.filter(|margin| margin.value.low().0[lane] < 0.0);
-    let mut kept = (f64::INFINITY, DECIDED);
-    for margin in undecided {
-        let (middle, by) = (margin.middle().value.0[lane], margin.middle().gradient.map(|g| g.0[lane]));
-        let remainder: f64 = PAIR
-            .into_iter()
-            .zip(&margin.second)
-            .map(|((i, j), second)| second.magnitude().0[lane] * half[i] * half[j] * if i == j { 0.5 } else { 1.0 })
-            .sum();
-        let spread = (0..3).map(|k| by[k].abs() * half[k]).sum::<f64>();
-        let remainder = (remainder + 1e-7 * (middle.abs() + spread)) * (1.0 + 1e-6);
-        let left = (middle + remainder) / spread;
-        if left < kept.0 && remainder < 1e30 {
-            kept = (left, ([middle, by[0], by[1], by[2]].map(|x| x as f32), remainder as f32));
-        }
-    }
-    kept.1
 }
 
 /// Least and largest sine and cosine between two angles less than a turn apart. rad

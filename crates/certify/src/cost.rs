@@ -137,49 +137,6 @@ struct Linear {
     remainder: f64,
 }
 
-impl Linear {
-    /// The same with the other sign.
-    #[inline(always)]
-    fn negative(self) -> Self {
-        let Self { value, by_heading, slope, remainder } = self;
-        Self { value: -value, by_heading: -by_heading, slope: slope.map(|s| -s), remainder }
-    }
-
-    /// Whether it is below zero all over a box and a cell of heading of that half width (rad).
-    #[inline(always)]
-    fn is_negative(&self, half_cell: f64, region: &Region) -> bool {
-        let spread = (0..3).map(|k| self.slope[k].abs() * region.half[k]).sum::<f64>();
-        self.value + self.remainder + self.by_heading.abs() * half_cell + spread < 0.0
-    }
-
-    /// An affine function of the placement below it in all of a cell of heading of that half width (rad): value in the
-    /// middle of the box, and slopes.
-    ///
-    /// Where a `margin` has to be not negative, the function less any positive multiple of it is below as well. One
-    /// multiple leaves no slope by the heading: then nothing is lost for the part of the cell that is not allowed.
-    #[inline(always)]
-    fn least(&self, margin: Option<&Self>, half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
-        let Self { value, by_heading, slope, remainder } = *self;
-        let plain = (value - remainder - by_heading.abs() * half_cell, slope);
-        let Some(margin) = margin else { return plain };
-        let multiple = by_heading / margin.by_heading;
-        if !(multiple > 0.0 && multiple < f64::INFINITY) {
-            return plain;
-        }
-        let cut = (
-            value - remainder - multiple * (margin.value + margin.remainder),
-            std::array::from_fn(|k| slope[k] - multiple * margin.slope[k]),
-        );
-        if cut.0 > plain.0 && lowest(&cut, region) > lowest(&plain, region) { cut } else { plain }
-    }
-}
-
-/// What an affine function (in the middle, and slopes) is at least in a box.
-#[inline(always)]
-fn lowest((middle, slope): &(f64, [f64; 3]), region: &Region) -> f64 {
-    middle - (0..3).map(|k| slope[k].abs() * region.half[k]).sum::<f64>()
-}
-
 impl<'a> PointCost<'a> {
     /// With the compliance of joint 1 (rad/(N m)).
     pub fn new(point: &'a Point, placed: PolarModel, first: f64) -> Self {
@@ -249,36 +206,19 @@ impl<'a> PointCost<'a> {
 
     /// An affine function of the placement below the score, in a cell of heading of that half width (rad): `off` is
     /// where the point is from the node, in radius and height. Its value in the middle of the box (m), and slopes; zero
-    /// where the score may be. `None` where nothing is allowed.
+    /// where the score may be.
     #[inline]
-    pub fn least(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> Option<(f64, [f64; 3])> {
-        let margin = (!known.0.sure).then(|| self.margin(known.0, off));
-        if margin.as_ref().is_some_and(|margin| margin.is_negative(half_cell, region)) {
-            return None;
-        }
+    pub fn least(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
         let (min, slope) = match &self.fixed {
             Some(turned) => {
-                let model = self.model(turned, known, off, half_cell);
-                let model = if model.value < 0.0 { model.negative() } else { model };
-                model.least(margin.as_ref(), half_cell, region)
+                let Linear { value, by_heading, slope, remainder } = self.model(turned, known, off, half_cell);
+                let sign = if value < 0.0 { -1.0 } else { 1.0 };
+                (value.abs() - remainder - by_heading.abs() * half_cell, slope.map(|s| sign * s))
             }
-            None if self.load.is_zero() => return Some(NOTHING),
-            None => self.min_score(known, margin.as_ref(), off, half_cell, region),
+            None if self.load.is_zero() => return NOTHING,
+            None => self.min_score(known, off, half_cell, region),
         };
-        Some(if min <= 0.0 { NOTHING } else { (min, slope) })
-    }
-
-    /// The margin that a node keeps.
-    #[inline(always)]
-    fn margin(&self, known: &AffineModel, off: [f64; 2]) -> Linear {
-        let [value, by_r, by_z, by_heading] = known.margin.map(f64::from);
-        let p = &self.placed;
-        Linear {
-            value: value + by_r * off[0] + by_z * off[1],
-            by_heading,
-            slope: [by_r * p.slope_r[0], by_z, by_r * p.slope_r[1]],
-            remainder: f64::from(known.margin_remainder) + by_r.abs() * p.remainder_r,
-        }
+        if min <= 0.0 { NOTHING } else { (min, slope) }
     }
 
     /// Least costs at the corners of the box, as [`Self::least`] and [`cost_at_corners`].
@@ -291,21 +231,13 @@ impl<'a> PointCost<'a> {
         region: &Region,
         aggregate: Aggregate,
     ) -> [f64; CORNERS] {
-        let least = self.least(known, off, half_cell, region);
-        least.map_or([f64::INFINITY; CORNERS], |least| cost_at_corners(least, region, aggregate))
+        cost_at_corners(self.least(known, off, half_cell, region), region, aggregate)
     }
 
     /// The least score in the middle of the box, and its slopes: by the tangents at the middle of box and cell.
     // Out of line: it would crowd the loop over cells of scores whose tangent is fixed.
     #[inline(never)]
-    fn min_score(
-        &self,
-        known: Known<'_>,
-        margin: Option<&Linear>,
-        off: [f64; 2],
-        half_cell: f64,
-        region: &Region,
-    ) -> (f64, [f64; 3]) {
+    fn min_score(&self, known: Known<'_>, off: [f64; 2], half_cell: f64, region: &Region) -> (f64, [f64; 3]) {
         let p = &self.placed;
         let middle = |entry: &[f32; 4]| {
             let [value, by_r, by_z, _] = entry.map(f64::from);
@@ -324,12 +256,14 @@ impl<'a> PointCost<'a> {
         let least = |tangent: &Tangent| {
             let half = [p.reach[0], p.reach[2]];
             let turned = self.direction.turned(tangent, self.load, p.r, half, self.first);
-            self.model(&turned, known, off, half_cell).least(margin, half_cell, region)
+            let Linear { value, by_heading, slope, remainder } = self.model(&turned, known, off, half_cell);
+            (value - remainder - by_heading.abs() * half_cell, slope)
         };
+        let size = |(min, slope): &(f64, [f64; 3])| min - (0..3).map(|k| slope[k].abs() * region.half[k]).sum::<f64>();
         let found = least(&sharp);
         match of_error.map(|tangent| least(&tangent)) {
             // Of the two the one that is larger where it is least.
-            Some(other) if lowest(&other, region) > lowest(&found, region) => other,
+            Some(other) if size(&other) > size(&found) => other,
             _ => found,
         }
     }

@@ -227,7 +227,7 @@ impl<'a> Pass<'a> {
             match node {
                 Node::Empty => None,
                 Node::Unknown => Some(NOTHING),
-                Node::Known(known) => point.least((known, moments), *off, half, self.region),
+                Node::Known(known) => Some(point.least((known, moments), *off, half, self.region)),
             }
         };
         let own = least(nodes, point)?;

@@ -112,9 +112,6 @@ pub(super) struct ModelledRegion {
     moved: [f64; 2],
     /// How it yields to moments, where some act.
     moments: Option<MomentModel>,
-    /// Value and slopes by radius, height and heading of a margin that must not be negative, where one is not decided,
-    /// and what these leave out.
-    margin: Option<([f64; 4], f64)>,
     half: [f64; 3],
     r: f64,
     /// Radius and height less those of the node. m
@@ -133,9 +130,7 @@ impl ModelledRegion {
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
         let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
-        let margin = (!known.sure).then(|| (known.margin.map(f64::from), f64::from(known.margin_remainder)));
-        let (max_size, moved) = ([d.0, v.0], [d.1, v.1]);
-        Self { values, remainder, max_size, moved, moments: moments.copied(), margin, half, r, off }
+        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], moments: moments.copied(), half, r, off }
     }
 
     /// An affine model by radius, height and direction of the load of `<C, S>` in the region, for directions within
@@ -174,25 +169,6 @@ impl ModelledRegion {
         AroundRegion { value: value + j_value, slopes: [by_r + j_r, by_z, by_chi], by_heading, remainder }
     }
 
-    /// An affine function below another one (its value in the middle, and slopes by radius, height and direction of the
-    /// load) that has a slope by the heading besides: see [`super::cost`].
-    #[inline(always)]
-    fn without_heading(&self, value: f64, slopes: [f64; 3], by_heading: f64) -> (f64, [f64; 3]) {
-        let plain = (value - by_heading.abs() * self.half[2], slopes);
-        let Some(([margin, by_r, by_z, margin_by_heading], remainder)) = self.margin else { return plain };
-        let multiple = by_heading / margin_by_heading;
-        if !(multiple > 0.0 && multiple < f64::INFINITY) {
-            return plain;
-        }
-        let cut = (
-            value - multiple * (margin + remainder),
-            [slopes[0] - multiple * by_r, slopes[1] - multiple * by_z, slopes[2]],
-        );
-        let lowest =
-            |(value, slopes): &(f64, [f64; 3])| value - slopes[0].abs() * self.half[0] - slopes[1].abs() * self.half[1];
-        if cut.0 > plain.0 && lowest(&cut) > lowest(&plain) { cut } else { plain }
-    }
-
     /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
     /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
     #[inline(always)]
@@ -203,12 +179,12 @@ impl ModelledRegion {
         let value = value + load.of_part(tangent) - remainder;
         // The heading is free within its cell.
         let (Some(turned), Some(known)) = (&turned.moment, &self.moments) else {
-            return self.without_heading(value, slopes, by_heading);
+            return (value - by_heading.abs() * self.half[2], slopes);
         };
         let MomentPart { value: more, by: [r, z, heading], by_chi, remainder } =
             turned.part(known, [0.0; 2], [self.half[0], self.half[1], h_chi], self.half[2]);
-        let slopes = [slopes[0] + r, slopes[1] + z, slopes[2] + by_chi];
-        self.without_heading(value + more - remainder, slopes, by_heading + heading)
+        let free = (by_heading + heading).abs() * self.half[2];
+        (value + more - remainder - free, [slopes[0] + r, slopes[1] + z, slopes[2] + by_chi])
     }
 
     /// The same below the absolute value of what is linear in C, with factors in the radial frame and what the part
@@ -224,7 +200,7 @@ impl ModelledRegion {
         let AroundRegion { value, slopes, by_heading, remainder } = self.model(turned, is_vertical, h_chi, first);
         let value = value + of_part;
         let sign = if value < 0.0 { -1.0 } else { 1.0 };
-        self.without_heading(value.abs() - remainder, slopes.map(|slope| sign * slope), sign * by_heading)
+        (value.abs() - remainder - by_heading.abs() * self.half[2], slopes.map(|slope| sign * slope))
     }
 
     /// By how much the scores of the loads of a kind can differ from that of its own: what the norms of C and D make of

@@ -103,12 +103,6 @@ fn a_stricter_arm_is_seen_to_lose_allowed_states() {
     assert!(by_conditioning > 20, "{by_conditioning} {by_elbow_or_wrist}");
 }
 
-/// Whether the margin that a node keeps leaves a state out.
-fn is_left_out(known: &AffineModel, off: [f64; 3]) -> bool {
-    let [value, r, z, heading] = known.margin.map(f64::from);
-    value + r * off[0] + z * off[1] + heading * off[2] + f64::from(known.margin_remainder) < 0.0
-}
-
 /// What is wrong with a node: an allowed state in an empty one, or one outside its model.
 fn is_wrong(node: &Node, truth: &Truth, off: [f64; 3], count: usize) -> bool {
     let known = match node {
@@ -121,9 +115,6 @@ fn is_wrong(node: &Node, truth: &Truth, off: [f64; 3], count: usize) -> bool {
         truth.values[f] - value - r * off[0] - z * off[1] - heading * off[2]
     });
     let remainder = known.remainder.map(f64::from);
-    if is_left_out(known, off) {
-        return true;
-    }
     errors[0].abs() > remainder[0]
         || libm::hypot(errors[1], errors[2]) > remainder[1]
         || count > 3 && libm::hypot(errors[3], errors[4]) > remainder[2]
@@ -205,12 +196,7 @@ fn lost_at_the_limit(times: f64, sizes: &[f64]) -> [usize; 3] {
                 let half = [0.025 * size, 0.025 * size, PI / 128.0 * size];
                 let corner = shares(&mut random);
                 let place: [f64; 3] = std::array::from_fn(|k| [at[0], at[1], heading][k] - corner[k] * half[k]);
-                let lost = match nodes_over(&arm, &[place; WIDTH], half, class)[0] {
-                    Node::Empty => true,
-                    Node::Unknown => false,
-                    Node::Known(known) => is_left_out(&known, std::array::from_fn(|k| corner[k] * half[k])),
-                };
-                counts[0] += usize::from(lost);
+                counts[0] += usize::from(nodes_over(&arm, &[place; WIDTH], half, class)[0] == Node::Empty);
             }
         }
     }
@@ -228,7 +214,7 @@ fn states_at_the_limit_of_conditioning_are_kept_and_stricter_limits_are_seen() {
 #[test]
 fn broken_nodes_are_seen() {
     fn none(_: &mut AffineModel) {}
-    let mutations: [Mutation; 10] = [
+    let mutations: [Mutation; 8] = [
         ("remainders zero", |half| half, |known| known.remainder = [0.0; REMAINDERS]),
         ("remainders times 0.3", |half| half, |known| known.remainder = known.remainder.map(|r| 0.3 * r)),
         ("feasibility judged at the centre only", |half| half.map(|h| 1e-9 * h), none),
@@ -237,8 +223,6 @@ fn broken_nodes_are_seen() {
         ("slope by the heading left out", |half| half, |known| known.values.iter_mut().for_each(|v| v[3] = 0.0)),
         ("sign of d2", |half| half, |known| known.values[2] = known.values[2].map(|v| -v)),
         ("remainder of (d1, d2) left out", |half| half, |known| known.remainder[1] = 0.0),
-        ("remainder of margins left out", |half| half, |known| known.margin_remainder = 0.0),
-        ("sign of margins", |half| half, |known| known.margin = known.margin.map(|v| -v)),
     ];
     let setting = Setting::new(five_segments());
     for (name, judged, change) in mutations {
