@@ -151,28 +151,33 @@ fn parts(
             });
             return Some(bounds.collect());
         }
-        let full = ActiveCells::full(model.points.len(), model.table.headings(0));
-        return Some(vec![bounded(model, open.region, &full, open.bound, ceiling, monitor)]);
+        return Some(vec![with_cells(model, open, ceiling, monitor)]);
     };
     let halves = halves(&open.region)?.into_iter().filter(|half| model.yaws.allow(half));
-    Some(halves.map(|region| bounded(model, region, active, open.bound, ceiling, monitor)).collect())
+    let bounds = halves.map(|region| {
+        let level = model.level(&region).unwrap_or(0);
+        let mut active = (**active).clone();
+        while active.level < level {
+            active = active.halved();
+        }
+        let found = model.lower_bound(&region, &active, ceiling, monitor);
+        Open { bound: found.sum.max(open.bound), region, known: Some(Arc::new(found.active)) }
+    });
+    Some(bounds.collect())
 }
 
-/// A box with its bound on the level of its size: cells that a coarser level leaves out are left out.
-fn bounded(
-    model: &Model,
-    region: Region,
-    active: &ActiveCells,
-    at_least: f64,
-    ceiling: f64,
-    monitor: &Monitor,
-) -> Open<Known> {
+/// A box of which no cells of heading are known yet, with those of its size: level by level, so that what a coarser
+/// level leaves out is not bounded on a finer one.
+fn with_cells(model: &Model, open: &Open<Known>, ceiling: f64, monitor: &Monitor) -> Open<Known> {
+    let (region, mut bound) = (open.region, open.bound);
     let level = model.level(&region).unwrap_or(0);
-    let mut found = model.lower_bound(&region, active, ceiling, monitor);
-    let mut bound = found.sum.max(at_least);
-    while found.active.level < level && bound < ceiling {
-        found = model.lower_bound(&region, &found.active.halved(), ceiling, monitor);
+    let mut active = ActiveCells::full(model.points.len(), model.table.headings(0));
+    loop {
+        let found = model.lower_bound(&region, &active, ceiling, monitor);
         bound = found.sum.max(bound);
+        if found.active.level >= level || bound >= ceiling {
+            return Open { bound, region, known: Some(Arc::new(found.active)) };
+        }
+        active = found.active.halved();
     }
-    Open { bound, region, known: Some(Arc::new(found.active)) }
 }

@@ -45,9 +45,12 @@ struct FinerLevel {
     /// The level of that table with the same steps.
     level: usize,
     counts: [usize; 3],
-    /// Of each radius and height the parts: a kind of load, and neighbouring directions of it.
-    rows: Vec<OnceLock<Box<[Part]>>>,
+    /// Made when the first of them is needed.
+    rows: OnceLock<Box<[Row]>>,
 }
+
+/// Of a radius and height the parts: a kind of load, and neighbouring directions of it.
+type Row = OnceLock<Box<[Part]>>;
 
 /// Neighbouring directions of one kind of load, each in all classes.
 type Part = OnceLock<Box<[[Affine; 4]]>>;
@@ -68,7 +71,7 @@ impl CoarseBounds {
     pub fn new(model: &Model, monitor: &Monitor, stop: impl Fn() -> Option<Stop>) -> Result<Self, Stop> {
         let (extent, steps) = model.table.grid();
         let (kinds, kind_of) = kinds(&model.points);
-        let counts = counts(extent, steps);
+        let counts = model.table.counts(0);
         let mut entries = Vec::new();
         let numbers: Vec<usize> = (0..counts[0] * counts[1]).collect();
         for some in numbers.chunks(ROWS) {
@@ -77,13 +80,13 @@ impl CoarseBounds {
             }
             let row = |row: &usize| match monitor.should_stop() {
                 true => Vec::new(),
-                false => row_of(model, &kinds, [row / counts[1], row % counts[1]], steps),
+                false => part_of(model, &kinds, (0, [row / counts[1], row % counts[1]]), 0..counts[2]),
             };
             let rows: Vec<Vec<Affine>> = some.par_iter().map(row).collect();
             entries.extend(rows.into_iter().flatten());
         }
         let mut levels = vec![Level { counts, entries }];
-        let mut half = half_of(steps, 0);
+        let mut half = half_of(&model.table, 0);
         for _ in 0..2 {
             let next = levels.last().map(|level| level.coarser(half, kinds.len(), monitor));
             if let Some(stop) = stop() {
@@ -93,36 +96,57 @@ impl CoarseBounds {
             half = half.map(|h| 2.0 * h);
         }
         let finest = FINER.min(model.table.depth().saturating_sub(1));
-        let finer = (1..=finest).map(|level| FinerLevel::new(extent, steps, level)).collect();
+        let finer = |level| FinerLevel { level, counts: model.table.counts(level), rows: OnceLock::new() };
+        let finer = (1..=finest).map(finer).collect();
         Ok(Self { levels, finer, made: AtomicU64::new(0), extent, steps, kind_of, kinds })
     }
 
     /// The finest level whose entries answer for a box so many times as large as the coarsest steps of the table of
-    /// compliances: below zero a finer one, above zero a coarser one.
-    fn finest(&self, ratio: f64) -> Option<i32> {
-        let coarsest = self.levels.len() as i32 - 1;
-        let finest = -(self.finer.len() as i32);
-        (finest..=coarsest).find(|number| ratio <= libm::exp2(f64::from(*number)))
+    /// compliances: its number, below zero a finer one, above zero a coarser one; and its steps in terms of these.
+    fn finest(&self, ratio: f64) -> Option<(i32, f64)> {
+        let (mut number, mut size) = (-(self.finer.len() as i32), self.smallest());
+        while ratio > size {
+            (number, size) = (number + 1, 2.0 * size);
+        }
+        (number < self.levels.len() as i32).then_some((number, size))
+    }
+
+    /// The finer level of a number below zero.
+    fn finer_level(&self, number: i32) -> &FinerLevel {
+        &self.finer[number.unsigned_abs() as usize - 1]
+    }
+
+    /// Numbers of radii, heights and directions of a level.
+    fn counts(&self, number: i32) -> [usize; 3] {
+        match usize::try_from(number) {
+            Ok(number) => self.levels[number].counts,
+            Err(_) => self.finer_level(number).counts,
+        }
+    }
+
+    /// Places for what is made when it is needed.
+    fn places<T>(&self, count: usize) -> Box<[OnceLock<T>]> {
+        let places: Box<[OnceLock<T>]> = std::iter::repeat_with(OnceLock::new).take(count).collect();
+        self.made.fetch_add(size_of_val(&*places) as u64, Ordering::Relaxed);
+        places
     }
 
     /// The entries of a level at a radius, height and direction, of a kind of load, in all classes.
     #[inline]
     fn entries(&self, model: &Model, number: i32, [i, j, k]: [usize; 3], kind: usize) -> &[Affine] {
-        if let Some(level) = usize::try_from(number).ok().and_then(|number| self.levels.get(number)) {
+        if let Ok(number) = usize::try_from(number) {
+            let level = &self.levels[number];
             let at = (((i * level.counts[1] + j) * level.counts[2] + k) * self.kinds.len() + kind) * 4;
             return &level.entries[at..at + 4];
         }
-        let FinerLevel { level, counts, rows } = &self.finer[number.unsigned_abs() as usize - 1];
+        let FinerLevel { level, counts, rows } = self.finer_level(number);
         let parts = counts[2] / PART;
-        let row = rows[i * counts[1] + j].get_or_init(|| {
-            let row: Box<[Part]> = std::iter::repeat_with(OnceLock::new).take(self.kinds.len() * parts).collect();
-            self.made.fetch_add(size_of_val(&*row) as u64, Ordering::Relaxed);
-            row
-        });
+        let rows = rows.get_or_init(|| self.places(counts[0] * counts[1]));
+        let row = rows[i * counts[1] + j].get_or_init(|| self.places(self.kinds.len() * parts));
         let part = row[kind * parts + k / PART].get_or_init(|| {
             let first = k / PART * PART;
             let kinds = std::slice::from_ref(&self.kinds[kind]);
-            let part = part_of(model, kinds, (*level, [i, j]), first..first + PART, self.steps);
+            let part = part_of(model, kinds, (*level, [i, j]), first..first + PART);
             let part: Box<[[Affine; 4]]> = part.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]).collect();
             self.made.fetch_add(size_of_val(&*part) as u64, Ordering::Relaxed);
             part
@@ -132,7 +156,7 @@ impl CoarseBounds {
 
     /// The size of boxes that the finest level is for, in terms of those that the table of compliances begins with.
     pub fn smallest(&self) -> f64 {
-        libm::exp2(-(self.finer.len() as f64))
+        0.5_f64.powi(self.finer.len() as i32)
     }
 
     /// What was made so far of the finer levels. bytes
@@ -163,12 +187,8 @@ impl CoarseBounds {
                 let ratio =
                     (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
                         * 2.0;
-                let number = self.finest(ratio)?;
-                let size = libm::exp2(f64::from(number));
-                let counts = match usize::try_from(number) {
-                    Ok(number) => self.levels[number].counts,
-                    Err(_) => self.finer[number.unsigned_abs() as usize - 1].counts,
-                };
+                let (number, size) = self.finest(ratio)?;
+                let counts = self.counts(number);
                 let (length, turn) = (self.steps.length * size, heading * size);
                 let along = [(p.r, self.extent.radius.0), (p.z, self.extent.height.0)]
                     .map(|(value, from)| (value - from) / length + 0.5);
@@ -231,11 +251,6 @@ impl CoarseBounds {
     }
 }
 
-fn counts(extent: Extent, steps: Steps) -> [usize; 3] {
-    let along = |(from, to): (f64, f64)| ((to - from) / steps.length).ceil() as usize + 1;
-    [along(extent.radius), along(extent.height), steps.headings]
-}
-
 impl Level {
     fn coarser(&self, half: [f64; 3], kinds: usize, monitor: &Monitor) -> Self {
         let [n0, n1, n2] = self.counts;
@@ -274,39 +289,15 @@ impl Level {
     }
 }
 
-impl FinerLevel {
-    fn new(extent: Extent, steps: Steps, level: usize) -> Self {
-        let counts = counts(extent, finer(steps, level));
-        let rows = std::iter::repeat_with(OnceLock::new).take(counts[0] * counts[1]).collect();
-        Self { level, counts, rows }
-    }
-}
-
-/// The steps of a level of the table of compliances.
-fn finer(Steps { length, headings }: Steps, level: usize) -> Steps {
-    Steps { length: length / (1u64 << level) as f64, headings: headings << level }
-}
-
-/// How far from a node of a level its entry is true, in radius, height and direction of the load.
-fn half_of(steps: Steps, level: usize) -> [f64; 3] {
-    let Steps { length, headings } = finer(steps, level);
-    [length, length, TAU / headings as f64]
-}
-
-/// All directions and kinds of load, and classes, at one radius and height.
-fn row_of(model: &Model, kinds: &[Kind], at: [usize; 2], steps: Steps) -> Vec<Affine> {
-    part_of(model, kinds, (0, at), 0..steps.headings, steps)
+/// How far from a node of a level of the table of compliances its entry is true, in radius, height and direction of the
+/// load.
+fn half_of(table: &ComplianceTable, level: usize) -> [f64; 3] {
+    [table.length(level), table.length(level), TAU / table.headings(level) as f64]
 }
 
 /// Some directions of kinds of load, in all classes, at a radius and height of a level of the table of compliances.
-fn part_of(
-    model: &Model,
-    kinds: &[Kind],
-    (level, at): (usize, [usize; 2]),
-    some: Range<usize>,
-    steps: Steps,
-) -> Vec<Affine> {
-    let of = |arm, table, first| part_of_set((arm, table, first), kinds, (level, at), some.clone(), steps);
+fn part_of(model: &Model, kinds: &[Kind], (level, at): (usize, [usize; 2]), some: Range<usize>) -> Vec<Affine> {
+    let of = |arm, table, first| part_of_set((arm, table, first), kinds, (level, at), some.clone());
     let own = of(&model.arm, &model.table, model.first);
     let others = model.others.iter().map(|set| of(&set.arm, &set.table, set.first));
     let mut sets: Vec<Vec<Affine>> = std::iter::once(own).chain(others).collect();
@@ -321,7 +312,7 @@ fn part_of(
         let wide = |e: Affine| (f64::from(e.value), e.slope.map(f64::from));
         let wide: Vec<_> = all.by_ref().map(wide).collect();
         let (value, slope) = joined_sets(model.over, wide.into_iter());
-        rounded(value, slope, half_of(steps, level))
+        rounded(value, slope, half_of(&model.table, level))
     };
     (0..sets[0].len()).map(joined).collect()
 }
@@ -332,10 +323,9 @@ fn part_of_set(
     kinds: &[Kind],
     (level, at): (usize, [usize; 2]),
     some: Range<usize>,
-    steps: Steps,
 ) -> Vec<Affine> {
     let node = table.place(level, at);
-    let half = half_of(steps, level);
+    let half = half_of(table, level);
     let mut out = vec![EMPTY; some.len() * kinds.len() * 4];
     // sin and cos of the directions of the load.
     let directions: Vec<(f64, f64)> = some.map(|k| libm::sincos(half[2] * k as f64)).collect();

@@ -150,6 +150,11 @@ impl ComplianceTable {
         (self.extent, self.steps)
     }
 
+    /// Numbers of radii, heights and cells of heading at a level.
+    pub fn counts(&self, level: usize) -> [usize; 3] {
+        self.levels[level].counts
+    }
+
     /// Number of levels.
     pub fn depth(&self) -> usize {
         self.levels.len()
