@@ -1,7 +1,7 @@
 //! COLLADA (DAE): the surfaces of a scene, each where the nodes of the scene place it, in metres by the unit that the
 //! file states. Of a surface only its vertices are read; a polygon with more than three corners becomes a fan.
 //!
-//! The coordinates are taken as they stand, whatever `<up_axis>` says: so ROS shows them.
+//! The coordinates are taken as they are written, whatever `<up_axis>` says: so ROS shows them.
 
 use super::stl::{number_of, shortened};
 use super::{MAX_TRIANGLES, THINNER, Triangles};
@@ -56,7 +56,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
 /// A scene on its way.
 struct Scene<'a> {
     ids: BTreeMap<&'a str, Element<'a>>,
-    /// Those of a source of positions, by where it stands in the text.
+    /// Those of a source of positions, by its place in the text.
     positions: BTreeMap<usize, Rc<Vec<Vector3<f64>>>>,
     /// Nodes gone through.
     nodes: usize,

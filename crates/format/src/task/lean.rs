@@ -16,7 +16,7 @@ pub struct PointLean {
     pub tilt: Option<[f64; 2]>,
 }
 
-/// Where these columns stand: each pair alone or both.
+/// The numbers of these columns: each pair alone or both.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LeanColumns {
     lead: Option<[usize; 2]>,

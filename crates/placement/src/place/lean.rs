@@ -43,7 +43,7 @@ const GAIN: f64 = 1e-4;
 const HALVINGS: usize = 6;
 /// Steps to either side in a halving.
 const NEAR: i32 = 1;
-/// Placements drawn over the cell, so many at a time, and what they are told apart on: points of the path, steps to
+/// Placements drawn over the cell, so many at a time, and what they are compared on: points of the path, steps to
 /// either side in lead and in tilt, and the smallest step of beta (rad).
 const DRAWN: (usize, usize) = (192, 16);
 const DRAWN_ON: (usize, usize, f64) = (40, 2, PI / 12.0);

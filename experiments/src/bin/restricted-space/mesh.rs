@@ -16,10 +16,9 @@
 //!
 //! The box stands where a search found a plan for the first of them, and is not moved for the second.
 
+use super::write_line;
 use std::collections::BTreeMap;
-use std::env::temp_dir;
 use std::error::Error;
-use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use stead_planning::constraints::{ConstraintKind, Measured};
@@ -33,7 +32,7 @@ const LINES: [(&str, f64, f64); 2] = [("the channel floor", 0.0, 25.0), ("the he
 /// turn.
 const BOX: [f64; 3] = [791.0, -2773.0, 397.0];
 const Q4: f64 = 0.999877;
-/// Of every so many points all states are looked at.
+/// Of every so many points all states are evaluated.
 const EVERY: usize = 10;
 
 const RUN: &str = "robot = \"name:kuka-kr210-2\"\ntask = \"line.csv\"\nsurroundings = \"box.toml\"\n\n[spindle]\n\
@@ -95,23 +94,15 @@ ignore = [["link_2", "link_4"], ["base column", "upper arm"], ["base column", "s
 "#;
 
 /// What the free angle alone does in the box of a mesh file.
-pub fn study_mesh(mesh: &str) -> Result<(), Box<dyn Error>> {
+pub fn study_mesh(folder: &Path, mesh: &str) -> Result<(), Box<dyn Error>> {
     let mesh = fs::canonicalize(mesh)?;
-    let folder = temp_dir().join(format!("restricted-space-{}", std::process::id()));
-    fs::create_dir_all(&folder)?;
-    let found = LINES.iter().try_for_each(|line| study(&folder, &mesh, *line));
-    fs::remove_dir_all(&folder)?;
-    found
+    LINES.iter().try_for_each(|line| study(folder, &mesh, *line))
 }
 
 fn study(folder: &Path, mesh: &Path, (name, depth, height): (&str, f64, f64)) -> Result<(), Box<dyn Error>> {
-    let mut task =
-        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n".to_owned();
-    for point in 0..LINE.0 {
-        // The task lies in the frame of the box turned upright: x along, y into the depth, z up.
-        writeln!(task, "1,{},{depth},{height},1,0,0,0,0,1,0,100,0", point as f64 * LINE.1)?;
-    }
-    fs::write(folder.join("line.csv"), task)?;
+    // The task lies in the frame of the box turned upright: x along, y into the depth, z up.
+    let ends = [0.0, (LINE.0 - 1) as f64 * LINE.1];
+    write_line(&folder.join("line.csv"), [depth, height], ends, LINE.0, [0.0, 100.0, 0.0])?;
     let [x, y, z] = BOX;
     let cell = format!("[cell]\nx_mm = [{x}, {x}]\ny_mm = [{y}, {y}]\nz_mm = [{z}, {z}]\nq4 = [{Q4}, {Q4}]\n");
     fs::write(folder.join("run.toml"), format!("{RUN}{cell}"))?;
@@ -154,7 +145,7 @@ fn study(folder: &Path, mesh: &Path, (name, depth, height): (&str, f64, f64)) ->
         2.0 * libm::asin(Q4).to_degrees()
     );
     println!(
-        "{free_points} of {} points looked at have a free state; {free} of {reached} states within the limits of the joints are free",
+        "{free_points} of {} points evaluated have a free state; {free} of {reached} states within the limits of the joints are free",
         problem.task.points().len().div_ceil(EVERY)
     );
     for (pair, count) in blocking {

@@ -1,19 +1,17 @@
 //! What a leaning tool reaches in the box of `configs/restricted-space.toml`: two lines of 900 mm, both mounts of the
 //! spindle, the box where searches found the most, with beta alone, with lead and with cones of 15 and 30 deg.
 //!
-//! - *points*: of 131 along the line those at which any state is allowed, each looked at by itself: the axis every
+//! - *points*: of 131 along the line those at which any state is allowed, each by itself: the axis every
 //!   7.5 deg off that of the task in 12 directions, beta every 15 deg, all postures, every shape;
 //! - *way*: the longest chain of such states in one posture over every second of these points (13.8 mm), the axis
 //!   turning by at most 9 deg and beta by 15 deg from one to the next, each joint as fast as it may at 20 mm/s;
 //! - *plan*: what `stead score` makes of that stretch with a point every 2 mm, all limits of the run included: the mean
 //!   deflection, the least clearance with its pair, and how long it took.
 
+use super::write_line;
 use std::collections::HashSet;
-use std::env::temp_dir;
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write;
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
@@ -32,8 +30,10 @@ use stead_planning::setup::Setup;
 const RUN: &str = "configs/restricted-space.toml";
 /// Where the lines begin and end along the box. mm
 const ALONG: [f64; 2] = [130.0, 1030.0];
-/// Points at which states are looked at, and how many of them a way goes at a time.
+/// Points at which states are evaluated, and how many of them a way goes at a time.
 const POINTS: (usize, usize) = (131, 2);
+/// The force at every point. N
+const FORCE: [f64; 3] = [-60.0, 100.0, -20.0];
 /// Distance of the points that are planned. mm
 const STEP: f64 = 2.0;
 /// How far the tool leans at these points: so many rings (rad) and directions.
@@ -51,12 +51,14 @@ const LEAST_WAY: usize = 3;
 type Place = [f64; 4];
 
 /// A line, its depth and height in the box (mm), and places of the box.
-const LINES: [(&str, [f64; 2], [Place; 2]); 2] = [
-    ("A", [0.0, 30.0], [[637.9, -2592.6, 319.4, 160.8], [780.9, -2343.3, 18.4, 170.5]]),
-    ("B", [380.0, 300.0], [[754.1, -1990.1, 230.5, 228.3], [793.7, -2049.9, 203.7, 219.6]]),
+const LINES: [(&str, [f64; 2], &[Place]); 2] = [
+    ("A", [0.0, 30.0], &[[637.9, -2592.6, 319.4, 160.8], [780.9, -2343.3, 18.4, 170.5]]),
+    (
+        "B",
+        [380.0, 300.0],
+        &[[-682.3, -870.8, -88.6, 304.7], [754.1, -1990.1, 230.5, 228.3], [793.7, -2049.9, 203.7, 219.6]],
+    ),
 ];
-/// A third place of line B.
-const LIGHT: [f64; 4] = [-682.3, -870.8, -88.6, 304.7];
 
 /// What the tool may do: the range of lead and of tilt to either side, and together. deg
 const FREEDOMS: [(&str, f64, f64, f64); 4] = [
@@ -92,38 +94,21 @@ struct Allowed {
     length: usize,
 }
 
-pub fn print_table() -> Result<(), Box<dyn Error>> {
-    let folder = temp_dir().join(format!("restricted-space-{}", std::process::id()));
-    fs::create_dir_all(&folder)?;
+pub fn print_table(folder: &Path) -> Result<(), Box<dyn Error>> {
     println!(
         "| line | spindle | box at x, y, z (mm), yaw (deg) | tool | points of 131 | way of 66 | mean deflection, mm | least clearance, mm | s |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    let found = LINES.iter().try_for_each(|(line, at, places)| {
-        let more = if *line == "B" { vec![LIGHT] } else { Vec::new() };
-        let places: Vec<[f64; 4]> = more.iter().chain(places).copied().collect();
-        places.iter().try_for_each(|place| MOUNTS.iter().try_for_each(|mount| rows(&folder, (line, *at), place, mount)))
-    });
-    fs::remove_dir_all(&folder)?;
-    found
-}
-
-/// A task file with points along a line, evenly from one end to the other.
-fn write_line(file: &Path, [depth, height]: [f64; 2], ends: [f64; 2], count: usize) -> Result<(), Box<dyn Error>> {
-    let mut text =
-        "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n\n".to_owned();
-    for k in 0..count {
-        let x = ends[0] + (ends[1] - ends[0]) * k as f64 / (count - 1) as f64;
-        writeln!(text, "1,{x},{depth},{height},1,0,0,0,0,1,-60,100,-20")?;
-    }
-    Ok(fs::write(file, text)?)
+    LINES.iter().try_for_each(|(line, at, places)| {
+        places.iter().try_for_each(|place| MOUNTS.iter().try_for_each(|mount| rows(folder, (line, *at), place, mount)))
+    })
 }
 
 /// The run with a task, a mount, a place of the box and what the tool may do.
 fn run_with(
     task: &Path,
     mount: &[&str],
-    [x, y, z, yaw]: &[f64; 4],
+    [x, y, z, yaw]: &Place,
     (_, lead, tilt, most): (&str, f64, f64, f64),
 ) -> Result<Run, Box<dyn Error>> {
     let yaw = wrap(yaw.to_radians()).to_degrees();
@@ -146,11 +131,11 @@ fn run_with(
 fn rows(
     folder: &Path,
     (line, at): (&str, [f64; 2]),
-    place: &[f64; 4],
+    place: &Place,
     (mounted, mount): &(&str, &[&str]),
 ) -> Result<(), Box<dyn Error>> {
     let task = folder.join("line.csv");
-    write_line(&task, at, ALONG, POINTS.0)?;
+    write_line(&task, at, ALONG, POINTS.0, FORCE)?;
     let run = run_with(&task, mount, place, FREEDOMS[3])?;
     let placement = run.problem().cell.pinned().ok_or("the box is pinned")?;
     let (leans, all) = states(run.problem(), &placement)?;
@@ -170,7 +155,7 @@ fn rows(
                     |place: usize| ALONG[0] + (ALONG[1] - ALONG[0]) * (place * POINTS.1) as f64 / (POINTS.0 - 1) as f64;
                 let ends = [x(way.start), x(way.end - 1)];
                 let task = folder.join("stretch.csv");
-                write_line(&task, at, ends, ((ends[1] - ends[0]) / STEP).round() as usize + 1)?;
+                write_line(&task, at, ends, ((ends[1] - ends[0]) / STEP).round() as usize + 1, FORCE)?;
                 plan(&run_with(&task, mount, place, freedom)?, &placement)
             }
         };

@@ -4,6 +4,7 @@ use crate::testing::{RUN, folder};
 use stead_disk::input::InputError;
 use stead_model::task::lean::{ContactRule, LeanForce};
 use stead_runs::Run;
+use tempfile::TempDir;
 
 const BALL: &str = "[tool]\ncutter_diameter_mm = 16\ncorner_radius_mm = 8\n";
 const BULL: &str = "[tool]\ncutter_diameter_mm = 25\ncorner_radius_mm = 5\n";
@@ -12,16 +13,14 @@ const LEAN: &str = "[lean]\nlead_deg = [-5, 20]\ntilt_deg = [-15, 15]\n";
 
 /// A run with tables added, and with columns of a normal where one is given.
 fn read(tables: &str, normal: Option<[f64; 3]>) -> Result<Run, InputError> {
-    let folder = folder();
     if let Some([x, y, z]) = normal {
-        let file = folder.path().join("task.csv");
-        let text = std::fs::read_to_string(&file).unwrap();
-        let rows = text.lines().enumerate().map(|(k, line)| match k {
-            0 => format!("{line},normal_x,normal_y,normal_z\n"),
-            _ => format!("{line},{x},{y},{z}\n"),
-        });
-        std::fs::write(&file, rows.collect::<String>()).unwrap();
+        return with_columns(tables, "normal_x,normal_y,normal_z", |_| format!("{x},{y},{z}"));
     }
+    run_in(&folder(), tables)
+}
+
+/// The run of a folder with tables added.
+fn run_in(folder: &TempDir, tables: &str) -> Result<Run, InputError> {
     let file = folder.path().join("run.toml");
     std::fs::write(&file, format!("{RUN}{tables}")).unwrap();
     crate::read_run(&file)
@@ -86,9 +85,7 @@ fn with_columns(tables: &str, columns: &str, row: impl Fn(usize) -> String) -> R
         _ => format!("{line},{}\n", row(k)),
     });
     std::fs::write(&file, rows.collect::<String>()).unwrap();
-    let file = folder.path().join("run.toml");
-    std::fs::write(&file, format!("{RUN}{tables}")).unwrap();
-    crate::read_run(&file)
+    run_in(&folder, tables)
 }
 
 #[test]
