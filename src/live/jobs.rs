@@ -109,7 +109,7 @@ struct Ended {
 impl Jobs {
     /// A monitor for the placement of a page that is scored now.
     pub fn whole_begins(&self, page: &str) -> Monitor {
-        let monitor = Monitor::silent();
+        let monitor = Monitor::silent().for_all_or_nothing();
         *locked(&self.whole) = Some((page.to_owned(), monitor.stop_handle()));
         monitor
     }

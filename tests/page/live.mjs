@@ -90,7 +90,7 @@ const tests = {
     await go(page, BEST);
     await atRest(page);
     assert.match(await text(page, 'live-mean'), /^0\.107\d mm$/);
-    assert.match(await text(page, 'live-state'), /^as `stead score` states it$/);
+    assert.match(await text(page, 'live-state'), /^as 'stead score' states it$/);
     assert.match(await text(page, 'live-feed'), /^\d+ mm\/s$/);
   },
 

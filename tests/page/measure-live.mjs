@@ -11,7 +11,7 @@ const [run, ...more] = process.argv.slice(2);
 const session = startLive(run, more);
 const address = new URL(await session.address);
 
-/** Times of the server alone, without a browser: the median of moved placements, one at rest, the whole map. ms */
+/** Times of the server alone, without a browser: moved placements, one at rest, those moved while one at rest is computed, the whole map. ms */
 const ask = (path, body) =>
   fetch(new URL(path, address.origin), {
     method: 'POST',
@@ -30,11 +30,20 @@ const previews = [];
 for (let k = 0; k < 40; k++) previews.push(await timed(() => ask('/preview', placed(k))));
 previews.sort((a, b) => a - b);
 const scored = await timed(() => ask('/whole', placed(0)));
+const interrupting = [];
+for (let k = 0; k < 20; k++) {
+  const whole = ask('/whole', placed(k));
+  await new Promise((done) => setTimeout(done, (scored * k) / 20));
+  interrupting.push(await timed(() => ask('/preview', placed(k + 1))));
+  await whole;
+}
+interrupting.sort((a, b) => a - b);
 const mapped = await timed(async () => {
   for (let from = 0, made = 1; made; from += made) made = (await ask('/map', { ...placed(0), from })).columns.points.length;
 });
 console.log(
   `${run}: the server alone: a moved placement ${previews[20].toFixed(1)} ms in the median, ${previews[38].toFixed(0)} ms at the 95th percentile; ` +
+    `moved while one at rest was computed ${interrupting[10].toFixed(0)} ms, at most ${interrupting[19].toFixed(0)} ms; ` +
     `one at rest ${scored.toFixed(0)} ms, its map ${mapped.toFixed(0)} ms; load ${loadavg()[0].toFixed(1)}`,
 );
 

@@ -78,6 +78,11 @@ impl StopHandle {
     pub fn stop(&self) -> bool {
         self.0.swap(true, Ordering::SeqCst)
     }
+
+    /// Whether jobs are asked to stop by it.
+    pub fn is_set(&self) -> bool {
+        self.0.load(Ordering::SeqCst)
+    }
 }
 
 /// A function that takes reports, from any thread.
@@ -89,6 +94,7 @@ pub struct Monitor {
     observer: Option<Arc<Observer>>,
     stop: StopHandle,
     deadline: Option<Instant>,
+    is_unwanted_once_stopped: bool,
 }
 
 impl Monitor {
@@ -112,6 +118,17 @@ impl Monitor {
         Self { deadline, ..self }
     }
 
+    /// The same for a job of which nothing is wanted once the flag stops it: it ends as soon as it can, also where it
+    /// would finish a part otherwise, and what it returns then means nothing.
+    pub fn for_all_or_nothing(self) -> Self {
+        Self { is_unwanted_once_stopped: true, ..self }
+    }
+
+    /// The flag of a job of which nothing is wanted once it is set, otherwise one that nobody sets.
+    pub fn unwanted(&self) -> StopHandle {
+        if self.is_unwanted_once_stopped { self.stop_handle() } else { StopHandle::default() }
+    }
+
     /// When it is stopped at the latest, where that is limited.
     pub fn deadline(&self) -> Option<Instant> {
         self.deadline
@@ -131,7 +148,7 @@ impl Monitor {
 
     /// Why the job should end as soon as it has something to return, if it should.
     pub fn stop(&self) -> Option<Stop> {
-        if self.stop.0.load(Ordering::SeqCst) {
+        if self.stop.is_set() {
             Some(Stop::Asked)
         } else if self.deadline.is_some_and(|deadline| Instant::now() >= deadline) {
             Some(Stop::Deadline)
@@ -156,11 +173,12 @@ impl Monitor {
 
 impl fmt::Debug for Monitor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { observer, stop, deadline } = self;
+        let Self { observer, stop, deadline, is_unwanted_once_stopped } = self;
         f.debug_struct("Monitor")
             .field("is_observed", &observer.is_some())
             .field("stop", stop)
             .field("deadline", deadline)
+            .field("is_unwanted_once_stopped", is_unwanted_once_stopped)
             .finish()
     }
 }

@@ -60,7 +60,8 @@ impl Score {
     }
 }
 
-/// Plans one given placement, best and worst. The two plans are made even when the caller asks to stop.
+/// Plans one given placement, best and worst. The two plans are made even when the caller asks to stop, unless nothing
+/// is wanted then ([`Monitor::for_all_or_nothing`]).
 ///
 /// # Errors
 /// [`Infeasible`] when it has no plan.
@@ -71,7 +72,7 @@ pub fn score(
     monitor: &Monitor,
 ) -> Result<Score, Infeasible> {
     monitor.report(Progress::Steps { stage: "planning", done: 0, total: 1 });
-    let planner = Planner::finer(problem);
+    let planner = Planner::finer(problem).unwanted_after(monitor.unwanted());
     let best = planned(&planner, placement, None, &mut planner.workspace());
     let (Some(best), Ok(worst)) = (best, worst_plan(&planner, placement, None)) else {
         return Err(infeasible(&planner, placement, None, false, monitor));

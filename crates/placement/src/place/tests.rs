@@ -326,3 +326,16 @@ fn the_worst_over_sets_is_never_above_the_plain_placements_and_one_set_gives_the
     assert!(means.fold(0.0, f64::max) <= worst.cases.best.plan.mean * (1.0 + 1e-12));
     assert!(worst.sets.iter().all(|set| set.regret().unwrap() > -1e-3), "{:?}", worst.sets);
 }
+
+#[test]
+fn a_score_of_which_nothing_is_wanted_once_it_is_stopped_has_no_plans() {
+    let problem = five_segments();
+    let placement = [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into();
+    let score = |monitor: &Monitor| score(&problem, &placement, &TransferSettings::default(), monitor);
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    assert!(score(&stopped).is_ok_and(|score| score.interrupted));
+    let none = score(&stopped.for_all_or_nothing()).unwrap_err();
+    assert!(none.interrupted && none.findings.is_empty(), "{none}");
+    assert!(score(&Monitor::silent().for_all_or_nothing()).is_ok_and(|score| !score.interrupted));
+}

@@ -122,6 +122,9 @@ impl Planner<'_> {
         // Whether states were forbidden for moves that the arm cannot follow, and whether such moves are let pass.
         let (mut are_moves_bound, mut are_moves_waived) = (false, false);
         for round in 0..MAX_ROUNDS {
+            if self.is_unwanted() {
+                return Err(NoFeasiblePlan::empty());
+            }
             let found = plan(workspace, &requested);
             let lines = found.as_ref().err().map_or_else(Vec::new, |none| self.lines_of(none, &bound));
             let waives_moves = are_moves_bound && !are_moves_waived && (found.is_err() || round >= FOLLOW_ROUNDS);

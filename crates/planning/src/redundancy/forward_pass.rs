@@ -245,6 +245,9 @@ impl SegmentPlanner<'_> {
         workspace.record.reached.clear();
         let keeps_all = !count_only && self.knot_count(pass) * 4 * self.grid.beta_count <= MAX_REACHED;
         for point in pass.span.clone() {
+            if self.unwanted.is_set() {
+                return forward_pass;
+            }
             self.evaluate(pass, point, requested, workspace);
             if PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class)) {
                 forward_pass.blocked.push(point);

@@ -64,6 +64,7 @@ use segment_planner::{Resolution, SegmentPlanner};
 use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_model::robot::Posture;
+use stead_numerics::monitor::StopHandle;
 use transition::Step;
 
 /// Why a placement has no plan.
@@ -116,6 +117,18 @@ impl<'a> Planner<'a> {
     /// The same with beta narrowed down otherwise where a plan leaves the grid.
     pub fn with_spacing(self, spacing: Spacing) -> Self {
         Self { spacing, ..self }
+    }
+
+    /// The same, whose plans are not wanted any more once a flag is set: planning then ends at once, with no plan, for
+    /// which the error has no reason.
+    pub fn unwanted_after(mut self, stop: StopHandle) -> Self {
+        self.segments.unwanted = stop;
+        self
+    }
+
+    /// Whether plans are not wanted any more.
+    pub fn is_unwanted(&self) -> bool {
+        self.segments.unwanted.is_set()
     }
 
     /// The problem that is planned.
@@ -260,12 +273,18 @@ impl<'a> Planner<'a> {
                 let choices = self.choices(placement, sense, scheme, workspace, requested, margin)?;
                 let choices = self.without_hitting_ways(placement, choices);
                 let refined = |(segment, classes): (&usize, Vec<joint_turns::SegmentChoice>)| {
+                    if self.is_unwanted() {
+                        return Vec::new();
+                    }
                     self.refined(placement, sense, scheme.map(|s| s[*segment]), classes)
                 };
                 let refined = match self.is_parallel() {
                     true => requested.par_iter().zip(choices).map(refined).collect(),
                     false => requested.iter().zip(choices).map(refined).collect(),
                 };
+                if self.is_unwanted() {
+                    return Err(NoFeasiblePlan::empty());
+                }
                 Ok(self.without_hitting_ways(placement, refined))
             })
         })

@@ -8,6 +8,7 @@ use crate::problem::{Problem, Redundancy};
 use crate::sense::Sense;
 use std::sync::Arc;
 use stead_model::robot::{PostureClass, turns::Range};
+use stead_numerics::monitor::StopHandle;
 use stead_numerics::simd::Instructions;
 
 /// What plans are made for.
@@ -51,6 +52,8 @@ pub(super) struct SegmentPlanner<'a> {
     pub tool_hits: Option<Arc<StateSet>>,
     /// What a radian of joint travel costs.
     travel: f64,
+    /// Once it is set, plans are not wanted any more: segments have none.
+    pub unwanted: StopHandle,
 }
 
 /// Space of one thread to plan in.
@@ -94,6 +97,7 @@ impl<'a> SegmentPlanner<'a> {
             instructions: Instructions::best(),
             tool_hits: StateSet::of_tool(problem, &grid).map(Arc::new),
             travel: problem.travel_cost(Sense::Min),
+            unwanted: StopHandle::default(),
         }
     }
 

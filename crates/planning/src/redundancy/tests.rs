@@ -303,3 +303,26 @@ fn beta_keeps_its_pace_where_points_are_close() {
     // Spread steps leave the grid, so that they may come out a little below the finest.
     assert!((found - fine).abs() < 0.05 * (still - fine), "{fine} {found} {still}");
 }
+
+#[test]
+fn planning_ends_without_a_plan_once_none_is_wanted() {
+    let (problem, placement) = (five_segments(), published_optimum());
+    for delay in [0, 200, 1000, 5000] {
+        let stop = StopHandle::default();
+        let planner = Planner::finer(&problem).unwanted_after(stop.clone());
+        let mut workspace = planner.workspace();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(std::time::Duration::from_micros(delay));
+                stop.stop();
+            });
+            // It ends, with whatever it has.
+            let _ = planner.plan_fine(&placement, Sense::Min, None, &mut workspace);
+        });
+        for sense in [Sense::Min, Sense::Max] {
+            let none = Err(NoFeasiblePlan::empty());
+            assert_eq!(planner.plan_fine(&placement, sense, None, &mut workspace), none);
+            assert_eq!(planner.plan(&placement, sense, None, &mut workspace), none);
+        }
+    }
+}

@@ -17,7 +17,7 @@ function stateWords() {
   const points = some < all ? ` on ${some} of ${all} points: an estimate` : '';
   if (isFollowing) return `following the part${points}`;
   if (!isFeasible) return isWhole ? 'no plan' : `no plan on the grid of the run${points}; a finer one is looked for`;
-  return isWhole ? `as \`stead score\` states it${points}` : `on the grid of the run${points}; the whole follows`;
+  return isWhole ? `as 'stead score' states it${points}` : `on the grid of the run${points}; the whole follows`;
 }
 
 /** @typedef {[id: string, name: string, value: (best: any) => string, more: (best: any) => string]} Figure */

@@ -95,7 +95,7 @@ export function pinsCard() {
     if (isNew) void drawCompared();
   });
   onAnswer(compare);
-  return card('Pinned placements', 'each a folder as `stead score --out` writes it', list, comparison);
+  return card('Pinned placements', "each a folder as 'stead score --out' writes it", list, comparison);
 }
 
 /** @returns {HTMLElement} */
