@@ -1,7 +1,7 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::at_rest::without_rails;
+use super::at_rest::without_axes;
 use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, Status, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
@@ -35,7 +35,7 @@ pub fn best(
 ) -> Result<Bound, Unsupported> {
     let CertificateSettings { gap, memory, .. } = *settings;
     certifiable(problem, memory)?;
-    let alone = without_rails(problem)?;
+    let alone = without_axes(problem)?;
     let problem = alone.as_ref();
     let keeps = if with_limits { Keeps::of(problem) } else { Keeps::NOTHING };
     let (model, whole) = (Model::new(problem, keeps), whole(problem));

@@ -1,7 +1,7 @@
 //! What a certificate asks of a problem.
 
 use super::arm::{is_base_alike, needed_condition};
-use super::at_rest::without_rails;
+use super::at_rest::without_axes;
 use super::cell::{extent, points_of};
 use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
@@ -28,7 +28,7 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if problem.lean.is_some() {
         return Err(Unsupported::Lean);
     }
-    let alone = without_rails(problem)?;
+    let alone = without_axes(problem)?;
     let problem = alone.as_ref();
     Upright::of(problem)?;
     require_constant(problem, &[0, 3, 4, 5])?;
@@ -83,7 +83,7 @@ pub(super) fn left_out(problem: &Problem) -> Vec<&'static str> {
         words.push("beta that stays along the path");
     }
     if !problem.external_axes.is_empty() {
-        words.push("which position of the external axes goes with which x, y and z");
+        words.push("which position of the external axes goes with which x, y, z and yaw");
     }
     words
 }

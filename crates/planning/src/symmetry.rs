@@ -19,8 +19,11 @@ pub enum Unsupported {
         /// Angle between axis 1 and the vertical of the base frame. rad
         angle: f64,
     },
-    /// External axes stand elsewhere than at a place that only shifts the cell.
-    #[error("external axes move the workpiece or the robot")]
+    /// External axes do more than shift the cell and turn it about the vertical.
+    #[error(
+        "external axes move the workpiece or the robot otherwise than rails, and turntables about the vertical, at one place \
+         for the path"
+    )]
     ExternalAxes,
     /// There are several orientations of the part to choose from.
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
@@ -246,7 +249,8 @@ fn axis_1(problem: &Problem) -> Vector3<f64> {
     problem.robot.geometry().base_from_root * Vector3::z()
 }
 
-fn is_vertical(direction: &Vector3<f64>) -> bool {
+/// Whether a unit vector is along the vertical, up or down.
+pub fn is_vertical(direction: &Vector3<f64>) -> bool {
     libm::hypot(direction.x, direction.y) < VERTICAL
 }
 

@@ -3,14 +3,14 @@
 use super::super::branch_and_bound::{Bound, Status};
 use super::super::certificate::{Certificate, NoProof, Proof, certify};
 use super::*;
-use crate::at_rest::without_rails;
-use crate::certifiable;
+use crate::at_rest::without_axes;
 use crate::requirements::certifiable_from_above;
 use crate::settings::CertificateSettings;
+use crate::{best, certifiable};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
 use stead_planning::constraints::ConstraintKind;
-use stead_planning::problem::{BetaPlan, Placement};
+use stead_planning::problem::{BetaPlan, Cell, Placement};
 use stead_planning::sense::Sense;
 use stead_planning::setup::{AxisPositions, Setup};
 use stead_planning::symmetry::Unsupported;
@@ -113,7 +113,7 @@ fn rails_at_one_place_are_part_of_the_cell_and_others_are_refused() {
     for carries in [Carried::Robot, Carried::Workpiece] {
         let problem = on_rail(carries, AxisUse::Fixed);
         assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
-        let alone = without_rails(&problem).unwrap();
+        let alone = without_axes(&problem).unwrap();
         assert!(alone.external_axes.is_empty());
         // Wherever the rail stands, the workpiece is seen by the robot at a placement of the cell that is certified.
         let mut ends = [[false; 2]; 2];
@@ -139,6 +139,94 @@ fn rails_at_one_place_are_part_of_the_cell_and_others_are_refused() {
         // From above, what a rail adds is not covered.
         assert_eq!(certifiable_from_above(&problem, u64::MAX), Err(Unsupported::ExternalAxes));
         assert!(proof(&problem, true).relaxed_words().iter().any(|words| words.contains("external axes")));
+    }
+}
+
+/// A turntable on a rail for the workpiece, and one under the robot, about the vertical.
+fn turned(angles: [f64; 2], under_robot: [f64; 2]) -> Problem {
+    let mut problem = on_rail(Carried::Workpiece, AxisUse::Fixed);
+    let rail = problem.external_axes[0].clone();
+    let turntable = |name: &str, carries, direction: Vector3<f64>, [min, max]: [f64; 2]| ExternalAxis {
+        name: name.to_owned(),
+        kind: AxisKind::Turntable,
+        carries,
+        direction,
+        point: Vector3::new(0.1, -1.9, 0.2),
+        min,
+        max,
+        max_speed: None,
+        axis_use: AxisUse::Fixed,
+    };
+    problem.external_axes = vec![
+        rail,
+        turntable("table", Carried::Workpiece, Vector3::z(), angles),
+        turntable("column", Carried::Robot, -Vector3::z(), under_robot),
+    ];
+    problem.setup = Setup::at_rest(&problem.external_axes);
+    problem.cell.yaw = Interval { min: -0.1, max: 0.3 };
+    problem
+}
+
+#[test]
+fn turntables_at_one_place_are_part_of_the_cell() {
+    for (angles, under_robot) in [([-0.3, 0.4], [0.0, 0.0]), ([1.0, 2.9], [-0.2, 0.1]), ([-3.0, 3.0], [0.0, 0.5])] {
+        let problem = turned(angles, under_robot);
+        assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
+        let alone = without_axes(&problem).unwrap();
+        let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        let share = |[min, max]: [f64; 2], k: usize| min + (max - min) * k as f64 / 40.0;
+        for (first, second, corner) in (0..=40).flat_map(|k| (0..=40).flat_map(move |l| (0..8).map(move |c| (k, l, c))))
+        {
+            let side = |k: usize, range: Interval| if corner >> k & 1 == 1 { range.max } else { range.min };
+            let [x, y, _] = problem.cell.position;
+            let placement = Placement { x: side(0, x), y: side(1, y), z: -0.3, yaw: side(2, problem.cell.yaw) };
+            let mut there = problem.clone();
+            let rail = if (first + second) % 2 == 0 { -0.2 } else { 0.1 };
+            there.setup.positions = AxisPositions::Same(vec![rail, share(angles, first), share(under_robot, second)]);
+            let seen = there.at(&placement).base_from_workpiece(0);
+            let yaw = libm::atan2(seen.rotation[(1, 0)], seen.rotation[(0, 0)]);
+            let [x, y, z] = seen.translation.into();
+            // Rounding, by which a rotation about the vertical lets an x into the z of what it turns.
+            let grown = |range: Interval| Interval { min: range.min - 1e-9, max: range.max + 1e-9 };
+            let cell = Cell { position: alone.cell.position.map(grown), yaw: grown(alone.cell.yaw) };
+            assert!(cell.contains(&Placement { x, y, z, yaw }), "{angles:?} {under_robot:?} {seen:?} {:?}", alone.cell);
+            for (k, at) in [x, y].into_iter().enumerate() {
+                ends[k] = [ends[k][0].min(at), ends[k][1].max(at)];
+            }
+        }
+        // With one turntable alone the box is no larger than what it goes through, as far as its steps tell.
+        if under_robot == [0.0, 0.0] {
+            for (range, [min, max]) in alone.cell.position.iter().zip(ends) {
+                assert!(min - range.min < 0.01 && range.max - max < 0.01, "{range:?} {min} {max}");
+            }
+        }
+    }
+    let mut tilting = turned([0.0, 1.0], [0.0, 0.0]);
+    tilting.external_axes[1].direction = Vector3::x();
+    assert_eq!(certifiable(&tilting, u64::MAX), Err(Unsupported::ExternalAxes));
+}
+
+/// A part on a turntable: the certificate holds below what is found at any angle of it.
+#[test]
+fn a_bound_on_a_turntable_is_below_what_it_is_at_any_angle() {
+    let mut problem = turned([-0.05, 0.05], [0.0, 0.0]);
+    problem.external_axes.remove(2);
+    problem.external_axes.remove(0);
+    let best_at = Placement::from_mm_deg([0.0284, -1640.0, -214.0], 78.9664);
+    let near = |value: f64| Interval { min: value - 1e-3, max: value + 1e-3 };
+    problem.cell = Cell { position: [near(best_at.x), near(best_at.y), near(best_at.z)], yaw: near(best_at.yaw) };
+    problem.setup = Setup::at_rest(&problem.external_axes);
+    let settings = CertificateSettings::new(0.2);
+    let value = 0.1075e-3;
+    let bound = best(&problem, value, &settings, true, &Monitor::silent()).unwrap();
+    assert!(bound.bound > 0.5 * value, "{}", bound.bound);
+    for angle in [-0.05, -0.02, 0.0, 0.03, 0.05] {
+        let mut there = problem.clone();
+        there.setup.positions = AxisPositions::Same(vec![angle]);
+        let planner = stead_planning::redundancy::Planner::finer(&there);
+        let plans = planner.plan_fine(&best_at, Sense::Min, None, &mut planner.workspace());
+        let mean = plans.map_or(f64::INFINITY, |plans| there.objective(plans.iter().map(|plan| plan.cost)));
+        assert!(mean >= bound.bound, "{angle}: {mean} {}", bound.bound);
     }
 }
 
