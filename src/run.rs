@@ -230,6 +230,13 @@ impl Run {
         certify::certifiable(self.problem(), settings.memory).err().map(|reason| certify::no_certificate(&reason))
     }
 
+    /// What the certificate costs more than others, where the run asks for one and can be certified: to be said before
+    /// a long search.
+    pub fn certificate_note(&self) -> Option<String> {
+        self.run.certificate.filter(|_| self.certificate_warning().is_none())?;
+        certify::expected_cost(self.problem())
+    }
+
     /// A note on a placement outside the cell, which is evaluated all the same.
     pub fn outside_cell(&self, placement: &Placement) -> Option<String> {
         study::outside_cell(&self.run, placement)

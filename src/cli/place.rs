@@ -112,6 +112,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     say_notes(run.notes());
     say_warnings(run.warnings());
     say_warnings(run.certificate_warning().as_slice());
+    say_notes(run.certificate_note().as_slice());
 
     let shown = terminal.show(None);
     let found = on_threads(options.threads, || run.search(&shown.monitor))?;

@@ -63,6 +63,15 @@ pub(super) fn extent(problem: &Problem) -> Extent {
     Extent { radius: ((near - max_distance).max(NEAREST), far + max_distance), height: (bottom + low, top + high) }
 }
 
+/// How much nearer to axis 1 path points of placements of the cell may come than where something is known of them, if
+/// they may. m
+pub(super) fn too_near(problem: &Problem) -> Option<f64> {
+    let region = whole(problem);
+    let farthest = points_of(problem).iter().map(|p| p.distance).fold(0.0, f64::max);
+    let missing = NEAREST - (region.middle[0] - region.half[0] - farthest);
+    (missing > 0.0).then_some(missing)
+}
+
 /// Azimuths tried about axis 1.
 const AZIMUTHS: usize = 1440;
 
@@ -87,7 +96,7 @@ pub(super) fn placement_in(problem: &Problem, region: &Region) -> Placement {
 }
 
 /// Nearer to axis 1 nothing is known of a path point. m
-const NEAREST: f64 = 0.05;
+pub(super) const NEAREST: f64 = 0.05;
 
 /// Which yaws less azimuth the cell allows.
 #[derive(Debug, Clone, Copy)]

@@ -1,10 +1,11 @@
 //! The certificate: bounds around the best and the worst placement found, what they relax, and how they ended.
 
 use super::branch_and_bound::{Bound, Status};
+use super::orientations::{OpenIn, best_in_all};
 use super::region::Region;
 use super::relaxed::relaxed_value;
 use super::requirements::{certifiable, certifiable_from_above, left_out};
-use super::{best::best, worst::worst};
+use super::worst::worst;
 use crate::settings::CertificateSettings;
 use serde::{Serialize, Serializer};
 use std::time::{Duration, Instant};
@@ -60,6 +61,8 @@ pub struct Proof {
     pub relaxed: Vec<Relaxation>,
     /// What else it leaves out, in words.
     pub left_out: Vec<&'static str>,
+    /// Where the part may lie in several orientations: the open boxes of each, in the order of those of the bound.
+    pub orientations: Vec<OpenIn>,
 }
 
 /// Why there is no bound.
@@ -131,11 +134,11 @@ pub fn certify(
         if value <= CANCELLATION {
             return Err(NoProof::Cancelled);
         }
-        let bound = match sense {
-            Sense::Min => best(problem, value, &settings, true, &monitor)?,
-            Sense::Max => worst(problem, value, &settings, &monitor)?,
+        let (bound, orientations) = match sense {
+            Sense::Min => best_in_all(problem, value, &settings, &monitor)?,
+            Sense::Max => (worst(problem, value, &settings, &monitor)?, Vec::new()),
         };
-        Ok(Proof { found: value, ..Proof::new(problem, sense, *placement, bound) })
+        Ok(Proof { found: value, orientations, ..Proof::new(problem, sense, *placement, bound) })
     };
     let best = prove(Sense::Min, found, &|| Some(objective));
     let worst = match found_worst {
@@ -231,7 +234,7 @@ impl Proof {
         let relaxed = relaxed(problem, &evaluated(problem, &bound));
         let (placement, figure) = (bound.met.unwrap_or(placement), figure(&problem.criterion));
         let left_out = left_out(problem);
-        Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out }
+        Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out, orientations: Vec::new() }
     }
 
     /// The relaxed constraints, and what else is left out, in words.
@@ -284,7 +287,13 @@ impl Proof {
 
     /// The boxes that are left open.
     pub fn open_boxes(&self, problem: &Problem) -> Vec<OpenBox> {
-        self.bound.open.iter().map(|(region, bound)| OpenBox::new(problem, region, *bound)).collect()
+        let names = self.orientations.iter().flat_map(|part| std::iter::repeat_n(Some(&part.orientation), part.boxes));
+        let boxes = self.bound.open.iter().zip(names.chain(std::iter::repeat(None)));
+        let named = |((region, bound), name): (&(Region, f64), Option<&String>)| OpenBox {
+            orientation: name.cloned(),
+            ..OpenBox::new(problem, region, *bound)
+        };
+        boxes.map(named).collect()
     }
 
     /// Why the search ended before what was requested, if it did.
@@ -310,7 +319,7 @@ impl Proof {
 }
 
 /// A box of placements in the user's terms: about axis 1, in the robot base frame.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OpenBox {
     /// Distance of the workpiece origin from axis 1, from and to. m
     pub radius: [f64; 2],
@@ -320,6 +329,8 @@ pub struct OpenBox {
     pub turn: [f64; 2],
     /// What no placement in it gets past. m
     pub bound: f64,
+    /// The name of the orientation of the part, where there are several.
+    pub orientation: Option<String>,
 }
 
 impl OpenBox {
@@ -331,6 +342,12 @@ impl OpenBox {
             let middle = from + sign * region.middle[k];
             [middle - region.half[k], middle + region.half[k]]
         };
-        Self { radius: ends(0, 1.0, 0.0), z: ends(1, side, geometry.root_in_base.z), turn: ends(2, side, 0.0), bound }
+        Self {
+            radius: ends(0, 1.0, 0.0),
+            z: ends(1, side, geometry.root_in_base.z),
+            turn: ends(2, side, 0.0),
+            bound,
+            orientation: None,
+        }
     }
 }

@@ -18,7 +18,8 @@
 //!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
 //!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls
-//!    short leaves undecided, `forecast` says when a gap will be reached.
+//!    short leaves undecided, `orientations` joins the bounds of several orientations of the part, `forecast` says when
+//!    a gap will be reached.
 //! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!
@@ -62,6 +63,7 @@ mod minorant;
 mod model;
 mod moment;
 mod number;
+mod orientations;
 mod region;
 mod relaxed;
 mod requirements;
@@ -80,7 +82,8 @@ pub use certificate::{
 };
 pub use forecast::{Forecast, Outlook};
 pub use keeps_open::KeepsOpen;
+pub use orientations::OpenIn;
 pub use region::Region;
 pub use relaxed::relaxed_value;
-pub use requirements::certifiable;
+pub use requirements::{certifiable, expected_cost};
 pub use worst::worst;

@@ -2,10 +2,11 @@
 
 use super::arm::{is_base_alike, needed_condition};
 use super::at_rest::without_axes;
-use super::cell::{extent, points_of};
+use super::cell::{NEAREST, extent, points_of, too_near};
 use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
 use super::model::STEPS;
+use super::orientations;
 use stead_model::stiffness::whole::yields_elsewhere;
 use stead_planning::criterion::Aggregate;
 use stead_planning::problem::Problem;
@@ -22,8 +23,11 @@ use stead_planning::symmetry::{
 /// # Errors
 /// The first reason why not.
 pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
-    if problem.orientations.len() > 1 {
-        return Err(Unsupported::Orientations);
+    if orientations::are_several(problem) {
+        return orientations::alone(problem).try_for_each(|(orientation, one)| {
+            let named = |reason| Unsupported::Orientation { name: orientation.name.clone(), reason: Box::new(reason) };
+            certifiable(&one, memory).map_err(named)
+        });
     }
     if problem.lean.is_some() {
         return Err(Unsupported::Lean);
@@ -44,12 +48,31 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) }
 }
 
+/// What a certificate of a problem costs more than others, to be said before a long search: in a sentence, where there
+/// is something to say.
+pub fn expected_cost(problem: &Problem) -> Option<String> {
+    let missing = if orientations::are_several(problem) {
+        orientations::alone(problem).filter_map(|(_, one)| too_near(without_axes(&one).ok()?.as_ref())).reduce(f64::max)
+    } else {
+        too_near(without_axes(problem).ok()?.as_ref())
+    };
+    let [nearest, missing] = [NEAREST, missing?].map(|length| (length * 1e3).ceil());
+    Some(format!(
+        "path points may come nearer than {nearest} mm to axis 1 in this cell, where they count without deflection in \
+         the certificate: its gap closes slowly, or not to the one asked for; in a cell {missing} mm farther from \
+         axis 1 none do"
+    ))
+}
+
 /// Whether the worst placement can be certified too: bounds from above are those of the mean of scores that are the
 /// absolute value of one part of the deflection.
 ///
 /// # Errors
 /// The first reason why not.
 pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
+    if orientations::are_several(problem) {
+        return Err(Unsupported::Orientations);
+    }
     certifiable(problem, memory)?;
     Upright::of(problem)?;
     require_no_travel(problem)?;
@@ -81,6 +104,9 @@ pub(super) fn left_out(problem: &Problem) -> Vec<&'static str> {
     }
     if require_free_beta(problem).is_err() {
         words.push("beta that stays along the path");
+    }
+    if expected_cost(problem).is_some() {
+        words.push("the deflection of path points nearer than 50 mm to axis 1");
     }
     if !problem.external_axes.is_empty() {
         words.push("which position of the external axes goes with which x, y, z and yaw");

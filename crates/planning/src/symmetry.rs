@@ -28,6 +28,14 @@ pub enum Unsupported {
     /// There are several orientations of the part to choose from.
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
     Orientations,
+    /// One of the orientations of the part to choose from cannot be treated.
+    #[error("in the orientation \"{name}\": {reason}")]
+    Orientation {
+        /// Its name.
+        name: String,
+        /// Why not.
+        reason: Box<Self>,
+    },
     /// The tool may lean.
     #[error(
         "the tool may lean (lead and tilt of [lean]): no bound covers that; without [lean] the placement can be certified"

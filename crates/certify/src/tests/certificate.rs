@@ -259,3 +259,18 @@ fn what_yields_beside_the_joints_is_covered_or_refused() {
         assert!(refused(&with_moments).to_string().contains("under moments"));
     }
 }
+
+#[test]
+fn a_cell_next_to_axis_1_says_beforehand_what_that_costs() {
+    let mut problem = five_segments();
+    assert_eq!(crate::expected_cost(&problem), None);
+    problem.cell.position[1].max = -0.3;
+    let note = crate::expected_cost(&problem).unwrap();
+    let missing: f64 = note.split("in a cell ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!(proof(&problem, true).left_out.iter().any(|words| words.contains("axis 1")), "{note}");
+    // As much farther away nothing is said any more, and a little less is not enough.
+    problem.cell.position[1].max = -0.3 - missing * 1e-3;
+    assert_eq!(crate::expected_cost(&problem), None);
+    problem.cell.position[1].max += 2e-3;
+    assert!(crate::expected_cost(&problem).is_some());
+}

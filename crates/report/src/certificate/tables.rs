@@ -30,6 +30,8 @@ records! {
         /// No placement in the box is better; empty where nothing is known.
         bound_mm: Option<MmDeflection> =
             Some(MmDeflection(proof.rounded_mm(open.bound))).filter(|bound| bound.0.is_finite()),
+        /// Name of the orientation of the part; empty where the run has one alone.
+        orientation: Option<String> = open.orientation.clone(),
     }
 }
 

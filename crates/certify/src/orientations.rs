@@ -1,0 +1,172 @@
+//! Several orientations of the part: a bound for each, of which the least holds for all.
+
+use super::best::best;
+use super::branch_and_bound::{Bound, Status};
+use crate::settings::CertificateSettings;
+use std::borrow::Cow;
+use std::sync::Arc;
+use std::time::Instant;
+use stead_numerics::monitor::Monitor;
+use stead_planning::problem::Problem;
+use stead_planning::setup::{Orientation, Setup};
+use stead_planning::symmetry::Unsupported;
+
+/// The open boxes of one orientation of the part.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct OpenIn {
+    /// The name of the orientation.
+    pub orientation: String,
+    /// How many boxes are open in it.
+    pub boxes: usize,
+}
+
+/// The same problem in each orientation of the part alone, in their order, with that orientation.
+pub(super) fn alone(problem: &Problem) -> impl Iterator<Item = (&Orientation, Cow<'_, Problem>)> {
+    problem.orientations.iter().enumerate().map(|(number, orientation)| {
+        let setup = Setup { orientation: number, ..problem.setup.clone() };
+        let mut one = problem.in_setup(&setup).into_owned();
+        one.orientations = Arc::from([orientation.clone()]);
+        one.setup.orientation = 0;
+        (orientation, Cow::Owned(one))
+    })
+}
+
+/// Whether the part may lie in more than one orientation.
+pub(super) fn are_several(problem: &Problem) -> bool {
+    problem.orientations.len() > 1
+}
+
+/// A bound from below ([`best`]) that holds in every orientation of the part, and where there are several the open
+/// boxes of each, in the order of those of the bound. The time that is left is shared evenly by the orientations that
+/// are left.
+///
+/// # Errors
+/// Why an orientation cannot be certified.
+pub(super) fn best_in_all(
+    problem: &Problem,
+    value: f64,
+    settings: &CertificateSettings,
+    monitor: &Monitor,
+) -> Result<(Bound, Vec<OpenIn>), Unsupported> {
+    if !are_several(problem) {
+        return Ok((best(problem, value, settings, true, monitor)?, Vec::new()));
+    }
+    let mut found: Option<Bound> = None;
+    let mut open_in = Vec::new();
+    let count = problem.orientations.len();
+    for (number, (orientation, one)) in alone(problem).enumerate() {
+        let share = |deadline: Instant| {
+            let now = Instant::now();
+            now + deadline.saturating_duration_since(now) / (count - number) as u32
+        };
+        let monitor = monitor.clone().with_deadline(monitor.deadline().map(share));
+        let bound = best(&one, value, settings, true, &monitor)?;
+        open_in.push(OpenIn { orientation: orientation.name.clone(), boxes: bound.open.len() });
+        found = Some(match found {
+            None => bound,
+            Some(other) => joined(other, bound),
+        });
+    }
+    found.map(|bound| (bound, open_in)).ok_or(Unsupported::Orientations)
+}
+
+/// The bound that holds in two orientations: the lower one, with how that ended that fell short.
+fn joined(first: Bound, second: Bound) -> Bound {
+    let open = [first.open.clone(), second.open.clone()].concat();
+    let nodes = first.nodes + second.nodes;
+    let least = first.bound.min(second.bound);
+    // Where both fell short, the one of the lower bound says why.
+    let is_first = match (first.status, second.status) {
+        (Status::Reached, Status::Reached) => first.bound <= second.bound,
+        (Status::Reached, _) => false,
+        (_, Status::Reached) => true,
+        _ => first.bound <= second.bound,
+    };
+    Bound { open, nodes, bound: least, ..if is_first { first } else { second } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certifiable;
+    use crate::certificate::certify;
+    use nalgebra::{Matrix3, Vector3};
+    use stead_model::task::{Task, ToolPath, Wrench};
+    use stead_numerics::rotation::rotation_from_vector;
+    use stead_planning::problem::{Cell, Interval, Placement};
+    use stead_planning::sense::Sense;
+    use stead_planning::testing::five_segments;
+
+    /// The five segments near the best placement, as the part lies and turned by an angle (rad) about the vertical.
+    fn in_two(angle: f64) -> (Problem, Placement) {
+        let mut problem = five_segments();
+        let at = Placement::from_mm_deg([0.0284, -1640.0, -214.0], 78.9664);
+        let near = |value: f64| Interval { min: value - 1e-3, max: value + 1e-3 };
+        problem.cell = Cell { position: [near(at.x), near(at.y), near(at.z)], yaw: near(at.yaw) };
+        let rotation = rotation_from_vector(&(Vector3::z() * angle));
+        problem.orientations =
+            Arc::from([("as it lies", Matrix3::identity()), ("turned", rotation)].map(|(name, rotation)| {
+                Orientation { name: name.to_owned(), rotation, task: Arc::new(turned(&problem.task, &rotation)) }
+            }));
+        (problem, at)
+    }
+
+    fn turned(task: &Task, by: &Matrix3<f64>) -> Task {
+        let path = task.path();
+        let points = (0..path.points().len()).map(|k| {
+            let mut point = path.points()[k];
+            point.position = by * point.position;
+            point.feed = by * point.feed;
+            point.axis = by * point.axis;
+            (path.segment_of(k) as u32 + 1, point)
+        });
+        let wrench = |w: &Wrench| Wrench { force: by * w.force, moment: by * w.moment };
+        Task::new(ToolPath::new(points).unwrap(), task.wrenches().iter().map(wrench).collect()).unwrap()
+    }
+
+    #[test]
+    fn the_least_bound_of_the_orientations_holds_and_their_boxes_are_told_by_name() {
+        let (problem, at) = in_two(0.3);
+        assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
+        let (value, settings, silent) = (0.1075e-3, CertificateSettings::new(0.001), Monitor::silent());
+        let (both, open_in) = best_in_all(&problem, value, &settings, &silent).unwrap();
+        let each: Vec<Bound> =
+            alone(&problem).map(|(_, one)| best(&one, value, &settings, true, &silent).unwrap()).collect();
+        assert_eq!(both.bound, each[0].bound.min(each[1].bound));
+        assert_eq!(open_in.iter().map(|part| part.boxes).collect::<Vec<_>>(), [each[0].open.len(), each[1].open.len()]);
+        assert_eq!(both.open.len(), each[0].open.len() + each[1].open.len());
+        assert_ne!(each[0].bound, each[1].bound);
+        // In the second orientation the same placements are others.
+        let planner = |one: &Problem| {
+            let planner = stead_planning::redundancy::Planner::finer(one);
+            let plans = planner.plan_fine(&at, Sense::Min, None, &mut planner.workspace()).unwrap();
+            one.objective(plans.iter().map(|plan| plan.cost))
+        };
+        for ((_, one), bound) in alone(&problem).zip(&each) {
+            assert!(planner(&one) >= bound.bound);
+        }
+        let proof = certify(&problem, &at, value, None, settings, &silent).best.unwrap();
+        let named = proof.open_boxes(&problem);
+        assert!(named.iter().all(|open| open.orientation.is_some()));
+        assert_eq!(named.len(), both.open.len());
+    }
+
+    #[test]
+    fn an_orientation_in_which_nothing_can_be_bounded_is_refused_by_name() {
+        let (mut problem, _) = in_two(0.3);
+        let lying = rotation_from_vector(&(Vector3::x() * 1.2));
+        let mut orientations = problem.orientations.to_vec();
+        orientations[1].task = Arc::new(turned(&problem.task, &lying));
+        // Tool axes that differ from point to point have no bound in any case.
+        let tilts = turned(&problem.task, &rotation_from_vector(&(Vector3::x() * 0.4)));
+        let points = (0..problem.task.points().len()).map(|k| {
+            let task = if k % 2 == 0 { &orientations[1].task } else { &tilts };
+            (problem.task.path().segment_of(k) as u32 + 1, task.points()[k])
+        });
+        let path = ToolPath::new(points).unwrap();
+        orientations[1].task = Arc::new(Task::new(path, problem.task.wrenches().to_vec()).unwrap());
+        problem.orientations = orientations.into();
+        let refused = certifiable(&problem, u64::MAX).unwrap_err().to_string();
+        assert!(refused.starts_with("in the orientation \"turned\": "), "{refused}");
+    }
+}
