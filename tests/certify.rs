@@ -282,7 +282,7 @@ fn a_gap_too_fine_leaves_what_is_reached_and_says_so() {
         .read("out/open-region.csv")
         .lines()
         .filter(|line| line.starts_with("best,"))
-        .map(|line| line.rsplit(',').next().unwrap().parse().unwrap())
+        .map(|line| line.split(',').nth(7).unwrap().parse().unwrap())
         .collect();
     assert!(open > 0 && rows.len() as u64 == open, "{open} and {}", rows.len());
     // The bound is that of the most promising box.
