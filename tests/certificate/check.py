@@ -335,7 +335,7 @@ def checked(run, results, count, seed, raised=None):
     with open(results / "open-region.csv") as file:
         for row in csv.DictReader(file):
             if row["search"] == "best":
-                boxes.append({key: float(text) for key, text in row.items() if key != "search" and text})
+                boxes.append({key: float(text) for key, text in row.items() if key not in ("search", "orientation") and text})
     closed = bound
     asked = json.loads((results / "certificate.json").read_text())["gap_percent_asked"] / 100
     if not raised:

@@ -14,7 +14,7 @@ use stead_planning::symmetry::{Unsupported, is_vertical};
 /// goes through.
 ///
 /// # Errors
-/// [`Unsupported::ExternalAxes`] for other axes.
+/// [`Unsupported::OtherAxes`] for other axes.
 pub(super) fn without_axes(problem: &Problem) -> Result<Cow<'_, Problem>, Unsupported> {
     let axes = &problem.external_axes;
     if axes.is_empty() {
@@ -24,7 +24,7 @@ pub(super) fn without_axes(problem: &Problem) -> Result<Cow<'_, Problem>, Unsupp
         axis.axis_use == AxisUse::Fixed && (axis.kind == AxisKind::Rail || is_vertical(&axis.direction))
     };
     if !axes.iter().all(is_covered) {
-        return Err(Unsupported::ExternalAxes);
+        return Err(Unsupported::OtherAxes);
     }
     // What is carried by several axes is moved by the last one first; a robot that moves one way is a workpiece that
     // moves the other way, and there the first axis moves it first.
@@ -36,7 +36,7 @@ pub(super) fn without_axes(problem: &Problem) -> Result<Cow<'_, Problem>, Unsupp
         (parts.external_axes, parts.scene, parts.cell) = (Vec::new(), None, cell);
         parts.setup = Setup { positions: Default::default(), ..parts.setup.clone() };
     });
-    alone.map(Cow::Owned).map_err(|_| Unsupported::ExternalAxes)
+    alone.map(Cow::Owned).map_err(|_| Unsupported::OtherAxes)
 }
 
 /// A cell that holds all places to which an axis brings those of a cell, moving it by `sign` times its positions.

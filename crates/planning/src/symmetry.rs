@@ -19,12 +19,12 @@ pub enum Unsupported {
         /// Angle between axis 1 and the vertical of the base frame. rad
         angle: f64,
     },
-    /// External axes do more than shift the cell and turn it about the vertical.
-    #[error(
-        "external axes move the workpiece or the robot otherwise than rails, and turntables about the vertical, at one place \
-         for the path"
-    )]
+    /// There are external axes.
+    #[error("external axes move the workpiece or the robot")]
     ExternalAxes,
+    /// External axes do more than shift the cell and turn it about the vertical.
+    #[error("external axes other than rails, and turntables about the vertical, that stay at one place for the path")]
+    OtherAxes,
     /// There are several orientations of the part to choose from.
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]
     Orientations,

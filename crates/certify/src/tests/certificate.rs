@@ -108,7 +108,7 @@ fn on_rail(carries: Carried, axis_use: AxisUse) -> Problem {
 fn rails_at_one_place_are_part_of_the_cell_and_others_are_refused() {
     for axis_use in [AxisUse::Indexed, AxisUse::Continuous] {
         let problem = on_rail(Carried::Robot, axis_use);
-        assert_eq!(certifiable(&problem, u64::MAX), Err(Unsupported::ExternalAxes));
+        assert_eq!(certifiable(&problem, u64::MAX), Err(Unsupported::OtherAxes));
     }
     for carries in [Carried::Robot, Carried::Workpiece] {
         let problem = on_rail(carries, AxisUse::Fixed);
@@ -203,7 +203,7 @@ fn turntables_at_one_place_are_part_of_the_cell() {
     }
     let mut tilting = turned([0.0, 1.0], [0.0, 0.0]);
     tilting.external_axes[1].direction = Vector3::x();
-    assert_eq!(certifiable(&tilting, u64::MAX), Err(Unsupported::ExternalAxes));
+    assert_eq!(certifiable(&tilting, u64::MAX), Err(Unsupported::OtherAxes));
 }
 
 /// A part on a turntable: the certificate holds below what is found at any angle of it.
