@@ -134,8 +134,8 @@ rotation = {rotation}
     for wall in range(draw.choice([2, 3])):
         across, low = wall % 2, [min(p[k] for p in places) for k in range(2)]
         high = [max(p[k] for p in places) for k in range(2)]
-        side, gap, thick = draw.choice([-1, 1]), draw.uniform(35, 80), draw.uniform(20, 60)
-        height, span = draw.uniform(100, 190), draw.uniform(40, 160)
+        side, gap, thick = draw.choice([-1, 1]), draw.uniform(45, 100), draw.uniform(20, 60)
+        height, span = draw.uniform(90, 170), draw.uniform(40, 160)
         at = [draw.uniform(low[k], high[k]) for k in range(2)]
         at[1 - across] = (high[1 - across] + gap + thick / 2) if side > 0 else (low[1 - across] - gap - thick / 2)
         size = [span, thick] if across == 0 else [thick, span]

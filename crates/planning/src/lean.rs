@@ -218,9 +218,11 @@ impl LeanSpace {
         }
         let normal = |k: usize| path.surface_normals().map_or(at[k].axis, |normals| normals[point - 1 + k]);
         let pieces = (1.0 / part - ROUNDING).ceil() as usize;
-        let along = |piece: usize| turned([&from, &to], turn, piece as f64 / pieces as f64);
+        let along = |share: f64| turned([&from, &to], turn, share);
         (0..pieces).all(|piece| {
-            let axes = if pieces == 1 { [from, to] } else { [along(piece), along(piece + 1)] };
+            // The longest of the steps that are left out, wherever it is.
+            let first = (1.0 - part) * piece as f64 / pieces.saturating_sub(1).max(1) as f64;
+            let axes = if pieces == 1 { [from, to] } else { [along(first), along(first + part)] };
             let error = |k: usize| self.rule.error_between(&normal(k), [&axes[0], &axes[1]]);
             error(0).max(error(1)) <= self.contact_tolerance * (1.0 + ROUNDING)
         })

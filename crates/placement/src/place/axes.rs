@@ -309,13 +309,7 @@ pub(super) fn kept_points(problem: &Problem, most: usize, steps_needed: impl Fn(
 
 /// The positions of all axes at every point, those of one of them in proportion to the time between the points where it
 /// is known.
-fn between(
-    problem: &Problem,
-    rows: &[Vec<f64>],
-    number: usize,
-    kept: &[usize],
-    found: &[f64],
-) -> Vec<Vec<f64>> {
+fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, kept: &[usize], found: &[f64]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     for (pair, positions) in kept.windows(2).zip(found.windows(2)) {
         let (first, last) = (pair[0], pair[1]);
