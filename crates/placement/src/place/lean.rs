@@ -255,8 +255,7 @@ pub(super) fn place_leaned(
         if closed.is_err() { drawn.last().map(|start| (start.setup.clone(), start.placement)) } else { None };
     let mut apart: Vec<Placement> = basins.iter().map(|start| start.placement).collect();
     drawn.retain(|start| {
-        let is_new =
-            apart.len() < basins.len() + settings.basins && apart.iter().all(|known| is_apart(known, &start.placement));
+        let is_new = apart.len() < 2 * settings.basins && apart.iter().all(|known| is_apart(known, &start.placement));
         apart.extend(is_new.then_some(start.placement));
         is_new
     });

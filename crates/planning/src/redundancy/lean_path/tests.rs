@@ -254,7 +254,7 @@ fn ways_made_lazily_are_those_over_all_free_states() {
         }
         let segments = free.task.segments();
         let dense: Option<Vec<Vec<Found>>> =
-            segments.iter().map(|span| plain.segment(span, &placement, &forbidden)).collect();
+            segments.iter().map(|span| plain.segment(span, &placement, &forbidden).ok()).collect();
         let dense = dense.and_then(|found| plain.chosen(&found));
         let dense = dense.map(|ways| free.objective(ways.iter().map(|way| way.cost)));
         let found = lazy.path(&placement);
