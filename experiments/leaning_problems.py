@@ -1,5 +1,5 @@
-"""Placements of a leaning tool on problems made at random: `python3 experiments/leaning_problems.py [STEAD [FIRST [LAST]]]`
-from the root of the repository. STEAD is the command, by default `target/release/stead`, FIRST and LAST are numbers of
+"""Placements of a leaning tool on problems made at random: `python3 experiments/leaning_problems.py [STEAD [FIRST
+[LAST]]]` from the root of the repository. STEAD is the command, by default `target/release/stead`, FIRST and LAST are numbers of
 problems, by default 1 to 12.
 
 Arm, mount of the spindle, path, cutter, cone, forces, cell and obstacles are drawn; no example or paper has them. Each

@@ -67,8 +67,8 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     assert!(refused.stderr.contains("the tool may lean"), "{}", refused.stderr);
 }
 
-/// The map over lead and tilt: beyond the largest lean none is allowed, and of the others the best is no worse than that
-/// of the plan at this point, but for the grid of beta.
+/// The map over lead and tilt: beyond the largest lean none is allowed, and of the others the best is no worse than
+/// that of the plan at this point, but for the grid of beta.
 fn every_lean_has_a_score_or_a_reason(bench: &Bench) {
     let rows = |file: &str| -> Vec<Vec<String>> {
         let text = bench.read(file);

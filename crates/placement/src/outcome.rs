@@ -428,9 +428,8 @@ impl Outcome {
         }
     }
 
-    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement, and the map over lead
-    /// and tilt where the tool may lean. A stop may leave
-    /// them out, which is then among the warnings.
+    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement, and where the tool
+    /// may lean the map over lead and tilt. A stop may leave them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
         let map = |case: &Case| deflection_map(&problem.in_setup(&case.setup), &case.placement, monitor);
         self.maps = self.cases.optima().into_iter().map(map).collect();

@@ -3,9 +3,9 @@
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
 //! ([`LeanPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
-//! so, and lead and tilt are planned anew, by turns. The best is refined in all at once ([`Job::together`]). External
-//! axes stay where they are best with the axis of the path, those that move along it too. A step is only taken to a plan
-//! that is better, so that where the axis of the path is allowed the result is never worse than with it.
+//! so, and lead and tilt are planned anew, by turns. The best of these are refined in all at once ([`Job::together`]).
+//! External axes stay where they are best with the axis of the path, those that move along it too. A step is only taken
+//! to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
 
 mod drawn;
 mod thinned;
@@ -40,6 +40,9 @@ const GAIN: f64 = 1e-4;
 const HALVINGS: usize = 6;
 /// Steps to either side in a halving.
 const NEAR: i32 = 1;
+/// So many of the improved placements are refined in all at once at the most, those that are worse than the best by no
+/// more than this factor.
+const FINALISTS: (usize, f64) = (3, 1.02);
 /// A drawn placement that is worse by this factor on the coarse grid than the best that is known is not a start.
 const HOPELESS: f64 = 1.25;
 
@@ -131,8 +134,8 @@ impl Job<'_> {
         best
     }
 
-    /// Leans at every point, from those at some of them, the axis turning evenly from one of these to the next; none where
-    /// one between these is not allowed, or a step.
+    /// Leans at every point, from those at some of them, the axis turning evenly from one of these to the next; none
+    /// where one between these is not allowed, or a step.
     fn spread(&self, on: &Thinned<'_>, leans: &[Lean]) -> Option<Vec<Lean>> {
         let path = on.upright.task.path();
         let mut all = vec![Lean::NONE; path.points().len()];
@@ -174,6 +177,21 @@ impl Job<'_> {
             }
         }
         Some(best)
+    }
+
+    /// The best of improved placements, of which the best few are refined in all at once.
+    fn best_finished(&self, mut all: Vec<Improved>) -> Option<Improved> {
+        all.sort_by(|a, b| a.solution.objective.total_cmp(&b.solution.objective));
+        let limit = FINALISTS.1 * all.first()?.solution.objective;
+        let mut finalists: Vec<Improved> = Vec::new();
+        for found in all {
+            let is_new = finalists.iter().all(|known| is_apart(&known.solution.placement, &found.solution.placement));
+            if finalists.len() < FINALISTS.0 && found.solution.objective <= limit && is_new {
+                finalists.push(found);
+            }
+        }
+        let finished = finalists.into_iter().map(|found| self.finished(found));
+        finished.min_by(|a, b| a.solution.objective.total_cmp(&b.solution.objective))
     }
 
     /// Placement and leans refined together, and once more wherever leans over their whole ranges are better there.
@@ -260,20 +278,19 @@ pub(super) fn place_leaned(
         is_new
     });
     let starts: Vec<Start> = basins.into_iter().chain(drawn).collect();
-    let mut best: Option<Improved> = None;
+    let mut all: Vec<Improved> = Vec::new();
     for (number, start) in starts.iter().enumerate() {
-        let known = best.as_ref().map_or(f64::INFINITY, |best| best.solution.objective);
-        if best.is_some() && monitor.should_stop() {
+        let known = all.iter().map(|found| found.solution.objective).fold(f64::INFINITY, f64::min);
+        if !all.is_empty() && monitor.should_stop() {
             break;
         }
         if start.coarse.is_some_and(|coarse| coarse > HOPELESS * known) {
             continue;
         }
         monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: starts.len() });
-        let found = job.improved(&start.setup, &start.placement);
-        best = found.filter(|found| found.solution.objective < known).or(best);
+        all.extend(job.improved(&start.setup, &start.placement));
     }
-    let Some(best) = best else {
+    let Some(best) = job.best_finished(all) else {
         return Err(closed.err().unwrap_or_else(|| Infeasible {
             placement: starts.first().map_or(Placement::from([0.0; 4]), |start| start.placement),
             searched: true,
@@ -282,7 +299,6 @@ pub(super) fn place_leaned(
             interrupted: monitor.should_stop(),
         }));
     };
-    let best = job.finished(best);
     let cases = |found: Improved, sense: Sense| {
         let set_up = problem.in_setup(&found.setup);
         let without_tie_rule = set_up.without_tie_rule();
