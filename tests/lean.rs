@@ -61,7 +61,7 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let again = ok(&bench, &["score", RUN, "--placement-of", "leaned", "--json"]).json();
     let again = again["best"]["objective_mm"].as_f64().unwrap();
     assert!((again / leaned - 1.0).abs() < 1e-3, "{again} {leaned}");
-    ok(&bench, &["export", RUN, "leaned/best.csv", "--format", "csv", "--out", "program/part"]);
+    ok(&bench, &["export", RUN, "leaned/best.csv", "--approach-mm", "0", "--format", "csv", "--out", "program/part"]);
     the_program_touches_where_the_task_does(&bench);
     let refused = bench.stead(&["place", RUN, "--certify", "5", "--no-page", "--out", "certified"]);
     assert!(refused.stderr.contains("the tool may lean"), "{}", refused.stderr);
@@ -116,7 +116,7 @@ fn no_neighbour_is_better(bench: &Bench, found: &Value) {
 
 /// The contact is rebuilt from the program alone: one whose tips are all moved is refused for it.
 fn the_program_touches_where_the_task_does(bench: &Bench) {
-    let check = ["export", RUN, "leaned/best.csv", "--check", "program/part.csv", "--json"];
+    let check = ["export", RUN, "leaned/best.csv", "--approach-mm", "0", "--check", "program/part.csv", "--json"];
     let document = ok(bench, &check).json();
     let off = document["contact_mm"]["value"].as_f64().unwrap();
     assert!(off <= document["allowed_contact_mm"].as_f64().unwrap(), "{document}");
