@@ -256,8 +256,8 @@ pub fn score_files(
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
 /// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, where the
 /// tool may lean `lean-map.csv`, the setup sheet `setup.svg` where it was made, with shapes of the cell
-/// `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and
-/// `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
+/// `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3)
+/// and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
 /// Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
