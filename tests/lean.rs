@@ -46,6 +46,8 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     {
         assert!(notes.contains(note), "{note} in {notes}");
     }
+    every_lean_has_a_score_or_a_reason(&bench);
+    no_neighbour_is_better(&bench, &found);
     // The same search with the axis of the task.
     let upright = "configs/upright.toml";
     bench.write(
@@ -59,15 +61,62 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let again = ok(&bench, &["score", RUN, "--placement-of", "leaned", "--json"]).json();
     let again = again["best"]["objective_mm"].as_f64().unwrap();
     assert!((again / leaned - 1.0).abs() < 1e-3, "{again} {leaned}");
-    ok(&bench, &["export", RUN, "leaned/best.csv", "--format", "csv", "--out", "program/part"]);
+    ok(&bench, &["export", RUN, "leaned/best.csv", "--approach-mm", "0", "--format", "csv", "--out", "program/part"]);
     the_program_touches_where_the_task_does(&bench);
     let refused = bench.stead(&["place", RUN, "--certify", "5", "--no-page", "--out", "certified"]);
     assert!(refused.stderr.contains("the tool may lean"), "{}", refused.stderr);
 }
 
+/// The map over lead and tilt: beyond the largest lean none is allowed, and of the others the best is no worse than
+/// that of the plan at this point, but for the grid of beta.
+fn every_lean_has_a_score_or_a_reason(bench: &Bench) {
+    let rows = |file: &str| -> Vec<Vec<String>> {
+        let text = bench.read(file);
+        text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    };
+    let (map, plan) = (rows("leaned/lean-map.csv"), rows("leaned/best.csv"));
+    let of = |table: &[Vec<String>], row: usize, name: &str| -> Option<f64> {
+        let column = table[0].iter().position(|head| head == name).unwrap();
+        table[row][column].parse().ok()
+    };
+    let scores: Vec<f64> = (1..plan.len()).map(|row| of(&plan, row, "score_mm").unwrap()).collect();
+    let worst = (0..scores.len()).max_by(|a, b| scores[*a].total_cmp(&scores[*b])).unwrap();
+    let mut best = f64::INFINITY;
+    assert_eq!(map.len(), 1 + 7 * 5);
+    for row in 1..map.len() {
+        assert_eq!(of(&map, row, "point"), Some(worst as f64));
+        let [lead, tilt] = ["lead_deg", "tilt_deg"].map(|name| of(&map, row, name).unwrap().to_radians());
+        let is_beyond = (lead.cos() * tilt.cos()).acos().to_degrees() > 15.0 + 1e-3;
+        assert_eq!(map[row].last().unwrap() == "lean", is_beyond, "{:?}", map[row]);
+        best = best.min(of(&map, row, "score_mm").unwrap_or(f64::INFINITY));
+    }
+    assert!(best < 1.1 * scores[worst], "{best} {}", scores[worst]);
+}
+
+/// The placement is the best one near it, with leads and tilts planned anew at each of the others.
+fn no_neighbour_is_better(bench: &Bench, found: &Value) {
+    let best = &found["cases"][0]["placement"];
+    let at = |key: &str| best[key].as_f64().unwrap();
+    let mut tried = 0;
+    for (moved, shift) in
+        [("x_mm", -3.0), ("y_mm", -3.0), ("y_mm", 3.0), ("z_mm", -3.0), ("yaw_deg", 1.7), ("yaw_deg", -1.7)]
+    {
+        let value = |key: &str| (at(key) + if key == moved { shift } else { 0.0 }).to_string();
+        let [x, y, z, yaw] = ["x_mm", "y_mm", "z_mm", "yaw_deg"].map(value);
+        let place = ["score", RUN, "--x-mm", &x, "--y-mm", &y, "--z-mm", &z, "--yaw-deg", &yaw, "--json"];
+        let ended = bench.stead(&place);
+        if ended.code == Some(0) {
+            tried += 1;
+            let there = ended.json()["best"]["objective_mm"].as_f64().unwrap();
+            assert!(there > objective(found) * (1.0 - 1e-3), "{moved} {shift}: {there} {}", objective(found));
+        }
+    }
+    assert!(tried > 2, "{tried}");
+}
+
 /// The contact is rebuilt from the program alone: one whose tips are all moved is refused for it.
 fn the_program_touches_where_the_task_does(bench: &Bench) {
-    let check = ["export", RUN, "leaned/best.csv", "--check", "program/part.csv", "--json"];
+    let check = ["export", RUN, "leaned/best.csv", "--approach-mm", "0", "--check", "program/part.csv", "--json"];
     let document = ok(bench, &check).json();
     let off = document["contact_mm"]["value"].as_f64().unwrap();
     assert!(off <= document["allowed_contact_mm"].as_f64().unwrap(), "{document}");

@@ -60,6 +60,10 @@ pub(super) const MANUAL: Manual = Manual {
             "deflection-map-{best,worst}.{csv,svg}",
             "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
         ),
+        (
+            "lean-map.csv",
+            "where the tool may lean, smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
+        ),
         ("convergence.{csv,svg}", "the genetic searches, generation by generation"),
         ("refinements.csv", "the gradient refinement of each basin: start, end, optimality residual, status"),
         ("transfers.csv", "joint moves between segments: duration and largest travel"),

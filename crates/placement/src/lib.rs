@@ -26,6 +26,7 @@
 
 pub mod coordinate_search;
 pub mod evaluator;
+pub mod lean_map;
 pub mod lookup;
 pub mod outcome;
 pub mod overview;

@@ -2,6 +2,7 @@
 
 use super::lookup::{Accuracy, Shape};
 use super::sag::Sag;
+use crate::lean_map::LeanMap;
 use crate::sensitivity::SpringSlope;
 use crate::setup_sheet::SetupSheet;
 use nalgebra::Vector3;
@@ -381,6 +382,8 @@ pub struct Outcome {
     pub refinements: Vec<Refinement>,
     /// Deflection maps at the placements ([`Cases::optima`]), where they were made ([`Outcome::map`]).
     pub maps: Option<Vec<DeflectionMap>>,
+    /// Deflection over lead and tilt at a point of the best plan, where the tool may lean, made with the maps.
+    pub lean_map: Option<LeanMap>,
     /// What a fitter needs to set the best placement up, where it was made ([`Outcome::make_sheet`]).
     pub sheet: Option<SetupSheet>,
     /// Placements evaluated.
@@ -412,6 +415,7 @@ impl Outcome {
             convergence: Vec::new(),
             refinements: Vec::new(),
             maps: None,
+            lean_map: None,
             sheet: None,
             evaluations: 0,
             states: 0,
@@ -424,13 +428,18 @@ impl Outcome {
         }
     }
 
-    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement. A stop may leave
-    /// them out, which is then among the warnings.
+    /// Makes the deflection maps at the best and, where it was looked for, at the worst placement, and where the tool
+    /// may lean the map over lead and tilt. A stop may leave them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {
         let map = |case: &Case| deflection_map(&problem.in_setup(&case.setup), &case.placement, monitor);
         self.maps = self.cases.optima().into_iter().map(map).collect();
         if self.maps.is_none() {
             self.warnings.push(left_out("the deflection maps are"));
+            return;
+        }
+        self.lean_map = LeanMap::new(problem, &self.cases.best, monitor);
+        if self.lean_map.is_none() && problem.lean.is_some() && monitor.should_stop() {
+            self.warnings.push(left_out("the map over lead and tilt is"));
         }
     }
 

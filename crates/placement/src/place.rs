@@ -137,6 +137,7 @@ fn place_as_set_up(
         convergence: found.values().into_iter().flat_map(|f| f.history.clone()).collect(),
         refinements,
         maps: None,
+        lean_map: None,
         sheet: None,
         evaluations,
         states: evaluations

@@ -1,6 +1,7 @@
 //! How far the tool may lean from the axis that the path states: in lead and tilt, at every path point.
 
 use crate::cell::Interval;
+use nalgebra::Vector3;
 use stead_model::task::lean::{ContactRule, Lean, LeanError, LeanRule, between};
 use stead_model::task::{PathPoint, ToolPath};
 
@@ -161,9 +162,7 @@ impl LeanSpace {
     fn through_normal(&self, path: &ToolPath, point: usize) -> Option<(Lean, LeanError)> {
         let normal = path.surface_normals()?[point];
         let (at, range) = (&path.points()[point], &self.ranges[point]);
-        let seen = at.workpiece_from_point().tr_mul(&normal);
-        let lean = Lean { lead: libm::atan2(seen.x, seen.z), tilt: libm::asin(seen.y.clamp(-1.0, 1.0)) };
-        let lean = range.nearest(&lean);
+        let lean = range.nearest(&lean_of(at, &normal));
         match self.rule.check(at, Some(&normal), &lean) {
             Err(error @ LeanError::ThroughNormal { .. }) => Some((lean, error)),
             _ => None,
@@ -219,12 +218,11 @@ impl LeanSpace {
         }
         let normal = |k: usize| path.surface_normals().map_or(at[k].axis, |normals| normals[point - 1 + k]);
         let pieces = (1.0 / part - ROUNDING).ceil() as usize;
-        let along = |piece: usize| {
-            let share = piece as f64 / pieces as f64;
-            (from * libm::sin((1.0 - share) * turn) + to * libm::sin(share * turn)).normalize()
-        };
+        let along = |share: f64| turned([&from, &to], turn, share);
         (0..pieces).all(|piece| {
-            let axes = if pieces == 1 { [from, to] } else { [along(piece), along(piece + 1)] };
+            // The longest of the steps that are left out, wherever it is.
+            let first = (1.0 - part) * piece as f64 / pieces.saturating_sub(1).max(1) as f64;
+            let axes = if pieces == 1 { [from, to] } else { [along(first), along(first + part)] };
             let error = |k: usize| self.rule.error_between(&normal(k), [&axes[0], &axes[1]]);
             error(0).max(error(1)) <= self.contact_tolerance * (1.0 + ROUNDING)
         })
@@ -284,6 +282,26 @@ impl LeanSpace {
             .flat_map(|lead| tilts.iter().map(move |tilt| Lean { lead, tilt: *tilt }))
             .collect()
     }
+}
+
+/// The lean that a point between two others has where the tool axis turns evenly from the lean of one to that of the
+/// other, a share of the way from the first.
+pub fn lean_between(path: &ToolPath, ends: [(usize, Lean); 2], point: usize, share: f64) -> Lean {
+    let [from, to] = ends.map(|(point, lean)| lean.axis(&path.points()[point]));
+    let turn = between(&from, &to);
+    let axis = if turn > ROUNDING { turned([&from, &to], turn, share) } else { from };
+    lean_of(&path.points()[point], &axis)
+}
+
+/// An axis turned a share of the way from one to another, which it is apart from by an angle above zero.
+fn turned([from, to]: [&Vector3<f64>; 2], turn: f64, share: f64) -> Vector3<f64> {
+    (from * libm::sin((1.0 - share) * turn) + to * libm::sin(share * turn)).normalize()
+}
+
+/// The lean with which the tool axis of a point is along a unit vector.
+fn lean_of(at: &PathPoint, axis: &Vector3<f64>) -> Lean {
+    let seen = at.workpiece_from_point().tr_mul(axis);
+    Lean { lead: libm::atan2(seen.x, seen.z), tilt: libm::asin(seen.y.clamp(-1.0, 1.0)) }
 }
 
 /// Values of a range, `half` to either side of the middle.

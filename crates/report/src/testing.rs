@@ -65,6 +65,7 @@ pub fn outcome() -> &'static Outcome {
             convergence,
             refinements,
             maps: Some(vec![best.map(), worst.map()]),
+            lean_map: None,
             sheet: None,
             evaluations: 12480,
             states: 157_248_000,

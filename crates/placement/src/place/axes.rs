@@ -30,7 +30,7 @@ const GAIN: f64 = 1e-4;
 /// How often the positions of an axis along the path are narrowed down.
 const NARROWINGS: usize = 3;
 /// With more path points the placement is not refined again for other positions of the axes.
-const MOST_REFINED: usize = 5000;
+pub(super) const MOST_REFINED: usize = 5000;
 /// Steps of the positions of an axis at the most.
 const STEPS: usize = 60;
 /// Points that are left of a segment at least, where the axis is planned on some of the points of a dense path.
@@ -309,13 +309,7 @@ pub(super) fn kept_points(problem: &Problem, most: usize, steps_needed: impl Fn(
 
 /// The positions of all axes at every point, those of one of them in proportion to the time between the points where it
 /// is known.
-pub(super) fn between(
-    problem: &Problem,
-    rows: &[Vec<f64>],
-    number: usize,
-    kept: &[usize],
-    found: &[f64],
-) -> Vec<Vec<f64>> {
+fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, kept: &[usize], found: &[f64]) -> Vec<Vec<f64>> {
     let mut rows = rows.to_vec();
     for (pair, positions) in kept.windows(2).zip(found.windows(2)) {
         let (first, last) = (pair[0], pair[1]);

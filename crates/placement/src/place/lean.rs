@@ -3,37 +3,34 @@
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
 //! ([`LeanPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
-//! so, and lead and tilt are planned anew, by turns. External axes stay where they are best with the axis of the path,
-//! those that move along it too. A step is only taken to a plan that is better, so that where the axis of the path is
-//! allowed the result is never worse than with it.
+//! so, and lead and tilt are planned anew, by turns. The best of these are refined in all at once ([`Job::together`]).
+//! External axes stay where they are best with the axis of the path, those that move along it too. A step is only taken
+//! to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
 
-use super::axes::{Improved, between, kept_points, refined};
+mod drawn;
+mod thinned;
+mod together;
+
+use super::axes::{Improved, kept_points, refined};
 use super::infeasible::Infeasible;
 use super::refined::Refined;
 use super::{notes, stated_cases};
 use crate::outcome::{Case, Cases, Outcome, left_out};
-use crate::path_subset::PathSubset;
 use crate::refine::planned;
 use crate::settings::SearchSettings;
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
-use std::f64::consts::PI;
-use std::sync::Arc;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
-use stead_planning::problem::{Interval, Placement, Problem};
+use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS, lean_between};
+use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::lean_path::{LeanGrid, LeanPath, LeanPlanner};
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
 use stead_planning::transfer::TransferSettings;
+use thinned::Thinned;
 
-/// Placements from which the tool is led along the path.
-const STARTS: usize = 4;
-/// Two of them are no nearer than this in one coordinate (m, rad).
+/// Two starts are no nearer than this in one coordinate (m, rad).
 const APART: [f64; 2] = [0.05, 0.2];
 /// Rounds of leans and placement.
 const ROUNDS: usize = 4;
@@ -43,10 +40,9 @@ const GAIN: f64 = 1e-4;
 const HALVINGS: usize = 6;
 /// Steps to either side in a halving.
 const NEAR: i32 = 1;
-/// Placements drawn over the cell, so many at a time, and what they are compared on: points of the path, steps to
-/// either side in lead and in tilt, and the smallest step of beta (rad).
-const DRAWN: (usize, usize) = (192, 16);
-const DRAWN_ON: (usize, usize, f64) = (40, 2, PI / 12.0);
+/// So many of the improved placements are refined in all at once at the most, those that are worse than the best by no
+/// more than this factor.
+const FINALISTS: (usize, f64) = (3, 1.02);
 /// A drawn placement that is worse by this factor on the coarse grid than the best that is known is not a start.
 const HOPELESS: f64 = 1.25;
 
@@ -91,59 +87,76 @@ impl Job<'_> {
         let sparse = kept_points(&upright, MOST_PLANNED_POINTS, |time| {
             slowest(&upright).map_or(0.0, |speed| step / (speed * time)).max(step / turn)
         });
-        let dense = kept_points(&upright, MOST_PLANNED_POINTS, |_| 0.0);
-        let is_one = sparse == dense;
-        best = self.on_points(setup, placement, &upright, &sparse, best);
+        let sparse = Thinned::new(&upright, sparse);
+        let dense = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
+        let is_one = sparse.kept == dense.kept;
+        best = self.on_points(setup, placement, &sparse, best);
         if !is_one && (best.is_none() || !self.monitor.should_stop()) {
-            best = self.on_points(setup, placement, &upright, &dense, best);
+            best = self.on_points(setup, placement, &dense, best);
         }
         best
     }
 
-    /// The best lean at a placement with lead and tilt planned on some points, in proportion between them.
+    /// The best lean at a placement with lead and tilt planned on some points.
     fn on_points(
         &self,
         setup: &Setup,
         placement: &Placement,
-        upright: &Problem,
-        kept: &[usize],
+        on: &Thinned<'_>,
+        best: Option<Improved>,
+    ) -> Option<Improved> {
+        let way = LeanGrid::new(on.problem()).and_then(|grid| path_of(&grid, placement)).map(|path| path.leans);
+        self.halved(setup, placement, on, way, self.space.steps, best)
+    }
+
+    /// The best of leans at some points and of those near them, in ever smaller steps of lead and tilt.
+    fn halved(
+        &self,
+        setup: &Setup,
+        placement: &Placement,
+        on: &Thinned<'_>,
+        mut way: Option<Vec<Lean>>,
+        mut steps: [f64; 2],
         mut best: Option<Improved>,
     ) -> Option<Improved> {
-        let thinned =
-            (kept.len() < upright.task.points().len()).then(|| PathSubset::of_points(kept.to_vec()).of(upright));
-        let coarse = thinned.as_ref().unwrap_or(upright);
-        let of_grid = |grid: LeanGrid<'_>| -> Option<LeanPath> {
-            let problems = grid.problems();
-            LeanPlanner::new(&grid, &problems).path(placement)
-        };
-        let mut way = LeanGrid::new(coarse).and_then(of_grid).map(|path| path.leans);
-        let mut steps = self.space.steps;
         for _ in 0..=HALVINGS {
             let Some(leans) = way.take().filter(|_| best.is_none() || !self.monitor.should_stop()) else { break };
-            let spread = self.spread(upright, kept, &leans);
-            let candidate = spread.and_then(|leans| self.planned(setup, placement, leans));
+            let candidate = self.spread(on, &leans).and_then(|leans| self.planned(setup, placement, leans));
             if let Some(candidate) = candidate
                 && best.as_ref().is_none_or(|best| candidate.solution.objective < best.solution.objective)
             {
                 best = Some(candidate);
             }
             steps = steps.map(|step| step / 2.0);
-            way = LeanGrid::near(coarse, &leans, steps, NEAR).and_then(of_grid).map(|path| path.leans);
+            let near = LeanGrid::near(on.problem(), &leans, steps, NEAR);
+            way = near.and_then(|grid| path_of(&grid, placement)).map(|path| path.leans);
         }
         best
     }
 
-    /// Leans at every point, from those at some of them; none where one between these is not allowed, or a step.
-    fn spread(&self, upright: &Problem, kept: &[usize], leans: &[Lean]) -> Option<Vec<Lean>> {
-        let path = upright.task.path();
-        let rows = vec![vec![0.0; 2]; path.points().len()];
-        let rows = between(upright, &rows, 0, kept, &leans.iter().map(|lean| lean.lead).collect::<Vec<f64>>());
-        let rows = between(upright, &rows, 1, kept, &leans.iter().map(|lean| lean.tilt).collect::<Vec<f64>>());
-        let lean = |(point, row): (usize, &Vec<f64>)| {
-            let lean = self.space.ranges[point].nearest(&Lean { lead: row[0], tilt: row[1] });
+    /// Leans at every point, from those at some of them, the axis turning evenly from one of these to the next; none
+    /// where one between these is not allowed, or a step.
+    fn spread(&self, on: &Thinned<'_>, leans: &[Lean]) -> Option<Vec<Lean>> {
+        let path = on.upright.task.path();
+        let mut all = vec![Lean::NONE; path.points().len()];
+        for (point, lean) in on.kept.iter().zip(leans) {
+            all[*point] = *lean;
+        }
+        for pair in on.kept.windows(2).filter(|pair| path.segment_of(pair[0]) == path.segment_of(pair[1])) {
+            let ends = [pair[0], pair[1]].map(|point| (point, all[point]));
+            let times: Vec<f64> = (pair[0] + 1..=pair[1]).map(|point| on.upright.step_time(point)).collect();
+            let whole: f64 = times.iter().sum();
+            let mut done = 0.0;
+            for (point, time) in (pair[0] + 1..pair[1]).zip(&times) {
+                done += time;
+                all[point] = lean_between(path, ends, point, done / whole);
+            }
+        }
+        let lean = |(point, lean): (usize, &Lean)| {
+            let lean = self.space.ranges[point].nearest(lean);
             self.space.allows(path, point, &lean).then_some(lean)
         };
-        let leans: Vec<Lean> = rows.iter().enumerate().map(lean).collect::<Option<_>>()?;
+        let leans: Vec<Lean> = all.iter().enumerate().map(lean).collect::<Option<_>>()?;
         let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
         steps.all(|point| self.space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
     }
@@ -166,63 +179,52 @@ impl Job<'_> {
         Some(best)
     }
 
+    /// The best of improved placements, of which the best few are refined in all at once.
+    fn best_finished(&self, mut all: Vec<Improved>) -> Option<Improved> {
+        all.sort_by(|a, b| a.solution.objective.total_cmp(&b.solution.objective));
+        let limit = FINALISTS.1 * all.first()?.solution.objective;
+        let mut finalists: Vec<Improved> = Vec::new();
+        for found in all {
+            let is_new = finalists.iter().all(|known| is_apart(&known.solution.placement, &found.solution.placement));
+            if finalists.len() < FINALISTS.0 && found.solution.objective <= limit && is_new {
+                finalists.push(found);
+            }
+        }
+        let finished = finalists.into_iter().map(|found| self.finished(found));
+        finished.min_by(|a, b| a.solution.objective.total_cmp(&b.solution.objective))
+    }
+
+    /// Placement and leans refined together, and once more wherever leans over their whole ranges are better there.
+    fn finished(&self, known: Improved) -> Improved {
+        let mut best = known;
+        for _ in 0..ROUNDS {
+            best = self.together(best);
+            let before = best.solution.objective;
+            if self.monitor.should_stop() {
+                break;
+            }
+            let (setup, placement) = (best.setup.clone(), best.solution.placement);
+            best = self.at(&setup, &placement, Some(best.clone())).unwrap_or(best);
+            if best.solution.objective >= before {
+                break;
+            }
+        }
+        best
+    }
+
     /// The best placements with the axis of the path, each with its setup.
-    fn basins(&self, outcome: &Outcome) -> Vec<Start> {
+    fn basins(&self, outcome: &Outcome, most: usize) -> Vec<Start> {
         let best = &outcome.cases.best;
         let start = |placement: Placement| Start { setup: best.setup.clone(), placement, coarse: None };
         let mut starts = vec![start(best.placement)];
         let mut others: Vec<_> = outcome.refinements.iter().filter(|one| one.sense == Sense::Min).collect();
         others.sort_by(|a, b| a.end_mean.total_cmp(&b.end_mean));
         for other in others {
-            if starts.len() < STARTS && starts.iter().all(|start| is_apart(&start.placement, &other.end)) {
+            if starts.len() < most && starts.iter().all(|start| is_apart(&start.placement, &other.end)) {
                 starts.push(start(other.end));
             }
         }
         starts
-    }
-
-    /// Placements drawn over the cell that have a plan on a coarse grid of leans, the best first; in any case the one
-    /// of a cell that holds no other.
-    fn drawn(&self, setup: &Setup, seed: u64) -> Vec<Start> {
-        let setup = Setup { leans: [].into(), ..setup.clone() };
-        if let Some(placement) = self.problem.cell.pinned() {
-            return vec![Start { setup, placement, coarse: None }];
-        }
-        let upright = self.problem.in_setup(&setup);
-        let (points, half, step) = DRAWN_ON;
-        let few = PathSubset::new(&upright.task, points).of(&upright);
-        let [lead, tilt] = self.space.half_counts().map(|all| all.max(half) as f64 / half as f64);
-        let coarse = few.changed(|parts| {
-            parts.redundancy.beta_count = parts.redundancy.beta_count.min((2.0 * PI / step) as usize);
-            if let Some(space) = &mut parts.lean {
-                let wide = Arc::make_mut(space);
-                wide.steps = [wide.steps[0] * lead, wide.steps[1] * tilt];
-            }
-        });
-        let coarse = coarse.unwrap_or(few);
-        let Some(grid) = LeanGrid::new(&coarse) else { return Vec::new() };
-        let problems = grid.problems();
-        let planner = LeanPlanner::new(&grid, &problems);
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut placement = || {
-            let mut within = |ends: &Interval| ends.min + (ends.max - ends.min) * random.random_range(0.0..1.0);
-            let [x, y, z] = [0, 1, 2].map(|k| within(&self.problem.cell.position[k]));
-            Placement { x, y, z, yaw: within(&self.problem.cell.yaw) }
-        };
-        let placements: Vec<Placement> = (0..DRAWN.0).map(|_| placement()).collect();
-        let mut found: Vec<(f64, Placement)> = Vec::new();
-        for (number, some) in placements.chunks(DRAWN.1).enumerate() {
-            if self.monitor.should_stop() {
-                break;
-            }
-            let done = number * DRAWN.1;
-            self.monitor.report(Progress::Steps { stage: "placements for a leaning tool", done, total: DRAWN.0 });
-            let planned = some.par_iter().map(|at| planner.path(at).map(|path| (path.objective, *at)));
-            found.extend(planned.collect::<Vec<_>>().into_iter().flatten());
-        }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let start = |(coarse, placement)| Start { setup: setup.clone(), placement, coarse: Some(coarse) };
-        found.into_iter().map(start).collect()
     }
 }
 
@@ -232,6 +234,12 @@ struct Start {
     placement: Placement,
     /// What a coarse grid of leans gives there, where it was drawn. m
     coarse: Option<f64>,
+}
+
+/// The cheapest way of the tool on a grid of leans.
+fn path_of(grid: &LeanGrid<'_>, placement: &Placement) -> Option<LeanPath> {
+    let problems = grid.problems();
+    LeanPlanner::new(grid, &problems).path(placement)
 }
 
 /// Whether two placements are apart in some coordinate.
@@ -259,31 +267,30 @@ pub(super) fn place_leaned(
     let Some(space) = problem.lean.as_deref() else { return closed };
     let without_tie_rule = problem.without_tie_rule();
     let job = Job { problem: &without_tie_rule, space, monitor };
-    let basins = closed.as_ref().map_or_else(|_| Vec::new(), |outcome| job.basins(outcome));
-    let mut drawn = job.drawn(basins.first().map_or(&problem.setup, |start| &start.setup), settings.seed);
+    let basins = closed.as_ref().map_or_else(|_| Vec::new(), |outcome| job.basins(outcome, settings.basins));
+    let mut drawn = job.drawn(basins.first().map_or(&problem.setup, |start| &start.setup), settings);
     let worst_drawn =
         if closed.is_err() { drawn.last().map(|start| (start.setup.clone(), start.placement)) } else { None };
     let mut apart: Vec<Placement> = basins.iter().map(|start| start.placement).collect();
     drawn.retain(|start| {
-        let is_new = apart.len() < basins.len() + STARTS && apart.iter().all(|known| is_apart(known, &start.placement));
+        let is_new = apart.len() < 2 * settings.basins && apart.iter().all(|known| is_apart(known, &start.placement));
         apart.extend(is_new.then_some(start.placement));
         is_new
     });
     let starts: Vec<Start> = basins.into_iter().chain(drawn).collect();
-    let mut best: Option<Improved> = None;
+    let mut all: Vec<Improved> = Vec::new();
     for (number, start) in starts.iter().enumerate() {
-        let known = best.as_ref().map_or(f64::INFINITY, |best| best.solution.objective);
-        if best.is_some() && monitor.should_stop() {
+        let known = all.iter().map(|found| found.solution.objective).fold(f64::INFINITY, f64::min);
+        if !all.is_empty() && monitor.should_stop() {
             break;
         }
         if start.coarse.is_some_and(|coarse| coarse > HOPELESS * known) {
             continue;
         }
         monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: starts.len() });
-        let found = job.improved(&start.setup, &start.placement);
-        best = found.filter(|found| found.solution.objective < known).or(best);
+        all.extend(job.improved(&start.setup, &start.placement));
     }
-    let Some(best) = best else {
+    let Some(best) = job.best_finished(all) else {
         return Err(closed.err().unwrap_or_else(|| Infeasible {
             placement: starts.first().map_or(Placement::from([0.0; 4]), |start| start.placement),
             searched: true,

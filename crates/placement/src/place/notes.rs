@@ -108,7 +108,7 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
     };
     notes.push(format!(
         "lead and tilt are planned at placements that are good with the axis of the path and at the best of some drawn over the cell, and \
-         refined by turns with the placement: a place that is good only with a leaning tool may have been missed{worst}"
+         refined with the placement: a place that is good only with a leaning tool may have been missed{worst}"
     ));
     notes
 }

@@ -173,7 +173,7 @@ const NEAR: f64 = 0.01;
 
 /// The placements a distance (in scaled variables) before and behind another along x, y, z and yaw, as far as the cell
 /// allows.
-fn neighbours(problem: &Problem, centre: &Placement, distance: f64) -> Vec<Placement> {
+pub(crate) fn neighbours(problem: &Problem, centre: &Placement, distance: f64) -> Vec<Placement> {
     let along = (0..4).flat_map(|k| [(k, -1.0), (k, 1.0)]);
     let moved = |(k, side): (usize, f64)| {
         let mut placement = *centre;

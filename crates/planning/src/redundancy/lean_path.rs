@@ -39,6 +39,15 @@ pub struct LeanPath {
     pub rounds: usize,
 }
 
+/// What keeps a placement from having a way of the tool along the path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unreached {
+    /// Path points that no state reaches from the point before, after each of which a way begins anew.
+    pub points: usize,
+    /// Segments without a way.
+    pub segments: usize,
+}
+
 /// The planner of a [`LeanGrid`]: what does not change from one placement to the next.
 #[derive(Debug, Clone)]
 pub struct LeanPlanner<'a> {
@@ -55,6 +64,8 @@ pub struct LeanPlanner<'a> {
 struct LeanPass {
     /// For each class the smallest sum of costs with the lean and beta number at the end.
     ends: [Option<(f64, usize, usize)>; 4],
+    /// Points that no state reaches from the point before, after each of which a way begins anew.
+    unreached: usize,
     /// For every point, class, lean and beta the lean and the beta number before.
     links: Vec<Link>,
 }
@@ -106,17 +117,29 @@ impl<'a> LeanPlanner<'a> {
 
     /// The cheapest way of the tool along the path at a placement; none where there is none.
     pub fn path(&self, placement: &Placement) -> Option<LeanPath> {
+        self.path_or_unreached(placement).ok()
+    }
+
+    /// The cheapest way of the tool along the path at a placement.
+    ///
+    /// # Errors
+    /// [`Unreached`] where there is none.
+    pub fn path_or_unreached(&self, placement: &Placement) -> Result<LeanPath, Unreached> {
         let problem = self.grid.problem;
-        if problem.placement_hit(placement).is_some() {
-            return None;
-        }
         let spans = problem.task.segments();
+        let all = Unreached { points: problem.task.points().len(), segments: spans.len() };
+        if problem.placement_hit(placement).is_some() {
+            return Err(all);
+        }
         let mut forbidden = vec![StateSet::default(); self.planners.len()];
         let mut checked = vec![[false; 4]; problem.task.points().len()];
-        let mut found: Vec<Vec<Found>> =
-            spans.iter().map(|span| self.segment(span, placement, &forbidden)).collect::<Option<_>>()?;
+        let ways = spans.iter().map(|span| self.segment(span, placement, &forbidden));
+        let ways: Vec<Result<Vec<Found>, usize>> = ways.collect();
+        let missed = || ways.iter().filter_map(|way| way.as_ref().err());
+        let unreached = Unreached { points: missed().sum(), segments: missed().count() };
+        let Ok(mut found) = ways.into_iter().collect::<Result<Vec<_>, usize>>() else { return Err(unreached) };
         for rounds in 1.. {
-            let chosen = self.chosen(&found)?;
+            let Some(chosen) = self.chosen(&found) else { return Err(Unreached { points: 0, ..all }) };
             let mut again = Vec::new();
             for (index, (span, way)) in spans.iter().zip(&chosen).enumerate() {
                 if self.forbid_hits(span, placement, way, &mut checked, &mut forbidden) {
@@ -129,13 +152,14 @@ impl<'a> LeanPlanner<'a> {
                     self.grid.leans[*number][point].unwrap_or(Lean::NONE)
                 };
                 let leans = spans.iter().zip(&chosen).flat_map(|(span, found)| span.clone().zip(&found.way).map(lean));
-                return Some(LeanPath { leans: leans.collect(), objective: problem.objective(costs), rounds });
+                return Ok(LeanPath { leans: leans.collect(), objective: problem.objective(costs), rounds });
             }
             for index in again {
-                found[index] = self.segment(&spans[index], placement, &forbidden)?;
+                let way = self.segment(&spans[index], placement, &forbidden);
+                found[index] = way.map_err(|points| Unreached { points, segments: 1 })?;
             }
         }
-        None
+        Err(all)
     }
 
     /// Of the ways of every segment the cheapest, or those of one posture all along.
@@ -156,12 +180,15 @@ impl<'a> LeanPlanner<'a> {
         problem.postures.allowed().filter_map(of).min_by(|a, b| objective(a).total_cmp(&objective(b)))
     }
 
-    /// The cheapest way along a segment in every posture class in which there is one; none where there is none.
-    fn segment(&self, span: &Span<usize>, placement: &Placement, forbidden: &[StateSet]) -> Option<Vec<Found>> {
-        let evaluators = 0..self.planners.first()?.evaluators.len();
+    /// The cheapest way along a segment in every posture class in which there is one, or how many points none
+    /// reaches.
+    fn segment(&self, span: &Span<usize>, placement: &Placement, forbidden: &[StateSet]) -> Result<Vec<Found>, usize> {
+        let evaluators = self.planners.first().map_or(0, |planner| planner.evaluators.len());
         let mut found = Vec::new();
-        for evaluator in evaluators {
+        let mut unreached = span.len();
+        for evaluator in 0..evaluators {
             let pass = self.pass(evaluator, span, placement, forbidden);
+            unreached = unreached.min(pass.unreached);
             for class in PostureClass::ALL {
                 if let Some((cost, lean, beta)) = pass.ends[class.index()] {
                     let way = self.trace(&pass, span, class, (lean, beta));
@@ -169,7 +196,7 @@ impl<'a> LeanPlanner<'a> {
                 }
             }
         }
-        (!found.is_empty()).then_some(found)
+        if found.is_empty() { Err(unreached.max(1)) } else { Ok(found) }
     }
 
     /// Goes through a segment in all posture classes at once.
@@ -182,6 +209,7 @@ impl<'a> LeanPlanner<'a> {
         let mut links = vec![Link::default(); span.len() * 4 * number * beta_count];
         let mut before = vec![StateGrid::new(beta_count, self.pad); number];
         let mut now = before.clone();
+        let (mut is_start, mut unreached) = (true, 0);
         for (point, row) in span.clone().zip(links.chunks_mut(4 * number * beta_count)) {
             let states = now.par_iter_mut().zip(row.par_chunks_mut(4 * beta_count)).enumerate();
             states.for_each_init(Reached::default, |reached, (lean, (states, links))| {
@@ -191,7 +219,7 @@ impl<'a> LeanPlanner<'a> {
                     if !states.is_alive(class) {
                         continue;
                     }
-                    if point == span.start {
+                    if is_start {
                         transition::begin(states, class, 1.0);
                     } else if !self.reach((point, lean, class), &before, states, links, reached) {
                         states.clear(class);
@@ -201,14 +229,16 @@ impl<'a> LeanPlanner<'a> {
                 }
             });
             std::mem::swap(&mut before, &mut now);
+            is_start = !before.iter().any(|states| PostureClass::ALL.iter().any(|class| states.is_alive(*class)));
+            unreached += usize::from(is_start);
         }
         let end = |class: PostureClass| {
             let costs = before.iter().enumerate().filter(|(_, states)| states.is_alive(class)).flat_map(|(lean, s)| {
                 s.inner_scores(class).iter().enumerate().map(move |(beta, cost)| (*cost, lean, beta))
             });
-            costs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|end| end.0.is_finite())
+            costs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|end| unreached == 0 && end.0.is_finite())
         };
-        LeanPass { ends: PostureClass::ALL.map(end), links }
+        LeanPass { ends: PostureClass::ALL.map(end), unreached, links }
     }
 
     /// The allowed states of a point in one lean, as far as they are known not to hit.

@@ -5,7 +5,7 @@ use super::table::Table;
 use super::{PageError, clearance, map_data, removal};
 use crate::Files;
 use crate::document::value;
-use crate::placement::SETUP_SHEET;
+use crate::placement::{LEAN_MAP, SETUP_SHEET};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -55,7 +55,7 @@ pub(super) fn sources(command: &str) -> Vec<(&'static str, bool)> {
     names.extend(kind.plans.iter().enumerate().map(|(number, name)| (*name, number < 2)));
     let optional = ["deflection-map-best.csv", "deflection-map-worst.csv", "deflection-map.csv"];
     names.extend(optional.iter().chain(kind.stability).map(|name| (*name, false)));
-    names.extend(["convergence.csv", CERTIFICATE, OPEN_REGION, SETUP_SHEET].map(|name| (name, false)));
+    names.extend(["convergence.csv", LEAN_MAP, CERTIFICATE, OPEN_REGION, SETUP_SHEET].map(|name| (name, false)));
     names
 }
 
@@ -110,6 +110,7 @@ pub(super) fn content(files: &Files) -> Result<Value, PageError> {
         plans,
         thinned: chosen.as_ref().map(|chosen| Thinned { points, shown: chosen.len() }),
         convergence: read("convergence.csv")?.map(|table| table.content(&["search"], None)).transpose()?,
+        lean_map: read(LEAN_MAP)?.map(|table| table.content(&["reason", "pair"], None)).transpose()?,
         depths: depths.collect::<Result<_, _>>()?,
         certificate: bytes(CERTIFICATE).map(|found| json_file(CERTIFICATE, found)).transpose()?,
         setup_sheet_svg: bytes(SETUP_SHEET).map(|found| String::from_utf8_lossy(found).into_owned()),
@@ -147,6 +148,9 @@ struct Content {
     /// The table of the convergence.
     #[serde(skip_serializing_if = "Option::is_none")]
     convergence: Option<Value>,
+    /// The map over lead and tilt.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lean_map: Option<Value>,
     /// The tables of critical depths.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     depths: Vec<Value>,

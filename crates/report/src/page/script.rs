@@ -52,6 +52,7 @@ const MODULES: &[(&str, &str)] = modules![
     "run/gpu.js",
     "run/header.js",
     "run/kinematics.js",
+    "run/lean-map.js",
     "run/linear.js",
     "run/link.js",
     "run/loads.js",

@@ -143,6 +143,9 @@ pub(crate) const SUMMARY: &str = "summary.json";
 const MAPS: [[&str; 2]; 2] =
     [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
 
+/// The map over lead and tilt.
+pub(crate) const LEAN_MAP: &str = "lean-map.csv";
+
 /// What these placements are called.
 const PLACES: [&str; 2] = ["the best placement", "the worst placement"];
 
@@ -251,10 +254,10 @@ pub fn score_files(
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4; without the worst placement those of it are left out), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, the setup
-/// sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`; and where stability was requested,
-/// `stability-best.csv`, `stability-worst.csv` (cases 1 and 3) and `stability.svg`; unless the run does without,
-/// `page-data.json`, `report.html` and `cell.glb`.
+/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, where the
+/// tool may lean `lean-map.csv`, the setup sheet `setup.svg` where it was made, with shapes of the cell
+/// `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3)
+/// and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
 /// Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
@@ -269,7 +272,7 @@ pub fn write_placement(
     let beside = folder.beside_finished(PLACE, outcome.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);
     let made = outcome.maps.as_ref().map_or(0, Vec::len);
-    let outdated = MAPS.into_iter().skip(made).flatten();
+    let outdated = MAPS.into_iter().skip(made).flatten().chain(outcome.lean_map.is_none().then_some(LEAN_MAP));
     let outdated = outdated.chain(outcome.cases.worst.is_none().then_some(OF_WORST).into_iter().flatten());
     let outdated = outdated.chain(problem.scene.is_none().then_some(SURROUNDINGS));
     let outdated = outdated.chain(outcome.sheet.is_none().then_some(SETUP_SHEET));
@@ -313,6 +316,9 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
     for ((map, plans), (names, place)) in outcome.maps.iter().flatten().zip(plans).zip(MAPS.into_iter().zip(PLACES)) {
         files.extend(map_files(problem, map, plans, names, place)?);
         maps.push((placed(plans[0]), map, names[0]));
+    }
+    if let Some(map) = &outcome.lean_map {
+        files.push((LEAN_MAP, tables::lean_map(problem, map)?));
     }
     context.with_page(named(files), PLACE, problem, &outcome.cases.all(), &maps)
 }

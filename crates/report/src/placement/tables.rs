@@ -11,8 +11,10 @@ use crate::output::ReportError;
 use stead_cell::Scene;
 use stead_model::published::Published;
 use stead_model::robot::Posture;
+use stead_model::task::lean::Lean;
+use stead_placement::lean_map::{LeanMap, LeanReason, LeanState};
 use stead_placement::outcome::{Case, Cases, Generation, Plan, Refinement};
-use stead_planning::feasibility::DeflectionMap;
+use stead_planning::feasibility::{DeflectionMap, MapReason};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer::Transfer;
 
@@ -162,6 +164,45 @@ pub fn deflection_map(at: (&Problem, &Placement), map: &DeflectionMap) -> Result
     let states = map.rows.iter().enumerate().flat_map(|(point, row)| (0..row.len()).map(move |k| (point, k)));
     let states = states.map(|(point, k)| MapRow::of(at, map, point, k));
     rows("the table of a deflection map", states)
+}
+
+records! {
+    /// A lead and tilt of the grid at the point of the best plan that deflects most, the rest of the path left out.
+    #[derive(Default)]
+    pub struct LeanMapRow of (problem: &Problem, map: &LeanMap, lean: &Lean, state: &LeanState) {
+        let reason = state.err();
+        let pair = |scene: &Scene| match reason {
+            Some(LeanReason::State(MapReason { pair: Some(pair), .. })) => scene.pair(pair).map(ToString::to_string),
+            _ => None,
+        };
+    } with {
+        /// Path point, from 0.
+        point: usize = map.point,
+        /// Lead of the tool from the axis of the path.
+        lead_deg: AngleDeg = lean.lead.into(),
+        /// Tilt of the tool from the axis of the path.
+        tilt_deg: AngleDeg = lean.tilt.into(),
+        /// The angle about the tool axis with the smallest score; empty where no state is allowed.
+        beta_deg: Option<AngleDeg> = state.ok().map(|(beta, _)| beta.into()),
+        /// The smallest score over all angles about the tool axis and allowed postures; empty where none is allowed.
+        score_mm: Option<DeflectionMm> = state.ok().map(|(_, cell)| cell.score.into()),
+        /// The posture of that score, 1 to 8.
+        #[schemars(with = "Option<u8>")] posture: Option<Posture> = state.ok().map(|(_, cell)| cell.posture),
+        /// Why none is allowed: `lean` for `max_lean_deg`, `scallop_mm` or `step_over_mm`, or what most angles break.
+        reason: Option<String> = reason.map(LeanReason::code),
+        /// The pair of shapes that hits, among shapes of a cell.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pair: Option<String> = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
+    }
+}
+
+/// `lean-map.csv`: a [`LeanMapRow`] for every lead and tilt of the grid.
+///
+/// # Errors
+/// [`ReportError::Format`] when the CSV writer fails.
+pub fn lean_map(problem: &Problem, map: &LeanMap) -> Result<Vec<u8>, ReportError> {
+    let leans = map.leans.iter().map(|(lean, state)| LeanMapRow::of(problem, map, lean, state));
+    rows("the map over lead and tilt", leans)
 }
 
 records! {

@@ -96,7 +96,7 @@ impl Writer<'_> {
             (has_moments, ",moment_x_nm,moment_y_nm,moment_z_nm"),
             (has_feeds, ",feed_mm_per_s"),
             (has_part, PART),
-            (has_leans, ",lead_min_deg,lead_max_deg"),
+            (has_leans, ",lead_min_deg,lead_max_deg,tilt_min_deg,tilt_max_deg"),
             (has_scored, ",scored"),
         ] {
             text.push_str(if is_there { names } else { "" });
@@ -119,8 +119,8 @@ impl Writer<'_> {
                 numbers.extend(self.part_columns());
             }
             if has_leans {
-                let narrow = if number % 2 == 0 { [2.0, 8.0] } else { [3.0, 6.0] };
-                numbers.extend(if step.scored { narrow } else { [0.0, 0.0] });
+                let narrow = if number % 2 == 0 { [2.0, 8.0, -3.0, 3.0] } else { [3.0, 6.0, -2.0, 1.0] };
+                numbers.extend(if step.scored { narrow } else { [0.0; 4] });
             }
             let words: Vec<String> = numbers.iter().map(|number| format!("{number:.9}")).collect();
             let _ = write!(text, "{},{}", step.segment, words.join(","));

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::cell::Interval;
-use crate::lean::{LeanRange, LeanSpace};
+use crate::lean::{LeanRange, LeanSpace, lean_between};
 use crate::problem::ProblemParts;
 use crate::redundancy::joint_turns::is_allowed;
 use crate::setup::Setup;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
 use stead_cell::{Attachment, Solid};
 use stead_model::robot::angles::wrap;
-use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
+use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule, between};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 
 const BALL: LeanRule =
@@ -254,7 +254,7 @@ fn ways_made_lazily_are_those_over_all_free_states() {
         }
         let segments = free.task.segments();
         let dense: Option<Vec<Vec<Found>>> =
-            segments.iter().map(|span| plain.segment(span, &placement, &forbidden)).collect();
+            segments.iter().map(|span| plain.segment(span, &placement, &forbidden).ok()).collect();
         let dense = dense.and_then(|found| plain.chosen(&found));
         let dense = dense.map(|ways| free.objective(ways.iter().map(|way| way.cost)));
         let found = lazy.path(&placement);
@@ -268,4 +268,31 @@ fn ways_made_lazily_are_those_over_all_free_states() {
         changed += usize::from(relaxed.map(|way| way.objective) != found.map(|way| way.objective));
     }
     assert!(changed > 0);
+}
+
+/// Where there is no way, the points that no state reaches from the one before are counted.
+#[test]
+fn points_out_of_reach_are_counted() {
+    let (problem, placement) = drawn(1);
+    let grid = LeanGrid::new(&problem).unwrap();
+    let problems = grid.problems();
+    let far = Placement { x: placement.x + 20.0, ..placement };
+    let found = LeanPlanner::new(&grid, &problems).path_or_unreached(&far);
+    assert_eq!(found, Err(Unreached { points: 7, segments: 1 }));
+}
+
+/// Between points on which leads and tilts are planned the axis turns evenly, on one great circle.
+#[test]
+fn between_two_leans_the_axis_turns_evenly() {
+    let (problem, _) = drawn(4);
+    let path = problem.task.upright().path();
+    let ends = [(0, Lean { lead: 0.15, tilt: -0.1 }), (3, Lean { lead: -0.05, tilt: 0.12 })];
+    let axis = |(point, lean): (usize, Lean)| lean.axis(&path.points()[point]);
+    let [from, to] = ends.map(axis);
+    let whole = between(&from, &to);
+    for (point, share) in [(1, 0.2), (2, 0.7)] {
+        let found = axis((point, lean_between(path, ends, point, share)));
+        let off = [between(&from, &found) - share * whole, between(&found, &to) - (1.0 - share) * whole];
+        assert!(off.iter().all(|off| off.abs() < 1e-7), "{off:?}");
+    }
 }

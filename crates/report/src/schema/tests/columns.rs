@@ -22,11 +22,12 @@ use serde_json::{Map, Value};
 /// The files with rows of a type, a shipped one of them, and the schema of the type.
 type Table = (&'static str, &'static str, fn() -> Value);
 
-const TABLES: [Table; 29] = [
+const TABLES: [Table; 30] = [
     ("`best.csv`, `worst.csv` and other plans", "caro-2013/best.csv", of::<PlanRow>),
     ("`placements.csv`", "caro-2013/placements.csv", of::<placement::CaseRow>),
     ("`convergence.csv`", "caro-2013/convergence.csv", of::<placement::GenerationRow>),
     ("`deflection-map-best.csv`, `-worst.csv`", "caro-2013/deflection-map-best.csv", of::<placement::MapRow>),
+    ("`lean-map.csv`", "", of::<placement::LeanMapRow>),
     ("`transfers.csv`", "caro-2013/transfers.csv", of::<placement::TransferRow>),
     ("`refinements.csv`", "caro-2013/refinements.csv", of::<placement::RefinementRow>),
     ("`open-region.csv`", "", of::<OpenBoxRow>),

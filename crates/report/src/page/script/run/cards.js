@@ -6,6 +6,7 @@ import { fixed } from '../draw/scale.js';
 import { FORCES } from './arrows.js';
 import { alongPath, limitAt } from './charts.js';
 import { CASES, COUNT, IS_SCORE, RAW, ROWS, SHORT_NAMES, singlesOf } from './data.js';
+import { leanMapCard } from './lean-map.js';
 import { jointSharesCard, originsCard } from './origins.js';
 import { pathPoint } from './path.js';
 import { smallTable } from './small-table.js';
@@ -324,6 +325,7 @@ function stabilityCard() {
 export function furtherCards() {
   const cards = [
     worstPointsCard(),
+    leanMapCard(),
     jointSharesCard(),
     setupsCard(),
     originsCard(),

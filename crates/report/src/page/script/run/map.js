@@ -18,7 +18,7 @@ import { current, currentMap, currentPoint, mapState, onChange, set, state } fro
 export function reasonText(reason) {
   if (reason.startsWith('joint_')) return `limit of joint ${reason.slice(6)}`;
   /** @type {Record<string, string>} */
-  const words = { reach: 'out of reach', conditioning: 'near a singularity', deflection: 'deflection above its limit' };
+  const words = { reach: 'out of reach', conditioning: 'near a singularity', deflection: 'deflection above its limit', lean: 'limit of the lean' };
   return words[reason] || reason.replace(/_/g, ' ');
 }
 
@@ -35,7 +35,7 @@ const HATCHES = [
 ];
 
 /** @param {CanvasRenderingContext2D} g @param {number} k number of the reason @param {number} width @param {number} height */
-function hatch(g, k, width, height) {
+export function hatch(g, k, width, height) {
   const [slope, gap] = HATCHES[k % HATCHES.length];
   g.strokeStyle = themeColour('--soft');
   g.globalAlpha = 0.5;

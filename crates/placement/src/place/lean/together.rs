@@ -1,0 +1,135 @@
+//! Placement, leans and betas refined together.
+//!
+//! With the tool leaning as planned, placement and betas are refined by the gradient; then lead, tilt and beta are
+//! planned anew about the leans that are known, and what both changed is followed further, placement and leans at once.
+//! When that gains nothing, the placements before and behind along x, y, z and yaw are tried, each with leans planned
+//! anew for it: the end is a placement of which no such neighbour is better with the best leans near the ones known.
+
+use super::{Improved, Job, NEAR, Thinned, path_of};
+use crate::place::axes::{MOST_REFINED, refined};
+use crate::refine::neighbours;
+use rayon::prelude::*;
+use stead_model::task::lean::Lean;
+use stead_numerics::monitor::Progress;
+use stead_planning::lean::MOST_PLANNED_POINTS;
+use stead_planning::problem::Placement;
+use stead_planning::redundancy::lean_path::{LeanGrid, LeanPlanner};
+use stead_planning::setup::Setup;
+
+/// Rounds of placement and leans at the most.
+const ROUNDS: usize = 24;
+/// A round that gains less (relative) is followed by a look at the neighbours.
+const GAIN: f64 = 1e-5;
+/// Distances of the neighbours (in scaled variables), and by how much the first steps of lead and tilt are divided for
+/// them.
+const POLLS: [(f64, f64); 3] = [(0.15, 1.0), (0.03, 2.0), (0.006, 8.0)];
+/// How often a change that gains is doubled.
+const DOUBLINGS: usize = 8;
+
+impl Job<'_> {
+    /// The best placement near one that is known, with the best leans and betas there.
+    pub(super) fn together(&self, known: Improved) -> Improved {
+        let is_long = self.problem.task.points().len() > MOST_REFINED;
+        if self.problem.cell.pinned().is_some() || is_long {
+            return known;
+        }
+        let mut best = known;
+        for round in 0..ROUNDS {
+            if self.monitor.should_stop() {
+                break;
+            }
+            let stage = "placement, lead and tilt together";
+            self.monitor.report(Progress::Steps { stage, done: round, total: ROUNDS });
+            let from = best.clone();
+            best = refined(self.problem, &best, self.monitor).unwrap_or(best);
+            best = self.near(&best).unwrap_or(best);
+            best = self.ahead(&from, best);
+            if from.solution.objective - best.solution.objective < GAIN * from.solution.objective {
+                match self.polled(&best) {
+                    Some(better) => best = self.ahead(&best, better),
+                    None => break,
+                }
+            }
+        }
+        best
+    }
+
+    /// The leans planned anew about those that are known, at the placement that is known.
+    fn near(&self, known: &Improved) -> Option<Improved> {
+        let upright = self.problem.in_setup(&upright(&known.setup));
+        let on = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
+        let leans = self.leans_on(known, &on.kept);
+        let near = LeanGrid::near(on.problem(), &leans, self.space.steps.map(|step| step / 2.0), NEAR)?;
+        let way = path_of(&near, &known.solution.placement)?.leans;
+        self.halved(
+            &known.setup,
+            &known.solution.placement,
+            &on,
+            Some(way),
+            self.space.steps.map(|step| step / 2.0),
+            Some(known.clone()),
+        )
+    }
+
+    /// The best neighbour, if it is better, with leans planned anew there; of those planned before a stop.
+    fn polled(&self, known: &Improved) -> Option<Improved> {
+        let upright = self.problem.in_setup(&upright(&known.setup));
+        let on = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
+        let leans = self.leans_on(known, &on.kept);
+        let limit = known.solution.objective * (1.0 - GAIN);
+        POLLS.into_iter().find_map(|(distance, part)| {
+            let grid = LeanGrid::near(on.problem(), &leans, self.space.steps.map(|step| step / part), NEAR)?;
+            let problems = grid.problems();
+            let planner = LeanPlanner::new(&grid, &problems);
+            let at = |placement: &Placement| {
+                let path = (!self.monitor.should_stop()).then(|| planner.path(placement))??;
+                self.planned(&known.setup, placement, self.spread(&on, &path.leans)?)
+            };
+            let around = neighbours(self.problem, &known.solution.placement, distance);
+            let tried: Vec<Option<Improved>> = around.par_iter().map(at).collect();
+            let better = tried.into_iter().flatten().filter(|near| near.solution.objective < limit);
+            better.reduce(|a, b| if b.solution.objective < a.solution.objective { b } else { a })
+        })
+    }
+
+    /// What changed from one placement with its leans to a better one, followed further as long as that gains.
+    fn ahead(&self, from: &Improved, to: Improved) -> Improved {
+        let upright = self.problem.in_setup(&upright(&from.setup));
+        let all: Vec<usize> = (0..upright.task.points().len()).collect();
+        let [old, new] = [from, &to].map(|known| self.leans_on(known, &all));
+        let (start, end) = (from.solution.placement, to.solution.placement);
+        let on = Thinned::new(&upright, all);
+        let mut best = to;
+        let mut share = 1.0;
+        for _ in 0..DOUBLINGS {
+            if self.monitor.should_stop() || (0..4).all(|k| start[k] == end[k]) {
+                break;
+            }
+            let further = |from: f64, to: f64| to + share * (to - from);
+            let placement = Placement::from(std::array::from_fn(|k| further(start[k], end[k])));
+            let lean = |(old, new): (&Lean, &Lean)| Lean {
+                lead: further(old.lead, new.lead),
+                tilt: further(old.tilt, new.tilt),
+            };
+            let leans: Vec<Lean> = old.iter().zip(&new).map(lean).collect();
+            let placement = self.problem.cell.clamp(&placement);
+            let next = self.spread(&on, &leans).and_then(|leans| self.planned(&best.setup, &placement, leans));
+            match next.filter(|next| next.solution.objective < best.solution.objective) {
+                Some(next) => best = next,
+                None => break,
+            }
+            share = 2.0 * share + 1.0;
+        }
+        best
+    }
+
+    /// How the tool leans at some points.
+    fn leans_on(&self, known: &Improved, points: &[usize]) -> Vec<Lean> {
+        points.iter().map(|point| known.setup.leans.get(*point).copied().unwrap_or(Lean::NONE)).collect()
+    }
+}
+
+/// The setup with the axis of the path.
+fn upright(setup: &Setup) -> Setup {
+    Setup { leans: [].into(), ..setup.clone() }
+}
