@@ -10,7 +10,7 @@ use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::interval_simd::{Lanes, WIDTH};
 use super::moment::{MOMENTS, MomentModel};
-use super::number::{PAIR, PAIRS};
+use super::number::PAIRS;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -294,19 +294,27 @@ pub(super) fn enclosed(
     half: [f64; 3],
     class: PostureClass,
 ) -> Option<ArmCompliance<Enclosure>> {
-    let ends = place.map(|p| sine_cosine_over(p[2] - half[2], p[2] + half[2]));
-    let middle = place.map(|p| libm::sincos(p[2]));
-    let (sine, cosine) = Enclosure::heading(
+    let (sine, cosine) = heading_over(place.map(|p| p[2]), half);
+    let radius = <Enclosure>::variable(Lanes(place.map(|p| p[0])), 0, half);
+    let height = Enclosure::variable(Lanes(place.map(|p| p[1])), 1, half);
+    arm.evaluate(radius, height, sine, cosine, class)
+}
+
+/// Sine and cosine of four headings, the last variable, each within that half width.
+pub(super) fn heading_over<const V: usize, const P: usize>(
+    middle: [f64; WIDTH],
+    half: [f64; V],
+) -> (Enclosure<V, P>, Enclosure<V, P>) {
+    let ends = middle.map(|angle| sine_cosine_over(angle - half[V - 1], angle + half[V - 1]));
+    let middle = middle.map(libm::sincos);
+    Enclosure::heading(
         [Lanes(middle.map(|m| m.0)), Lanes(middle.map(|m| m.1))],
         [
             Interval::between(Lanes(ends.map(|e| e.0.0)), Lanes(ends.map(|e| e.0.1))),
             Interval::between(Lanes(ends.map(|e| e.1.0)), Lanes(ends.map(|e| e.1.1))),
         ],
         half,
-    );
-    let radius = Enclosure::variable(Lanes(place.map(|p| p[0])), 0, half);
-    let height = Enclosure::variable(Lanes(place.map(|p| p[1])), 1, half);
-    arm.evaluate(radius, height, sine, cosine, class)
+    )
 }
 
 fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) -> Made {
@@ -331,22 +339,8 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     };
     let values = functions.map(of);
-    let max_second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut remainder = [0.0; REMAINDERS];
-    let factors: [f64; PAIRS] = std::array::from_fn(|p| {
-        let (i, j) = PAIR[p];
-        half[i] * half[j] * if i == j { 0.5 } else { 1.0 }
-    });
-    for (p, factor) in factors.into_iter().enumerate() {
-        remainder[0] += max_second(0, p) * factor;
-        remainder[1] += libm::hypot(max_second(1, p), max_second(2, p)) * factor;
-        remainder[2] += libm::hypot(max_second(3, p), max_second(4, p)) * factor;
-        remainder[3] += max_second(5, p) * factor;
-    }
-    // And what is lost by writing the values with fewer digits.
-    let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
-    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
-    let remainder = [0, 1, 2, 3].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
+    let factors = pair_factors::<3, PAIRS>(half);
+    let remainder = remainders(&functions, lane, half).map(|r| (r * (1.0 + 1e-6)) as f32);
     if !remainder.iter().all(|r| *r < 1e30) {
         return (Node::Unknown, None);
     }
@@ -358,6 +352,34 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         Some(moments) => (known, Some(moments)),
         None => (Node::Unknown, None),
     }
+}
+
+/// What the second derivatives of each pair of variables are multiplied by.
+fn pair_factors<const V: usize, const P: usize>(half: [f64; V]) -> [f64; P] {
+    Enclosure::<V, P>::PAIR.map(|(i, j)| half[i] * half[j] * if i == j { 0.5 } else { 1.0 })
+}
+
+/// See [`AffineModel::remainder`]: of m, d1, d2, c_rz, c_tz and c_zz; with what is lost by writing values with fewer
+/// digits.
+pub(super) fn remainders<const V: usize, const P: usize>(
+    functions: &[&Enclosure<V, P>; FUNCTIONS],
+    lane: usize,
+    half: [f64; V],
+) -> [f64; REMAINDERS] {
+    let second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
+    let mut remainder = [0.0; REMAINDERS];
+    for (p, factor) in pair_factors::<V, P>(half).into_iter().enumerate() {
+        remainder[0] += second(0, p) * factor;
+        remainder[1] += libm::hypot(second(1, p), second(2, p)) * factor;
+        remainder[2] += libm::hypot(second(3, p), second(4, p)) * factor;
+        remainder[3] += second(5, p) * factor;
+    }
+    let size = |f: usize| {
+        let middle = functions[f].middle();
+        middle.value.0[lane].abs() + (0..V).map(|k| middle.gradient[k].0[lane].abs() * half[k]).sum::<f64>()
+    };
+    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
+    std::array::from_fn(|f| remainder[f] + 1e-7 * lost[f])
 }
 
 /// Least and largest sine and cosine between two angles less than a turn apart. rad

@@ -56,6 +56,7 @@ mod interval;
 mod interval_simd;
 mod keeps_open;
 mod kind;
+mod leaning;
 mod load;
 mod lower_bound;
 mod minorant;
