@@ -324,15 +324,7 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
     if !y.regular.lane(lane) {
         return (Node::Unknown, None);
     }
-    let holds = |margin: &Enclosure| margin.value.low().0[lane] >= 0.0;
-    let margins = &y.margins;
-    let within = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
-        (LimitSpan::Full, _) => true,
-        (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
-        (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
-    };
-    let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
-    let sure = y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1);
+    let sure = is_sure(arm, y, lane);
     let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
     let of = |f: &Enclosure| {
         let f = f.middle();
@@ -352,6 +344,23 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         Some(moments) => (known, Some(moments)),
         None => (Node::Unknown, None),
     }
+}
+
+/// Whether all states of a region are sure to be allowed.
+pub(super) fn is_sure<const V: usize, const P: usize>(
+    arm: &Arm,
+    y: &ArmCompliance<Enclosure<V, P>>,
+    lane: usize,
+) -> bool {
+    let holds = |margin: &Enclosure<V, P>| margin.value.low().0[lane] >= 0.0;
+    let margins = &y.margins;
+    let within = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
+        (LimitSpan::Full, _) => true,
+        (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
+        (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
+    };
+    let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
+    y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1)
 }
 
 /// What the second derivatives of each pair of variables are multiplied by.

@@ -1,26 +1,37 @@
 //! Cells of the place of the tool centre point, each cut into eight: what the score of a point there is at least,
 //! whatever the turn of the spindle.
 //!
-//! A cell begins with the turns of the cell that it is part of, with what is known of them there. Those that make the
-//! bound low are evaluated again over the smaller cell and half the turn, until that no longer changes the bound: most
-//! turns never are.
+//! What is known of a cell is known piece by piece: boxes of the place and a range of the turn. A cell begins with the
+//! pieces of the cell that it is part of. Those that make the bound low are cut up where they bend most, until they are
+//! good enough for the size of the cell: most pieces never are.
 
 use super::super::arm::Arm;
 use super::super::interval_simd::WIDTH;
 use super::super::kind::Kind;
-use super::super::minorant::{Affine, EMPTY, ZERO, rounded};
-use super::states::{Known, known_over};
+use super::super::minorant::{Affine, EMPTY, rounded};
+use super::super::number::LEANING;
+use super::states::{Below, Known, TURN, known_over};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use stead_model::robot::PostureClass;
 
-/// Half width of the largest cells (m), and ranges of the turn there. Cells of a level are half as wide as those of the
-/// level before, and so are its ranges.
+/// Half width of the largest cells (m), and ranges of the turn there. Those of a level are half as wide as those of the
+/// level before.
 pub(super) const LARGEST: f64 = 0.05;
 const TURNS: usize = 64;
 /// Levels of cells.
 pub(super) const LEVELS: usize = 8;
+/// Levels that a piece may be finer than its cell, and levels of pieces.
+const FINER: u8 = 2;
+const FINEST: u8 = 9;
+/// Share of a score that a piece of the largest cells may leave out; half of that at each further level.
+const SHARE: f32 = 0.08;
+/// Pieces cut up for one cell.
+const CUTS: usize = 400;
+
+#[cfg(test)]
+pub static EVALUATED: AtomicU64 = AtomicU64::new(0);
 
 /// One tool axis: the arm with it, kinds of load, and the cells.
 #[derive(Debug)]
@@ -48,49 +59,99 @@ struct Cell {
 struct Made {
     /// Below the score of each kind of load, whatever the turn.
     below: Box<[Affine]>,
-    /// Which of the turns of the cell that it is part of were evaluated again, in their order.
+    /// Which of the pieces that the cell began with were cut up.
     replaced: Box<[u32]>,
-    /// Those in their place, and what each kind of load costs there: below all of the cell.
-    turns: Box<[Turn]>,
-    of_turns: Box<[Affine]>,
+    /// What they were cut into, and what each kind of load costs there, about the middle of each piece.
+    pieces: Box<[Piece]>,
+    of_pieces: Box<[Affine]>,
 }
 
-/// A range of the turn: the level whose width it has, and its number.
+/// A box of x, y, z and turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Turn {
-    level: u8,
-    number: u16,
+struct Piece {
+    /// The levels whose widths it has, and its numbers there.
+    level: [u8; LEANING],
+    number: [u16; LEANING],
+    /// The variables in the order in which it is to be cut.
+    order: [u8; LEANING],
+    /// What share of a score its bound leaves out.
+    share: f32,
+    /// Whether all its states are sure to be allowed.
+    sure: bool,
 }
 
-/// A range of the turn in a cell that is being made.
+/// A piece of a cell that is being made.
 struct Candidate {
-    turn: Turn,
-    /// Its number among the turns of the cell that this one is part of; `None` once evaluated here.
+    piece: Piece,
+    /// Its number among the pieces that the cell began with; `None` of one evaluated for this cell.
     inherited: Option<u32>,
+    /// The middle of what it shares with the cell from the middle of the cell, and half widths of that. m
+    off: [f64; 3],
+    half: [f64; 3],
 }
 
-/// Turns of a cell, and of each and each kind of load the value in the middle of the cell and slopes.
+/// Pieces of a cell; of each and each kind of load the value in the middle of what it shares with the cell, and slopes.
 #[derive(Default)]
 struct Candidates {
-    turns: Vec<Candidate>,
+    all: Vec<Candidate>,
     of: Vec<(f64, [f64; 3])>,
-}
-
-impl Turn {
-    /// Middle and half width. rad
-    fn range(self) -> (f64, f64) {
-        let half = PI / (TURNS << self.level) as f64;
-        (half * (2 * usize::from(self.number) + 1) as f64, half)
-    }
-
-    fn halves(self) -> [Self; 2] {
-        [0, 1].map(|k| Self { level: self.level + 1, number: 2 * self.number + k })
-    }
 }
 
 /// Half the width of the cells of a level. m
 pub(super) fn half_of(level: usize) -> f64 {
     LARGEST / (1u64 << level) as f64
+}
+
+impl Piece {
+    /// Half the width along one of the variables. m, rad
+    fn half(&self, k: usize) -> f64 {
+        if k == TURN { PI / (TURNS << self.level[k]) as f64 } else { half_of(usize::from(self.level[k])) }
+    }
+
+    /// Whether it is good enough for cells of a level.
+    fn is_fine(&self, level: usize) -> bool {
+        let level = level as u8;
+        let is_small = self.level.iter().all(|own| *own >= level);
+        let is_smallest = self.level.iter().all(|own| *own >= (level + FINER).min(FINEST));
+        is_smallest || (self.share <= SHARE / f32::from(1u16 << level) && (self.sure || is_small))
+    }
+
+    /// The part of it in a cell.
+    fn within(mut self, level: usize, at: [usize; 3]) -> Self {
+        for k in 0..3 {
+            if usize::from(self.level[k]) < level {
+                (self.level[k], self.number[k]) = (level as u8, at[k] as u16);
+            }
+        }
+        self
+    }
+
+    /// Whether it has anything in common with a cell.
+    fn meets(&self, level: usize, at: [usize; 3]) -> bool {
+        (0..3).all(|k| {
+            let (own, number) = (usize::from(self.level[k]), usize::from(self.number[k]));
+            if own <= level { at[k] >> (level - own) == number } else { number >> (own - level) == at[k] }
+        })
+    }
+
+    /// The four parts of it, cut along the first two variables that are not as short as cells of this level allow.
+    fn cut(&self, level: usize) -> [Self; WIDTH] {
+        let shortest = (level as u8 + FINER).min(FINEST);
+        let mut order = self.order;
+        // What is not sure to be allowed is cut where it is longest.
+        if !self.sure && self.share <= SHARE / f32::from(1u16 << level) {
+            order.sort_by_key(|k| self.level[usize::from(*k)]);
+        }
+        let mut parts = [*self; WIDTH];
+        let sides = order.into_iter().map(usize::from).filter(|k| self.level[*k] < shortest).take(2);
+        for (place, side) in sides.enumerate() {
+            for (number, part) in parts.iter_mut().enumerate() {
+                part.level[side] += 1;
+                part.number[side] = 2 * part.number[side] + (number >> place & 1) as u16;
+            }
+        }
+        parts
+    }
 }
 
 impl Cells {
@@ -110,6 +171,16 @@ impl Cells {
         (along(2.0 * radius).powi(2) * along(height.1 - height.0) * size_of::<Cell>() as f64) as u64
     }
 
+    #[cfg(test)]
+    pub fn kinds(&self) -> &[Kind] {
+        &self.kinds
+    }
+
+    #[cfg(test)]
+    pub fn arm(&self) -> (&Arm, f64) {
+        (&self.arm, self.first)
+    }
+
     /// What was made so far takes. bytes
     pub fn used(&self) -> u64 {
         self.made.load(Ordering::Relaxed)
@@ -125,6 +196,12 @@ impl Cells {
     /// The middle of a cell along one side. m
     pub fn middle(&self, level: usize, side: usize, number: usize) -> f64 {
         self.corner[side] + half_of(level) * (2 * number + 1) as f64
+    }
+
+    /// The middle of a piece along one of the variables. m, rad
+    fn middle_of(&self, piece: &Piece, k: usize) -> f64 {
+        let from = if k == TURN { 0.0 } else { self.corner[k] };
+        from + piece.half(k) * f64::from(2 * u32::from(piece.number[k]) + 1)
     }
 
     /// Below the score of each kind of load in a cell, about its middle, in one class.
@@ -149,131 +226,143 @@ impl Cells {
 
     /// What is known of a cell of the level after those of `path`, the cells that it is part of.
     fn made_of(&self, path: &[Option<&Made>], at: [usize; 3], class: PostureClass) -> Box<Made> {
-        let level = path.len();
-        let middle: [f64; 3] = std::array::from_fn(|side| self.middle(level, side, at[side]));
-        let half = half_of(level);
-        let mut all = Candidates::default();
+        let (level, kinds) = (path.len(), self.kinds.len());
+        let mut all = self.inherited(path, at);
+        let begun = all.all.len();
         if level == 0 {
+            let whole = Piece {
+                level: [0; LEANING],
+                number: [at[0] as u16, at[1] as u16, at[2] as u16, 0],
+                order: [0, 1, 2, 3],
+                share: 1.0,
+                sure: false,
+            };
             for first in (0..TURNS).step_by(WIDTH) {
-                let turns: [Turn; WIDTH] = std::array::from_fn(|k| Turn { level: 0, number: (first + k) as u16 });
-                self.evaluate(&mut all, &turns, middle, half, class);
-            }
-        } else {
-            all = self.inherited(path, at, middle);
-            let mut kind = 0;
-            while kind < self.kinds.len() {
-                let low = all.lowest(kind, self.kinds.len(), half, level);
-                if low.is_empty() {
-                    kind += 1;
-                    continue;
-                }
-                let turns = low.iter().flat_map(|k| all.turns[*k].turn.halves());
-                let mut four = [None; WIDTH];
-                four.iter_mut().zip(turns).for_each(|(to, turn)| *to = Some(turn));
-                // From the back, so that the first number stays what it is.
-                let mut numbers = low;
-                numbers.sort_unstable_by(|a, b| b.cmp(a));
-                numbers.iter().for_each(|number| all.remove(*number, self.kinds.len()));
-                let turns: Vec<Turn> = four.into_iter().flatten().collect();
-                self.evaluate(&mut all, &turns, middle, half, class);
+                let mut pieces = [whole; WIDTH];
+                pieces.iter_mut().enumerate().for_each(|(k, piece)| piece.number[TURN] = (first + k) as u16);
+                self.evaluate(&mut all, &pieces, (level, at), class);
             }
         }
-        self.finish(all, path, half)
+        let mut cuts = 0;
+        for kind in 0..kinds {
+            while let Some(number) = all.to_cut(kind, kinds, level).filter(|_| cuts < CUTS) {
+                cuts += 1;
+                let piece = all.all[number].piece.within(level, at);
+                all.remove(number, kinds);
+                self.evaluate(&mut all, &piece.cut(level), (level, at), class);
+            }
+        }
+        self.finish(&all, begun, half_of(level))
     }
 
-    /// Evaluates ranges of the turn over a cell: four at most.
-    fn evaluate(&self, all: &mut Candidates, turns: &[Turn], middle: [f64; 3], half: f64, class: PostureClass) {
-        let Some(last) = turns.last() else { return };
-        // Ranges evaluated together may differ in width: those of the same width each time.
-        for width in turns.iter().map(|turn| turn.level).fold(Vec::new(), |mut all: Vec<u8>, level| {
-            if !all.contains(&level) {
-                all.push(level);
+    /// Evaluates four pieces of the same size for a cell of a level; what is not allowed anywhere is left out, and so
+    /// are repetitions.
+    fn evaluate(
+        &self,
+        all: &mut Candidates,
+        pieces: &[Piece; WIDTH],
+        (level, at): (usize, [usize; 3]),
+        class: PostureClass,
+    ) {
+        #[cfg(test)]
+        EVALUATED.fetch_add(1, Ordering::Relaxed);
+        let place = pieces.map(|piece| std::array::from_fn(|k| self.middle_of(&piece, k)));
+        let half: [f64; LEANING] = std::array::from_fn(|k| pieces[0].half(k));
+        let known = known_over((&self.arm, self.first), &place, half, class);
+        for (k, (piece, known)) in pieces.iter().zip(known).enumerate() {
+            if known == Known::Empty || pieces[..k].contains(piece) {
+                continue;
             }
-            all
-        }) {
-            let some: Vec<Turn> = turns.iter().copied().filter(|turn| turn.level == width).collect();
-            let place = std::array::from_fn(|k| {
-                let turn = some.get(k).unwrap_or(last);
-                [middle[0], middle[1], middle[2], turn.range().0]
-            });
-            let half = [half, half, half, some[0].range().1];
-            let known = known_over((&self.arm, self.first), &place, half, class);
-            for (turn, known) in some.iter().zip(known) {
-                let of = |kind: &Kind| match &known {
+            let mut piece = Piece { share: 0.0, sure: false, ..*piece };
+            let mut bends = half;
+            let first = self.kinds.len() * all.all.len();
+            for kind in &self.kinds {
+                let below = match &known {
                     Known::Yields(states) => states.below(kind, half),
-                    _ => ZERO,
+                    _ => Below::NOTHING,
                 };
-                if known != Known::Empty {
-                    all.turns.push(Candidate { turn: *turn, inherited: None });
-                    let wide = |e: Affine| (f64::from(e.value), e.slope.map(f64::from));
-                    all.of.extend(self.kinds.iter().map(|kind| wide(of(kind))));
+                piece.share = piece.share.max(below.share);
+                if let Known::Yields(states) = &known {
+                    (piece.sure, bends) = (states.sure, states.bends);
+                    bends[TURN] += below.turning;
                 }
+                let Affine { value, slope } = below.affine;
+                all.of.push((f64::from(value), slope.map(f64::from)));
             }
+            debug_assert_eq!(all.of.len() - first, self.kinds.len());
+            piece.order.sort_by(|a, b| bends[usize::from(*b)].total_cmp(&bends[usize::from(*a)]));
+            all.push(piece, None, self, (level, at));
         }
     }
 
-    /// The turns of the cell that this one is part of.
-    fn inherited(&self, path: &[Option<&Made>], at: [usize; 3], middle: [f64; 3]) -> Candidates {
-        let kinds = self.kinds.len();
-        let level = path.len();
-        // Of each cell on the way down: whose turns are left.
-        let mut left: Vec<(usize, usize)> = Vec::new();
+    /// The pieces of the cell that this one is part of.
+    fn inherited(&self, path: &[Option<&Made>], at: [usize; 3]) -> Candidates {
+        let (level, kinds) = (path.len(), self.kinds.len());
+        let mut left: Vec<(&Made, usize)> = Vec::new();
         for (depth, made) in path.iter().enumerate() {
             let Some(made) = made else { continue };
+            let here = at.map(|number| number >> (level - depth));
             let mut replaced = made.replaced.iter().peekable();
             let mut number = 0;
-            left.retain(|_| {
+            left.retain(|(of, k)| {
+                if !of.pieces[*k].meets(depth, here) {
+                    return false;
+                }
                 let is_replaced = replaced.next_if(|k| **k == number).is_some();
                 number += 1;
                 !is_replaced
             });
-            left.extend((0..made.turns.len()).map(|k| (depth, k)));
+            left.extend((0..made.pieces.len()).map(|k| (*made, k)));
         }
+        left.retain(|(of, k)| of.pieces[*k].meets(level, at));
         let mut all = Candidates::default();
-        for (number, (depth, k)) in left.into_iter().enumerate() {
-            let Some(made) = path[depth] else { continue };
-            let own = at.map(|number| number >> (level - depth));
-            let off: [f64; 3] = std::array::from_fn(|side| middle[side] - self.middle(depth, side, own[side]));
-            all.turns.push(Candidate { turn: made.turns[k], inherited: Some(number as u32) });
-            for e in &made.of_turns[k * kinds..(k + 1) * kinds] {
+        for (number, (made, k)) in left.into_iter().enumerate() {
+            let piece = made.pieces[k];
+            let shared = piece.within(level, at);
+            let off: [f64; 3] = std::array::from_fn(|k| self.middle_of(&shared, k) - self.middle_of(&piece, k));
+            for e in &made.of_pieces[k * kinds..(k + 1) * kinds] {
                 let slope = e.slope.map(f64::from);
                 let moved: f64 = (0..3).map(|side| slope[side] * off[side]).sum();
                 all.of.push((f64::from(e.value) + moved, slope));
             }
+            all.push(piece, Some(number as u32), self, (level, at));
         }
         all
     }
 
-    fn finish(&self, all: Candidates, path: &[Option<&Made>], half: f64) -> Box<Made> {
+    /// `begun` is the number of pieces that the cell began with.
+    fn finish(&self, all: &Candidates, begun: usize, half: f64) -> Box<Made> {
         let kinds = self.kinds.len();
         let below: Box<[Affine]> = (0..kinds).map(|kind| all.below(kind, kinds, half)).collect();
-        // Inherited turns that are no longer there, in their order.
-        let mut is_left = vec![false; Self::count(path)];
-        all.turns.iter().filter_map(|candidate| candidate.inherited).for_each(|k| is_left[k as usize] = true);
-        let replaced = (0..is_left.len() as u32).filter(|k| !is_left[*k as usize]).collect();
-        let own = || all.turns.iter().enumerate().filter(|(_, candidate)| candidate.inherited.is_none());
-        let turns = own().map(|(_, candidate)| candidate.turn).collect();
+        let mut is_left = vec![false; begun];
+        all.all.iter().filter_map(|candidate| candidate.inherited).for_each(|k| is_left[k as usize] = true);
+        let replaced = (0..begun as u32).filter(|k| !is_left[*k as usize]).collect();
+        let own = || all.all.iter().enumerate().filter(|(_, candidate)| candidate.inherited.is_none());
+        let pieces = own().map(|(_, candidate)| candidate.piece).collect();
         let narrow = |(value, slope): &(f64, [f64; 3])| Affine { value: *value as f32, slope: slope.map(|s| s as f32) };
-        let of_turns = own().flat_map(|(k, _)| all.of[k * kinds..(k + 1) * kinds].iter().map(narrow)).collect();
-        let made = Box::new(Made { below, replaced, turns, of_turns });
+        let of_pieces = own().flat_map(|(k, _)| all.of[k * kinds..(k + 1) * kinds].iter().map(narrow)).collect();
+        let made = Box::new(Made { below, replaced, pieces, of_pieces });
         let bytes = size_of::<Made>()
             + size_of_val(&*made.below)
             + size_of_val(&*made.replaced)
-            + size_of_val(&*made.turns)
-            + size_of_val(&*made.of_turns);
+            + size_of_val(&*made.pieces)
+            + size_of_val(&*made.of_pieces);
         self.made.fetch_add(bytes as u64, Ordering::Relaxed);
         made
-    }
-
-    /// Turns that a cell after those of `path` begins with.
-    fn count(path: &[Option<&Made>]) -> usize {
-        path.iter().flatten().fold(0, |count, made| count - made.replaced.len() + made.turns.len())
     }
 }
 
 impl Candidates {
+    /// A piece for a cell; its bounds are in `of` already.
+    fn push(&mut self, piece: Piece, inherited: Option<u32>, cells: &Cells, (level, at): (usize, [usize; 3])) {
+        let shared = piece.within(level, at);
+        let off = std::array::from_fn(|k| cells.middle_of(&shared, k) - cells.middle(level, k, at[k]));
+        let half = std::array::from_fn(|k| shared.half(k));
+        self.all.push(Candidate { piece, inherited, off, half });
+    }
+
     fn remove(&mut self, number: usize, kinds: usize) {
-        self.turns.swap_remove(number);
+        self.all.swap_remove(number);
         let last = self.of.len() - kinds;
         for kind in 0..kinds {
             self.of.swap(number * kinds + kind, last + kind);
@@ -281,49 +370,41 @@ impl Candidates {
         self.of.truncate(last);
     }
 
-    /// Of one kind of load the number of the turn that costs least, and for each turn what is left of it where slopes
-    /// are those of that one.
-    fn least(&self, kind: usize, kinds: usize, half: f64) -> Option<(usize, [f64; 3])> {
-        let of = |number: usize| self.of[number * kinds + kind];
+    /// The piece that costs least under one kind of load.
+    fn least(&self, kind: usize, kinds: usize) -> Option<usize> {
         let low = |number: usize| {
-            let (value, slope) = of(number);
-            value - slope.iter().map(|s| s.abs() * half).sum::<f64>()
+            let ((value, slope), half) = (self.of[number * kinds + kind], self.all[number].half);
+            value - (0..3).map(|k| slope[k].abs() * half[k]).sum::<f64>()
         };
-        let numbers = 0..self.turns.len();
-        let least = numbers.map(|number| (number, low(number))).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
-        Some((least, of(least).1))
+        let all = (0..self.all.len()).map(|number| (number, low(number)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|least| least.0)
     }
 
-    /// What is left of a turn where slopes are these.
-    fn left(&self, place: usize, slope: [f64; 3], half: f64) -> f64 {
-        let (value, own) = self.of[place];
-        value - (0..3).map(|k| (own[k] - slope[k]).abs() * half).sum::<f64>()
+    /// What a function with these slopes may be in the middle of the cell, not to be above a piece anywhere in it.
+    fn left(&self, number: usize, place: usize, slope: [f64; 3]) -> f64 {
+        let ((value, own), Candidate { off, half, .. }) = (self.of[place], &self.all[number]);
+        value - (0..3).map(|k| (own[k] - slope[k]).abs() * half[k] + slope[k] * off[k]).sum::<f64>()
     }
 
-    /// One or two turns that keep the bound of a kind of load low and were not evaluated in this cell with its width.
-    fn lowest(&self, kind: usize, kinds: usize, half: f64, level: usize) -> Vec<usize> {
-        let Some((least, slope)) = self.least(kind, kinds, half) else { return Vec::new() };
-        let is_open = |number: usize| {
-            let Candidate { turn, inherited } = &self.turns[number];
-            inherited.is_some() || usize::from(turn.level) < level
-        };
-        let left = |number: usize| self.left(number * kinds + kind, slope, half);
-        let bound = (0..self.turns.len()).map(left).fold(f64::INFINITY, f64::min);
-        let is_low = |number: usize| number == least || left(number) <= bound;
-        if !(0..self.turns.len()).any(|number| is_low(number) && is_open(number)) {
-            return Vec::new();
-        }
-        let mut open: Vec<usize> = (0..self.turns.len()).filter(|number| is_open(*number)).collect();
-        let rank = |number: &usize| (!is_low(*number), left(*number));
-        open.sort_by(|a, b| rank(a).0.cmp(&rank(b).0).then(rank(a).1.total_cmp(&rank(b).1)));
-        open.truncate(2);
-        open
+    /// The piece that limits the bound of a kind of load with slopes like these.
+    fn limiting(&self, kind: usize, kinds: usize, slope: [f64; 3]) -> Option<(usize, f64)> {
+        let all = (0..self.all.len()).map(|number| (number, self.left(number, number * kinds + kind, slope)));
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Below all turns for one kind of load.
+    /// A piece that keeps the bound of a kind of load low and is not good enough for cells of this level.
+    fn to_cut(&self, kind: usize, kinds: usize, level: usize) -> Option<usize> {
+        let least = self.least(kind, kinds)?;
+        let is_open = |number: &usize| !self.all[*number].piece.is_fine(level);
+        let limiting = || self.limiting(kind, kinds, self.of[least * kinds + kind].1).map(|found| found.0);
+        Some(least).filter(is_open).or_else(|| limiting().filter(is_open))
+    }
+
+    /// Below all pieces for one kind of load.
     fn below(&self, kind: usize, kinds: usize, half: f64) -> Affine {
-        let Some((_, slope)) = self.least(kind, kinds, half) else { return EMPTY };
-        let value = (0..self.turns.len()).map(|number| self.left(number * kinds + kind, slope, half));
-        rounded(value.fold(f64::INFINITY, f64::min), slope, [half; 3])
+        let Some(least) = self.least(kind, kinds) else { return EMPTY };
+        let slope = self.of[least * kinds + kind].1;
+        let value = self.limiting(kind, kinds, slope).map_or(f64::INFINITY, |found| found.1);
+        rounded(value, slope, [half; 3])
     }
 }

@@ -2,7 +2,7 @@
 //! spindle about its axis.
 
 use super::super::arm::{Arm, ArmCompliance};
-use super::super::compliance_table::{FUNCTIONS, REMAINDERS, heading_over, remainders};
+use super::super::compliance_table::{FUNCTIONS, REMAINDERS, heading_over, is_sure, remainders};
 use super::super::enclosure::Enclosure;
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::kind::Kind;
@@ -10,6 +10,9 @@ use super::super::load::{Tangent, Yielding};
 use super::super::minorant::{Affine, ZERO, rounded};
 use super::super::number::{LEANING, LEANING_PAIRS};
 use stead_model::robot::PostureClass;
+
+/// The number of the turn among the variables.
+pub(super) const TURN: usize = 3;
 
 type Enclosed = Enclosure<LEANING, LEANING_PAIRS>;
 
@@ -31,6 +34,25 @@ pub(super) struct States {
     pub values: [(f64, [f64; LEANING]); FUNCTIONS],
     /// What these leave out, as in [`super::super::compliance_table::AffineModel`].
     pub remainder: [f64; REMAINDERS],
+    /// How much each variable makes of that. m/N
+    pub bends: [f64; LEANING],
+    /// Whether all the states are sure to be allowed.
+    pub sure: bool,
+}
+
+/// What is known of a score over a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Below {
+    /// Below it everywhere.
+    pub affine: Affine,
+    /// What share of the score that leaves out; one where it is zero.
+    pub share: f32,
+    /// What it leaves out for the turn, which is free. m
+    pub turning: f64,
+}
+
+impl Below {
+    pub const NOTHING: Self = Self { affine: ZERO, share: 1.0, turning: 0.0 };
 }
 
 /// What is known of four regions (x, y, z, turn) of those half widths; `first` is the compliance of joint 1
@@ -45,11 +67,11 @@ pub(super) fn known_over(
     let at = |k: usize| Enclosed::variable(Lanes(place.map(|p| p[k])), k, half);
     match arm.evaluate_leaning([at(0), at(1), at(2)], sine, cosine, first, class) {
         None => [Known::Empty; WIDTH],
-        Some(y) => std::array::from_fn(|lane| judged(&y, lane, half)),
+        Some(y) => std::array::from_fn(|lane| judged(arm, &y, lane, half)),
     }
 }
 
-fn judged(y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {
+fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {
     if y.violated.lane(lane) {
         return Known::Empty;
     }
@@ -65,28 +87,43 @@ fn judged(y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Kno
         let middle = f.middle();
         (middle.value.0[lane], middle.gradient.map(|g| g.0[lane]))
     });
-    Known::Yields(States { values, remainder })
+    let mut bends = [0.0; LEANING];
+    for (p, (i, j)) in Enclosed::PAIR.into_iter().enumerate() {
+        let second: f64 = functions.iter().map(|f| f.second[p].magnitude().0[lane]).sum();
+        let bend = second * half[i] * half[j];
+        (bends[i], bends[j]) = (bends[i] + bend, bends[j] + bend);
+    }
+    let sure = is_sure(arm, y, lane);
+    Known::Yields(States { values, remainder, bends, sure })
 }
 
+/// What a tangent says: its value in the middle less all but its slopes by the place, these, and of what was taken
+/// away the parts of the remainder and of the turn.
+type Least = (f64, [f64; 3], f64, f64);
+
 impl States {
-    /// An affine function of the place below the score under the loads of a kind, for all the region.
-    pub fn below(&self, kind: &Kind, half: [f64; LEANING]) -> Affine {
+    /// What is known of the score under the loads of a kind, for all the region.
+    pub fn below(&self, kind: &Kind, half: [f64; LEANING]) -> Below {
         let [m, d1, d2, v1, v2, zz] = self.values.map(|v| v.0);
         let at = Yielding { m, d: [d1, d2], v: [v1, v2], zz };
         let (sharp, of_error) = kind.load.tangents(&kind.load.with_part(at), [0.0; 3]);
         let place = [half[0], half[1], half[2]];
-        let size = |(value, slope): &(f64, [f64; 3])| value - (0..3).map(|k| slope[k].abs() * place[k]).sum::<f64>();
-        let found = self.least(kind, &sharp, half[3]);
-        let (value, slope) = match of_error.map(|tangent| self.least(kind, &tangent, half[3])) {
-            Some(other) if size(&other) > size(&found) => other,
+        let found = self.least(kind, &sharp, half[TURN]);
+        let low = |(value, slope, ..): &Least| value - (0..3).map(|k| slope[k].abs() * place[k]).sum::<f64>();
+        let (value, slope, remainder, turning) = match of_error.map(|tangent| self.least(kind, &tangent, half[TURN])) {
+            Some(other) if low(&other) > low(&found) => other,
             _ => found,
         };
+        let lost = remainder + turning + self.spread(kind, half);
         let value = value - self.spread(kind, half);
-        if value <= 0.0 { ZERO } else { rounded(value, slope, place) }
+        if value <= 0.0 {
+            return Below { turning, ..Below::NOTHING };
+        }
+        Below { affine: rounded(value, slope, place), share: (lost / (value + lost)) as f32, turning }
     }
 
-    /// What a tangent says: its value in the middle, less all but its slopes by the place.
-    fn least(&self, kind: &Kind, tangent: &Tangent, half_turn: f64) -> (f64, [f64; 3]) {
+    /// What a tangent says.
+    fn least(&self, kind: &Kind, tangent: &Tangent, half_turn: f64) -> Least {
         let Tangent { plane, turning: [q, w], vertical: [g, h], axial, .. } = *tangent;
         let factors = [plane, q, w, g, h, axial];
         let mut value = kind.load.of_part(tangent);
@@ -98,7 +135,8 @@ impl States {
         let lengths = [plane.abs(), libm::hypot(q, w), libm::hypot(g, h), axial.abs()];
         let remainder: f64 = lengths.into_iter().zip(self.remainder).map(|(length, rest)| length * rest).sum();
         let [x, y, z, by_turn] = slopes;
-        (value - remainder - by_turn.abs() * half_turn, [x, y, z])
+        let turning = by_turn.abs() * half_turn;
+        (value - remainder - turning, [x, y, z], remainder, turning)
     }
 
     /// By how much the scores of the loads of a kind can differ from that of its own: no eigenvalue of the compliance

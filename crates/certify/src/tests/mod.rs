@@ -25,7 +25,7 @@ use std::f64::consts::{PI, TAU};
 use stead_model::robot::testing::robot_from;
 use stead_model::robot::{BaseCompliance, Compliance, Frames, PostureClass, Robot};
 use stead_model::stiffness::whole::WholeArm;
-use stead_model::task::{Task, Wrench};
+use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
 use stead_planning::problem::{Interval, Placement, Problem};
@@ -319,6 +319,20 @@ fn equal_links() -> Problem {
         (90.0, 0.0, 0.1, -350.0, 350.0, 6.0),
     ]);
     problem.cell.position = [(-0.3, 0.3), (-0.9, -0.4), (-0.6, 0.2)].map(|(min, max)| Interval { min, max });
+    problem
+}
+
+/// The same problem with a tool that leans by some degrees, the same way at every point.
+pub fn leaning(mut problem: Problem, degrees: f64) -> Problem {
+    let (sine, cosine) = libm::sincos(degrees.to_radians());
+    let axis = Vector3::new(0.28 * sine, -0.96 * sine, cosine);
+    let path = problem.task.path();
+    let points = path.points().iter().enumerate().map(|(k, p)| {
+        let feed = (p.feed - axis * axis.dot(&p.feed)).normalize();
+        (path.segment_of(k) as u32 + 1, PathPoint { axis, feed, ..*p })
+    });
+    let leaning = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+    problem.task = Task::new(leaning, problem.task.wrenches().to_vec()).unwrap();
     problem
 }
 
