@@ -15,9 +15,9 @@ use stead_planning::problem::Problem;
 pub(in super::super) struct Arm {
     pub(super) geometry: Geometry,
     /// Tool centre point from the wrist centre, with heading zero. m
-    pub(super) lever: Vector3<f64>,
+    pub(in super::super) lever: Vector3<f64>,
     /// Axis 6 with heading zero.
-    pub(super) axis6: Vector3<f64>,
+    pub(in super::super) axis6: Vector3<f64>,
     /// The tool axis, where it is not along axis 1.
     pub(super) leaning: Option<Vector3<f64>>,
     /// Compliances of joints 2 and 3, and what they are like. rad/(N m)

@@ -30,9 +30,6 @@ const SHARE: f32 = 0.08;
 /// Pieces cut up for one cell.
 const CUTS: usize = 400;
 
-#[cfg(test)]
-pub static EVALUATED: AtomicU64 = AtomicU64::new(0);
-
 /// One tool axis: the arm with it, kinds of load, and the cells.
 #[derive(Debug)]
 pub(super) struct Cells {
@@ -171,16 +168,6 @@ impl Cells {
         (along(2.0 * radius).powi(2) * along(height.1 - height.0) * size_of::<Cell>() as f64) as u64
     }
 
-    #[cfg(test)]
-    pub fn kinds(&self) -> &[Kind] {
-        &self.kinds
-    }
-
-    #[cfg(test)]
-    pub fn arm(&self) -> (&Arm, f64) {
-        (&self.arm, self.first)
-    }
-
     /// What was made so far takes. bytes
     pub fn used(&self) -> u64 {
         self.made.load(Ordering::Relaxed)
@@ -264,8 +251,6 @@ impl Cells {
         (level, at): (usize, [usize; 3]),
         class: PostureClass,
     ) {
-        #[cfg(test)]
-        EVALUATED.fetch_add(1, Ordering::Relaxed);
         let place = pieces.map(|piece| std::array::from_fn(|k| self.middle_of(&piece, k)));
         let half: [f64; LEANING] = std::array::from_fn(|k| pieces[0].half(k));
         let known = known_over((&self.arm, self.first), &place, half, class);

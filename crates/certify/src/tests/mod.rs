@@ -248,7 +248,7 @@ fn with_moments() -> Problem {
 }
 
 /// The arm hangs, the tool is upright.
-fn hanging_arm() -> Problem {
+pub fn hanging_arm() -> Problem {
     let mut problem = slanted();
     let mut joints = problem.robot.joints().clone();
     joints[0].alpha = PI;
@@ -293,7 +293,7 @@ fn changing() -> Problem {
 }
 
 /// An arm with offsets at shoulder, elbow and side, and joints 2 and 3 that turn by more than half a turn.
-fn odd_arm() -> Problem {
+pub fn odd_arm() -> Problem {
     let mut problem = slanted();
     problem.robot = robot_from([
         (0.0, 0.1, 0.4, -350.0, 350.0, 1.0),
