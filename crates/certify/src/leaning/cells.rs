@@ -26,7 +26,9 @@ pub(super) const LEVELS: usize = 8;
 const FINER: u8 = 2;
 const FINEST: u8 = 9;
 /// Share of a score that a piece of the largest cells may leave out; half of that at each further level.
-const SHARE: f32 = 0.08;
+const SHARE: f32 = 0.2;
+/// Levels on which what costs enough is not cut up further.
+const COARSE: usize = 2;
 /// Pieces cut up for one cell.
 const CUTS: usize = 400;
 
@@ -37,6 +39,8 @@ pub(super) struct Cells {
     /// Compliance of joint 1. rad/(N m)
     first: f64,
     kinds: Vec<Kind>,
+    /// What a load of size 1 costs where most placements are of no interest: more need not be known at first. m
+    enough: f64,
     /// The corner of the least x, y and z. m
     corner: [f64; 3],
     counts: [usize; 3],
@@ -153,12 +157,12 @@ impl Piece {
 
 impl Cells {
     /// For tool centre points up to a radius, between two heights (m).
-    pub fn new(arm: Arm, first: f64, kinds: Vec<Kind>, radius: f64, height: (f64, f64)) -> Self {
+    pub fn new((arm, first): (Arm, f64), kinds: Vec<Kind>, enough: f64, radius: f64, height: (f64, f64)) -> Self {
         let corner = [-radius, -radius, height.0];
         let counts = [2.0 * radius, 2.0 * radius, height.1 - height.0].map(|w| (w / (2.0 * LARGEST)) as usize + 1);
         let largest: Vec<Cell> = std::iter::repeat_with(Cell::default).take(counts.iter().product()).collect();
         let made = AtomicU64::new(size_of_val(largest.as_slice()) as u64);
-        Self { arm, first, kinds, corner, counts, largest, made }
+        Self { arm, first, kinds, enough, corner, counts, largest, made }
     }
 
     /// What cells of that extent take while nothing is known of them. bytes
@@ -230,9 +234,9 @@ impl Cells {
                 self.evaluate(&mut all, &pieces, (level, at), class);
             }
         }
-        let mut cuts = 0;
+        let (mut cuts, enough) = (0, if level < COARSE { self.enough } else { f64::INFINITY });
         for kind in 0..kinds {
-            while let Some(number) = all.to_cut(kind, kinds, level).filter(|_| cuts < CUTS) {
+            while let Some(number) = all.to_cut((kind, kinds), level, enough).filter(|_| cuts < CUTS) {
                 cuts += 1;
                 let piece = all.all[number].piece.within(level, at);
                 all.remove(number, kinds);
@@ -355,14 +359,14 @@ impl Candidates {
         self.of.truncate(last);
     }
 
-    /// The piece that costs least under one kind of load.
-    fn least(&self, kind: usize, kinds: usize) -> Option<usize> {
+    /// The piece that costs least under one kind of load, and how little that is.
+    fn least(&self, kind: usize, kinds: usize) -> Option<(usize, f64)> {
         let low = |number: usize| {
             let ((value, slope), half) = (self.of[number * kinds + kind], self.all[number].half);
             value - (0..3).map(|k| slope[k].abs() * half[k]).sum::<f64>()
         };
         let all = (0..self.all.len()).map(|number| (number, low(number)));
-        all.min_by(|a, b| a.1.total_cmp(&b.1)).map(|least| least.0)
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// What a function with these slopes may be in the middle of the cell, not to be above a piece anywhere in it.
@@ -377,9 +381,9 @@ impl Candidates {
         all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// A piece that keeps the bound of a kind of load low and is not good enough for cells of this level.
-    fn to_cut(&self, kind: usize, kinds: usize, level: usize) -> Option<usize> {
-        let least = self.least(kind, kinds)?;
+    /// A piece that keeps the bound of a kind of load below `enough`, and is not good enough for cells of this level.
+    fn to_cut(&self, (kind, kinds): (usize, usize), level: usize, enough: f64) -> Option<usize> {
+        let (least, _) = self.least(kind, kinds).filter(|least| least.1 < enough)?;
         let is_open = |number: &usize| !self.all[*number].piece.is_fine(level);
         let limiting = || self.limiting(kind, kinds, self.of[least * kinds + kind].1).map(|found| found.0);
         Some(least).filter(is_open).or_else(|| limiting().filter(is_open))
@@ -387,7 +391,7 @@ impl Candidates {
 
     /// Below all pieces for one kind of load.
     fn below(&self, kind: usize, kinds: usize, half: f64) -> Affine {
-        let Some(least) = self.least(kind, kinds) else { return EMPTY };
+        let Some((least, _)) = self.least(kind, kinds) else { return EMPTY };
         let slope = self.of[least * kinds + kind].1;
         let value = self.limiting(kind, kinds, slope).map_or(f64::INFINITY, |found| found.1);
         rounded(value, slope, [half; 3])

@@ -32,6 +32,8 @@ use stead_planning::sense::Sense;
 
 /// Tool axes of a path that a bound covers.
 pub(super) const MOST_AXES: usize = 3;
+/// What a point costs where it is of no interest at first, in terms of what all of them cost in the mean.
+const ENOUGH: f64 = 1.5;
 /// Axes this near to each other (sine) are one: printed digits.
 const SAME: f64 = 1e-9;
 
@@ -89,9 +91,10 @@ type Box3 = Region;
 /// Bounds the objective of all placements of a problem from below: see [`super::best()`].
 pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
     let CertificateSettings { gap, memory, .. } = *settings;
-    let (model, objective) = (Leaning::new(problem), Objective::of(problem));
+    let objective = Objective::of(problem);
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps: Keeps::NOTHING, objective, memory };
     let ceiling = search.ceiling();
+    let model = Leaning::new(problem, ceiling);
     let start = model.start(&whole(problem)).into_iter();
     let all = Parts {
         start: start.map(|region| Open { bound: 0.0, region, known: None }).collect(),
@@ -122,7 +125,8 @@ fn half_angle(distance: f64, radius: f64) -> f64 {
 }
 
 impl Leaning {
-    fn new(problem: &Problem) -> Self {
+    /// For boxes that are of interest where all points together cost less than `ceiling`.
+    fn new(problem: &Problem, ceiling: f64) -> Self {
         let (axes, side, extent, region) = (axes_of(problem), side(problem), extent(problem), whole(problem));
         let robot = problem.scored_robots()[0].clone();
         let nearest = extent.radius.0;
@@ -134,23 +138,35 @@ impl Leaning {
         let mut points: Vec<LeaningPoint> = (0..path.len())
             .map(|point| LeaningPoint { at: seen(&path[point].position, side).into(), axis: axis_at(point), kind: None })
             .collect();
-        let mut all = Vec::new();
-        for (number, axis) in axes.iter().enumerate() {
+        let aggregate = problem.criterion.aggregate;
+        let of_axis = |number: usize| {
             let own: Vec<usize> = (0..path.len()).filter(|point| points[*point].axis == number).collect();
             let loads: Vec<Load> = own.iter().map(|point| Load::seen(problem, *point, 0.0, side).signed()).collect();
             let (kinds, of) = kinds_of(loads.iter());
-            for (point, kind) in own.into_iter().zip(of) {
-                points[point].kind = kind;
-            }
-            let arm = Arm::leaning(problem, &robot, nearest, *axis);
-            let first = robot.compliances_at(&[0.0; 6])[0];
-            all.push(Cells::new(arm, first, kinds, extent.radius.1, extent.height));
+            (kinds, own.into_iter().zip(of).collect::<Vec<_>>())
+        };
+        let of_axes: Vec<_> = (0..axes.len()).map(of_axis).collect();
+        for (point, kind) in of_axes.iter().flat_map(|(_, of)| of) {
+            points[*point].kind = *kind;
         }
+        let sizes = || points.iter().filter_map(|point| point.kind).map(|(_, size)| size);
+        let enough = ENOUGH
+            * match aggregate {
+                Aggregate::Mean => ceiling / sizes().sum::<f64>(),
+                Aggregate::Rms => libm::sqrt(ceiling / sizes().map(|size| size * size).sum::<f64>()),
+                Aggregate::Max => ceiling / sizes().fold(0.0, f64::max),
+            };
+        let first = robot.compliances_at(&[0.0; 6])[0];
+        let cells = |(axis, (kinds, _)): (&Vector3<f64>, (Vec<_>, Vec<_>))| {
+            let arm = Arm::leaning(problem, &robot, nearest, *axis);
+            Cells::new((arm, first), kinds, enough, extent.radius.1, extent.height)
+        };
+        let all = axes.iter().zip(of_axes).map(cells).collect();
         Self {
             axes: all,
             points,
             segments: problem.task.segments().to_vec(),
-            aggregate: problem.criterion.aggregate,
+            aggregate,
             yaws: Yaws::new(problem),
             radius: (region.middle[0] - region.half[0], region.middle[0] + region.half[0]),
             nearest,
@@ -201,8 +217,8 @@ impl Leaning {
         Some(parts.into_iter().filter(|part| self.allows(part)).map(bound).collect())
     }
 
-    /// What all points cost at least together, over a box; and the classes that may still be of interest in it. Once
-    /// the caller asks to stop, what is returned is no bound.
+    /// What all points cost at least together, over a box, up to `ceiling`; and the classes that may still be of
+    /// interest in it. Once the caller asks to stop, what is returned is no bound.
     fn lower_bound(&self, region: &Box3, classes: &[u8], ceiling: f64, monitor: &Monitor) -> (f64, Arc<[u8]>) {
         let mut totals = [0.0; CORNERS];
         let mut all: Vec<[[f64; CORNERS]; 4]> = Vec::with_capacity(self.segments.len());
@@ -218,20 +234,25 @@ impl Leaning {
                     if monitor.should_stop() {
                         return (0.0, Arc::from(classes));
                     }
-                    let Some(cost) = self.cost(point, region, class) else {
+                    let cost = self.cost(point, region, class).unwrap_or(INFINITE);
+                    sum = joined(self.aggregate, &sum, &cost);
+                    // With that class the box is of no interest, whatever the other points cost.
+                    if joined(self.aggregate, &totals, &sum).into_iter().all(|sum| sum >= ceiling) {
                         sum = INFINITE;
                         break;
-                    };
-                    sum = joined(self.aggregate, &sum, &cost);
+                    }
                 }
                 of_classes[number] = sum;
+            }
+            if of_classes.iter().all(|sum| sum[0] == f64::INFINITY) {
+                return (ceiling, Arc::from(classes));
             }
             let mut best = INFINITE;
             of_classes.iter().for_each(|sum| min_into(&mut best, sum));
             totals = joined(self.aggregate, &totals, &best);
             all.push(of_classes);
         }
-        let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
+        let sum = totals.iter().copied().fold(ceiling, f64::min);
         let left = |of: &[[f64; CORNERS]; 4]| {
             let mut best = INFINITE;
             of.iter().for_each(|sum| min_into(&mut best, sum));

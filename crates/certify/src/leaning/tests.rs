@@ -260,12 +260,12 @@ fn cells_are_below_every_turn_and_broken_ones_are_seen() {
     let mut problem = leaning(five_segments(), 20.0);
     (problem.criterion.weights, problem.criterion.force_uncertainty) = (Weights::TOTAL, 0.1);
     let leant = Leant::new(problem.clone());
-    let model = Leaning::new(&problem);
+    let model = Leaning::new(&problem, f64::INFINITY);
     let [wrong, states, near] = cell_violations(&leant, &model, 1.0);
     assert!(wrong == 0 && states > 500 && near > 5, "{wrong} {states} {near}");
     assert!(cell_violations(&leant, &model, 1.15)[0] > 0, "bounds that are 15 % too high are not seen");
     problem.constraints.min_inverse_condition = 0.4;
-    let strict = Leaning::new(&problem);
+    let strict = Leaning::new(&problem, f64::INFINITY);
     assert!(cell_violations(&leant, &strict, 1.0)[0] > 0, "states lost by another limit are not seen");
 }
 
@@ -314,7 +314,7 @@ fn every_placement_is_in_a_box_to_begin_with() {
         let mut problem = leaning(hanging_arm(), 20.0);
         problem.cell.yaw = Interval { min: 0.7, max: 0.7 + yaw };
         let leant = Leant::new(problem.clone());
-        let model = Leaning::new(&problem);
+        let model = Leaning::new(&problem, f64::INFINITY);
         let start = model.start(&whole(&problem));
         let origin = seen(&problem.task.points()[0].position, leant.side());
         let holds = |region: &Box3, at: &[f64; 3], turned: bool| {
