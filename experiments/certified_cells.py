@@ -33,11 +33,19 @@ CELLS = [
     ("KR 270, spindle along the flange", "kuka-kr270-2", "five-segments", ALONG, [0, 0, 684], PUBLISHED, 0.2, TOTAL,
      []),
     ("KR 270, lateral offset of 150 mm, across", "kuka-kr270-2", "raster", ACROSS, [0, 200, 350],
-     ([-300, 300], [-2000, -1500], [-600, -200]), 0.1, WALL, [2]),
+     ([-300, 300], [-2000, -1500], [-600, -200]), 0.1, TOTAL, [2]),
+    ("KR 270, forces from the stock", "kuka-kr270-2", "slots", SLANTED, [0, 0, 684],
+     ([-200, 200], [-2240, -1640], [-602, -214]), 0.2, TOTAL, []),
     ("KR 10, spindle across", "kuka-kr10-r1100", "raster", ACROSS, [0, 80, 60],
      ([400, 800], [-300, 300], [100, 400]), 0.1, TOTAL, []),
     ("TX200, spindle at 60 deg, beside", "staubli-tx200", "raster", TURNED_60, [201, 0, 317],
      ([700, 1300], [-500, 500], [100, 600]), 0.1, TOTAL, []),
+    ("TX200, the same, conditioning 0.2", "staubli-tx200", "raster", TURNED_60, [201, 0, 317],
+     ([700, 1300], [-500, 500], [100, 600]), 0.2, TOTAL, []),
+    ("KR 100, along the flange, path with plunges", "kuka-kr100-ha", "plunging", ALONG, [0, 0, 300],
+     ([1200, 1700], [-300, 300], [300, 700]), 0.2, TOTAL, []),
+    ("KR 240, spindle across, path with plunges", "kuka-kr240-2", "plunging", ACROSS, [0, 200, 200],
+     ([1100, 1700], [-400, 400], [300, 700]), 0.2, TOTAL, []),
     ("KR 210, beside the flange", "kuka-kr210-r2700", "raster", SLANTED, [250, 0, 350],
      ([1000, 1600], [-400, 400], [300, 700]), 0.1, TOTAL, []),
     ("KR 500, joint 2 yields by its angle", "kuka-kr500", "raster", SLANTED, [0, 0, 400],
@@ -49,6 +57,8 @@ CELLS = [
     ("KR 270, 500 points", "kuka-kr270-2", "many", SLANTED, [0, 0, 684],
      ([-200, 200], [-2240, -1640], [-500, -300]), 0.2, TOTAL, []),
     ("KR 270, 3+2: tool leans 20 deg", "kuka-kr270-2", "leaning", SLANTED, [0, 0, 684], PUBLISHED, 0.2, TOTAL, []),
+    ("KR 270, 3+2, smaller", "kuka-kr270-2", "leaning", SLANTED, [0, 0, 684],
+     ([-150, 150], [-1940, -1640], [-402, -214]), 0.2, TOTAL, []),
 ]
 
 
@@ -73,7 +83,19 @@ def task(name, folder):
     target = folder / f"{name}.csv"
     head = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n"
     rows = []
-    if name == "many":
+    if name == "slots":
+        head = head.partition(",force")[0]
+        for line in range(3):
+            side = 1 if line % 2 == 0 else -1
+            rows += [f"{line + 1},{side * (-90 + 15 * k)},{-40 + 40 * line},0,{side},0,0,0,0,1" for k in range(13)]
+    elif name == "plunging":
+        head = head.replace(",force", ",scored,force", 1)
+        for line in range(6):
+            side, y = (1 if line % 2 == 0 else -1), -50 + 20 * line
+            rows += [f"{line + 1},{side * -90},{y},{z},{side},0,0,0,0,1,0,0,0,0" for z in (30, 15)]
+            rows += [f"{line + 1},{side * (-90 + 20 * k)},{y},0,{side},0,0,0,0,1,1,{-120 * side},{-80 * side},-40"
+                     for k in range(10)]
+    elif name == "many":
         for line in range(10):
             side = 1 if line % 2 == 0 else -1
             for k in range(50):
@@ -86,6 +108,23 @@ def task(name, folder):
             rows.append(",".join(cells))
     target.write_text("\n".join([head, *rows]) + "\n")
     return target
+
+
+STOCK = """[stock]
+box_mm = [260.0, 140.0, 10.0]
+xyz_mm = [0.0, 0.0, 0.0]
+[tool]
+cutter_diameter_mm = 20.0
+flute_length_mm = 40.0
+teeth = 2
+helix_deg = 30.0
+kt_mpa = 900.0
+kr = 0.3
+kte_n_per_mm = 12.0
+kre_n_per_mm = 15.0
+[cut]
+spindle_rpm = 9000.0
+"""
 
 
 def run_file(cell, folder):
@@ -116,7 +155,7 @@ gap_percent = 1.0
 time_limit_s = 60.0
 [output]
 maps = false
-""")
+{STOCK if path == "slots" else ""}""")
     return target
 
 

@@ -18,7 +18,8 @@
 //!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
 //!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls
-//!    short leaves undecided, `forecast` says when a gap will be reached.
+//!    short leaves undecided, `forecast` says when a gap will be reached. `leaning` is all of this for tools that lean,
+//!    in other coordinates.
 //! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!

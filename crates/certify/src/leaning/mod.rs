@@ -104,7 +104,9 @@ pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings
         bytes: |known: &Classes| known.as_ref().map_or(0, |known| known.len() as u64),
     };
     let (mut bound, _) = search.explore(all, monitor, |_| None);
-    bound.open.iter_mut().for_each(|(region, _)| *region = about_axis_1(region));
+    // About axis 1 a box is part of a larger region, which neighbours share: what holds in all of them is the least.
+    let least = bound.open.iter().map(|open| open.1).fold(f64::INFINITY, f64::min);
+    bound.open.iter_mut().for_each(|(region, bound)| (*region, *bound) = (about_axis_1(region), least));
     bound
 }
 
