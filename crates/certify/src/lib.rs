@@ -6,7 +6,8 @@
 //! plan of beta.
 //!
 //! 1. `arm` is the closed form, evaluated in two number types: `number` (value and gradient) and `enclosure` (intervals
-//!    for value, gradient and second derivatives; `interval`, `interval_simd`, `continuation`).
+//!    for value, gradient and second derivatives; `interval`, `interval_simd`, `continuation`). `over_regions` is what
+//!    these tell of a region.
 //! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder (of how the arm
 //!    yields to moments too, `moment`), or that no state is allowed.
 //! 3. `load` is what acts on a point and what of its deflection is scored, with the lower bound of the score that is
@@ -64,6 +65,7 @@ mod minorant;
 mod model;
 mod moment;
 mod number;
+mod over_regions;
 mod region;
 mod relaxed;
 mod requirements;

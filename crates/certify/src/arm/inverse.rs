@@ -167,12 +167,7 @@ pub(super) struct Posed<'a, T> {
 impl Arm {
     /// Joint 1, from the wrist centre in plan; `regular` loses the lanes in which that may be too near to axis 1.
     #[inline(always)]
-    pub(super) fn first_joint<T: Number>(
-        &self,
-        [wx, wy]: [T; 2],
-        signs: Signs,
-        regular: &mut Mask,
-    ) -> FirstJoint<T> {
+    pub(super) fn first_joint<T: Number>(&self, [wx, wy]: [T; 2], signs: Signs, regular: &mut Mask) -> FirstJoint<T> {
         let lateral = self.geometry.lateral;
         let radius2 = wx.square() + wy.square();
         let forward2 = radius2.plus(-lateral * lateral);

@@ -116,7 +116,12 @@ impl Arm {
         Some(all)
     }
 
-    fn evaluate_at<T: Number>(&self, place: &Place<T>, tool: &Tool<T>, class: PostureClass) -> Option<ArmCompliance<T>> {
+    fn evaluate_at<T: Number>(
+        &self,
+        place: &Place<T>,
+        tool: &Tool<T>,
+        class: PostureClass,
+    ) -> Option<ArmCompliance<T>> {
         let signs = Signs::of(class);
         let mut regular = Mask::splat(true);
         let first = self.first_joint(place.wrist, signs, &mut regular);

@@ -2,10 +2,10 @@
 //!
 //! Seen from the workpiece, a placement is where axis 1 is: two coordinates and a height. With one tool axis in the
 //! workpiece a state is the place of the tool centre point about axis 1 (in the directions of the workpiece) and the
-//! turn of the spindle about its axis; loads are the same everywhere. What a point costs at least, whatever the turn, is
-//! a function of its place alone ([`cells`]), and the place of every point moves as that of the workpiece does. So a box
-//! of placements needs one affine function below that for each point, and their sum is least at a corner of the box.
-//! Limits on beta along the path are dropped.
+//! turn of the spindle about its axis; loads are the same everywhere. What a point costs at least, whatever the turn,
+//! is a function of its place alone ([`cells`]), and the place of every point moves as that of the workpiece does. So a
+//! box of placements needs one affine function below that for each point, and their sum is least at a corner of the
+//! box. Limits on beta along the path are dropped.
 
 mod cells;
 mod states;
@@ -13,9 +13,10 @@ mod states;
 use super::arm::Arm;
 use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts};
 use super::cell::{Yaws, extent, side, whole};
-use super::cost::CORNERS;
+use super::cost::{CORNERS, cost_at_corners};
 use super::kind::kinds_of;
 use super::load::{Load, Objective};
+use super::minorant::Affine;
 use super::region::Region;
 use super::sliding_min::{INFINITE, joined, min_into, plus};
 use crate::settings::CertificateSettings;
@@ -138,7 +139,11 @@ impl Leaning {
             axes.iter().position(|other| (other - axis).norm() <= SAME).unwrap_or(0)
         };
         let mut points: Vec<LeaningPoint> = (0..path.len())
-            .map(|point| LeaningPoint { at: seen(&path[point].position, side).into(), axis: axis_at(point), kind: None })
+            .map(|point| LeaningPoint {
+                at: seen(&path[point].position, side).into(),
+                axis: axis_at(point),
+                kind: None,
+            })
             .collect();
         let aggregate = problem.criterion.aggregate;
         let of_axis = |number: usize| {
@@ -289,9 +294,7 @@ impl Leaning {
         let numbers: [(usize, usize); 3] =
             std::array::from_fn(|k| cells.between(level, k, middle[k] - half[k], middle[k] + half[k]));
         let (kind, size) = point.kind.unwrap_or((0, 0.0));
-        // Of each cell that holds some of the box: value in the middle of the common part, slopes, that middle from the
-        // middle of the box, and half widths of that part.
-        let mut found: [Option<([f64; 4], [f64; 3], [f64; 3])>; 27] = [None; 27];
+        let mut found = [None; MOST_CELLS];
         let mut count = 0;
         let [(i0, i1), (j0, j1), (k0, k1)] = numbers;
         for i in i0..=i1 {
@@ -299,19 +302,8 @@ impl Leaning {
                 for k in k0..=k1 {
                     let below = cells.below(level, [i, j, k], class);
                     let Some(e) = below.get(kind).filter(|e| e.value < f32::INFINITY) else { continue };
-                    let mut entry = [f64::from(e.value), 0.0, 0.0, 0.0];
-                    let (mut off, mut part) = ([0.0; 3], [0.0; 3]);
-                    for (side, number) in [i, j, k].into_iter().enumerate() {
-                        let own = cells.middle(level, side, number);
-                        let from = (middle[side] - half[side]).max(own - half_of(level));
-                        let to = (middle[side] + half[side]).min(own + half_of(level));
-                        let slope = f64::from(e.slope[side]);
-                        (off[side], part[side]) = (0.5 * (from + to) - middle[side], 0.5 * (to - from).max(0.0));
-                        entry[0] += slope * (0.5 * (from + to) - own);
-                        entry[side + 1] = slope;
-                    }
                     if let Some(place) = found.get_mut(count) {
-                        *place = Some((entry, off, part));
+                        *place = Some(Part::new(cells, level, [i, j, k], e, (middle, half)));
                     }
                     count += 1;
                 }
@@ -323,19 +315,52 @@ impl Leaning {
         if count > found.len() || point.kind.is_none() {
             return Some([0.0; CORNERS]);
         }
-        let low = |(entry, _, part): &([f64; 4], [f64; 3], [f64; 3])| {
-            entry[0] - (0..3).map(|k| entry[k + 1].abs() * part[k]).sum::<f64>()
-        };
         let all = || found.iter().flatten();
-        let least = all().min_by(|a, b| low(a).total_cmp(&low(b)))?;
-        let slope = [least.0[1], least.0[2], least.0[3]];
-        let left = |(entry, off, part): &([f64; 4], [f64; 3], [f64; 3])| {
-            let turned = |k: usize| (entry[k + 1] - slope[k]).abs() * part[k] + slope[k] * off[k];
-            entry[0] - (0..3).map(turned).sum::<f64>()
-        };
-        let value = all().map(left).fold(f64::INFINITY, f64::min);
-        let below = (size * value, slope.map(|s| size * s));
-        Some(super::cost::cost_at_corners(below, region, self.aggregate))
+        let slope = all().min_by(|a, b| a.low().total_cmp(&b.low()))?.slope;
+        let value = all().map(|part| part.left(slope)).fold(f64::INFINITY, f64::min);
+        Some(cost_at_corners((size * value, slope.map(|s| size * s)), region, self.aggregate))
+    }
+}
+
+/// Cells that a box no larger than they are can be in, where rounding lets it touch one on each side.
+const MOST_CELLS: usize = 27;
+
+/// The part of a box that is in a cell, and an affine function below what a load of size 1 costs there.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    /// In the middle of the part. m
+    value: f64,
+    slope: [f64; 3],
+    /// That middle from the middle of the box, and half widths. m
+    off: [f64; 3],
+    half: [f64; 3],
+}
+
+impl Part {
+    /// Of the box with that middle and those half widths.
+    fn new(cells: &Cells, level: usize, at: [usize; 3], e: &Affine, (middle, half): ([f64; 3], [f64; 3])) -> Self {
+        let slope = e.slope.map(f64::from);
+        let mut part = Self { value: f64::from(e.value), slope, off: [0.0; 3], half: [0.0; 3] };
+        for k in 0..3 {
+            let own = cells.middle(level, k, at[k]);
+            let from = (middle[k] - half[k]).max(own - half_of(level));
+            let to = (middle[k] + half[k]).min(own + half_of(level));
+            let of_part = 0.5 * (from + to);
+            (part.off[k], part.half[k]) = (of_part - middle[k], 0.5 * (to - from).max(0.0));
+            part.value += slope[k] * (of_part - own);
+        }
+        part
+    }
+
+    /// The least in it.
+    fn low(&self) -> f64 {
+        self.value - (0..3).map(|k| self.slope[k].abs() * self.half[k]).sum::<f64>()
+    }
+
+    /// What a function with these slopes may be in the middle of the box, not to be above it anywhere in the part.
+    fn left(&self, slope: [f64; 3]) -> f64 {
+        let turned = |k: usize| (self.slope[k] - slope[k]).abs() * self.half[k] + slope[k] * self.off[k];
+        self.value - (0..3).map(turned).sum::<f64>()
     }
 }
 

@@ -2,13 +2,14 @@
 //! spindle about its axis.
 
 use super::super::arm::{Arm, ArmCompliance};
-use super::super::compliance_table::{FUNCTIONS, REMAINDERS, heading_over, is_sure, remainders};
+use super::super::compliance_table::{FUNCTIONS, REMAINDERS};
 use super::super::enclosure::Enclosure;
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::kind::Kind;
 use super::super::load::{Tangent, Yielding};
 use super::super::minorant::{Affine, ZERO, rounded};
 use super::super::number::{LEANING, LEANING_PAIRS};
+use super::super::over_regions::{heading_over, is_sure, remainders};
 use stead_model::robot::PostureClass;
 
 /// The number of the turn among the variables.

@@ -154,7 +154,8 @@ fn violations(leant: &Leant, (_, judged, change, turn): Change) -> [usize; 3] {
         let [known, ..] = known_over((&leant.arm, leant.first), &[middle; WIDTH], judged(half), state.class);
         let kind = leant.kind(state.point);
         for shot in 0..8 {
-            let by: [f64; 4] = std::array::from_fn(|k| if shot == 0 { corner[k] } else { share(&mut random) } * half[k]);
+            let by: [f64; 4] =
+                std::array::from_fn(|k| if shot == 0 { corner[k] } else { share(&mut random) } * half[k]);
             let at = std::array::from_fn(|k| middle[k] + by[k]);
             let Some((score, _)) = leant.truth(&state, at) else { continue };
             states += 1;

@@ -5,6 +5,7 @@
 //! and each must see the mutations named in its test.
 
 mod arms;
+mod attack;
 mod boxes;
 mod cell;
 mod cells;
