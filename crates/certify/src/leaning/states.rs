@@ -18,6 +18,7 @@ pub(super) const TURN: usize = 3;
 type Enclosed = Enclosure<LEANING, LEANING_PAIRS>;
 
 /// What is known of the states of a region.
+#[expect(clippy::large_enum_variant, reason = "four at a time, on the stack")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Known {
     /// None of them is allowed.

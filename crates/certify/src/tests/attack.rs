@@ -54,6 +54,7 @@ fn holds(one: &OpenBox, [radius, z, turn]: [f64; 3]) -> bool {
 }
 
 /// How many of so many placements and descents violate a certificate, whose bounds are multiplied by a factor.
+#[expect(clippy::print_stdout, reason = "a measurement prints")]
 fn violations(name: &str, problem: &Problem, seconds: f64, [count, descents]: [usize; 2], factor: f64) -> usize {
     let planner = Planner::new(problem);
     let value = |placement: &Placement, workspace: &mut Workspace| {
