@@ -170,7 +170,8 @@ def processor_seconds():
 def main():
     stead = sys.argv[1] if len(sys.argv) > 1 else ROOT / "target/release/stead"
     wanted = sys.argv[2:]
-    print("| cell | m3 | gap | ended | s | processor s | what keeps it open |\n|---|---|---|---|---|---|---|", flush=True)
+    print("| cell | m3 | gap | ended | s | processor s | what keeps it open |", flush=True)
+    print("|---|---|---|---|---|---|---|", flush=True)
     for cell in CELLS:
         if wanted and not any(part in cell[0] for part in wanted):
             continue
