@@ -6,6 +6,7 @@ use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, Status,
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
 use super::keeps_open::KeepsOpen;
+use super::leaning;
 use super::model::Model;
 use super::region::Region;
 use super::requirements::certifiable;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_planning::problem::Problem;
 use stead_planning::sense::Sense;
-use stead_planning::symmetry::Unsupported;
+use stead_planning::symmetry::{Unsupported, Upright};
 
 /// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (what
 /// is minimised, m) by more than the gap of the settings.
@@ -37,6 +38,9 @@ pub fn best(
     certifiable(problem, memory)?;
     let alone = without_axes(problem)?;
     let problem = alone.as_ref();
+    if Upright::of(problem).is_err() {
+        return Ok(leaning::best(problem, value, settings, monitor));
+    }
     let keeps = if with_limits { Keeps::of(problem) } else { Keeps::NOTHING };
     let (model, whole) = (Model::new(problem, keeps), whole(problem));
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective: model.objective, memory };

@@ -9,7 +9,7 @@ use stead_model::task::PathPoint;
 use stead_planning::problem::{Cell, Placement, Problem};
 
 /// Which way up the arm stands: +1, or -1 upside down.
-fn side(problem: &Problem) -> f64 {
+pub(super) fn side(problem: &Problem) -> f64 {
     problem.robot.geometry().base_from_root[(2, 2)].signum()
 }
 

@@ -5,12 +5,12 @@
 //! all. It says that none of its states is allowed, or gives an affine model of the compliances with what that leaves
 //! out.
 
-use super::arm::{Arm, ArmCompliance, LimitSpan};
+use super::arm::{Arm, ArmCompliance};
 use super::enclosure::Enclosure;
-use super::interval::Interval;
 use super::interval_simd::{Lanes, WIDTH};
 use super::moment::{MOMENTS, MomentModel};
-use super::number::{PAIR, PAIRS};
+use super::number::PAIRS;
+use super::over_regions::{heading_over, is_sure, pair_factors, remainders};
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -294,17 +294,8 @@ pub(super) fn enclosed(
     half: [f64; 3],
     class: PostureClass,
 ) -> Option<ArmCompliance<Enclosure>> {
-    let ends = place.map(|p| sine_cosine_over(p[2] - half[2], p[2] + half[2]));
-    let middle = place.map(|p| libm::sincos(p[2]));
-    let (sine, cosine) = Enclosure::heading(
-        [Lanes(middle.map(|m| m.0)), Lanes(middle.map(|m| m.1))],
-        [
-            Interval::between(Lanes(ends.map(|e| e.0.0)), Lanes(ends.map(|e| e.0.1))),
-            Interval::between(Lanes(ends.map(|e| e.1.0)), Lanes(ends.map(|e| e.1.1))),
-        ],
-        half,
-    );
-    let radius = Enclosure::variable(Lanes(place.map(|p| p[0])), 0, half);
+    let (sine, cosine) = heading_over(place.map(|p| p[2]), half);
+    let radius = <Enclosure>::variable(Lanes(place.map(|p| p[0])), 0, half);
     let height = Enclosure::variable(Lanes(place.map(|p| p[1])), 1, half);
     arm.evaluate(radius, height, sine, cosine, class)
 }
@@ -316,37 +307,15 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
     if !y.regular.lane(lane) {
         return (Node::Unknown, None);
     }
-    let holds = |margin: &Enclosure| margin.value.low().0[lane] >= 0.0;
-    let margins = &y.margins;
-    let within = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
-        (LimitSpan::Full, _) => true,
-        (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
-        (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
-    };
-    let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
-    let sure = y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1);
+    let sure = is_sure(arm, y, lane);
     let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
     let of = |f: &Enclosure| {
         let f = f.middle();
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     };
     let values = functions.map(of);
-    let max_second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut remainder = [0.0; REMAINDERS];
-    let factors: [f64; PAIRS] = std::array::from_fn(|p| {
-        let (i, j) = PAIR[p];
-        half[i] * half[j] * if i == j { 0.5 } else { 1.0 }
-    });
-    for (p, factor) in factors.into_iter().enumerate() {
-        remainder[0] += max_second(0, p) * factor;
-        remainder[1] += libm::hypot(max_second(1, p), max_second(2, p)) * factor;
-        remainder[2] += libm::hypot(max_second(3, p), max_second(4, p)) * factor;
-        remainder[3] += max_second(5, p) * factor;
-    }
-    // And what is lost by writing the values with fewer digits.
-    let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
-    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
-    let remainder = [0, 1, 2, 3].map(|f| remainder[f] + 1e-7 * lost[f]).map(|r| (r * (1.0 + 1e-6)) as f32);
+    let factors = pair_factors::<3, PAIRS>(half);
+    let remainder = remainders(&functions, lane, half).map(|r| (r * (1.0 + 1e-6)) as f32);
     if !remainder.iter().all(|r| *r < 1e30) {
         return (Node::Unknown, None);
     }
@@ -358,20 +327,6 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
         Some(moments) => (known, Some(moments)),
         None => (Node::Unknown, None),
     }
-}
-
-/// Least and largest sine and cosine between two angles less than a turn apart. rad
-fn sine_cosine_over(from: f64, to: f64) -> ((f64, f64), (f64, f64)) {
-    let (s0, c0) = libm::sincos(from);
-    let (s1, c1) = libm::sincos(to);
-    // Whether an angle of that kind (plus whole turns) is between.
-    let holds = |angle: f64| ((to - angle) / TAU).floor() > ((from - angle) / TAU).floor();
-    let range = |a: f64, b: f64, top: f64| {
-        let high = if holds(top) { 1.0 } else { a.max(b) };
-        let low = if holds(top + PI) { -1.0 } else { a.min(b) };
-        (low, high)
-    };
-    (range(s0, s1, PI / 2.0), range(c0, c1, 0.0))
 }
 
 #[cfg(test)]

@@ -3,25 +3,28 @@
 use super::continuation::{Bend, Links};
 use super::interval::Interval;
 use super::interval_simd::{Lanes, Mask};
-use super::number::{Number, PAIR, PAIRS, Slope, VARIABLES, ZERO};
+use super::number::{Number, PAIRS, Slope, VARIABLES, ZERO, pairs};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Intervals for the value, the gradient and the second derivatives over a region; and the value and the gradient in
 /// its middle, which with the next derivatives give a second, often closer, interval for each.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Enclosure {
+pub(super) struct Enclosure<const V: usize = VARIABLES, const P: usize = PAIRS> {
     pub value: Interval,
-    pub gradient: [Interval; VARIABLES],
-    pub second: [Interval; PAIRS],
-    middle: Slope,
+    pub gradient: [Interval; V],
+    pub second: [Interval; P],
+    middle: Slope<V>,
     /// Half the widths of the region.
-    half: [f64; VARIABLES],
+    half: [f64; V],
 }
 
-impl Enclosure {
+impl<const V: usize, const P: usize> Enclosure<V, P> {
+    /// The two variables of each second derivative.
+    pub const PAIR: [(usize, usize); P] = pairs::<V, P>();
+
     /// The independent variable number `index`, over an interval of the region.
     #[inline(always)]
-    pub fn variable(middle: Lanes, index: usize, half: [f64; VARIABLES]) -> Self {
+    pub fn variable(middle: Lanes, index: usize, half: [f64; V]) -> Self {
         let mut out = Self::fixed(0.0, half);
         out.value = Interval { middle, radius: Lanes::splat(half[index]) };
         out.gradient[index] = Interval::point(Lanes::splat(1.0));
@@ -29,27 +32,27 @@ impl Enclosure {
         out
     }
 
-    /// Sine and cosine of the heading: in the middle, and intervals that hold them.
+    /// Sine and cosine of the heading, the last variable: in the middle, and intervals that hold them.
     #[inline(always)]
-    pub fn heading(middle: [Lanes; 2], [sine, cosine]: [Interval; 2], half: [f64; VARIABLES]) -> (Self, Self) {
+    pub fn heading(middle: [Lanes; 2], [sine, cosine]: [Interval; 2], half: [f64; V]) -> (Self, Self) {
         let negative = |i: Interval| Interval { middle: -i.middle, radius: i.radius };
         let (mut s, mut c) = (Self::fixed(0.0, half), Self::fixed(0.0, half));
-        (s.value, s.gradient[2], s.second[2]) = (sine, cosine, negative(sine));
-        (c.value, c.gradient[2], c.second[2]) = (cosine, negative(sine), negative(cosine));
+        (s.value, s.gradient[V - 1], s.second[V - 1]) = (sine, cosine, negative(sine));
+        (c.value, c.gradient[V - 1], c.second[V - 1]) = (cosine, negative(sine), negative(cosine));
         (s.middle, c.middle) = Slope::heading(middle[0], middle[1]);
         (s, c)
     }
 
     /// Value and gradient in the middle.
-    pub fn middle(&self) -> &Slope {
+    pub fn middle(&self) -> &Slope<V> {
         &self.middle
     }
 
     #[inline(always)]
-    fn fixed(value: f64, half: [f64; VARIABLES]) -> Self {
+    fn fixed(value: f64, half: [f64; V]) -> Self {
         let zero = Interval::point(ZERO);
         let middle = Slope::constant(value);
-        Self { value: Interval::point(middle.value), gradient: [zero; VARIABLES], second: [zero; PAIRS], middle, half }
+        Self { value: Interval::point(middle.value), gradient: [zero; V], second: [zero; P], middle, half }
     }
 
     /// With each interval cut down to what the middle and the next derivatives leave of it.
@@ -57,8 +60,8 @@ impl Enclosure {
     fn tightened(mut self) -> Self {
         let h = self.half;
         let max_second = self.second.map(Interval::magnitude);
-        for k in 0..VARIABLES {
-            let radius = (0..PAIRS).fold(ZERO, |sum, p| match PAIR[p] {
+        for k in 0..V {
+            let radius = (0..P).fold(ZERO, |sum, p| match Self::PAIR[p] {
                 (i, j) if i == k => sum + max_second[p] * h[j],
                 (i, j) if j == k => sum + max_second[p] * h[i],
                 _ => sum,
@@ -66,10 +69,10 @@ impl Enclosure {
             self.gradient[k] = self.gradient[k].cut(Interval { middle: self.middle.gradient[k], radius });
         }
         let mut radius = ZERO;
-        for k in 0..VARIABLES {
+        for k in 0..V {
             radius = radius + self.middle.gradient[k].abs() * h[k];
         }
-        for (p, (i, j)) in PAIR.iter().enumerate() {
+        for (p, (i, j)) in Self::PAIR.iter().enumerate() {
             radius = radius + max_second[p] * (if i == j { 0.5 } else { 1.0 } * h[*i] * h[*j]);
         }
         self.value = self.value.cut(Interval { middle: self.middle.value, radius });
@@ -78,12 +81,12 @@ impl Enclosure {
 
     /// A function of it, from intervals that hold its value and first two derivatives, and these in the middle.
     #[inline(never)]
-    fn through(self, middle: Slope, value: Interval, first: Interval, second: Interval) -> Self {
+    fn through(self, middle: Slope<V>, value: Interval, first: Interval, second: Interval) -> Self {
         Self {
             value,
             gradient: self.gradient.map(|g| g.mul(first)),
             second: std::array::from_fn(|p| {
-                let (k, l) = PAIR[p];
+                let (k, l) = Self::PAIR[p];
                 let product = if k == l { self.gradient[k].square() } else { self.gradient[k].mul(self.gradient[l]) };
                 self.second[p].mul(first).add(product.mul(second))
             }),
@@ -96,11 +99,11 @@ impl Enclosure {
 
 /// The half widths of whichever is not a constant.
 #[inline(always)]
-fn widths(a: &Enclosure, b: &Enclosure) -> [f64; VARIABLES] {
+fn widths<const V: usize, const P: usize>(a: &Enclosure<V, P>, b: &Enclosure<V, P>) -> [f64; V] {
     std::array::from_fn(|k| a.half[k].max(b.half[k]))
 }
 
-impl Add for Enclosure {
+impl<const V: usize, const P: usize> Add for Enclosure<V, P> {
     type Output = Self;
     #[inline(never)]
     fn add(self, other: Self) -> Self {
@@ -115,7 +118,7 @@ impl Add for Enclosure {
     }
 }
 
-impl Sub for Enclosure {
+impl<const V: usize, const P: usize> Sub for Enclosure<V, P> {
     type Output = Self;
     #[inline(never)]
     fn sub(self, other: Self) -> Self {
@@ -130,7 +133,7 @@ impl Sub for Enclosure {
     }
 }
 
-impl Mul for Enclosure {
+impl<const V: usize, const P: usize> Mul for Enclosure<V, P> {
     type Output = Self;
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
@@ -139,7 +142,7 @@ impl Mul for Enclosure {
             value: a.value.mul(b.value),
             gradient: std::array::from_fn(|k| a.gradient[k].mul(b.value).add(b.gradient[k].mul(a.value))),
             second: std::array::from_fn(|p| {
-                let (k, l) = PAIR[p];
+                let (k, l) = Self::PAIR[p];
                 let outer = a.second[p].mul(b.value).add(b.second[p].mul(a.value));
                 let cross = a.gradient[k].mul(b.gradient[l]);
                 let cross = if k == l { cross.scale(2.0) } else { cross.add(a.gradient[l].mul(b.gradient[k])) };
@@ -152,7 +155,7 @@ impl Mul for Enclosure {
     }
 }
 
-impl Neg for Enclosure {
+impl<const V: usize, const P: usize> Neg for Enclosure<V, P> {
     type Output = Self;
     #[inline(never)]
     fn neg(self) -> Self {
@@ -160,10 +163,10 @@ impl Neg for Enclosure {
     }
 }
 
-impl Number for Enclosure {
+impl<const V: usize, const P: usize> Number for Enclosure<V, P> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self::fixed(value, [0.0; VARIABLES])
+        Self::fixed(value, [0.0; V])
     }
     #[inline(never)]
     fn scale(self, factor: f64) -> Self {
@@ -186,7 +189,7 @@ impl Number for Enclosure {
             value: self.value.square(),
             gradient: self.gradient.map(|g| g.mul(self.value).scale(2.0)),
             second: std::array::from_fn(|p| {
-                let (k, l) = PAIR[p];
+                let (k, l) = Self::PAIR[p];
                 let product = if k == l { self.gradient[k].square() } else { self.gradient[k].mul(self.gradient[l]) };
                 self.second[p].mul(self.value).add(product).scale(2.0)
             }),

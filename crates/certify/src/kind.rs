@@ -50,7 +50,12 @@ fn length([x, y, z]: &[f64; 3]) -> f64 {
 /// The kinds of load of path points, those of most weight first; and for each point the number of its kind and how many
 /// times as large its own is, `None` where it is left out.
 pub(super) fn kinds(points: &[Point]) -> (Vec<Kind>, Vec<Option<(usize, f64)>>) {
-    let loads: Vec<Option<(Load, f64)>> = points.iter().map(|point| unit(&point.load)).collect();
+    kinds_of(points.iter().map(|point| &point.load))
+}
+
+/// The same of loads.
+pub(super) fn kinds_of<'a>(loads: impl Iterator<Item = &'a Load>) -> (Vec<Kind>, Vec<Option<(usize, f64)>>) {
+    let loads: Vec<Option<(Load, f64)>> = loads.map(unit).collect();
     let mut found = Vec::new();
     for spread in SPREADS {
         found = kinds_within(&loads, spread);

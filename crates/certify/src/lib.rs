@@ -6,7 +6,8 @@
 //! plan of beta.
 //!
 //! 1. `arm` is the closed form, evaluated in two number types: `number` (value and gradient) and `enclosure` (intervals
-//!    for value, gradient and second derivatives; `interval`, `interval_simd`, `continuation`).
+//!    for value, gradient and second derivatives; `interval`, `interval_simd`, `continuation`). `over_regions` is what
+//!    these tell of a region.
 //! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder (of how the arm
 //!    yields to moments too, `moment`), or that no state is allowed.
 //! 3. `load` is what acts on a point and what of its deflection is scored, with the lower bound of the score that is
@@ -19,7 +20,7 @@
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
 //!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls
 //!    short leaves undecided, `orientations` joins the bounds of several orientations of the part, `forecast` says when
-//!    a gap will be reached.
+//!    a gap will be reached. `leaning` is all of this for tools that lean, in other coordinates.
 //! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!
@@ -57,6 +58,7 @@ mod interval;
 mod interval_simd;
 mod keeps_open;
 mod kind;
+mod leaning;
 mod load;
 mod lower_bound;
 mod minorant;
@@ -64,6 +66,7 @@ mod model;
 mod moment;
 mod number;
 mod orientations;
+mod over_regions;
 mod region;
 mod relaxed;
 mod requirements;

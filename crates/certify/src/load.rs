@@ -105,6 +105,16 @@ impl Load {
     /// Of a path point, in the frame of its feed as seen along axis 1: that frame is given by the direction of the feed
     /// (rad) and by `side`, which is -1 where the arm hangs.
     pub fn new(problem: &Problem, point: usize, feed: f64, side: f64) -> Self {
+        let mut load = Self::seen(problem, point, feed, side);
+        let weights = &problem.criterion.weights;
+        if weights.surface == 0.0 && weights.feed == weights.wall {
+            load.turn_to_force();
+        }
+        load
+    }
+
+    /// The same in a frame whose first axis has this direction about axis 1 (rad), whatever is scored.
+    pub fn seen(problem: &Problem, point: usize, feed: f64, side: f64) -> Self {
         let objective = Objective::of(problem);
         let (sine, cosine) = libm::sincos(feed);
         let seen = |v: &nalgebra::Vector3<f64>| {
@@ -130,12 +140,21 @@ impl Load {
             Yielding::of([column(0), column(1), column(2)])
         });
         let force_seen = seen(force).map(|f| f * factor);
-        let mut load = Self { directions, force: force_seen, moment, error, part, turn: 0.0 };
-        let weights = &problem.criterion.weights;
-        if weights.surface == 0.0 && weights.feed == weights.wall {
-            load.turn_to_force();
+        Self { directions, force: force_seen, moment, error, part, turn: 0.0 }
+    }
+
+    /// The same score with force and scored directions the other way, where these point down their first coordinate: so
+    /// that passes there and back are alike. Without a moment the sign of neither counts.
+    pub fn signed(mut self) -> Self {
+        let is_down = |v: &[f64; 3]| v.iter().find(|x| x.abs() > 1e-12).is_some_and(|x| *x < 0.0);
+        let scale = norm(self.force).max(f64::MIN_POSITIVE);
+        if !self.has_moment() && is_down(&self.force.map(|x| x / scale)) {
+            self.force = self.force.map(|x| -x);
         }
-        load
+        if !self.has_moment() {
+            self.directions.iter_mut().filter(|v| is_down(v)).for_each(|v| *v = v.map(|x| -x));
+        }
+        self
     }
 
     /// Turns the frame so that no force acts along its second axis: where the parts of a deflection in the plane count

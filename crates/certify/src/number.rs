@@ -9,10 +9,29 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// Independent variables: radius and height of the tool centre point, heading of the spindle against its azimuth.
 pub(super) const VARIABLES: usize = 3;
-/// Pairs of variables, the diagonal first: rr, zz, ee, rz, re, ze.
+/// Pairs of variables, in the order of [`pairs`]: rr, zz, ee, rz, re, ze.
 pub(super) const PAIRS: usize = 6;
-/// The two variables of each pair.
-pub(super) const PAIR: [(usize, usize); PAIRS] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+/// Independent variables of a tool that leans: the place of the tool centre point in the frame of the workpiece about
+/// axis 1, and the turn of the spindle about its axis.
+pub(super) const LEANING: usize = 4;
+/// Pairs of these.
+pub(super) const LEANING_PAIRS: usize = 10;
+
+/// The two variables of each pair, the diagonal first.
+pub(super) const fn pairs<const V: usize, const P: usize>() -> [(usize, usize); P] {
+    let mut out = [(0, 0); P];
+    let (mut i, mut next) = (0, V);
+    while i < V {
+        out[i] = (i, i);
+        let mut j = i + 1;
+        while j < V {
+            out[next] = (i, j);
+            (next, j) = (next + 1, j + 1);
+        }
+        i += 1;
+    }
+    out
+}
 
 /// What the closed form needs of a number.
 pub(super) trait Number:
@@ -52,27 +71,32 @@ pub(super) trait Number:
 
 /// A value and its gradient.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slope {
+pub(super) struct Slope<const V: usize = VARIABLES> {
     pub value: Lanes,
-    pub gradient: [Lanes; VARIABLES],
+    pub gradient: [Lanes; V],
 }
 
 /// Zero in every lane.
 pub(super) const ZERO: Lanes = Lanes([0.0; super::interval_simd::WIDTH]);
 
-impl Slope {
+impl<const V: usize> Slope<V> {
     /// The independent variable number `index`.
     #[inline(always)]
     pub fn variable(value: Lanes, index: usize) -> Self {
-        let mut gradient = [ZERO; VARIABLES];
+        let mut gradient = [ZERO; V];
         gradient[index] = Lanes::splat(1.0);
         Self { value, gradient }
     }
 
-    /// Sine and cosine of the heading, given as plain numbers.
+    /// Sine and cosine of the heading, the last variable, given as plain numbers.
     #[inline(always)]
     pub fn heading(sine: Lanes, cosine: Lanes) -> (Self, Self) {
-        (Self { value: sine, gradient: [ZERO, ZERO, cosine] }, Self { value: cosine, gradient: [ZERO, ZERO, -sine] })
+        let of = |value: Lanes, slope: Lanes| {
+            let mut gradient = [ZERO; V];
+            gradient[V - 1] = slope;
+            Self { value, gradient }
+        };
+        (of(sine, cosine), of(cosine, -sine))
     }
 
     /// A function of it, from its value and derivative there.
@@ -82,7 +106,7 @@ impl Slope {
     }
 }
 
-impl Add for Slope {
+impl<const V: usize> Add for Slope<V> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -93,7 +117,7 @@ impl Add for Slope {
     }
 }
 
-impl Sub for Slope {
+impl<const V: usize> Sub for Slope<V> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -104,7 +128,7 @@ impl Sub for Slope {
     }
 }
 
-impl Mul for Slope {
+impl<const V: usize> Mul for Slope<V> {
     type Output = Self;
     #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule adds")]
     #[inline(always)]
@@ -116,7 +140,7 @@ impl Mul for Slope {
     }
 }
 
-impl Neg for Slope {
+impl<const V: usize> Neg for Slope<V> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -124,10 +148,10 @@ impl Neg for Slope {
     }
 }
 
-impl Number for Slope {
+impl<const V: usize> Number for Slope<V> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        Self { value: Lanes::splat(value), gradient: [ZERO; VARIABLES] }
+        Self { value: Lanes::splat(value), gradient: [ZERO; V] }
     }
     #[inline(always)]
     fn scale(self, factor: f64) -> Self {

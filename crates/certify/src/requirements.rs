@@ -5,6 +5,7 @@ use super::at_rest::without_axes;
 use super::cell::{NEAREST, extent, points_of, too_near};
 use super::coarse_bounds::CoarseBounds;
 use super::compliance_table::ComplianceTable;
+use super::leaning;
 use super::model::STEPS;
 use super::orientations;
 use stead_model::stiffness::whole::yields_elsewhere;
@@ -34,12 +35,17 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     }
     let alone = without_axes(problem)?;
     let problem = alone.as_ref();
-    Upright::of(problem)?;
+    let axes = tool_axes(problem)?;
     require_constant(problem, &[0, 3, 4, 5])?;
     require_covered_springs(problem)?;
     let extent = extent(problem);
     if let Some(needed) = needed_condition(problem, extent.radius.0) {
         return Err(Unsupported::Conditioning { needed });
+    }
+    if axes > 0 {
+        require_covered_leaning(problem)?;
+        let bytes = leaning::bytes(problem, axes);
+        return if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) };
     }
     let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
     let bytes = ComplianceTable::bytes(extent, STEPS)
@@ -112,6 +118,33 @@ pub(super) fn left_out(problem: &Problem) -> Vec<&'static str> {
         words.push("which position of the external axes goes with which x, y, z and yaw");
     }
     words
+}
+
+/// The number of tool axes of a path, where the tool is not upright at every point; zero where it is.
+fn tool_axes(problem: &Problem) -> Result<usize, Unsupported> {
+    match Upright::of(problem) {
+        Ok(_) => Ok(0),
+        Err(Unsupported::TiltedTool { .. } | Unsupported::UpsideDown { .. }) => {
+            let axes = leaning::axes_of(problem).len();
+            let max = leaning::MOST_AXES;
+            if axes > max { Err(Unsupported::ManyToolAxes { axes, max }) } else { Ok(axes) }
+        }
+        Err(reason) => Err(reason),
+    }
+}
+
+/// Requires of a problem whose tool leans what bounds cover there.
+fn require_covered_leaning(problem: &Problem) -> Result<(), Unsupported> {
+    let beyond = |what| Err(Unsupported::Leaning { what });
+    if problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0) {
+        beyond("moments on the tool")
+    } else if problem.scored_robots().len() > 1 {
+        beyond("several stiffness sets (criterion.robots)")
+    } else if problem.scored_robots().iter().any(|robot| yields_elsewhere(robot, &problem.spindle)) {
+        beyond("springs normal to the axes, base, mount and tip")
+    } else {
+        Ok(())
+    }
 }
 
 /// Requires that what yields beside the joints about their axes turns with the arm, the tool or the part, and does so

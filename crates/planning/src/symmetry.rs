@@ -49,6 +49,20 @@ pub enum Unsupported {
         /// Angle between the tool axis and the vertical there. rad
         angle: f64,
     },
+    /// The tool leans in more ways than bounds cover.
+    #[error("the tool has {axes} different axes along the path: bounds cover {max}, each at any number of points")]
+    ManyToolAxes {
+        /// Different tool axes.
+        axes: usize,
+        /// Allowed.
+        max: usize,
+    },
+    /// The tool leans, and bounds do not cover the rest of the problem then.
+    #[error("bounds do not cover {what} with a tool that leans")]
+    Leaning {
+        /// What.
+        what: &'static str,
+    },
     /// A vertical tool axis that is upside down against the first one.
     #[error("the tool is not the same way up at every point: at point {point} it is upside down against point 0")]
     UpsideDown {

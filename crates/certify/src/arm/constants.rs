@@ -15,9 +15,11 @@ use stead_planning::problem::Problem;
 pub(in super::super) struct Arm {
     pub(super) geometry: Geometry,
     /// Tool centre point from the wrist centre, with heading zero. m
-    pub(super) lever: Vector3<f64>,
+    pub(in super::super) lever: Vector3<f64>,
     /// Axis 6 with heading zero.
-    pub(super) axis6: Vector3<f64>,
+    pub(in super::super) axis6: Vector3<f64>,
+    /// The tool axis, where it is not along axis 1.
+    pub(super) leaning: Option<Vector3<f64>>,
     /// Compliances of joints 2 and 3, and what they are like. rad/(N m)
     pub(super) laws: [Law; 2],
     typical: f64,
@@ -56,14 +58,33 @@ impl Arm {
     /// With the stiffness of a robot of the geometry of the problem's, for radii of the tool centre point from
     /// `nearest` (m) on.
     pub fn new(problem: &Problem, robot: &Robot, nearest: f64) -> Self {
+        let side = robot.geometry().base_from_root[(2, 2)];
+        let parts = points_of(problem).into_iter().map(|point| point.load.vertical_parts());
+        let parts = parts.fold([false; 2], |all, one| [all[0] || one[0], all[1] || one[1]]);
+        let axis = problem.task.points().first().map_or(1.0, |p| p.axis.z) * side;
+        // With heading zero: feed along x, axis up or down.
+        Self::with_tool(problem, robot, nearest, &Matrix3::from_diagonal(&Vector3::new(1.0, axis, axis)), parts)
+    }
+
+    /// The same for a tool with this axis in the frame of the workpiece about axis 1.
+    pub fn leaning(problem: &Problem, robot: &Robot, nearest: f64, axis: Vector3<f64>) -> Self {
+        let aside = Vector3::ith(axis.iamin(), 1.0).cross(&axis).normalize();
+        let frame = Matrix3::from_columns(&[aside, axis.cross(&aside), axis]);
+        Self { leaning: Some(axis), ..Self::with_tool(problem, robot, nearest, &frame, [true; 2]) }
+    }
+
+    /// With a frame whose third axis is the tool axis, and whether entries of the compliance out of the plan count.
+    fn with_tool(
+        problem: &Problem,
+        robot: &Robot,
+        nearest: f64,
+        frame: &Matrix3<f64>,
+        [is_vertical, is_axial]: [bool; 2],
+    ) -> Self {
         let compliances = robot.compliances_at(&[0.0; 6]);
         let geometry = robot.geometry().clone();
-        let side = geometry.base_from_root[(2, 2)];
-        let parts = points_of(problem).into_iter().map(|point| point.load.vertical_parts());
-        let [is_vertical, is_axial] = parts.fold([false; 2], |all, one| [all[0] || one[0], all[1] || one[1]]);
-        let axis = problem.task.points().first().map_or(1.0, |p| p.axis.z) * side;
-        // With heading zero: feed along x, axis up or down, then eq. 10 with beta zero.
-        let root_from_flange = Matrix3::from_diagonal(&Vector3::new(1.0, axis, axis))
+        // Eq. 10 with beta zero.
+        let root_from_flange = frame
             * Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
             * problem.spindle.flange_from_tool.inverse().rotation;
         let joint = |j: usize| &robot.joints()[j];
@@ -84,6 +105,7 @@ impl Arm {
             has_moments: problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0),
             lever,
             axis6: root_from_flange.column(2).into_owned(),
+            leaning: None,
             laws: [1, 2].map(|j| Law::of(joint(j))),
             typical: compliances[1].max(compliances[2]) / 3.0,
             compliances: std::array::from_fn(|k| compliances[k + 3]),

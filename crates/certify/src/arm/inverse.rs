@@ -46,10 +46,22 @@ impl Signs {
     }
 }
 
+/// Where the tool centre point is.
+pub(super) struct Place<T> {
+    /// From the root of the arm. m
+    pub tip: Vector<T>,
+    /// The wrist centre in plan. m
+    pub wrist: [T; 2],
+    /// Squared distance of the tool centre point from axis 1. m^2
+    pub radius2: T,
+}
+
 /// What turns with the spindle, in the radial frame.
 pub(super) struct Tool<T> {
     sine: T,
     cosine: T,
+    /// What it turns about, where that is not axis 1.
+    leaning: Option<Vector3<f64>>,
     /// Tool centre point from the wrist centre, t. m
     pub lever: Vector<T>,
     /// a_6.
@@ -60,8 +72,8 @@ impl<T: Number> Tool<T> {
     /// At a heading, given by its sine and cosine.
     #[inline(always)]
     pub fn new(arm: &Arm, sine: T, cosine: T) -> Self {
-        let (lever, axis6) = (turned(sine, cosine, &arm.lever), turned(sine, cosine, &arm.axis6));
-        Self { sine, cosine, lever, axis6 }
+        let of = |v: &Vector3<f64>| turned(sine, cosine, arm.leaning.as_ref(), v);
+        Self { sine, cosine, leaning: arm.leaning, lever: of(&arm.lever), axis6: of(&arm.axis6) }
     }
 
     /// Sine and cosine of the heading.
@@ -73,13 +85,21 @@ impl<T: Number> Tool<T> {
     /// R(eta) v.
     #[inline(always)]
     pub fn turned(&self, v: &Vector3<f64>) -> Vector<T> {
-        turned(self.sine, self.cosine, v)
+        turned(self.sine, self.cosine, self.leaning.as_ref(), v)
     }
 }
 
+/// A vector turned about axis 1, or about another axis.
 #[inline(always)]
-fn turned<T: Number>(sine: T, cosine: T, v: &Vector3<f64>) -> Vector<T> {
-    Vector { x: cosine.scale(v.x) - sine.scale(v.y), y: sine.scale(v.x) + cosine.scale(v.y), z: T::constant(v.z) }
+fn turned<T: Number>(sine: T, cosine: T, leaning: Option<&Vector3<f64>>, v: &Vector3<f64>) -> Vector<T> {
+    let Some(axis) = leaning else {
+        let (x, y) = (cosine.scale(v.x) - sine.scale(v.y), sine.scale(v.x) + cosine.scale(v.y));
+        return Vector { x, y, z: T::constant(v.z) };
+    };
+    let along = axis * axis.dot(v);
+    let (off, across) = (v - along, axis.cross(v));
+    let entry = |k: usize| (cosine.scale(off[k]) + sine.scale(across[k])).plus(along[k]);
+    Vector { x: entry(0), y: entry(1), z: entry(2) }
 }
 
 /// Joint 1 against the azimuth of the tool centre point.
@@ -145,17 +165,10 @@ pub(super) struct Posed<'a, T> {
 }
 
 impl Arm {
-    /// Joint 1; `regular` loses the lanes in which the wrist centre may be too near to axis 1.
+    /// Joint 1, from the wrist centre in plan; `regular` loses the lanes in which that may be too near to axis 1.
     #[inline(always)]
-    pub(super) fn first_joint<T: Number>(
-        &self,
-        radius: T,
-        tool: &Tool<T>,
-        signs: Signs,
-        regular: &mut Mask,
-    ) -> FirstJoint<T> {
+    pub(super) fn first_joint<T: Number>(&self, [wx, wy]: [T; 2], signs: Signs, regular: &mut Mask) -> FirstJoint<T> {
         let lateral = self.geometry.lateral;
-        let (wx, wy) = (radius - tool.lever.x, -tool.lever.y);
         let radius2 = wx.square() + wy.square();
         let forward2 = radius2.plus(-lateral * lateral);
         let forward_squared_high = forward2.high();
@@ -170,7 +183,8 @@ impl Arm {
         FirstJoint { forward, forward_squared_high, cosine, sine }
     }
 
-    /// Joints 2 and 3, for the tool centre point at `height` (m) and what [`super::singularity::Needs`] says there.
+    /// Joints 2 and 3, for the wrist centre at a distance along the arm and a height (m) and what
+    /// [`super::singularity::Needs`] says there.
     #[inline(always)]
     pub(super) fn elbow<T: Number>(
         &self,
@@ -181,7 +195,7 @@ impl Arm {
         regular: &mut Mask,
     ) -> Elbow<T> {
         let g = &self.geometry;
-        let up = height.plus(-self.lever.z - g.shoulder_height);
+        let up = height.plus(-g.shoulder_height);
         let u = forward.plus(-g.shoulder_radius);
         let v = up.scale(g.lift);
         let distance2 = u.square() + v.square();

@@ -28,7 +28,7 @@ use super::moment::MOMENTS;
 use super::number::Number;
 pub(super) use beside::is_base_alike;
 pub(super) use constants::{Arm, LimitSpan};
-use inverse::{Posed, Signs, Tool};
+use inverse::{Place, Posed, Signs, Tool};
 pub(super) use singularity::needed_condition;
 use stead_model::robot::PostureClass;
 use vector::{InPlane, Vector};
@@ -87,17 +87,52 @@ impl Arm {
         cosine: T,
         class: PostureClass,
     ) -> Option<ArmCompliance<T>> {
+        let tool = Tool::new(self, sine, cosine);
+        let wrist = [radius - tool.lever.x, -tool.lever.y];
+        let place =
+            Place { tip: Vector { x: radius, y: T::constant(0.0), z: height }, wrist, radius2: radius.square() };
+        self.evaluate_at(&place, &tool, class)
+    }
+
+    /// The same of a tool that leans, in the frame of the workpiece about axis 1, with a turn about the tool axis; and
+    /// with joint 1, whose compliance is `first` (rad/(N m)).
+    pub fn evaluate_leaning<T: Number>(
+        &self,
+        [x, y, z]: [T; 3],
+        sine: T,
+        cosine: T,
+        first: f64,
+        class: PostureClass,
+    ) -> Option<ArmCompliance<T>> {
+        let tool = Tool::new(self, sine, cosine);
+        let wrist = [x - tool.lever.x, y - tool.lever.y];
+        let (x2, y2) = (x.square(), y.square());
+        let place = Place { tip: Vector { x, y, z }, wrist, radius2: x2 + y2 };
+        let mut all = self.evaluate_at(&place, &tool, class)?;
+        // Joint 1 moves the tool centre point by (-y, x).
+        all.m = all.m + place.radius2.scale(0.5 * first);
+        all.d1 = all.d1 + (y2 - x2).scale(0.5 * first);
+        all.d2 = all.d2 - (x * y).scale(first);
+        Some(all)
+    }
+
+    fn evaluate_at<T: Number>(
+        &self,
+        place: &Place<T>,
+        tool: &Tool<T>,
+        class: PostureClass,
+    ) -> Option<ArmCompliance<T>> {
         let signs = Signs::of(class);
         let mut regular = Mask::splat(true);
-        let tool = Tool::new(self, sine, cosine);
-        let first = self.first_joint(radius, &tool, signs, &mut regular);
-        let needed = self.needs.at(radius);
+        let first = self.first_joint(place.wrist, signs, &mut regular);
+        let needed = self.needs.at(place.radius2);
         // Where the wrist centre is that near to axis 1 the closed form is not regular, and nothing else would tell.
         let is_above_axis = self.is_too_near(first.forward_squared_high, needed.low());
         if is_above_axis.all() {
             return None;
         }
-        let elbow = self.elbow(first.forward, height, needed, signs, &mut regular);
+        let up = place.tip.z - tool.lever.z;
+        let elbow = self.elbow(first.forward, up, needed, signs, &mut regular);
         let mut violated = is_above_axis | elbow.violated;
         if violated.all() {
             return None;
@@ -109,8 +144,8 @@ impl Arm {
         }
         let lever_along = tool.lever.x * first.cosine + tool.lever.y * first.sine;
         let tips = [elbow.from_shoulder, wrist.from_elbow]
-            .map(|p| InPlane { along: p.along + lever_along, up: p.up.plus(self.lever.z) });
-        let posed = Posed { signs, tool: &tool, first: &first, elbow: &elbow, wrist: &wrist, tips: &tips };
+            .map(|p| InPlane { along: p.along + lever_along, up: p.up + tool.lever.z });
+        let posed = Posed { signs, tool, first: &first, elbow: &elbow, wrist: &wrist, tips: &tips };
         let mut conditioned = regular;
         let (conditioning, is_singular) = if self.min_inverse_condition > 0.0 {
             self.conditioning(&posed, &mut conditioned)
@@ -123,7 +158,7 @@ impl Arm {
         }
         let (mut m, mut d1, mut d2, mut vertical, mut axial) = self.compliance(&posed, &mut regular);
         if let Some(beside) = &self.beside {
-            let more = beside.compliance(&posed, &self.geometry, radius, height);
+            let more = beside.compliance(&posed, &self.geometry, place.tip.x, place.tip.z);
             (m, d1, d2) = (m + (more.xx + more.yy).scale(0.5), d1 + (more.xx - more.yy).scale(0.5), d2 + more.xy);
             if self.is_vertical {
                 vertical = [vertical[0] + more.xz, vertical[1] + more.yz];

@@ -33,10 +33,10 @@ pub(super) struct Needs {
 }
 
 impl Needs {
-    /// min^2 |N|^2 / 36, at least, at a radius of the tool centre point (m).
+    /// min^2 |N|^2 / 36, at least, at a squared distance of the tool centre point from axis 1 (m^2).
     #[inline(always)]
-    pub fn at<T: Number>(&self, radius: T) -> T {
-        radius.square().scale(self.per_radius2).plus(self.constant)
+    pub fn at<T: Number>(&self, radius2: T) -> T {
+        radius2.scale(self.per_radius2).plus(self.constant)
     }
 }
 

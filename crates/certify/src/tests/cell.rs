@@ -14,8 +14,8 @@ type Values = ([f64; 6], [f64; MOMENTS]);
 /// Value, gradient and constraints of the closed form at one state.
 fn closed_form(setting: &Setting, r: f64, z: f64, heading: f64, class: PostureClass) -> Option<(Values, [f64; 8])> {
     let (sine, cosine) = libm::sincos(heading);
-    let (sine, cosine) = Slope::heading(Lanes::splat(sine), Lanes::splat(cosine));
-    let (r, z) = (Slope::variable(Lanes::splat(r), 0), Slope::variable(Lanes::splat(z), 1));
+    let (sine, cosine) = <Slope>::heading(Lanes::splat(sine), Lanes::splat(cosine));
+    let (r, z) = (<Slope>::variable(Lanes::splat(r), 0), <Slope>::variable(Lanes::splat(z), 1));
     let y = setting.model.arm.evaluate(r, z, sine, cosine, class)?;
     let values = [y.m, y.d1, y.d2, y.vertical[0], y.vertical[1], y.axial].map(|f| f.value.0[0]);
     let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = y.margins;

@@ -5,6 +5,7 @@
 //! and each must see the mutations named in its test.
 
 mod arms;
+mod attack;
 mod boxes;
 mod cell;
 mod cells;
@@ -25,7 +26,7 @@ use std::f64::consts::{PI, TAU};
 use stead_model::robot::testing::robot_from;
 use stead_model::robot::{BaseCompliance, Compliance, Frames, PostureClass, Robot};
 use stead_model::stiffness::whole::WholeArm;
-use stead_model::task::{Task, Wrench};
+use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
 use stead_planning::problem::{Interval, Placement, Problem};
@@ -248,7 +249,7 @@ fn with_moments() -> Problem {
 }
 
 /// The arm hangs, the tool is upright.
-fn hanging_arm() -> Problem {
+pub fn hanging_arm() -> Problem {
     let mut problem = slanted();
     let mut joints = problem.robot.joints().clone();
     joints[0].alpha = PI;
@@ -293,7 +294,7 @@ fn changing() -> Problem {
 }
 
 /// An arm with offsets at shoulder, elbow and side, and joints 2 and 3 that turn by more than half a turn.
-fn odd_arm() -> Problem {
+pub fn odd_arm() -> Problem {
     let mut problem = slanted();
     problem.robot = robot_from([
         (0.0, 0.1, 0.4, -350.0, 350.0, 1.0),
@@ -319,6 +320,20 @@ fn equal_links() -> Problem {
         (90.0, 0.0, 0.1, -350.0, 350.0, 6.0),
     ]);
     problem.cell.position = [(-0.3, 0.3), (-0.9, -0.4), (-0.6, 0.2)].map(|(min, max)| Interval { min, max });
+    problem
+}
+
+/// The same problem with a tool that leans by some degrees, the same way at every point.
+pub fn leaning(mut problem: Problem, degrees: f64) -> Problem {
+    let (sine, cosine) = libm::sincos(degrees.to_radians());
+    let axis = Vector3::new(0.28 * sine, -0.96 * sine, cosine);
+    let path = problem.task.path();
+    let points = path.points().iter().enumerate().map(|(k, p)| {
+        let feed = (p.feed - axis * axis.dot(&p.feed)).normalize();
+        (path.segment_of(k) as u32 + 1, PathPoint { axis, feed, ..*p })
+    });
+    let leaning = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
+    problem.task = Task::new(leaning, problem.task.wrenches().to_vec()).unwrap();
     problem
 }
 
