@@ -86,7 +86,7 @@ fn every_lean_has_a_score_or_a_reason(bench: &Bench) {
     for row in 1..map.len() {
         assert_eq!(of(&map, row, "point"), Some(worst as f64));
         let [lead, tilt] = ["lead_deg", "tilt_deg"].map(|name| of(&map, row, name).unwrap().to_radians());
-        let is_beyond = (lead.cos() * tilt.cos()).acos().to_degrees() > 15.0 + 1e-3;
+        let is_beyond = libm::acos(libm::cos(lead) * libm::cos(tilt)).to_degrees() > 15.0 + 1e-3;
         assert_eq!(map[row].last().unwrap() == "lean", is_beyond, "{:?}", map[row]);
         best = best.min(of(&map, row, "score_mm").unwrap_or(f64::INFINITY));
     }
