@@ -3,12 +3,11 @@
 use super::best::best;
 use super::branch_and_bound::{Bound, Status};
 use crate::settings::CertificateSettings;
-use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::Instant;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::Problem;
-use stead_planning::setup::{Orientation, Setup};
+use stead_planning::setup::Orientation;
 use stead_planning::symmetry::Unsupported;
 
 /// The open boxes of one orientation of the part.
@@ -21,14 +20,20 @@ pub struct OpenIn {
 }
 
 /// The same problem in each orientation of the part alone, in their order, with that orientation.
-pub(super) fn alone(problem: &Problem) -> impl Iterator<Item = (&Orientation, Cow<'_, Problem>)> {
-    problem.orientations.iter().enumerate().map(|(number, orientation)| {
-        let setup = Setup { orientation: number, ..problem.setup.clone() };
-        let mut one = problem.in_setup(&setup).into_owned();
-        one.orientations = Arc::from([orientation.clone()]);
-        one.setup.orientation = 0;
-        (orientation, Cow::Owned(one))
-    })
+///
+/// # Errors
+/// [`Unsupported::Orientations`] where one is none of the problem.
+pub(super) fn alone(problem: &Problem) -> Result<Vec<(&Orientation, Problem)>, Unsupported> {
+    let one = |number: usize| {
+        let orientation = &problem.orientations[number];
+        let changed = problem.changed(|parts| {
+            parts.task = (*orientation.task).clone();
+            parts.orientations = Arc::from([orientation.clone()]);
+            parts.setup.orientation = 0;
+        });
+        changed.map(|changed| (orientation, changed)).map_err(|_| Unsupported::Orientations)
+    };
+    (0..problem.orientations.len()).map(one).collect()
 }
 
 /// Whether the part may lie in more than one orientation.
@@ -54,7 +59,7 @@ pub(super) fn best_in_all(
     let mut found: Option<Bound> = None;
     let mut open_in = Vec::new();
     let count = problem.orientations.len();
-    for (number, (orientation, one)) in alone(problem).enumerate() {
+    for (number, (orientation, one)) in alone(problem)?.into_iter().enumerate() {
         let share = |deadline: Instant| {
             let now = Instant::now();
             now + deadline.saturating_duration_since(now) / (count - number) as u32
@@ -130,8 +135,11 @@ mod tests {
         assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
         let (value, settings, silent) = (0.1075e-3, CertificateSettings::new(0.001), Monitor::silent());
         let (both, open_in) = best_in_all(&problem, value, &settings, &silent).unwrap();
-        let each: Vec<Bound> =
-            alone(&problem).map(|(_, one)| best(&one, value, &settings, true, &silent).unwrap()).collect();
+        let each: Vec<Bound> = alone(&problem)
+            .unwrap()
+            .iter()
+            .map(|(_, one)| best(one, value, &settings, true, &silent).unwrap())
+            .collect();
         assert_eq!(both.bound, each[0].bound.min(each[1].bound));
         assert_eq!(open_in.iter().map(|part| part.boxes).collect::<Vec<_>>(), [each[0].open.len(), each[1].open.len()]);
         assert_eq!(both.open.len(), each[0].open.len() + each[1].open.len());
@@ -142,8 +150,8 @@ mod tests {
             let plans = planner.plan_fine(&at, Sense::Min, None, &mut planner.workspace()).unwrap();
             one.objective(plans.iter().map(|plan| plan.cost))
         };
-        for ((_, one), bound) in alone(&problem).zip(&each) {
-            assert!(planner(&one) >= bound.bound);
+        for ((_, one), bound) in alone(&problem).unwrap().iter().zip(&each) {
+            assert!(planner(one) >= bound.bound);
         }
         let proof = certify(&problem, &at, value, None, settings, &silent).best.unwrap();
         let named = proof.open_boxes(&problem);

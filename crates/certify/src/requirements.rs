@@ -25,9 +25,9 @@ use stead_planning::symmetry::{
 /// The first reason why not.
 pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if orientations::are_several(problem) {
-        return orientations::alone(problem).try_for_each(|(orientation, one)| {
+        return orientations::alone(problem)?.iter().try_for_each(|(orientation, one)| {
             let named = |reason| Unsupported::Orientation { name: orientation.name.clone(), reason: Box::new(reason) };
-            certifiable(&one, memory).map_err(named)
+            certifiable(one, memory).map_err(named)
         });
     }
     if problem.lean.is_some() {
@@ -58,7 +58,8 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
 /// is something to say.
 pub fn expected_cost(problem: &Problem) -> Option<String> {
     let missing = if orientations::are_several(problem) {
-        orientations::alone(problem).filter_map(|(_, one)| too_near(without_axes(&one).ok()?.as_ref())).reduce(f64::max)
+        let each = orientations::alone(problem).ok()?;
+        each.iter().filter_map(|(_, one)| too_near(without_axes(one).ok()?.as_ref())).reduce(f64::max)
     } else {
         too_near(without_axes(problem).ok()?.as_ref())
     };
