@@ -162,15 +162,12 @@ mod tests {
     #[test]
     fn an_orientation_in_which_nothing_can_be_bounded_is_refused_by_name() {
         let (mut problem, _) = in_two(0.3);
-        let lying = rotation_from_vector(&(Vector3::x() * 1.2));
         let mut orientations = problem.orientations.to_vec();
-        orientations[1].task = Arc::new(turned(&problem.task, &lying));
-        // Tool axes that differ from point to point have no bound in any case.
-        let tilts = turned(&problem.task, &rotation_from_vector(&(Vector3::x() * 0.4)));
-        let points = (0..problem.task.points().len()).map(|k| {
-            let task = if k % 2 == 0 { &orientations[1].task } else { &tilts };
-            (problem.task.path().segment_of(k) as u32 + 1, task.points()[k])
-        });
+        // Five tool axes are more than a bound covers.
+        let tilted = |k: usize| turned(&problem.task, &rotation_from_vector(&(Vector3::x() * (0.1 * k as f64))));
+        let tasks: Vec<Task> = (1..=5).map(tilted).collect();
+        let points = (0..problem.task.points().len())
+            .map(|k| (problem.task.path().segment_of(k) as u32 + 1, tasks[k % 5].points()[k]));
         let path = ToolPath::new(points).unwrap();
         orientations[1].task = Arc::new(Task::new(path, problem.task.wrenches().to_vec()).unwrap());
         problem.orientations = orientations.into();
