@@ -87,7 +87,9 @@ fn joined(first: Bound, second: Bound) -> Bound {
         (_, Status::Reached) => true,
         _ => first.bound <= second.bound,
     };
-    Bound { open, nodes, bound: least, ..if is_first { first } else { second } }
+    // What one of them drops is not kept in all.
+    let (with_rate, with_turn) = (first.with_rate && second.with_rate, first.with_turn && second.with_turn);
+    Bound { open, nodes, bound: least, with_rate, with_turn, ..if is_first { first } else { second } }
 }
 
 #[cfg(test)]
@@ -98,6 +100,7 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
     use stead_model::task::{Task, ToolPath, Wrench};
     use stead_numerics::rotation::rotation_from_vector;
+    use stead_planning::constraints::ConstraintKind;
     use stead_planning::problem::{Cell, Interval, Placement};
     use stead_planning::sense::Sense;
     use stead_planning::testing::five_segments;
@@ -157,6 +160,22 @@ mod tests {
         let named = proof.open_boxes(&problem);
         assert!(named.iter().all(|open| open.orientation.is_some()));
         assert_eq!(named.len(), both.open.len());
+    }
+
+    #[test]
+    fn limits_that_one_orientation_drops_are_named() {
+        let (mut problem, at) = in_two(0.3);
+        let settings = CertificateSettings { time_limit: Some(1.0), ..CertificateSettings::new(0.5) };
+        let relaxes_rate = |problem: &Problem| {
+            let proof = certify(problem, &at, 0.1075e-3, None, settings, &Monitor::silent()).best.unwrap();
+            proof.relaxed.contains(&ConstraintKind::BetaRate)
+        };
+        assert!(!relaxes_rate(&problem));
+        // With a tool that leans limits on beta are dropped.
+        let mut orientations = problem.orientations.to_vec();
+        orientations[1].task = Arc::new(turned(&problem.task, &rotation_from_vector(&(Vector3::x() * 0.2))));
+        problem.orientations = orientations.into();
+        assert!(relaxes_rate(&problem));
     }
 
     #[test]
