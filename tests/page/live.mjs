@@ -158,6 +158,12 @@ const tests = {
       const canvas = document.querySelector('.view canvas');
       return canvas.width > 1.9 * canvas.clientWidth;
     });
+    // The map, which comes column by column, too: nothing more is drawn for half a second.
+    await page.waitForFunction(() => {
+      const { stead, settled = {} } = window;
+      if (settled.beyond !== stead.steps.beyond) window.settled = { beyond: stead.steps.beyond, since: performance.now() };
+      return performance.now() - window.settled.since > 500;
+    });
     await page.evaluate(() => {
       const ask = window.fetch;
       window.asked = { now: 0, most: 0, places: [], ask };
