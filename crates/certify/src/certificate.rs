@@ -233,7 +233,8 @@ impl Proof {
     pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound) -> Self {
         let relaxed = relaxed(problem, &evaluated(problem, &bound));
         let (placement, figure) = (bound.met.unwrap_or(placement), figure(&problem.criterion));
-        let left_out = left_out(problem);
+        // Bounds from above are refused where they would leave something out.
+        let left_out = if sense == Sense::Min { left_out(problem) } else { Vec::new() };
         Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out, orientations: Vec::new() }
     }
 

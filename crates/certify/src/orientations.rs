@@ -77,7 +77,7 @@ pub(super) fn best_in_all(
 
 /// The bound that holds in two orientations: the lower one, with how that ended that fell short.
 fn joined(first: Bound, second: Bound) -> Bound {
-    let open = [first.open.clone(), second.open.clone()].concat();
+    let open = first.open.iter().chain(&second.open).copied().collect();
     let nodes = first.nodes + second.nodes;
     let least = first.bound.min(second.bound);
     // Where both fell short, the one of the lower bound says why.

@@ -268,6 +268,9 @@ fn a_cell_next_to_axis_1_says_beforehand_what_that_costs() {
     let note = crate::expected_cost(&problem).unwrap();
     let missing: f64 = note.split("in a cell ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!(proof(&problem, true).left_out.iter().any(|words| words.contains("axis 1")), "{note}");
+    // From above such points have no bound at all.
+    let worst = Proof::new(&problem, Sense::Max, PLACEMENT, proof(&problem, false).bound);
+    assert!(worst.left_out.is_empty(), "{worst:?}");
     // As much farther away nothing is said any more, and a little less is not enough.
     problem.cell.position[1].max = -0.3 - missing * 1e-3;
     assert_eq!(crate::expected_cost(&problem), None);
