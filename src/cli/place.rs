@@ -62,7 +62,7 @@ pub(super) const MANUAL: Manual = Manual {
         ),
         (
             "lean-map.csv",
-            "where the tool may lean, smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
+            "with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
         ),
         ("convergence.{csv,svg}", "the genetic searches, generation by generation"),
         ("refinements.csv", "the gradient refinement of each basin: start, end, optimality residual, status"),
