@@ -229,25 +229,63 @@ impl Load {
             let of_error = Tangent { along: [0.0; 3], ..Tangent::new(direction, sharp) };
             return (Tangent::new(direction.map(|x| sign * x), self.force).plus(&of_error), Some(of_error));
         }
-        let mut force = self.force;
-        let mut along = self.along(moved);
-        if self.error > 0.0 {
-            for _ in 0..ROUNDS {
-                let response = at.times(along);
-                let step = self.error * NO_LONGER / norm(response).max(f64::MIN_POSITIVE);
-                force = std::array::from_fn(|k| self.force[k] + step * response[k]);
-                along = self.along(added(at.times(force), by_moment));
-            }
+        if self.error == 0.0 {
+            return (Tangent::new(self.along(moved), self.force), None);
         }
-        (Tangent::new(along, force), None)
+        // Where the force acts along an axis of the compliance an ascent would stay on it: the error along the softest
+        // axis is what makes the score largest.
+        let aside = at.softest();
+        let response = at.times(self.parts_back(moved));
+        let sign = if dot(response, aside) < 0.0 { -norm(response) } else { norm(response) };
+        let under = |error: [f64; 3]| {
+            let step = self.error * NO_LONGER / norm(error).max(f64::MIN_POSITIVE);
+            let force = std::array::from_fn(|k| self.force[k] + step * error[k]);
+            (force, added(at.times(force), by_moment))
+        };
+        let (mut force, mut moved) = under(std::array::from_fn(|k| response[k] + sign * aside[k]));
+        for _ in 1..ROUNDS {
+            (force, moved) = under(at.times(self.parts_back(moved)));
+        }
+        (Tangent::new(self.along(moved), force), None)
+    }
+
+    /// W^T W times a deflection.
+    #[inline(always)]
+    fn parts_back(&self, moved: [f64; 3]) -> [f64; 3] {
+        let parts = self.directions.map(|direction| dot(direction, moved));
+        std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum::<f64>())
+    }
+
+    /// The tangent with W^T u and f + e along the force, where all of the force is along scored directions and no moment
+    /// acts: what it says of a matrix below the compliance is below the score too, since `g . C g` is never less.
+    pub fn along_force(&self) -> Option<Tangent> {
+        let parts = self.directions.map(|row| dot(row, self.force) / dot(row, row).max(f64::MIN_POSITIVE));
+        let seen: [f64; 3] = std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum());
+        let (size, off) = (norm(self.force), norm(std::array::from_fn(|k| seen[k] - self.force[k])));
+        if size == 0.0 || off > 1e-12 * size || self.has_moment() {
+            return None;
+        }
+        let force = scaled(self.force, 1.0 + self.error * NO_LONGER / size);
+        Some(Tangent::new(scaled(self.force, NO_LONGER / norm(parts)), force))
+    }
+
+    /// Whether a displacement counts alike in every direction.
+    pub fn is_alike(&self) -> bool {
+        let most = self.most_scored();
+        self.directions.iter().all(|row| (dot(*row, *row) - most * most).abs() <= 1e-12 * most * most)
+    }
+
+    /// By how much a displacement counts in the score, at most.
+    pub fn most_scored(&self) -> f64 {
+        let row = |of: &[f64; 3]| self.directions.iter().map(|other| dot(*of, *other).abs()).sum::<f64>();
+        libm::sqrt(self.directions.iter().map(row).fold(0.0, f64::max))
     }
 
     /// W^T u with u along the parts of a deflection.
     #[inline]
     fn along(&self, moved: [f64; 3]) -> [f64; 3] {
-        let parts = self.directions.map(|direction| dot(direction, moved));
-        let inverse = NO_LONGER / norm(parts).max(f64::MIN_POSITIVE);
-        std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum::<f64>() * inverse)
+        let size = norm(self.directions.map(|direction| dot(direction, moved)));
+        scaled(self.parts_back(moved), NO_LONGER / size.max(f64::MIN_POSITIVE))
     }
 
     /// The score under a compliance, that of the part included, by the ascent of [`Self::tangents`]: what the first
@@ -270,6 +308,16 @@ impl Yielding {
         let ((s, c), (s2, c2)) = (libm::sincos(angle), libm::sincos(2.0 * angle));
         let ([d0, d1], [v0, v1]) = (self.d, self.v);
         Self { d: [d0 * c2 + d1 * s2, d1 * c2 - d0 * s2], v: [v0 * c + v1 * s, v1 * c - v0 * s], ..*self }
+    }
+
+    /// A unit vector near to the direction in which it yields most.
+    fn softest(&self) -> [f64; 3] {
+        let Self { m, d, v, zz } = self;
+        let columns = [[m + d[0], d[1], v[0]], [d[1], m - d[0], v[1]], [v[0], v[1], *zz]];
+        let longest = columns.into_iter().fold(columns[0], |a, b| if dot(b, b) > dot(a, a) { b } else { a });
+        let size = 1.0 / norm(longest).max(f64::MIN_POSITIVE);
+        let next = self.times(self.times(self.times(scaled(longest, size))));
+        scaled(next, 1.0 / norm(next).max(f64::MIN_POSITIVE))
     }
 
     /// The root of the sum of the squares of its entries, which its norm does not exceed. m/N
