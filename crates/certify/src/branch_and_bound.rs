@@ -293,7 +293,9 @@ impl BranchAndBound {
                 Some(stop) => Err(stop),
                 None => Ok((parts.of)(&queued.open)).and_then(|cut| monitor.stop().map_or(Ok(cut), Err)),
             };
-            let results: Vec<_> = batch.par_iter().map(of).collect();
+            // One by one: a box may take as long as all the others, and a thread that has sixteen of them in hand at the
+            // end keeps the others waiting.
+            let results: Vec<_> = batch.par_iter().with_max_len(1).map(of).collect();
             let mut stopped = None;
             for (whole, cut) in batch.into_iter().zip(results) {
                 let cut = match cut {

@@ -82,7 +82,7 @@ impl CoarseBounds {
                 true => Vec::new(),
                 false => part_of(model, &kinds, (0, [row / counts[1], row % counts[1]]), 0..counts[2]),
             };
-            let rows: Vec<Vec<Affine>> = some.par_iter().map(row).collect();
+            let rows: Vec<Vec<Affine>> = some.par_iter().with_max_len(1).map(row).collect();
             entries.extend(rows.into_iter().flatten());
         }
         let mut levels = vec![Level { counts, entries }];

@@ -212,14 +212,15 @@ impl ModelledRegion {
             let [value, slopes @ ..] = self.values[f];
             value.abs() + (0..3).map(|k| slopes[k].abs() * self.half[k]).sum::<f64>() + remainder
         };
-        let plan = 2.0 * up(0, self.remainder[0]) + first * far * far;
+        // The roots of the sums of squares of C without joint 1 and of joint 1.
+        let (m, zz) = (up(0, self.remainder[0]), up(5, self.remainder[3]));
+        let [d, v] = self.max_size;
         let part = kind.load.part.map_or(0.0, |part| part.size());
-        let c = plan + 2.0 * self.max_size[1] + up(5, self.remainder[3]) + part;
+        let c = (2.0 * (m * m + d * d + v * v) + zz * zz).sqrt() + first * far * far + part;
         let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + first * far);
-        let scored = kind.load.directions.iter().flatten().map(|x| x * x).sum::<f64>().sqrt();
         // Loads of a kind have forces of size 1.
         let by_part = kind.part_spread * (1.0 + kind.load.error);
-        scored * (c * kind.force_spread + d * kind.moment_spread + by_part)
+        kind.load.most_scored() * (c * kind.force_spread + d * kind.moment_spread + by_part)
     }
 
     /// The same below the score.
