@@ -72,7 +72,7 @@ pub fn best(
     };
     let (coarse, left) = left;
     // Parts of finer tables are for many boxes each: for a few the cells of heading take less time.
-    let at_once = left.len() < MANY || are_excluded_by_cells(&model, &left, ceiling, monitor);
+    let at_once = left.len() < MANY || with_cells_at_once(&model, &coarse, &left, ceiling, monitor);
     let full = at_once.then(|| Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0))));
     let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: full.clone() }).collect();
     let all = Parts {
@@ -133,23 +133,42 @@ fn survivors(
 /// Boxes left by the coarse tables from which on their finer levels are used.
 const MANY: usize = 500;
 
-/// Whether cells of heading are worth using at once: whether they exclude a good part of the boxes that the coarse tables
-/// leave, as a sample shows. They know every load as it is, and the limits on beta; finer coarse tables do not.
-fn are_excluded_by_cells(model: &Model, left: &[(f64, Region)], ceiling: f64, monitor: &Monitor) -> bool {
+/// Whether cells of heading are worth using at once, as a sample of the boxes that the coarse tables leave shows: they
+/// have to exclude a good part of them, of which the coarse tables do not exclude enough parts. Cells know every load as
+/// it is, and the limits on beta; coarse tables do not.
+fn with_cells_at_once(
+    model: &Model,
+    coarse: &CoarseBounds,
+    left: &[(f64, Region)],
+    ceiling: f64,
+    monitor: &Monitor,
+) -> bool {
+    if left.len() * model.points.len() > AFFORDABLE {
+        return false;
+    }
     let mut ranked: Vec<_> = left.iter().collect();
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let some: Vec<_> = (0..SAMPLE).filter_map(|k| ranked.get(k * ranked.len() / SAMPLE)).collect();
-    let is_excluded = |(bound, region): &&(f64, Region)| {
+    let some: Vec<_> = (0..SAMPLE).filter_map(|k| ranked.get(k * ranked.len() / SAMPLE)).enumerate().collect();
+    let count = |of: &(dyn Fn(usize, &(f64, Region)) -> bool + Sync)| {
+        some.par_iter().with_max_len(1).filter(|(k, open)| of(*k, open)).count()
+    };
+    // Of each box one of its eighths, in turn.
+    let is_left = |k: usize, (_, region): &(f64, Region)| {
+        let part = (0..3).fold(*region, |part, cut| halves(&part).map_or(part, |two| two[k >> cut & 1]));
+        model.yaws.allow(&part) && coarse.lower_bound(model, &part).is_none_or(|bound| bound < ceiling)
+    };
+    let is_excluded = |_: usize, (bound, region): &(f64, Region)| {
         let open = Open { bound: *bound, region: *region, known: None };
         with_cells(model, &open, ceiling, monitor).bound >= ceiling
     };
-    let excluded = some.par_iter().with_max_len(1).filter(|open| is_excluded(open)).count();
-    excluded * WORTH >= some.len()
+    8 * count(&is_left) > some.len() && count(&is_excluded) * WORTH >= some.len()
 }
 
 /// Boxes tried with cells of heading, and one in how many these have to exclude.
 const SAMPLE: usize = 32;
 const WORTH: usize = 4;
+/// Boxes times path points up to which cells at once take no more than some half a minute.
+const AFFORDABLE: usize = 600_000;
 
 /// The cells of heading that are still of interest in a box, once they are used.
 type Known = Option<Arc<ActiveCells>>;

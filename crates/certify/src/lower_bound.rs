@@ -63,11 +63,13 @@ impl Model {
             }
             totals = joined(aggregate, &totals, &best);
             bests.push(best);
+            // No point costs less than nothing.
+            let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
+            if sum >= ceiling {
+                return LowerBound { sum, active: active.clone() };
+            }
         }
         let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
-        if sum >= ceiling {
-            return LowerBound { sum, active: active.clone() };
-        }
         for (ways, best) in all.iter_mut().zip(bests.iter().flat_map(|best| [best; 4])) {
             let others = match aggregate {
                 Aggregate::Mean | Aggregate::Rms => std::array::from_fn(|k| totals[k] - best[k]),
