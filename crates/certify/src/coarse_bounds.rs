@@ -57,7 +57,7 @@ type Part = OnceLock<Box<[[Affine; 4]]>>;
 /// Directions of a part.
 const PART: usize = 16;
 /// Finer levels.
-const FINER: usize = 3;
+const FINER: usize = 2;
 
 /// Rows computed between two questions whether to go on.
 const ROWS: usize = 64;

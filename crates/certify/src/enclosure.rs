@@ -296,16 +296,6 @@ impl<const V: usize, const P: usize> Number for Enclosure<V, P> {
             second,
         )
     }
-    #[inline(never)]
-    fn wrist_tangent(self, bend: &Bend) -> Self {
-        let at = self.middle.value;
-        let [value, first, _] = bend.inverse(at);
-        let off = Interval { middle: self.value.middle - at, radius: self.value.radius };
-        let first = Interval::point(first);
-        let along = off.mul(first);
-        let along = Interval { middle: along.middle + value, radius: along.radius };
-        self.through(self.middle.wrist(bend), along, first, Interval::point(ZERO))
-    }
     #[inline(always)]
     fn is_negative(self) -> Mask {
         self.value.high().less(ZERO)

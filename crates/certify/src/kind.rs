@@ -1,6 +1,6 @@
 //! Kinds of load: loads that coarse tables treat as one, up to their size.
 
-use super::load::{Load, Tangent};
+use super::load::Load;
 use super::region::Point;
 
 /// A load of size 1 that stands for others of size 1, which differ from it by as much at most.
@@ -13,17 +13,6 @@ pub(super) struct Kind {
     pub moment_spread: f64,
     /// How far the compliances of the part are from its own, at most. m/N
     pub part_spread: f64,
-}
-
-impl Kind {
-    /// See [`Load::along_force`]: of the kind's own load; and how many times a matrix's size counts of the difference of
-    /// its loads from that one.
-    pub fn along_force(&self) -> Option<(Tangent, f64)> {
-        let is_one = self.force_spread == 0.0 && self.part_spread == 0.0;
-        let tangent = self.load.along_force().filter(|_| is_one || self.load.is_alike())?;
-        // f . C f - g . C g = (f - g) . C (f + g), with forces of size 1.
-        Some((tangent, 2.0 * (1.0 + self.load.error)))
-    }
 }
 
 /// Kinds of load that have a table: those of most weight.

@@ -256,25 +256,6 @@ impl Load {
         std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum::<f64>())
     }
 
-    /// The tangent with W^T u and f + e along the force, where all of the force is along scored directions and no moment
-    /// acts: what it says of a matrix below the compliance is below the score too, since `g . C g` is never less.
-    pub fn along_force(&self) -> Option<Tangent> {
-        let parts = self.directions.map(|row| dot(row, self.force) / dot(row, row).max(f64::MIN_POSITIVE));
-        let seen: [f64; 3] = std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum());
-        let (size, off) = (norm(self.force), norm(std::array::from_fn(|k| seen[k] - self.force[k])));
-        if size == 0.0 || off > 1e-12 * size || self.has_moment() {
-            return None;
-        }
-        let force = scaled(self.force, 1.0 + self.error * NO_LONGER / size);
-        Some(Tangent::new(scaled(self.force, NO_LONGER / norm(parts)), force))
-    }
-
-    /// Whether a displacement counts alike in every direction.
-    pub fn is_alike(&self) -> bool {
-        let most = self.most_scored();
-        self.directions.iter().all(|row| (dot(*row, *row) - most * most).abs() <= 1e-12 * most * most)
-    }
-
     /// By how much a displacement counts in the score, at most.
     pub fn most_scored(&self) -> f64 {
         let row = |of: &[f64; 3]| self.directions.iter().map(|other| dot(*of, *other).abs()).sum::<f64>();

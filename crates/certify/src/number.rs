@@ -59,8 +59,6 @@ pub(super) trait Number:
     fn elbow(self, links: &Links) -> [Self; 3];
     /// Of the cosine of the angle between axes 4 and 6: one over its squared sine.
     fn wrist(self, bend: &Bend) -> Self;
-    /// What its tangent in the middle says instead: nowhere more, since that function is convex.
-    fn wrist_tangent(self, bend: &Bend) -> Self;
     /// Where it is sure to be below zero.
     fn is_negative(self) -> Mask;
     /// What it is at least.
@@ -206,10 +204,6 @@ impl<const V: usize> Number for Slope<V> {
     fn wrist(self, bend: &Bend) -> Self {
         let [value, first, _] = bend.inverse(self.value);
         self.through(value, first)
-    }
-    #[inline(always)]
-    fn wrist_tangent(self, bend: &Bend) -> Self {
-        self.wrist(bend)
     }
     #[inline(always)]
     fn is_negative(self) -> Mask {

@@ -13,7 +13,7 @@
 //! frame if turning it about axis 1 changes nothing, as bounds require.
 
 use super::super::number::Number;
-use super::inverse::{Place, Posed};
+use super::inverse::Posed;
 use super::vector::Vector;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector3};
 use stead_model::robot::{Geometry, Joint, NormalSprings, Pose, Robot, Spindle};
@@ -119,17 +119,9 @@ impl Beside {
         })
     }
 
-    /// How it all yields in the radial frame, with the tool centre point at a place, and one over the squared sine of the
-    /// wrist. m/N
+    /// How it all yields in the radial frame, with the tool centre point at a radius and height. m/N
     #[inline(never)]
-    pub fn compliance<T: Number>(
-        &self,
-        posed: &Posed<'_, T>,
-        inverse5: T,
-        g: &Geometry,
-        place: &Place<T>,
-    ) -> Symmetric<T> {
-        let (radius, height) = (place.tip.x, place.tip.z);
+    pub fn compliance<T: Number>(&self, posed: &Posed<'_, T>, g: &Geometry, radius: T, height: T) -> Symmetric<T> {
         let mut sum = Symmetric {
             xx: T::constant(self.tool[(0, 0)]),
             yy: T::constant(self.tool[(1, 1)]),
@@ -168,7 +160,7 @@ impl Beside {
                 wrist.add(compliance, e.cross(r));
             }
         }
-        sum = sum.plus(wrist.map(|entry| entry * inverse5));
+        sum = sum.plus(wrist.map(|entry| entry * posed.wrist.inverse5));
         if normal[4].compliance[1] != 0.0 {
             sum.add(normal[4].compliance[1], axis6.cross(lever));
         }

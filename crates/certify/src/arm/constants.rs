@@ -39,8 +39,6 @@ pub(in super::super) struct Arm {
     pub(super) is_axial: bool,
     /// What yields beside the joints about their axes.
     pub(super) beside: Option<Beside>,
-    /// Whether a matrix below the compliance is worth knowing: see [`super::ArmCompliance::below`].
-    pub(super) is_below: bool,
     /// Whether any moment acts.
     pub(in super::super) has_moments: bool,
 }
@@ -72,7 +70,7 @@ impl Arm {
     pub fn leaning(problem: &Problem, robot: &Robot, nearest: f64, axis: Vector3<f64>) -> Self {
         let aside = Vector3::ith(axis.iamin(), 1.0).cross(&axis).normalize();
         let frame = Matrix3::from_columns(&[aside, axis.cross(&aside), axis]);
-        Self { leaning: Some(axis), is_below: true, ..Self::with_tool(problem, robot, nearest, &frame, [true; 2]) }
+        Self { leaning: Some(axis), ..Self::with_tool(problem, robot, nearest, &frame, [true; 2]) }
     }
 
     /// With a frame whose third axis is the tool axis, and whether entries of the compliance out of the plan count.
@@ -104,7 +102,6 @@ impl Arm {
             bend: Bend { limit: limits.in_line },
             is_vertical,
             is_axial,
-            is_below: false,
             has_moments: problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0),
             lever,
             axis6: root_from_flange.column(2).into_owned(),

@@ -23,7 +23,6 @@ mod law;
 mod singularity;
 mod vector;
 
-use super::compliance_table::FUNCTIONS;
 use super::interval_simd::Mask;
 use super::moment::MOMENTS;
 use super::number::Number;
@@ -47,11 +46,6 @@ pub(super) struct ArmCompliance<T> {
     pub vertical: [T; 2],
     /// Compliance along the vertical. m/N
     pub axial: T,
-    /// The same six of a matrix that is below the compliance, where that is worth knowing: what is left when it is taken
-    /// away has no eigenvalue below zero. Near to the singularity of the wrist it bends far less: what yields with
-    /// joint 5 grows like one over the squared sine of the wrist, a convex function of a cosine, of which it has a
-    /// tangent. m/N
-    pub below: Option<[T; FUNCTIONS]>,
     /// The functions of [`super::moment::MomentModel`], where some moment acts. 1/N
     pub moments: Option<[T; MOMENTS]>,
     /// What is left to each constraint.
@@ -116,11 +110,9 @@ impl Arm {
         let place = Place { tip: Vector { x, y, z }, wrist, radius2: x2 + y2 };
         let mut all = self.evaluate_at(&place, &tool, class)?;
         // Joint 1 moves the tool centre point by (-y, x).
-        let more = [place.radius2.scale(0.5 * first), (y2 - x2).scale(0.5 * first), -(x * y).scale(first)];
-        [all.m, all.d1, all.d2] = [all.m + more[0], all.d1 + more[1], all.d2 + more[2]];
-        if let Some(below) = &mut all.below {
-            below.iter_mut().zip(more).for_each(|(entry, more)| *entry = *entry + more);
-        }
+        all.m = all.m + place.radius2.scale(0.5 * first);
+        all.d1 = all.d1 + (y2 - x2).scale(0.5 * first);
+        all.d2 = all.d2 - (x * y).scale(first);
         Some(all)
     }
 
@@ -164,11 +156,17 @@ impl Arm {
         if violated.all() {
             return None;
         }
-        let [m, d1, d2, rz, tz, axial] = self.compliance(&posed, wrist.inverse5, place, &mut regular);
-        let below = self.is_below.then(|| {
-            let inverse5 = wrist.dot46.wrist_tangent(&self.bend);
-            self.compliance(&posed, inverse5, place, &mut regular)
-        });
+        let (mut m, mut d1, mut d2, mut vertical, mut axial) = self.compliance(&posed, &mut regular);
+        if let Some(beside) = &self.beside {
+            let more = beside.compliance(&posed, &self.geometry, place.tip.x, place.tip.z);
+            (m, d1, d2) = (m + (more.xx + more.yy).scale(0.5), d1 + (more.xx - more.yy).scale(0.5), d2 + more.xy);
+            if self.is_vertical {
+                vertical = [vertical[0] + more.xz, vertical[1] + more.yz];
+            }
+            if self.is_axial {
+                axial = axial + more.zz;
+            }
+        }
         let moments = self.has_moments.then(|| self.under_moments(&posed, &mut regular));
         let margins = Margins {
             elbow: elbow.margin,
@@ -177,37 +175,12 @@ impl Arm {
             wrist: wrist.margin,
             conditioning,
         };
-        let vertical = [rz, tz];
-        Some(ArmCompliance { m, d1, d2, vertical, axial, below, moments, margins, regular, conditioned, violated })
+        Some(ArmCompliance { m, d1, d2, vertical, axial, moments, margins, regular, conditioned, violated })
     }
 
-    /// m, d1, d2, and c_rz, c_tz and c_zz where some force or scored direction is along axis 1, with one over the squared
-    /// sine of the wrist.
+    /// m, d1, d2, and c_rz, c_tz and c_zz where some force or scored direction is along axis 1.
     #[inline(always)]
-    fn compliance<T: Number>(
-        &self,
-        posed: &Posed<'_, T>,
-        inverse5: T,
-        place: &Place<T>,
-        regular: &mut Mask,
-    ) -> [T; FUNCTIONS] {
-        let mut all = self.about_axes(posed, inverse5, regular);
-        if let Some(beside) = &self.beside {
-            let more = beside.compliance(posed, inverse5, &self.geometry, place);
-            let (mean, half) = ((more.xx + more.yy).scale(0.5), (more.xx - more.yy).scale(0.5));
-            let of_axes = [self.is_vertical, self.is_vertical, self.is_axial];
-            for (k, more) in [mean, half, more.xy, more.xz, more.yz, more.zz].into_iter().enumerate() {
-                if k < 3 || of_axes[k - 3] {
-                    all[k] = all[k] + more;
-                }
-            }
-        }
-        all
-    }
-
-    /// The same of the joints about their axes.
-    #[inline(always)]
-    fn about_axes<T: Number>(&self, posed: &Posed<'_, T>, inverse5: T, regular: &mut Mask) -> [T; FUNCTIONS] {
+    fn compliance<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> (T, T, T, [T; 2], T) {
         let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
         let v4 = axis4.cross(lever);
         // s v_5 = (z_4 x z_6) x t = z_6 (z_4 . t) - z_4 (z_6 . t).
@@ -217,7 +190,7 @@ impl Arm {
         let v6 = posed.tool.turned(&self.axis6.cross(&self.lever));
         let [k4, k5, k6] = self.compliances;
         let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
-        let k5 = inverse5.scale(k5);
+        let k5 = posed.wrist.inverse5.scale(k5);
         // The sum over joints 4 to 6 of k_j f(v_j).
         let wrist = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * k5 + f(&v6).scale(k6);
         let [p2, p3] = posed.tips;
@@ -231,13 +204,13 @@ impl Arm {
         let d2 = bending * sin_twice + wrist(&|v| v.x * v.y);
         let zero = T::constant(0.0);
         if !self.is_vertical {
-            return [m, d1, d2, zero, zero, zero];
+            return (m, d1, d2, [zero; 2], zero);
         }
         let tilting = -upper(p2.along * p2.up, p3.along * p3.up);
-        let (rz, tz) = (tilting * cos1 + wrist(&|v| v.x * v.z), tilting * sin1 + wrist(&|v| v.y * v.z));
+        let vertical = [tilting * cos1 + wrist(&|v| v.x * v.z), tilting * sin1 + wrist(&|v| v.y * v.z)];
         let axial =
             if self.is_axial { upper(p2.along.square(), p3.along.square()) + wrist(&|v| v.z.square()) } else { zero };
-        [m, d1, d2, rz, tz, axial]
+        (m, d1, d2, vertical, axial)
     }
 
     /// The functions of D = sum k_j v_j z_j^T without joint 1. In the frame of the arm's plane, axes 2 and 3 are

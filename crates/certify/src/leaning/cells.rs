@@ -264,20 +264,17 @@ impl Cells {
             }
             let mut piece = Piece { share: 0.0, sure: false, ..*piece };
             let mut bends = half;
-            let mut most = -1.0;
             let first = self.kinds.len() * all.all.len();
             for kind in &self.kinds {
                 let below = match &known {
                     Known::Yields(states) => states.below(kind, half),
                     _ => Below::NOTHING,
                 };
-                if let Known::Yields(states) = &known {
-                    piece.sure = states.sure;
-                    if below.share > most {
-                        (most, bends) = (below.share, below.bends);
-                    }
-                }
                 piece.share = piece.share.max(below.share);
+                if let Known::Yields(states) = &known {
+                    (piece.sure, bends) = (states.sure, states.bends);
+                    bends[TURN] += below.turning;
+                }
                 let Affine { value, slope } = below.affine;
                 all.of.push((f64::from(value), slope.map(f64::from)));
             }

@@ -29,25 +29,17 @@ pub(super) enum Known {
     Yields(States),
 }
 
-/// How the states of a region yield, joint 1 included.
+/// An affine model of how the states of a region yield, joint 1 included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct States {
-    pub compliance: Modelled,
-    /// Of the matrix below the compliance: see [`ArmCompliance::below`].
-    pub below: Modelled,
-    /// Whether all the states are sure to be allowed.
-    pub sure: bool,
-}
-
-/// An affine model of a symmetric matrix over a region.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Modelled {
     /// Of m, d1, d2, c_xz, c_yz and c_zz in the middle: value, and gradient by x, y, z and turn.
     pub values: [(f64, [f64; LEANING]); FUNCTIONS],
     /// What these leave out, as in [`super::super::compliance_table::AffineModel`].
     pub remainder: [f64; REMAINDERS],
     /// How much each variable makes of that. m/N
     pub bends: [f64; LEANING],
+    /// Whether all the states are sure to be allowed.
+    pub sure: bool,
 }
 
 /// What is known of a score over a region.
@@ -57,12 +49,12 @@ pub(super) struct Below {
     pub affine: Affine,
     /// What share of the score that leaves out; one where it is zero.
     pub share: f32,
-    /// How much each variable makes of that. m
-    pub bends: [f64; LEANING],
+    /// What it leaves out for the turn, which is free. m
+    pub turning: f64,
 }
 
 impl Below {
-    pub const NOTHING: Self = Self { affine: ZERO, share: 1.0, bends: [0.0; LEANING] };
+    pub const NOTHING: Self = Self { affine: ZERO, share: 1.0, turning: 0.0 };
 }
 
 /// What is known of four regions (x, y, z, turn) of those half widths; `first` is the compliance of joint 1
@@ -88,36 +80,48 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANI
     if !y.regular.lane(lane) {
         return Known::Unknown;
     }
-    let of = |functions: &[&Enclosed; FUNCTIONS]| Modelled::of(functions, lane, half);
-    let compliance = of(&[&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial]);
-    let below = y.below.as_ref().map(|below| of(&below.each_ref()));
-    match (compliance, below.unwrap_or(compliance)) {
-        (Some(compliance), Some(below)) => Known::Yields(States { compliance, below, sure: is_sure(arm, y, lane) }),
-        _ => Known::Unknown,
+    let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
+    let remainder = remainders(&functions, lane, half);
+    if !remainder.iter().all(|r| *r < 1e30) {
+        return Known::Unknown;
     }
+    let values = functions.map(|f| {
+        let middle = f.middle();
+        (middle.value.0[lane], middle.gradient.map(|g| g.0[lane]))
+    });
+    let mut bends = [0.0; LEANING];
+    for (p, (i, j)) in Enclosed::PAIR.into_iter().enumerate() {
+        let second: f64 = functions.iter().map(|f| f.second[p].magnitude().0[lane]).sum();
+        let bend = second * half[i] * half[j];
+        (bends[i], bends[j]) = (bends[i] + bend, bends[j] + bend);
+    }
+    let sure = is_sure(arm, y, lane);
+    Known::Yields(States { values, remainder, bends, sure })
 }
 
 /// What a tangent says: its value in the middle less all but its slopes by the place, these, and of what was taken
 /// away the parts of the remainder and of the turn.
 type Least = (f64, [f64; 3], f64, f64);
 
-impl Modelled {
-    fn of(functions: &[&Enclosed; FUNCTIONS], lane: usize, half: [f64; LEANING]) -> Option<Self> {
-        let remainder = remainders(functions, lane, half);
-        if !remainder.iter().all(|r| *r < 1e30) {
-            return None;
+impl States {
+    /// What is known of the score under the loads of a kind, for all the region.
+    pub fn below(&self, kind: &Kind, half: [f64; LEANING]) -> Below {
+        let [m, d1, d2, v1, v2, zz] = self.values.map(|v| v.0);
+        let at = Yielding { m, d: [d1, d2], v: [v1, v2], zz };
+        let (sharp, of_error) = kind.load.tangents(&kind.load.with_part(at), [0.0; 3]);
+        let place = [half[0], half[1], half[2]];
+        let found = self.least(kind, &sharp, half[TURN]);
+        let low = |(value, slope, ..): &Least| value - (0..3).map(|k| slope[k].abs() * place[k]).sum::<f64>();
+        let (value, slope, remainder, turning) = match of_error.map(|tangent| self.least(kind, &tangent, half[TURN])) {
+            Some(other) if low(&other) > low(&found) => other,
+            _ => found,
+        };
+        let lost = remainder + turning + self.spread(kind, half);
+        let value = value - self.spread(kind, half);
+        if value <= 0.0 {
+            return Below { turning, ..Below::NOTHING };
         }
-        let values = functions.map(|f| {
-            let middle = f.middle();
-            (middle.value.0[lane], middle.gradient.map(|g| g.0[lane]))
-        });
-        let mut bends = [0.0; LEANING];
-        for (p, (i, j)) in Enclosed::PAIR.into_iter().enumerate() {
-            let second: f64 = functions.iter().map(|f| f.second[p].magnitude().0[lane]).sum();
-            let bend = second * half[i] * half[j];
-            (bends[i], bends[j]) = (bends[i] + bend, bends[j] + bend);
-        }
-        Some(Self { values, remainder, bends })
+        Below { affine: rounded(value, slope, place), share: (lost / (value + lost)) as f32, turning }
     }
 
     /// What a tangent says.
@@ -137,58 +141,18 @@ impl Modelled {
         (value - remainder - turning, [x, y, z], remainder, turning)
     }
 
-    /// How large the matrix can be: the root of the sum of the squares of its entries. m/N
-    fn size(&self, half: [f64; LEANING]) -> f64 {
-        let up = |f: usize| {
-            let (value, gradient) = self.values[f];
-            value.abs() + (0..LEANING).map(|k| gradient[k].abs() * half[k]).sum::<f64>()
-        };
-        let [m, d, v, zz] = [up(0), libm::hypot(up(1), up(2)), libm::hypot(up(3), up(4)), up(5)];
-        let [m, d, v, zz] = std::array::from_fn(|k| [m, d, v, zz][k] + self.remainder[k]);
-        libm::sqrt(2.0 * (m * m + d * d + v * v) + zz * zz)
-    }
-}
-
-impl States {
-    /// What is known of the score under the loads of a kind, for all the region.
-    pub fn below(&self, kind: &Kind, half: [f64; LEANING]) -> Below {
-        let [m, d1, d2, v1, v2, zz] = self.compliance.values.map(|v| v.0);
-        let at = Yielding { m, d: [d1, d2], v: [v1, v2], zz };
-        let (sharp, of_error) = kind.load.tangents(&kind.load.with_part(at), [0.0; 3]);
-        let place = [half[0], half[1], half[2]];
-        let found = |model: &Modelled, tangent: &Tangent, times: f64| {
-            let (value, slope, remainder, turning) = model.least(kind, tangent, half[TURN]);
-            let spread = times * spread(kind, || model.size(half));
-            let value = value - spread;
-            let low = value - (0..3).map(|k| slope[k].abs() * place[k]).sum::<f64>();
-            let mut bends = model.bends;
-            bends[TURN] += turning;
-            if value <= 0.0 {
-                return (low, Below { bends, ..Below::NOTHING });
-            }
-            let lost = remainder + turning + spread;
-            (low, Below { affine: rounded(value, slope, place), share: (lost / (value + lost)) as f32, bends })
-        };
-        let mut best = found(&self.compliance, &sharp, 1.0);
-        let others = [
-            of_error.map(|tangent| found(&self.compliance, &tangent, 1.0)),
-            kind.along_force().map(|(tangent, times)| found(&self.below, &tangent, times)),
-        ];
-        for other in others.into_iter().flatten() {
-            if other.0 > best.0 {
-                best = other;
-            }
+    /// By how much the scores of the loads of a kind can differ from that of its own: no eigenvalue of the compliance
+    /// is above its trace. m
+    fn spread(&self, kind: &Kind, half: [f64; LEANING]) -> f64 {
+        if kind.force_spread == 0.0 && kind.part_spread == 0.0 {
+            return 0.0;
         }
-        best.1
+        let up = |f: usize, remainder: usize| {
+            let (value, gradient) = self.values[f];
+            value.abs() + (0..LEANING).map(|k| gradient[k].abs() * half[k]).sum::<f64>() + self.remainder[remainder]
+        };
+        let part = kind.load.part.map_or(0.0, |part| part.size());
+        let by_part = kind.part_spread * (1.0 + kind.load.error);
+        kind.load.most_scored() * ((2.0 * up(0, 0) + up(5, 3) + part) * kind.force_spread + by_part)
     }
-}
-
-/// By how much the scores of the loads of a kind can differ from that of its own, with a matrix of that size. m
-fn spread(kind: &Kind, size: impl Fn() -> f64) -> f64 {
-    if kind.force_spread == 0.0 && kind.part_spread == 0.0 {
-        return 0.0;
-    }
-    let part = kind.load.part.map_or(0.0, |part| part.size());
-    let by_part = kind.part_spread * (1.0 + kind.load.error);
-    kind.load.most_scored() * ((size() + part) * kind.force_spread + by_part)
 }
