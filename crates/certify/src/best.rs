@@ -134,8 +134,8 @@ fn survivors(
 const MANY: usize = 500;
 
 /// Whether cells of heading are worth using at once, as a sample of the boxes that the coarse tables leave shows: they
-/// have to exclude a good part of them, of which the coarse tables do not exclude enough parts. Cells know every load as
-/// it is, and the limits on beta; coarse tables do not.
+/// have to exclude a good part of them, of which the coarse tables do not exclude enough parts. Cells know every load
+/// as it is, and the limits on beta; coarse tables do not.
 fn with_cells_at_once(
     model: &Model,
     coarse: &CoarseBounds,

@@ -293,8 +293,8 @@ impl BranchAndBound {
                 Some(stop) => Err(stop),
                 None => Ok((parts.of)(&queued.open)).and_then(|cut| monitor.stop().map_or(Ok(cut), Err)),
             };
-            // One by one: a box may take as long as all the others, and a thread that has sixteen of them in hand at the
-            // end keeps the others waiting.
+            // One by one: a box may take as long as many others, and a thread that has sixteen in hand at the end keeps
+            // the other waiting.
             let results: Vec<_> = batch.par_iter().with_max_len(1).map(of).collect();
             let mut stopped = None;
             for (whole, cut) in batch.into_iter().zip(results) {
