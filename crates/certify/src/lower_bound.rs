@@ -49,7 +49,7 @@ impl Model {
             targets: Vec::new(),
             width: TAU / count as f64,
         };
-        let mut totals = [0.0; CORNERS];
+        let (mut totals, mut sum) = ([0.0; CORNERS], 0.0);
         let (mut all, mut bests) = (Vec::new(), Vec::new());
         for segment in 0..self.segments.len() {
             let mut best = INFINITE;
@@ -63,13 +63,12 @@ impl Model {
             }
             totals = joined(aggregate, &totals, &best);
             bests.push(best);
-            // No point costs less than nothing.
-            let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
+            // What the points of later segments cost is nowhere less than nothing.
+            sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
             if sum >= ceiling {
                 return LowerBound { sum, active: active.clone() };
             }
         }
-        let sum = totals.iter().copied().fold(f64::INFINITY, f64::min);
         for (ways, best) in all.iter_mut().zip(bests.iter().flat_map(|best| [best; 4])) {
             let others = match aggregate {
                 Aggregate::Mean | Aggregate::Rms => std::array::from_fn(|k| totals[k] - best[k]),

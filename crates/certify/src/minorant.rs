@@ -4,7 +4,7 @@ use super::arm::Arm;
 use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
 use super::cost::{Direction, Known, of_joint1};
 use super::kind::Kind;
-use super::load::{Load, Tangent};
+use super::load::{Load, Tangent, Yielding};
 use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
 use std::f64::consts::TAU;
@@ -212,11 +212,10 @@ impl ModelledRegion {
             let [value, slopes @ ..] = self.values[f];
             value.abs() + (0..3).map(|k| slopes[k].abs() * self.half[k]).sum::<f64>() + remainder
         };
-        // The roots of the sums of squares of C without joint 1 and of joint 1.
-        let (m, zz) = (up(0, self.remainder[0]), up(5, self.remainder[3]));
         let [d, v] = self.max_size;
+        let largest = Yielding { m: up(0, self.remainder[0]), d: [d, 0.0], v: [v, 0.0], zz: up(5, self.remainder[3]) };
         let part = kind.load.part.map_or(0.0, |part| part.size());
-        let c = (2.0 * (m * m + d * d + v * v) + zz * zz).sqrt() + first * far * far + part;
+        let c = largest.size() + first * far * far + part;
         let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + first * far);
         // Loads of a kind have forces of size 1.
         let by_part = kind.part_spread * (1.0 + kind.load.error);
