@@ -71,6 +71,12 @@ CELLS = [
     ("KR 270, 3+2: tool leans 20 deg", "kuka-kr270-2", "leaning", SLANTED, [0, 0, 684], PUBLISHED, 0.2, TOTAL, []),
     ("KR 270, 3+2, smaller", "kuka-kr270-2", "leaning", SLANTED, [0, 0, 684],
      ([-150, 150], [-1940, -1640], [-402, -214]), 0.2, TOTAL, []),
+    ("KR 210, turntable with a place for each segment", "kuka-kr210-r2700", "raster", SLANTED, [250, 0, 350],
+     ([1000, 1600], [-200, 200], [300, 700]), 0.2, TOTAL, []),
+    ("KR 210, rail with a place for each segment", "kuka-kr210-r2700", "raster", SLANTED, [250, 0, 350],
+     ([1000, 1600], [-200, 200], [300, 700]), 0.2, TOTAL, []),
+    ("KR 210, rail at one place", "kuka-kr210-r2700", "raster", SLANTED, [250, 0, 350],
+     ([1000, 1600], [-200, 200], [300, 700]), 0.2, TOTAL, []),
 ]
 
 
@@ -139,6 +145,24 @@ spindle_rpm = 9000.0
 """
 
 
+AXIS = """[[external_axis]]
+name = "axis"
+kind = "{}"
+carries = "{}"
+{}
+use = "{}"
+"""
+
+
+def axis(name):
+    """The external axis that the name of a cell states."""
+    if "rail" in name:
+        rail = "direction = [0.0, 1.0, 0.0]\nrange_mm = [-200.0, 200.0]\nspeed_mm_per_s = 500.0"
+        return AXIS.format("rail", "robot", rail, "indexed" if "segment" in name else "fixed")
+    table = "axis = [0.0, 0.0, 1.0]\nxyz_mm = [1300.0, 0.0, 0.0]\nrange_deg = [-180.0, 180.0]\nspeed_deg_per_s = 60.0"
+    return AXIS.format("turntable", "workpiece", table, "indexed") if "turntable" in name else ""
+
+
 def run_file(cell, folder):
     name, arm, path, rotation, place, (x, y, z), condition, criterion, changes = cell
     target = folder / "run.toml"
@@ -167,7 +191,7 @@ gap_percent = 1.0
 time_limit_s = 60.0
 [output]
 maps = false
-{STOCK if path == "slots" else ""}""")
+{STOCK if path == "slots" else ""}{axis(name)}""")
     return target
 
 

@@ -339,7 +339,7 @@ def checked(run, results, count, seed, raised=None):
     with open(results / "open-region.csv") as file:
         for row in csv.DictReader(file):
             if row["search"] == "best":
-                keys = [key for key, text in row.items() if key not in ("search", "orientation") and text]
+                keys = [key for key, text in row.items() if key not in ("search", "orientation", "segment") and text]
                 boxes.append({key: float(row[key]) for key in keys})
     closed = bound
     asked = json.loads((results / "certificate.json").read_text())["gap_percent_asked"] / 100

@@ -21,7 +21,12 @@ pub(super) fn without_axes(problem: &Problem) -> Result<Cow<'_, Problem>, Unsupp
         return Ok(Cow::Borrowed(problem));
     }
     let is_covered = |axis: &ExternalAxis| {
-        axis.axis_use == AxisUse::Fixed && (axis.kind == AxisKind::Rail || is_vertical(&axis.direction))
+        let is_still = match axis.axis_use {
+            AxisUse::Fixed => true,
+            AxisUse::Indexed => problem.task.segments().len() == 1,
+            AxisUse::Continuous => false,
+        };
+        is_still && (axis.kind == AxisKind::Rail || is_vertical(&axis.direction))
     };
     if !axes.iter().all(is_covered) {
         return Err(Unsupported::OtherAxes);

@@ -60,9 +60,9 @@ pub struct Proof {
     /// The constraints of the problem less those that the bound evaluates.
     pub relaxed: Vec<Relaxation>,
     /// What else it leaves out, in words.
-    pub left_out: Vec<&'static str>,
-    /// Where the part may lie in several orientations: the open boxes of each, in the order of those of the bound.
-    pub orientations: Vec<OpenIn>,
+    pub left_out: Vec<String>,
+    /// The open boxes of each part of the problem that is bounded by itself, in the order of those of the bound.
+    pub parts: Vec<OpenIn>,
 }
 
 /// Why there is no bound.
@@ -134,11 +134,11 @@ pub fn certify(
         if value <= CANCELLATION {
             return Err(NoProof::Cancelled);
         }
-        let (bound, orientations) = match sense {
+        let (bound, parts) = match sense {
             Sense::Min => best_in_all(problem, value, &settings, &monitor)?,
             Sense::Max => (worst(problem, value, &settings, &monitor)?, Vec::new()),
         };
-        Ok(Proof { found: value, orientations, ..Proof::new(problem, sense, *placement, bound) })
+        Ok(Proof { found: value, parts, ..Proof::new(problem, sense, *placement, bound) })
     };
     let best = prove(Sense::Min, found, &|| Some(objective));
     let worst = match found_worst {
@@ -235,12 +235,12 @@ impl Proof {
         let (placement, figure) = (bound.met.unwrap_or(placement), figure(&problem.criterion));
         // Bounds from above are refused where they would leave something out.
         let left_out = if sense == Sense::Min { left_out(problem) } else { Vec::new() };
-        Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out, orientations: Vec::new() }
+        Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out, parts: Vec::new() }
     }
 
     /// The relaxed constraints, and what else is left out, in words.
     pub fn relaxed_words(&self) -> Vec<String> {
-        let left_out = self.left_out.iter().copied().map(str::to_owned);
+        let left_out = self.left_out.iter().cloned();
         describe(&self.relaxed).into_iter().chain(left_out).collect()
     }
 
@@ -288,10 +288,11 @@ impl Proof {
 
     /// The boxes that are left open.
     pub fn open_boxes(&self, problem: &Problem) -> Vec<OpenBox> {
-        let names = self.orientations.iter().flat_map(|part| std::iter::repeat_n(Some(&part.orientation), part.boxes));
-        let boxes = self.bound.open.iter().zip(names.chain(std::iter::repeat(None)));
-        let named = |((region, bound), name): (&(Region, f64), Option<&String>)| OpenBox {
-            orientation: name.cloned(),
+        let parts = self.parts.iter().flat_map(|part| std::iter::repeat_n(Some(part), part.boxes));
+        let boxes = self.bound.open.iter().zip(parts.chain(std::iter::repeat(None)));
+        let named = |((region, bound), part): (&(Region, f64), Option<&OpenIn>)| OpenBox {
+            orientation: part.and_then(|part| part.orientation.clone()),
+            segment: part.and_then(|part| part.segment),
             ..OpenBox::new(problem, region, *bound)
         };
         boxes.map(named).collect()
@@ -302,6 +303,9 @@ impl Proof {
         let why = match self.bound.status {
             Status::Reached => return None,
             Status::Exhausted => "what is left open is smaller than the tables can tell apart".to_owned(),
+            Status::SegmentsApart => "each segment is bounded at its own best place of part and axes, where the cell \
+                                      has one place of the part for all of them"
+                .to_owned(),
             Status::Interrupted => "interrupted".to_owned(),
             Status::TimeLimit => {
                 let limit = settings.time_limit.map_or_else(String::new, |limit| format!(" of {} s", figures(limit)));
@@ -332,6 +336,8 @@ pub struct OpenBox {
     pub bound: f64,
     /// The name of the orientation of the part, where there are several.
     pub orientation: Option<String>,
+    /// The number of the segment, from 1, where segments are bounded one by one: the bound is of it alone.
+    pub segment: Option<usize>,
 }
 
 impl OpenBox {
@@ -349,6 +355,7 @@ impl OpenBox {
             turn: ends(2, side, 0.0),
             bound,
             orientation: None,
+            segment: None,
         }
     }
 }

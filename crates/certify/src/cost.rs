@@ -5,9 +5,10 @@
 //! in the middle, its slopes, and how far the compliance can make it differ.
 
 use super::compliance_table::AffineModel;
-use super::load::{Load, Tangent, Yielding};
+use super::load::Load;
 use super::moment::{MOMENTS, MomentModel, MomentPart, TurnedMoment, moved};
 use super::region::{Point, PolarModel, Region};
+use super::yielding::{Tangent, Yielding};
 use stead_planning::criterion::{Aggregate, Over};
 
 /// What a node tells: how it yields to forces and, where some moment acts, to moments.

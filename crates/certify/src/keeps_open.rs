@@ -1,11 +1,10 @@
 //! Why boxes stay open: what is known of the states that their bounds still count.
 
 use super::active_cells::ActiveCells;
-use super::arm::{Arm, LimitSpan, Margins};
 use super::compliance_table::{AffineModel, Node, enclosed};
-use super::enclosure::Enclosure;
 use super::interval_simd::WIDTH;
 use super::model::Model;
+use super::over_regions::sure_to_hold;
 use super::region::Region;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -31,8 +30,8 @@ pub struct KeepsOpen {
 const NAMES: [&str; 6] =
     ["elbow near its singularity", "wrist near its singularity", "conditioning", "joint 2", "joint 3", "joint 5"];
 /// Boxes, and path points of each, that are looked at.
-const BOXES: usize = 8;
-const POINTS: usize = 8;
+pub(super) const BOXES: usize = 8;
+pub(super) const POINTS: usize = 8;
 
 impl KeepsOpen {
     /// Of open boxes, those of least bound first.
@@ -61,37 +60,33 @@ impl KeepsOpen {
             for cell in active.cells(point, class.index()).map(usize::from) {
                 match nodes.known(cell, class).0 {
                     Node::Empty => {}
-                    Node::Unknown => (self.states, self.unknown) = (self.states + 1, self.unknown + 1),
+                    Node::Unknown => self.add_unknown(),
                     Node::Known(AffineModel { sure: true, .. }) => self.states += 1,
                     Node::Known(_) => {
-                        (self.states, self.undecided) = (self.states + 1, self.undecided + 1);
                         let place = [r, z, table.heading(level, cell)];
-                        let Some(y) = enclosed(arm, &[place; WIDTH], half, class) else { continue };
-                        for (count, is_open) in self.by.iter_mut().zip(undecided(arm, &y.margins)) {
-                            *count += usize::from(is_open);
-                        }
+                        let y = enclosed(arm, &[place; WIDTH], half, class);
+                        self.add_undecided(y.map_or([true; 6], |y| sure_to_hold(arm, &y.margins, 0)));
                     }
                 }
             }
         }
     }
 
+    /// Counts a state of which nothing is known.
+    pub(super) fn add_unknown(&mut self) {
+        (self.states, self.unknown) = (self.states + 1, self.unknown + 1);
+    }
+
+    /// Counts a state that may be allowed or not, where it is known which constraints hold.
+    pub(super) fn add_undecided(&mut self, holds: [bool; 6]) {
+        (self.states, self.undecided) = (self.states + 1, self.undecided + 1);
+        self.by.iter_mut().zip(holds).for_each(|(count, holds)| *count += usize::from(!holds));
+    }
+
     /// A share of the states in per cent.
     fn percent(&self, count: usize) -> usize {
         (100 * count + self.states / 2) / self.states.max(1)
     }
-}
-
-/// Which constraints are not sure to hold over a region.
-fn undecided(arm: &Arm, margins: &Margins<Enclosure>) -> [bool; 6] {
-    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = margins;
-    let of = |margin: &Enclosure| margin.value.low().0[0] < 0.0;
-    let outside = |joint: usize, [min, max]: &[Enclosure; 2]| match arm.limit_span(joint) {
-        LimitSpan::Full => false,
-        LimitSpan::Wide => of(min) && of(max),
-        LimitSpan::Narrow => of(min) || of(max),
-    };
-    [of(elbow), of(wrist), of(conditioning), outside(0, second), outside(1, third), of(joint5)]
 }
 
 impl fmt::Display for KeepsOpen {

@@ -11,16 +11,17 @@
 //! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder (of how the arm
 //!    yields to moments too, `moment`), or that no state is allowed.
 //! 3. `load` is what acts on a point and what of its deflection is scored, with the lower bound of the score that is
-//!    linear in the compliance; `coarse_bounds` minimises it over the heading once for all placements: minorants over
-//!    radius, height and direction of the load (`minorant`), for kinds of load (`kind`).
+//!    linear in the compliance (`yielding`); `coarse_bounds` minimises it over the heading once for all placements:
+//!    minorants over radius, height and direction of the load (`minorant`), for kinds of load (`kind`).
 //! 4. `cell` is the cell seen along axis 1, `region` a box of placements, `cost` a bound of a path point's score over
 //!    it.
 //! 5. `model` puts these together. `lower_bound` adds the points up by dynamic programming over cells of heading
 //!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
-//!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls
-//!    short leaves undecided, `orientations` joins the bounds of several orientations of the part, `forecast` says when
-//!    a gap will be reached. `leaning` is all of this for tools that lean, in other coordinates.
+//!    `at_rest` makes external axes that stand still part of the cell, `segments` bounds segments one by one where
+//!    these axes stand elsewhere for each, `keeps_open` counts what a bound that falls short leaves undecided,
+//!    `orientations` joins the bounds of several orientations of the part, `forecast` says when a gap will be reached.
+//!    `leaning` is all of this for tools that lean, in other coordinates.
 //! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!
@@ -70,10 +71,12 @@ mod over_regions;
 mod region;
 mod relaxed;
 mod requirements;
+mod segments;
 pub mod settings;
 mod sliding_min;
 mod upper_bound;
 mod worst;
+mod yielding;
 
 #[cfg(test)]
 mod tests;

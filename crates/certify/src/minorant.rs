@@ -4,9 +4,10 @@ use super::arm::Arm;
 use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
 use super::cost::{Direction, Known, of_joint1};
 use super::kind::Kind;
-use super::load::{Load, Tangent, Yielding};
+use super::load::Load;
 use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
+use super::yielding::{Tangent, Yielding};
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 

@@ -1,7 +1,7 @@
 //! Several orientations of the part: a bound for each, of which the least holds for all.
 
-use super::best::best;
 use super::branch_and_bound::{Bound, Status};
+use super::segments;
 use crate::settings::CertificateSettings;
 use std::sync::Arc;
 use std::time::Instant;
@@ -10,11 +10,13 @@ use stead_planning::problem::Problem;
 use stead_planning::setup::Orientation;
 use stead_planning::symmetry::Unsupported;
 
-/// The open boxes of one orientation of the part.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+/// The open boxes of a part of a problem that is bounded by itself: of one orientation of the part, and of one segment.
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
 pub struct OpenIn {
-    /// The name of the orientation.
-    pub orientation: String,
+    /// The name of the orientation, where there are several.
+    pub orientation: Option<String>,
+    /// The number of the segment, from 1, where segments are bounded one by one.
+    pub segment: Option<usize>,
     /// How many boxes are open in it.
     pub boxes: usize,
 }
@@ -41,9 +43,9 @@ pub(super) fn are_several(problem: &Problem) -> bool {
     problem.orientations.len() > 1
 }
 
-/// A bound from below ([`best`]) that holds in every orientation of the part, and where there are several the open
-/// boxes of each, in the order of those of the bound. The time that is left is shared evenly by the orientations that
-/// are left.
+/// A bound from below ([`super::best()`]) that holds in every orientation of the part, and the open boxes of each part
+/// that is bounded by itself, in the order of those of the bound. The time that is left is shared evenly by the
+/// orientations that are left.
 ///
 /// # Errors
 /// Why an orientation cannot be certified.
@@ -54,25 +56,30 @@ pub(super) fn best_in_all(
     monitor: &Monitor,
 ) -> Result<(Bound, Vec<OpenIn>), Unsupported> {
     if !are_several(problem) {
-        return Ok((best(problem, value, settings, true, monitor)?, Vec::new()));
+        return segments::best(problem, value, settings, monitor);
     }
     let mut found: Option<Bound> = None;
     let mut open_in = Vec::new();
     let count = problem.orientations.len();
     for (number, (orientation, one)) in alone(problem)?.into_iter().enumerate() {
-        let share = |deadline: Instant| {
-            let now = Instant::now();
-            now + deadline.saturating_duration_since(now) / (count - number) as u32
-        };
-        let monitor = monitor.clone().with_deadline(monitor.deadline().map(share));
-        let bound = best(&one, value, settings, true, &monitor)?;
-        open_in.push(OpenIn { orientation: orientation.name.clone(), boxes: bound.open.len() });
+        let (bound, parts) = segments::best(&one, value, settings, &sharing(monitor, count - number))?;
+        let name = &orientation.name;
+        open_in.extend(parts.into_iter().map(|part| OpenIn { orientation: Some(name.clone()), ..part }));
         found = Some(match found {
             None => bound,
             Some(other) => joined(other, bound),
         });
     }
     found.map(|bound| (bound, open_in)).ok_or(Unsupported::Orientations)
+}
+
+/// A monitor with its share of the time that is left, by so many parts.
+pub(super) fn sharing(monitor: &Monitor, parts: usize) -> Monitor {
+    let share = |deadline: Instant| {
+        let now = Instant::now();
+        now + deadline.saturating_duration_since(now) / parts as u32
+    };
+    monitor.clone().with_deadline(monitor.deadline().map(share))
 }
 
 /// The bound that holds in two orientations: the lower one, with how that ended that fell short.
@@ -95,6 +102,7 @@ fn joined(first: Bound, second: Bound) -> Bound {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::best::best;
     use crate::certifiable;
     use crate::certificate::certify;
     use nalgebra::{Matrix3, Vector3};

@@ -1,6 +1,6 @@
 //! What enclosures tell of a region of states, for any number of variables.
 
-use super::arm::{Arm, ArmCompliance, LimitSpan};
+use super::arm::{Arm, ArmCompliance, LimitSpan, Margins};
 use super::compliance_table::{FUNCTIONS, REMAINDERS};
 use super::enclosure::Enclosure;
 use super::interval::Interval;
@@ -30,15 +30,24 @@ pub(super) fn is_sure<const V: usize, const P: usize>(
     y: &ArmCompliance<Enclosure<V, P>>,
     lane: usize,
 ) -> bool {
+    y.conditioned.lane(lane) && sure_to_hold(arm, &y.margins, lane).into_iter().all(|holds| holds)
+}
+
+/// Which constraints are sure to hold in all states of a region: the elbow's, the wrist's and the general share of
+/// conditioning, and the limits of joints 2, 3 and 5.
+pub(super) fn sure_to_hold<const V: usize, const P: usize>(
+    arm: &Arm,
+    margins: &Margins<Enclosure<V, P>>,
+    lane: usize,
+) -> [bool; 6] {
     let holds = |margin: &Enclosure<V, P>| margin.value.low().0[lane] >= 0.0;
-    let margins = &y.margins;
     let within = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
         (LimitSpan::Full, _) => true,
         (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
         (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
     };
-    let others = [&margins.elbow, &margins.joint5, &margins.wrist, &margins.conditioning];
-    y.conditioned.lane(lane) && others.into_iter().all(holds) && within(0) && within(1)
+    let Margins { elbow, wrist, conditioning, joint5, .. } = margins;
+    [holds(elbow), holds(wrist), holds(conditioning), within(0), within(1), holds(joint5)]
 }
 
 /// What the second derivatives of each pair of variables are multiplied by.

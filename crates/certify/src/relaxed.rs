@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
+
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem};
@@ -10,36 +11,49 @@ use stead_planning::problem::{Placement, Problem};
 const BETAS: usize = 360;
 /// Steps of the golden section: from two grid steps to a billionth of them.
 const NARROWINGS: usize = 43;
+/// Values of beta where few are enough.
+const FEW: usize = 36;
 
-/// The mean over the path points of the least score over beta, each of its weight, in the best posture class of each
+/// The figure that is minimised, of the least score of each path point over beta, in the best posture class of each
 /// segment; `None` where some segment has no class that is allowed at all its points, or once the caller asks to stop.
 /// m
 ///
 /// What must hold: reach, the limits of joints 2, 3 and 5 (of the last the farther from zero, both ways) and the least
 /// inverse condition. What is relaxed: the rate of beta, joint steps, the limits of joints 1, 4 and 6 and the largest
-/// deflection of a point. So no plan of the placement has a lower mean score. Beta is sought over a grid of one degree
+/// deflection of a point. So no plan of the placement comes to less. Beta is sought over a grid of one degree
 /// and then by golden section about each least value; ranges of allowed beta narrower than the grid may be missed.
 pub fn relaxed_value(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<f64> {
+    value_by(minimum, problem, placement, monitor)
+}
+
+/// The same from a few values of beta alone, which is never less. m
+pub(super) fn rough_value(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<f64> {
+    value_by(least_of_few, problem, placement, monitor)
+}
+
+/// The same where `minimum` tells the least of a function of beta.
+fn value_by(
+    minimum: fn(&dyn Fn(f64) -> f64) -> f64,
+    problem: &Problem,
+    placement: &Placement,
+    monitor: &Monitor,
+) -> Option<f64> {
     let points = problem.task.points().len();
     let all: Vec<[f64; 4]> = (0..points)
         .into_par_iter()
         .map(|point| {
-            let weight = problem.point_weight(point);
-            let minimum = |class| minimum(&|beta| weighed(weight, score(problem, placement, point, class, beta)));
+            let cost = |score: f64| if score.is_finite() { problem.point_cost(point, score) } else { score };
+            let minimum = |class| minimum(&|beta| cost(score(problem, placement, point, class, beta)));
             if monitor.should_stop() { [f64::INFINITY; 4] } else { PostureClass::ALL.map(minimum) }
         })
         .collect();
-    let mut sum = 0.0;
-    for span in problem.task.segments() {
-        let of = |class: usize| all[span.clone()].iter().map(|scores| scores[class]).sum::<f64>();
-        sum += (0..4).map(of).fold(f64::INFINITY, f64::min);
-    }
-    (sum < f64::INFINITY).then_some(sum / problem.total_weight())
-}
-
-/// A score that counts so much; infinite stays infinite.
-fn weighed(weight: f64, score: f64) -> f64 {
-    if score.is_finite() { weight * score } else { score }
+    let segment = |span: &std::ops::Range<usize>| {
+        let join = |sum: f64, cost: f64| problem.criterion.aggregate.join(sum, cost);
+        let of = |class: usize| all[span.clone()].iter().map(|costs| costs[class]).fold(0.0, join);
+        (0..4).map(of).fold(f64::INFINITY, f64::min)
+    };
+    let value = problem.objective(problem.task.segments().iter().map(segment));
+    value.is_finite().then_some(value)
 }
 
 /// The score of a state; infinite where it is not allowed. m
@@ -66,6 +80,11 @@ fn minimum(of: &dyn Fn(f64) -> f64) -> f64 {
         }
     }
     best
+}
+
+/// The least at a few values of beta.
+fn least_of_few(of: &dyn Fn(f64) -> f64) -> f64 {
+    (0..FEW).map(|k| of(TAU / FEW as f64 * k as f64)).fold(f64::INFINITY, f64::min)
 }
 
 /// The least value met by a golden section.

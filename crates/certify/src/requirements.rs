@@ -8,6 +8,7 @@ use super::compliance_table::ComplianceTable;
 use super::leaning;
 use super::model::STEPS;
 use super::orientations;
+use super::segments;
 use stead_model::stiffness::whole::yields_elsewhere;
 use stead_planning::criterion::Aggregate;
 use stead_planning::problem::Problem;
@@ -33,6 +34,9 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if problem.lean.is_some() {
         return Err(Unsupported::Lean);
     }
+    if segments::are_apart(problem) {
+        return segments::alone(problem)?.iter().try_for_each(|(_, one)| certifiable(one, memory));
+    }
     let alone = without_axes(problem)?;
     let problem = alone.as_ref();
     let axes = tool_axes(problem)?;
@@ -57,12 +61,20 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
 /// What a certificate of a problem costs more than others, to be said before a long search: in a sentence, where there
 /// is something to say.
 pub fn expected_cost(problem: &Problem) -> Option<String> {
-    let missing = if orientations::are_several(problem) {
-        let each = orientations::alone(problem).ok()?;
-        each.iter().filter_map(|(_, one)| too_near(without_axes(one).ok()?.as_ref())).reduce(f64::max)
+    let in_orientations = if orientations::are_several(problem) {
+        orientations::alone(problem).ok()?.into_iter().map(|(_, one)| one).collect()
     } else {
-        too_near(without_axes(problem).ok()?.as_ref())
+        vec![problem.clone()]
     };
+    let missing_of = |one: &Problem| {
+        if segments::are_apart(one) {
+            let segments = segments::alone(one).ok()?;
+            let missing = segments.iter().filter_map(|(_, one)| too_near(without_axes(one).ok()?.as_ref()));
+            return missing.reduce(f64::max);
+        }
+        too_near(without_axes(one).ok()?.as_ref())
+    };
+    let missing = in_orientations.iter().filter_map(missing_of).reduce(f64::max);
     let [nearest, missing] = [NEAREST, missing?].map(|length| (length * 1e3).ceil());
     Some(format!(
         "path points may come nearer than {nearest} mm to axis 1 in this cell, where they count without deflection in \
@@ -101,22 +113,26 @@ pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsu
 
 /// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in
 /// words.
-pub(super) fn left_out(problem: &Problem) -> Vec<&'static str> {
+pub(super) fn left_out(problem: &Problem) -> Vec<String> {
     let mut words = Vec::new();
     if require_no_travel(problem).is_err() {
-        words.push("travel of the joints in the objective");
+        words.push("travel of the joints in the objective".to_owned());
     }
     if require_certain_compliances(problem).is_err() {
-        words.push("errors of the compliances in the scores");
+        words.push("errors of the compliances in the scores".to_owned());
     }
     if require_free_beta(problem).is_err() {
-        words.push("beta that stays along the path");
+        words.push("beta that stays along the path".to_owned());
     }
     if expected_cost(problem).is_some() {
-        words.push("the deflection of path points nearer than 50 mm to axis 1");
+        let nearest = NEAREST * 1e3;
+        words.push(format!("the deflection of path points nearer than {nearest} mm to axis 1"));
     }
     if !problem.external_axes.is_empty() {
-        words.push("which position of the external axes goes with which x, y, z and yaw");
+        words.push("which position of the external axes goes with which x, y, z and yaw".to_owned());
+    }
+    if segments::are_apart(problem) {
+        words.push("that all segments have the same x, y, z and yaw".to_owned());
     }
     words
 }

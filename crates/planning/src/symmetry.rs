@@ -23,7 +23,10 @@ pub enum Unsupported {
     #[error("external axes move the workpiece or the robot")]
     ExternalAxes,
     /// External axes do more than shift the cell and turn it about the vertical.
-    #[error("external axes other than rails, and turntables about the vertical, that stay at one place for the path")]
+    #[error(
+        "external axes other than rails, and turntables about the vertical, that stay at one place for the path or for \
+         each segment"
+    )]
     OtherAxes,
     /// There are several orientations of the part to choose from.
     #[error("the part may lie in several orientations (cell.orientations): name one with cell.orientation")]

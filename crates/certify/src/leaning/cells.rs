@@ -10,23 +10,14 @@ use super::super::interval_simd::WIDTH;
 use super::super::kind::Kind;
 use super::super::minorant::{Affine, EMPTY, rounded};
 use super::super::number::LEANING;
+use super::piece::{LARGEST, Piece, TURNS, half_of};
 use super::states::{Below, Known, TURN, known_over};
-use std::f64::consts::PI;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use stead_model::robot::PostureClass;
 
-/// Half width of the largest cells (m), and ranges of the turn there. Those of a level are half as wide as those of the
-/// level before.
-pub(super) const LARGEST: f64 = 0.05;
-const TURNS: usize = 64;
 /// Levels of cells.
 pub(super) const LEVELS: usize = 8;
-/// Levels that a piece may be finer than its cell, and levels of pieces.
-const FINER: u8 = 2;
-const FINEST: u8 = 9;
-/// Share of a score that a piece of the largest cells may leave out; half of that at each further level.
-const SHARE: f32 = 0.2;
 /// Levels on which what costs enough is not cut up further.
 const COARSE: usize = 2;
 /// Pieces cut up for one cell.
@@ -35,9 +26,9 @@ const CUTS: usize = 400;
 /// One tool axis: the arm with it, kinds of load, and the cells.
 #[derive(Debug)]
 pub(super) struct Cells {
-    arm: Arm,
+    pub arm: Arm,
     /// Compliance of joint 1. rad/(N m)
-    first: f64,
+    pub first: f64,
     kinds: Vec<Kind>,
     /// What a load of size 1 costs where most placements are of no interest: more need not be known at first. m
     enough: f64,
@@ -67,20 +58,6 @@ struct Made {
     of_pieces: Box<[Affine]>,
 }
 
-/// A box of x, y, z and turn.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
-    /// The levels whose widths it has, and its numbers there.
-    level: [u8; LEANING],
-    number: [u16; LEANING],
-    /// The variables in the order in which it is to be cut.
-    order: [u8; LEANING],
-    /// What share of a score its bound leaves out.
-    share: f32,
-    /// Whether all its states are sure to be allowed.
-    sure: bool,
-}
-
 /// A piece of a cell that is being made.
 struct Candidate {
     piece: Piece,
@@ -96,63 +73,6 @@ struct Candidate {
 struct Candidates {
     all: Vec<Candidate>,
     of: Vec<(f64, [f64; 3])>,
-}
-
-/// Half the width of the cells of a level. m
-pub(super) fn half_of(level: usize) -> f64 {
-    LARGEST / (1u64 << level) as f64
-}
-
-impl Piece {
-    /// Half the width along one of the variables. m, rad
-    fn half(&self, k: usize) -> f64 {
-        if k == TURN { PI / (TURNS << self.level[k]) as f64 } else { half_of(usize::from(self.level[k])) }
-    }
-
-    /// Whether it is good enough for cells of a level.
-    fn is_fine(&self, level: usize) -> bool {
-        let level = level as u8;
-        let is_small = self.level.iter().all(|own| *own >= level);
-        let is_smallest = self.level.iter().all(|own| *own >= (level + FINER).min(FINEST));
-        is_smallest || (self.share <= SHARE / f32::from(1u16 << level) && (self.sure || is_small))
-    }
-
-    /// The part of it in a cell.
-    fn within(mut self, level: usize, at: [usize; 3]) -> Self {
-        for k in 0..3 {
-            if usize::from(self.level[k]) < level {
-                (self.level[k], self.number[k]) = (level as u8, at[k] as u16);
-            }
-        }
-        self
-    }
-
-    /// Whether it has anything in common with a cell.
-    fn meets(&self, level: usize, at: [usize; 3]) -> bool {
-        (0..3).all(|k| {
-            let (own, number) = (usize::from(self.level[k]), usize::from(self.number[k]));
-            if own <= level { at[k] >> (level - own) == number } else { number >> (own - level) == at[k] }
-        })
-    }
-
-    /// The four parts of it, cut along the first two variables that are not as short as cells of this level allow.
-    fn cut(&self, level: usize) -> [Self; WIDTH] {
-        let shortest = (level as u8 + FINER).min(FINEST);
-        let mut order = self.order;
-        // What is not sure to be allowed is cut where it is longest.
-        if !self.sure && self.share <= SHARE / f32::from(1u16 << level) {
-            order.sort_by_key(|k| self.level[usize::from(*k)]);
-        }
-        let mut parts = [*self; WIDTH];
-        let sides = order.into_iter().map(usize::from).filter(|k| self.level[*k] < shortest).take(2);
-        for (place, side) in sides.enumerate() {
-            for (number, part) in parts.iter_mut().enumerate() {
-                part.level[side] += 1;
-                part.number[side] = 2 * part.number[side] + (number >> place & 1) as u16;
-            }
-        }
-        parts
-    }
 }
 
 impl Cells {
@@ -197,6 +117,11 @@ impl Cells {
 
     /// Below the score of each kind of load in a cell, about its middle, in one class.
     pub fn below(&self, level: usize, at: [usize; 3], class: PostureClass) -> &[Affine] {
+        self.path(level, at, class)[level].map_or(&[], |made| &made.below)
+    }
+
+    /// What is known of a cell in one class, and before it of the cells that it is part of, the largest first.
+    fn path(&self, level: usize, at: [usize; 3], class: PostureClass) -> [Option<&Made>; LEVELS] {
         let [i, j, k] = at.map(|number| number >> level);
         let mut cell = &self.largest[(i * self.counts[1] + j) * self.counts[2] + k];
         let mut path: [Option<&Made>; LEVELS] = [None; LEVELS];
@@ -212,7 +137,23 @@ impl Cells {
             let made = cell.classes[class.index()].get_or_init(|| self.made_of(&path[..depth], here, class));
             path[depth] = Some(made);
         }
-        path[level].map_or(&[], |made| &made.below)
+        path
+    }
+
+    /// The pieces in an eighth of a cell in one class: middles and half widths of each.
+    pub fn pieces(
+        &self,
+        level: usize,
+        at: [usize; 3],
+        class: PostureClass,
+    ) -> impl Iterator<Item = ([f64; LEANING], [f64; LEANING])> {
+        let path = self.path(level, at, class);
+        let all = self.inherited(&path[..=level], at.map(|number| 2 * number)).all;
+        let region = |piece: Piece| std::array::from_fn(|k| (self.middle_of(&piece, k), piece.half(k)));
+        all.into_iter().map(move |one| {
+            let sides: [(f64, f64); LEANING] = region(one.piece);
+            (sides.map(|side| side.0), sides.map(|side| side.1))
+        })
     }
 
     /// What is known of a cell of the level after those of `path`, the cells that it is part of.

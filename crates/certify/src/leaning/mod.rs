@@ -8,10 +8,12 @@
 //! box. Limits on beta along the path are dropped.
 
 mod cells;
+mod keeps_open;
+mod piece;
 mod states;
 
 use super::arm::Arm;
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts};
+use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, Status};
 use super::cell::{Yaws, extent, side, whole};
 use super::cost::{CORNERS, cost_at_corners};
 use super::kind::kinds_of;
@@ -20,8 +22,9 @@ use super::minorant::Affine;
 use super::region::Region;
 use super::sliding_min::{INFINITE, joined, min_into, plus};
 use crate::settings::CertificateSettings;
-use cells::{Cells, LEVELS, half_of};
+use cells::{Cells, LEVELS};
 use nalgebra::Vector3;
+use piece::half_of;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
@@ -104,7 +107,13 @@ pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings
         used: || model.axes.iter().map(Cells::used).sum(),
         bytes: |known: &Classes| known.as_ref().map_or(0, |known| known.len() as u64),
     };
-    let (mut bound, _) = search.explore(all, monitor, |_| None);
+    let (mut bound, known) = search.explore(all, monitor, |_| None);
+    if !matches!(bound.status, Status::Reached | Status::Interrupted) {
+        let mut open: Vec<usize> = (0..known.len()).collect();
+        open.sort_by(|a, b| bound.open[*a].1.total_cmp(&bound.open[*b].1));
+        let open = open.into_iter().map(|k| (&bound.open[k].0, known[k].as_deref()));
+        bound.keeps_open = Some(model.keeps_open(open)).filter(|counted| counted.states > 0);
+    }
     // About axis 1 a box is part of a larger region, which neighbours share: what holds in all of them is the least.
     let least = bound.open.iter().map(|open| open.1).fold(f64::INFINITY, f64::min);
     bound.open.iter_mut().for_each(|(region, bound)| (*region, *bound) = (about_axis_1(region), least));
@@ -289,8 +298,7 @@ impl Leaning {
             return Some([0.0; CORNERS]);
         }
         let cells = &self.axes[point.axis];
-        let widest = half[0].max(half[1]).max(half[2]) * (1.0 - 1e-9);
-        let level = (0..LEVELS).rev().find(|level| half_of(*level) >= widest).unwrap_or(0);
+        let level = level_of(region);
         let numbers: [(usize, usize); 3] =
             std::array::from_fn(|k| cells.between(level, k, middle[k] - half[k], middle[k] + half[k]));
         let (kind, size) = point.kind.unwrap_or((0, 0.0));
@@ -320,6 +328,12 @@ impl Leaning {
         let value = all().map(|part| part.left(slope)).fold(f64::INFINITY, f64::min);
         Some(cost_at_corners((size * value, slope.map(|s| size * s)), region, self.aggregate))
     }
+}
+
+/// The finest level whose cells are no smaller than a box.
+fn level_of(region: &Box3) -> usize {
+    let widest = region.half.into_iter().fold(0.0, f64::max) * (1.0 - 1e-9);
+    (0..LEVELS).rev().find(|level| half_of(*level) >= widest).unwrap_or(0)
 }
 
 /// Cells that a box no larger than they are can be in, where rounding lets it touch one on each side.

@@ -6,16 +6,16 @@ use super::super::compliance_table::{FUNCTIONS, REMAINDERS};
 use super::super::enclosure::Enclosure;
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::kind::Kind;
-use super::super::load::{Tangent, Yielding};
 use super::super::minorant::{Affine, ZERO, rounded};
 use super::super::number::{LEANING, LEANING_PAIRS};
 use super::super::over_regions::{heading_over, is_sure, remainders};
+use super::super::yielding::{Tangent, Yielding};
 use stead_model::robot::PostureClass;
 
 /// The number of the turn among the variables.
 pub(super) const TURN: usize = 3;
 
-type Enclosed = Enclosure<LEANING, LEANING_PAIRS>;
+pub(super) type Enclosed = Enclosure<LEANING, LEANING_PAIRS>;
 
 /// What is known of the states of a region.
 #[expect(clippy::large_enum_variant, reason = "four at a time, on the stack")]
@@ -65,15 +65,24 @@ pub(super) fn known_over(
     half: [f64; LEANING],
     class: PostureClass,
 ) -> [Known; WIDTH] {
-    let (sine, cosine) = heading_over(place.map(|p| p[3]), half);
-    let at = |k: usize| Enclosed::variable(Lanes(place.map(|p| p[k])), k, half);
-    match arm.evaluate_leaning([at(0), at(1), at(2)], sine, cosine, first, class) {
+    match enclosed((arm, first), place, half, class) {
         None => [Known::Empty; WIDTH],
         Some(y) => std::array::from_fn(|lane| judged(arm, &y, lane, half)),
     }
 }
 
-fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {
+pub(super) fn enclosed(
+    (arm, first): (&Arm, f64),
+    place: &[[f64; LEANING]; WIDTH],
+    half: [f64; LEANING],
+    class: PostureClass,
+) -> Option<ArmCompliance<Enclosed>> {
+    let (sine, cosine) = heading_over(place.map(|p| p[3]), half);
+    let at = |k: usize| Enclosed::variable(Lanes(place.map(|p| p[k])), k, half);
+    arm.evaluate_leaning([at(0), at(1), at(2)], sine, cosine, first, class)
+}
+
+pub(super) fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {
     if y.violated.lane(lane) {
         return Known::Empty;
     }

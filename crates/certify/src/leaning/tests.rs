@@ -6,6 +6,7 @@ use super::super::requirements::{certifiable, certifiable_from_above};
 use super::super::tests::{Setting, hanging_arm, leaning, odd_arm, seeded, share};
 use super::states::{Known, States, TURN, known_over};
 use super::*;
+use crate::KeepsOpen;
 use crate::interval_simd::WIDTH;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -306,6 +307,20 @@ fn an_optimum_planted_in_a_small_cell_is_not_passed() {
         assert!(bound.bound <= least && bound.bound > 0.98 * least, "{yaw}: {} {least}", bound.bound);
     }
     assert!(tried > 1);
+}
+
+#[test]
+fn what_keeps_boxes_open_is_counted() {
+    let mut problem = few(leaning(five_segments(), 20.0));
+    problem.criterion.weights = Weights::TOTAL;
+    problem.constraints.min_inverse_condition = 0.3;
+    let until = std::time::Instant::now() + std::time::Duration::from_secs(4);
+    let bound = best(&problem, 1e-4, &CertificateSettings::new(0.001), &Monitor::silent().with_deadline(Some(until)));
+    assert_eq!(bound.status, Status::TimeLimit);
+    let KeepsOpen { states, unknown, undecided, by } = bound.keeps_open.unwrap();
+    assert!(undecided > 0 && unknown + undecided <= states, "{:?}", bound.keeps_open);
+    // The wrist's share of conditioning, or conditioning itself.
+    assert!(by[1] + by[2] > 0 && by.into_iter().all(|count| count <= undecided), "{by:?}");
 }
 
 #[test]

@@ -120,7 +120,7 @@ fn open_boxes_are_in_the_base_frame_for_an_arm_that_hangs_too() {
     // Axis 1 passes through the origin of the base frame; the shoulder's z is no part of it.
     let first = rows.next().unwrap();
     let z = problem().robot.geometry().root_in_base.z * 1e3;
-    let expected = format!("best,1750.0000,1850.0000,{:.4},{:.4},-68.7549,-45.8366,0.0900000,", z - 500.0, z - 300.0);
+    let expected = format!("best,1750.0000,1850.0000,{:.4},{:.4},-68.7549,-45.8366,0.0900000,,", z - 500.0, z - 300.0);
     assert_eq!(first, expected);
     assert_eq!(rows.count(), 1);
     let up = proof(Sense::Min, 0.1, 0.09, boxes()).open_boxes(problem())[0].clone();

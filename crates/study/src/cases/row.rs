@@ -167,6 +167,7 @@ fn status_of(status: Status) -> &'static str {
     match status {
         Status::Reached => "reached",
         Status::Exhausted => "exhausted",
+        Status::SegmentsApart => "segments_apart",
         Status::TimeLimit => "time_limit",
         Status::Memory => "memory",
         Status::Interrupted => "interrupted",
