@@ -46,7 +46,8 @@ pub enum Status {
     Reached,
     /// What is left open is smaller than the tables can distinguish.
     Exhausted,
-    /// Each segment is bounded as closely as requested, at its own best placement; that they share one is what is left.
+    /// Each segment is bounded at its own best placement, as closely as requested or as the tables can; that they share
+    /// one is what is left.
     SegmentsApart,
     /// The time was over.
     TimeLimit,

@@ -303,9 +303,11 @@ impl Proof {
         let why = match self.bound.status {
             Status::Reached => return None,
             Status::Exhausted => "what is left open is smaller than the tables can tell apart".to_owned(),
-            Status::SegmentsApart => "each segment is bounded at its own best place of part and axes, where the cell \
-                                      has one place of the part for all of them"
-                .to_owned(),
+            Status::SegmentsApart => {
+                "each segment is bounded by itself, at its own best place of part and axes, where \
+                                      in the cell all of them share the place of the part"
+                    .to_owned()
+            }
             Status::Interrupted => "interrupted".to_owned(),
             Status::TimeLimit => {
                 let limit = settings.time_limit.map_or_else(String::new, |limit| format!(" of {} s", figures(limit)));

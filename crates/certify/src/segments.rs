@@ -97,7 +97,7 @@ pub(super) fn best(
     }
     let whole = whole.ok_or(Unsupported::OtherAxes)?;
     let mut whole = Bound { value, bound: objective.value(sum), ..whole };
-    if whole.status == Status::Reached && whole.gap() > settings.gap {
+    if matches!(whole.status, Status::Reached | Status::Exhausted) && whole.gap() > settings.gap {
         whole.status = Status::SegmentsApart;
     }
     Ok((whole, open_in))
