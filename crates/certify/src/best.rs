@@ -2,10 +2,10 @@
 
 use super::active_cells::ActiveCells;
 use super::at_rest::without_axes;
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, Status, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
-use super::keeps_open::KeepsOpen;
+use super::keeps_open::{KeepsOpen, counted_boxes};
 use super::leaning;
 use super::model::Model;
 use super::region::Region;
@@ -83,12 +83,11 @@ pub fn best(
         bytes: |active: &Known| active.as_ref().map_or(0, |active| active.bytes()),
     };
     let (mut bound, known) = search.explore(all, monitor, |_| None);
-    if !matches!(bound.status, Status::Reached | Status::Interrupted) {
-        let mut open: Vec<usize> = (0..known.len()).collect();
-        open.sort_by(|a, b| bound.open[*a].1.total_cmp(&bound.open[*b].1));
+    if bound.falls_short() {
         let full = ActiveCells::full(model.points.len(), model.table.headings(0));
-        let open: Vec<_> = open.into_iter().map(|k| (bound.open[k].0, known[k].as_deref().unwrap_or(&full))).collect();
-        bound.keeps_open = Some(KeepsOpen::of(&model, &open)).filter(|counted| counted.states > 0);
+        let boxes = counted_boxes(&bound.open, &known).into_iter();
+        let counted = KeepsOpen::of(&model, boxes.map(|(region, known)| (region, known.as_deref().unwrap_or(&full))));
+        bound.keeps_open = Some(counted).filter(|counted| counted.states > 0);
     }
     Ok(bound)
 }

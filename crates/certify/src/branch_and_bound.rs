@@ -67,6 +67,19 @@ impl From<Stop> for Status {
 }
 
 impl Bound {
+    /// Whether the search ended by itself before what was requested.
+    pub(super) fn falls_short(&self) -> bool {
+        !matches!(self.status, Status::Reached | Status::Interrupted)
+    }
+
+    /// With the open boxes of another search and what it took; limits that one of them drops are not kept.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        self.open.extend(other.open);
+        self.nodes += other.nodes;
+        (self.with_rate, self.with_turn) = (self.with_rate && other.with_rate, self.with_turn && other.with_turn);
+        self
+    }
+
     /// How much better (of the worst: worse) than the value a placement may be, relative to the value.
     pub fn gap(&self) -> f64 {
         (1.0 - self.bound / self.value).abs()

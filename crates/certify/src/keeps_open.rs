@@ -29,19 +29,28 @@ pub struct KeepsOpen {
 /// Names of the constraints, in the order of [`KeepsOpen::by`].
 const NAMES: [&str; 6] =
     ["elbow near its singularity", "wrist near its singularity", "conditioning", "joint 2", "joint 3", "joint 5"];
-/// Boxes, and path points of each, that are looked at.
-pub(super) const BOXES: usize = 8;
-pub(super) const POINTS: usize = 8;
+/// Boxes, and path points of each, that are counted.
+const BOXES: usize = 8;
+const POINTS: usize = 8;
+
+/// The open boxes that are counted, those of least bound, each with what is known of it.
+pub(super) fn counted_boxes<'a, T>(open: &[(Region, f64)], known: &'a [T]) -> Vec<(Region, &'a T)> {
+    let mut all: Vec<_> = open.iter().zip(known).collect();
+    all.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
+    all.into_iter().take(BOXES).map(|((region, _), known)| (*region, known)).collect()
+}
+
+/// The numbers of the path points that are counted in a box, of so many.
+pub(super) fn counted_points(count: usize) -> impl Iterator<Item = usize> {
+    (0..count).step_by(count.div_ceil(POINTS).max(1))
+}
 
 impl KeepsOpen {
-    /// Of open boxes, those of least bound first.
-    pub(super) fn of(model: &Model, open: &[(Region, &ActiveCells)]) -> Self {
+    /// Of boxes with the cells of heading that are still of interest in each.
+    pub(super) fn of<'a>(model: &Model, boxes: impl Iterator<Item = (Region, &'a ActiveCells)>) -> Self {
         let mut counted = Self::default();
-        let points = model.points.len();
-        for (region, active) in open.iter().take(BOXES) {
-            for point in (0..points).step_by(points.div_ceil(POINTS)) {
-                counted.add_point(model, region, active, point);
-            }
+        for (region, active) in boxes {
+            counted_points(model.points.len()).for_each(|point| counted.add_point(model, &region, active, point));
         }
         counted
     }

@@ -84,9 +84,7 @@ pub(super) fn sharing(monitor: &Monitor, parts: usize) -> Monitor {
 
 /// The bound that holds in two orientations: the lower one, with how that ended that fell short.
 fn joined(first: Bound, second: Bound) -> Bound {
-    let open = first.open.iter().chain(&second.open).copied().collect();
-    let nodes = first.nodes + second.nodes;
-    let least = first.bound.min(second.bound);
+    let bound = first.bound.min(second.bound);
     // Where both fell short, the one of the lower bound says why.
     let is_first = match (first.status, second.status) {
         (Status::Reached, Status::Reached) => first.bound <= second.bound,
@@ -94,9 +92,8 @@ fn joined(first: Bound, second: Bound) -> Bound {
         (_, Status::Reached) => true,
         _ => first.bound <= second.bound,
     };
-    // What one of them drops is not kept in all.
-    let (with_rate, with_turn) = (first.with_rate && second.with_rate, first.with_turn && second.with_turn);
-    Bound { open, nodes, bound: least, with_rate, with_turn, ..if is_first { first } else { second } }
+    let Bound { status, keeps_open, .. } = *if is_first { &first } else { &second };
+    Bound { bound, status, keeps_open, ..first.and(second) }
 }
 
 #[cfg(test)]

@@ -61,26 +61,27 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
 /// What a certificate of a problem costs more than others, to be said before a long search: in a sentence, where there
 /// is something to say.
 pub fn expected_cost(problem: &Problem) -> Option<String> {
-    let in_orientations = if orientations::are_several(problem) {
-        orientations::alone(problem).ok()?.into_iter().map(|(_, one)| one).collect()
-    } else {
-        vec![problem.clone()]
-    };
-    let missing_of = |one: &Problem| {
-        if segments::are_apart(one) {
-            let segments = segments::alone(one).ok()?;
-            let missing = segments.iter().filter_map(|(_, one)| too_near(without_axes(one).ok()?.as_ref()));
-            return missing.reduce(f64::max);
-        }
-        too_near(without_axes(one).ok()?.as_ref())
-    };
-    let missing = in_orientations.iter().filter_map(missing_of).reduce(f64::max);
-    let [nearest, missing] = [NEAREST, missing?].map(|length| (length * 1e3).ceil());
+    let [nearest, missing] = [NEAREST, missing_to_axis_1(problem)?].map(|length| (length * 1e3).ceil());
     Some(format!(
         "path points may come nearer than {nearest} mm to axis 1 in this cell, where they count without deflection in \
          the certificate: its gap closes slowly, or not to the one asked for; in a cell {missing} mm farther from \
          axis 1 none do"
     ))
+}
+
+/// The most that [`too_near`] says of the parts of a problem that are bounded by themselves. m
+fn missing_to_axis_1(problem: &Problem) -> Option<f64> {
+    if orientations::are_several(problem) {
+        return orientations::alone(problem)
+            .ok()?
+            .iter()
+            .filter_map(|(_, one)| missing_to_axis_1(one))
+            .reduce(f64::max);
+    }
+    if segments::are_apart(problem) {
+        return segments::alone(problem).ok()?.iter().filter_map(|(_, one)| missing_to_axis_1(one)).reduce(f64::max);
+    }
+    too_near(without_axes(problem).ok()?.as_ref())
 }
 
 /// Whether the worst placement can be certified too: bounds from above are those of the mean of scores that are the

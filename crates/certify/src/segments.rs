@@ -74,23 +74,15 @@ pub(super) fn best(
             continue;
         }
         let bound = best_of_all(&one, compared, settings, true, &monitor)?;
-        let (counted, lost) = (own.sum(bound.bound.max(0.0)), own.sum(compared) - own.sum(bound.bound.max(0.0)));
+        let counted = own.sum(bound.bound.max(0.0));
+        let lost = own.sum(compared) - counted;
         sum = objective.aggregate.join(sum, counted);
         open_in.push(OpenIn { segment: Some(segment + 1), boxes: bound.open.len(), ..OpenIn::default() });
         whole = Some(match whole {
             None => bound,
             Some(other) => {
-                let open = other.open.into_iter().chain(bound.open).collect();
                 let keeps_open = if lost > most_lost { bound.keeps_open } else { other.keeps_open };
-                Bound {
-                    open,
-                    keeps_open,
-                    nodes: other.nodes + bound.nodes,
-                    with_rate: other.with_rate && bound.with_rate,
-                    with_turn: other.with_turn && bound.with_turn,
-                    status: first_of(other.status, bound.status),
-                    ..other
-                }
+                Bound { keeps_open, status: first_of(other.status, bound.status), ..other.and(bound) }
             }
         });
         most_lost = f64::max(most_lost, lost);
@@ -128,7 +120,7 @@ fn low_value(problem: &Problem, monitor: &Monitor) -> Option<f64> {
     let [x, y, z] = problem.cell.position;
     let ranges = [x, y, z, problem.cell.yaw];
     let at = |shares: &[f64; 4]| {
-        let [x, y, z, yaw] = std::array::from_fn(|k| ranges[k].min + ranges[k].width() * shares[k].clamp(0.0, 1.0));
+        let [x, y, z, yaw] = std::array::from_fn(|k| ranges[k].min + ranges[k].width() * shares[k]);
         Placement { x, y, z, yaw }
     };
     let of = |shares: &[f64; 4]| rough_value(&few, &at(shares), monitor).unwrap_or(f64::INFINITY);

@@ -1,26 +1,25 @@
 //! Why boxes stay open, of tools that lean.
 
 use super::super::interval_simd::WIDTH;
-use super::super::keeps_open::{BOXES, KeepsOpen, POINTS};
+use super::super::keeps_open::{KeepsOpen, counted_points};
 use super::super::number::LEANING;
 use super::super::over_regions::sure_to_hold;
 use super::cells::Cells;
 use super::states::{Known, States, enclosed, judged};
-use super::{Box3, Leaning, level_of};
+use super::{Box3, Classes, Leaning, level_of};
 use stead_model::robot::PostureClass;
 
 impl Leaning {
-    /// What is known of the states that the bounds of open boxes still count, those of least bound first, each with the
-    /// classes that are of interest.
-    pub fn keeps_open<'a>(&self, open: impl Iterator<Item = (&'a Box3, Option<&'a [u8]>)>) -> KeepsOpen {
+    /// What is known of the states that the bounds of boxes still count, in the classes that are of interest in each.
+    pub fn keeps_open(&self, boxes: &[(Box3, &Classes)]) -> KeepsOpen {
         let mut counted = KeepsOpen::default();
-        for (region, classes) in open.take(BOXES) {
-            for number in (0..self.points.len()).step_by(self.points.len().div_ceil(POINTS)) {
+        for (region, classes) in boxes {
+            for number in counted_points(self.points.len()) {
                 let point = &self.points[number];
                 let segment = self.segments.iter().position(|span| span.contains(&number)).unwrap_or(0);
-                let active = classes.map_or(15, |classes| classes[segment]);
+                let active = classes.as_ref().map_or(15, |classes| classes[segment]);
                 let (cells, level) = (&self.axes[point.axis], level_of(region));
-                // The cell about the middle of the box stands for those that it is in.
+                // One cell for all that the box is in: that of its middle.
                 let at = std::array::from_fn(|k| {
                     let middle = region.middle[k] + point.at[k];
                     cells.between(level, k, middle, middle).0

@@ -13,9 +13,10 @@ mod piece;
 mod states;
 
 use super::arm::Arm;
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, Status};
+use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts};
 use super::cell::{Yaws, extent, side, whole};
 use super::cost::{CORNERS, cost_at_corners};
+use super::keeps_open::counted_boxes;
 use super::kind::kinds_of;
 use super::load::{Load, Objective};
 use super::minorant::Affine;
@@ -108,11 +109,9 @@ pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings
         bytes: |known: &Classes| known.as_ref().map_or(0, |known| known.len() as u64),
     };
     let (mut bound, known) = search.explore(all, monitor, |_| None);
-    if !matches!(bound.status, Status::Reached | Status::Interrupted) {
-        let mut open: Vec<usize> = (0..known.len()).collect();
-        open.sort_by(|a, b| bound.open[*a].1.total_cmp(&bound.open[*b].1));
-        let open = open.into_iter().map(|k| (&bound.open[k].0, known[k].as_deref()));
-        bound.keeps_open = Some(model.keeps_open(open)).filter(|counted| counted.states > 0);
+    if bound.falls_short() {
+        let counted = model.keeps_open(&counted_boxes(&bound.open, &known));
+        bound.keeps_open = Some(counted).filter(|counted| counted.states > 0);
     }
     // About axis 1 a box is part of a larger region, which neighbours share: what holds in all of them is the least.
     let least = bound.open.iter().map(|open| open.1).fold(f64::INFINITY, f64::min);
