@@ -216,7 +216,11 @@ fn bad_input_says_where_and_what() {
     refused("direction = [1, 0, 0]", "direction = [0, 0, 0]", &["external_axis[1].direction: is no direction"]);
     refused("direction = [1, 0, 0]", "axis = [1, 0, 0]", &["external_axis[1].axis: is no key of a rail"]);
     refused("speed_mm_per_s = 500\n", "", &["external_axis[1].speed_mm_per_s: is missing"]);
-    refused("use = 'indexed'", "use = 'continuous'", &["external_axis[2].use: lets a second axis move along the path"]);
+    refused(
+        "speed_deg_per_s = 60\nuse = 'indexed'",
+        "use = 'continuous'",
+        &["external_axis[2].speed_deg_per_s: is missing; allowed: the speed of an axis that moves along the path"],
+    );
     refused("range_deg = [-90, 90]", "range_deg = [-90, nan]", &["external_axis[2].range_deg"]);
     let lists = [
         ("orientations = []", "cell.orientations: is empty"),

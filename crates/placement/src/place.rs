@@ -36,6 +36,7 @@ mod infeasible;
 mod lean;
 mod long_path;
 mod long_refinement;
+mod motion;
 mod notes;
 mod plan;
 mod preview;

@@ -99,10 +99,10 @@ impl Turn {
 }
 
 impl Problem {
-    /// How the tool turns to a path point from the one before, where it leans otherwise at both: with axes (feed, left
-    /// of the feed, tool axis) as columns in place of those of the points.
-    fn turn_between(&self, point: usize, axes: [&Matrix3<f64>; 2]) -> Turn {
-        match self.part_turn(point) {
+    /// How the tool turns from axes (feed, left of the feed, tool axis; as columns) to others while the part turns in
+    /// the cell by a rotation, in the frame that is placed.
+    fn turn_between(axes: [&Matrix3<f64>; 2], part: Option<&Matrix3<f64>>) -> Turn {
+        match part {
             Some(part) => Turn::between(axes[0], &(part * axes[1])),
             None => Turn::between(axes[0], axes[1]),
         }
@@ -115,7 +115,7 @@ impl Problem {
     /// The same where the part itself turns in the cell by a rotation, in the frame that is placed.
     fn turn_with(&self, point: usize, part: Option<&Matrix3<f64>>) -> Turn {
         let [from, to] = [point - 1, point].map(|point| self.task.points()[point].workpiece_from_point());
-        Turn::between(&from, &part.map_or(to, |part| part * to))
+        Self::turn_between([&from, &to], part)
     }
 
     /// How external axes turn the part in the cell on the way to a path point from the one before, in the frame that is
@@ -206,10 +206,16 @@ impl Problem {
         self.beta_step_of(point, limits, || self.turn_with(point, part))
     }
 
-    /// The same where the tool leans otherwise at both points: with axes (feed, left of the feed, tool axis) as columns
-    /// in place of those of the points.
-    pub(crate) fn beta_step_between(&self, point: usize, limits: &Redundancy, axes: [&Matrix3<f64>; 2]) -> BetaStep {
-        self.beta_step_of(point, limits, || self.turn_between(point, axes))
+    /// The same where the tool leans otherwise at both points, too: with axes (feed, left of the feed, tool axis) as
+    /// columns in place of those of the points.
+    pub(crate) fn beta_step_between(
+        &self,
+        point: usize,
+        limits: &Redundancy,
+        axes: [&Matrix3<f64>; 2],
+        part: Option<&Matrix3<f64>>,
+    ) -> BetaStep {
+        self.beta_step_of(point, limits, || Self::turn_between(axes, part))
     }
 
     fn beta_step_of(&self, point: usize, limits: &Redundancy, turn: impl Fn() -> Turn) -> BetaStep {

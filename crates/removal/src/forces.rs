@@ -128,24 +128,24 @@ pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForce
 }
 
 /// Half the length of path that the load at a point is the mean of. m
-fn window_for(cell: f64) -> f64 {
+pub(crate) fn window_for(cell: f64) -> f64 {
     (1.5 * cell).max(0.75e-3)
 }
 
 /// A run through all operations with one size of cell.
-struct Run {
+pub(crate) struct Run {
     workpiece: Workpiece,
     /// The surface of the stock before the operation, where turns are asked for: of the last run.
     before: Surface,
     /// Likewise what those before it have removed. m3
     removed_before: f64,
-    path: PathMoves,
-    found: Found,
+    pub path: PathMoves,
+    pub found: Found,
     tool: Tool,
 }
 
 impl Run {
-    fn new(
+    pub fn new(
         problem: &ForcesProblem,
         cell: f64,
         window: Option<f64>,

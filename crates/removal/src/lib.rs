@@ -8,6 +8,7 @@ pub mod cutting;
 pub mod forces;
 mod job;
 pub mod lattice;
+pub mod leaning;
 pub mod moves;
 pub mod operation;
 pub mod outcome;

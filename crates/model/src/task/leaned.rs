@@ -68,7 +68,8 @@ impl Task {
         self.upright.as_deref().unwrap_or(self)
     }
 
-    /// The task with a tool that leans at every point, so many `leans` as points, from the axis that the path states.
+    /// The task with a tool that leans at every point, so many `leans` as points, from the axis that the path states;
+    /// with the wrenches of its leans where these are known, or else those of the task, carried to its tip.
     pub fn leaned(&self, rule: &LeanRule, leans: &[Lean]) -> Self {
         let upright = self.upright();
         if leans.iter().all(|lean| *lean == Lean::NONE) {
@@ -82,9 +83,12 @@ impl Task {
             axes.push(at.workpiece_from_point());
             let leaned = rule.leaned(at, path.surface_normals().map(|normals| &normals[point]), lean);
             let carried = |wrench: &Wrench| carried(wrench, rule.force, at, &leaned);
-            task.wrenches[point] = carried(&upright.wrenches[point]);
+            let computed = upright.lean_forces.as_ref().filter(|_| *lean != Lean::NONE && path.is_scored(point));
+            let wrench = computed.map(|forces| forces.wrench(point, lean));
+            task.wrenches[point] = wrench.unwrap_or_else(|| carried(&upright.wrenches[point]));
             if let (Some(edges), Some(own)) = (&mut task.edges, &upright.edges) {
-                edges[point] = carried(&own[point]);
+                let edge = computed.and_then(|forces| forces.edge(point, lean));
+                edges[point] = edge.unwrap_or_else(|| carried(&own[point]));
             }
             task.path.points[point] = leaned;
         }

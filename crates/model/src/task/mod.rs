@@ -5,10 +5,12 @@
 mod feed_parts;
 mod following;
 pub mod lean;
+mod lean_forces;
 mod leaned;
 mod thinned;
 mod turned;
 
+pub use lean_forces::{LeanForces, PointLeanForces};
 pub use leaned::Leaned;
 pub use thinned::KeptPoint;
 
@@ -88,6 +90,8 @@ pub struct Task {
     edges: Option<Vec<Wrench>>,
     /// How the part yields at every point, where it does: displacement against force, in the workpiece frame. m/N
     part: Option<Vec<Matrix3<f64>>>,
+    /// The wrenches of a tool that leans, where they are known lean by lean.
+    lean_forces: Option<Arc<LeanForces>>,
     /// The same with the tool axis that the path states, where the tool leans.
     upright: Option<Arc<Task>>,
 }
@@ -338,7 +342,7 @@ impl Task {
         }
         let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
         unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
-        Ok(Self { path, wrenches, edges: None, part: None, upright: None })
+        Ok(Self { path, wrenches, edges: None, part: None, lean_forces: None, upright: None })
     }
 
     /// The same task on a part that yields at every point by a matrix in the workpiece frame: displacement (m) of the

@@ -126,6 +126,7 @@ impl Task {
             wrenches: those(&self.wrenches),
             edges: self.edges.as_ref().map(those),
             part: self.part.as_ref().map(|part| kept.iter().map(|kept| part[kept.point]).collect()),
+            lean_forces: self.lean_forces.as_ref().map(|forces| Arc::new(forces.thinned(kept))),
             upright: self.upright.as_ref().map(|task| Arc::new(task.thinned(kept))),
         }
     }

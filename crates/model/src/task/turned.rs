@@ -18,6 +18,7 @@ impl Task {
             wrenches: all(&self.wrenches),
             edges: self.edges.as_ref().map(all),
             part: self.part.as_ref().map(part),
+            lean_forces: self.lean_forces.as_ref().map(|forces| Arc::new(forces.turned(rotation))),
             upright: self.upright.as_ref().map(|task| Arc::new(task.turned(rotation))),
         }
     }

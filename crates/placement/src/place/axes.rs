@@ -4,6 +4,7 @@
 //! Each use starts from the answer of the poorer one, and a step is only taken to a setup whose plan is better, so a
 //! richer use is never worse.
 
+use super::motion::{Together, moving};
 use crate::evaluator::Evaluator;
 use crate::path_subset::PathSubset;
 use crate::refine::{Solution, planned, refine};
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::compass::CompassSteps;
+use stead_planning::lean::LeanSpace;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::axis_path::AxisGrid;
@@ -20,7 +22,7 @@ use stead_planning::setup::{AxisPositions, Setup};
 /// Positions of an axis that are tried first, over its whole range.
 pub(super) const GRID: usize = 5;
 /// Positions of an axis that moves along the path, at each point.
-const PATH_GRID: usize = 13;
+pub(super) const PATH_GRID: usize = 13;
 /// A step of a position that is this share of the range is the last.
 const LAST_STEP: f64 = 1e-3;
 /// Rounds of axes and placement.
@@ -43,10 +45,48 @@ pub(super) struct Improved {
     pub solution: Solution,
 }
 
-/// Improves the positions of the axes at a placement, and the placement with them, by turns; nothing where that gains
-/// nothing.
-pub(super) fn improved(problem: &Problem, start: &Solution, monitor: &Monitor) -> Option<Improved> {
-    let mut best = Improved { setup: problem.setup.clone(), solution: start.clone() };
+/// Improves the positions of the axes from a placement with its setup, and the placement with them, by turns; nothing
+/// where that gains nothing. Where a [`LeanSpace`] is given, axes that move along the path are planned with the leans.
+///
+/// Of several axes that move along the path each is first moved by itself, the others as if they were indexed, so that
+/// all together are never worse than the best of them alone.
+pub(super) fn improved(
+    problem: &Problem,
+    start: &Improved,
+    space: Option<&LeanSpace>,
+    monitor: &Monitor,
+) -> Option<Improved> {
+    let moving = moving(problem);
+    let least = |a: Improved, b: Improved| if b.solution.objective < a.solution.objective { b } else { a };
+    let alone = |number: &usize| by_turns(problem, start, &[*number], monitor);
+    let mut best = match moving.len() {
+        0 | 1 => by_turns(problem, start, &moving, monitor),
+        _ => moving
+            .iter()
+            .map(alone)
+            .reduce(least)
+            .map_or_else(|| start.clone(), |best| by_turns(problem, &best, &moving, monitor)),
+    };
+    let together = Together { problem, space, moving: &moving, monitor };
+    let is_joint = moving.len() > 1 || (!moving.is_empty() && space.is_some());
+    for round in 0..ROUNDS {
+        if !is_joint || monitor.should_stop() {
+            break;
+        }
+        monitor.report(Progress::Steps { stage: "external axes together", done: round, total: ROUNDS });
+        let Some(better) = together.at(&best) else { break };
+        let before = best.solution.objective;
+        best = refined(problem, &better, monitor).unwrap_or(better);
+        if before - best.solution.objective < GAIN * before {
+            break;
+        }
+    }
+    (best.solution.objective < start.solution.objective).then_some(best)
+}
+
+/// One axis after the other, those of some numbers along the path, and the placement, by turns.
+fn by_turns(problem: &Problem, start: &Improved, moving: &[usize], monitor: &Monitor) -> Improved {
+    let mut best = start.clone();
     let axes = || problem.external_axes.iter().enumerate().filter(|(_, axis)| axis.max > axis.min);
     for round in 0..ROUNDS {
         if monitor.should_stop() || axes().next().is_none() {
@@ -58,7 +98,7 @@ pub(super) fn improved(problem: &Problem, start: &Solution, monitor: &Monitor) -
             if let Some(better) = by_segments(problem, &best, number, axis, monitor) {
                 best = better;
             }
-            if axis.axis_use == AxisUse::Continuous
+            if moving.contains(&number)
                 && let Some(better) = along_path(problem, &best, number, axis, monitor)
             {
                 best = better;
@@ -71,16 +111,22 @@ pub(super) fn improved(problem: &Problem, start: &Solution, monitor: &Monitor) -
             break;
         }
     }
-    (best.solution.objective < start.objective).then_some(best)
+    best
 }
 
-/// The plan in another setup, where it is better.
-fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Option<Improved> {
-    let setup = Setup { positions, ..known.setup.clone() };
+/// The best plan at a placement in a setup.
+pub(super) fn planned_in(problem: &Problem, setup: Setup, placement: &Placement) -> Option<Improved> {
     let set_up = problem.in_setup(&setup);
     let planner = Planner::finer(&set_up);
-    let solution = planned(&planner, &known.solution.placement, None, &mut planner.workspace())?;
-    (solution.objective < known.solution.objective).then_some(Improved { setup, solution })
+    let solution = planned(&planner, placement, None, &mut planner.workspace())?;
+    Some(Improved { setup, solution })
+}
+
+/// The plan with other positions of the axes, where it is better.
+fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Option<Improved> {
+    let setup = Setup { positions, ..known.setup.clone() };
+    let found = planned_in(problem, setup, &known.solution.placement)?;
+    (found.solution.objective < known.solution.objective).then_some(found)
 }
 
 /// The placement refined with the axes where they stand.
@@ -247,7 +293,16 @@ fn along_path(
         let grid = AxisGrid { problem: coarse, axis: number, positions };
         let Some(paths) = grid.paths(&known.solution.placement) else { break };
         let found: Vec<f64> = paths.into_iter().flat_map(|path| path.positions).collect();
-        let rows = between(&set_up, &all, number, &kept, &found);
+        let rows: Vec<Vec<f64>> = kept
+            .iter()
+            .zip(&found)
+            .map(|(point, position)| {
+                let mut row = all[*point].clone();
+                row[number] = *position;
+                row
+            })
+            .collect();
+        let rows = between(&set_up, &kept, &rows);
         let positions = AxisPositions::shortest(rows, &problem.task);
         let candidate = better(problem, best.as_ref().unwrap_or(known), positions);
         if candidate.is_none() && narrowing > 0 {
@@ -307,14 +362,15 @@ pub(super) fn kept_points(problem: &Problem, most: usize, steps_needed: impl Fn(
     kept
 }
 
-/// The positions of all axes at every point, those of one of them in proportion to the time between the points where it
-/// is known.
-fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, kept: &[usize], found: &[f64]) -> Vec<Vec<f64>> {
-    let mut rows = rows.to_vec();
-    for (pair, positions) in kept.windows(2).zip(found.windows(2)) {
+/// The positions of all axes at every point, from those at the points kept, in proportion to the time between these
+/// where it is known.
+pub(super) fn between(problem: &Problem, kept: &[usize], found: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut rows = problem.setup.positions.spread(&problem.task);
+    for (point, row) in kept.iter().zip(found) {
+        rows[*point].clone_from(row);
+    }
+    for (pair, ends) in kept.windows(2).zip(found.windows(2)) {
         let (first, last) = (pair[0], pair[1]);
-        rows[first][number] = positions[0];
-        rows[last][number] = positions[1];
         if problem.task.path().segment_of(first) != problem.task.path().segment_of(last) {
             continue;
         }
@@ -323,7 +379,13 @@ fn between(problem: &Problem, rows: &[Vec<f64>], number: usize, kept: &[usize], 
         let mut done = 0.0;
         for (point, time) in (first + 1..last).zip(&times) {
             done += time;
-            rows[point][number] = positions[0] + (positions[1] - positions[0]) * done / whole;
+            let at = |(number, own): (usize, &mut f64)| {
+                let (from, to) = (ends[0][number], ends[1][number]);
+                if from != to {
+                    *own = from + (to - from) * done / whole;
+                }
+            };
+            rows[point].iter_mut().enumerate().for_each(at);
         }
     }
     rows

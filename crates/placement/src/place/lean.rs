@@ -2,7 +2,7 @@
 //!
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
-//! ([`LeanPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
+//! ([`MotionPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
 //! so, and lead and tilt are planned anew, by turns. The best of these are refined in all at once ([`Job::together`]).
 //! External axes stay where they are best with the axis of the path, those that move along it too. A step is only taken
 //! to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
@@ -11,12 +11,11 @@ mod drawn;
 mod thinned;
 mod together;
 
-use super::axes::{Improved, kept_points, refined};
+use super::axes::{Improved, improved as with_better_axes, kept_points, planned_in, refined};
 use super::infeasible::Infeasible;
 use super::refined::Refined;
 use super::{notes, stated_cases};
 use crate::outcome::{Case, Cases, Outcome, left_out};
-use crate::refine::planned;
 use crate::settings::SearchSettings;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
@@ -24,11 +23,11 @@ use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS, lean_between};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::redundancy::lean_path::{LeanGrid, LeanPath, LeanPlanner};
+use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner, PlannedMotion};
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
 use stead_planning::transfer::TransferSettings;
-use thinned::Thinned;
+pub(super) use thinned::Thinned;
 
 /// Two starts are no nearer than this in one coordinate (m, rad).
 const APART: [f64; 2] = [0.05, 0.2];
@@ -56,17 +55,15 @@ struct Job<'a> {
 /// How the tool leans best at a placement, with the plan; none where no lean that was tried has one.
 pub(super) fn leaned_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<Improved> {
     let space = problem.lean.as_deref()?;
-    Job { problem, space, monitor }.at(&problem.setup, placement, None)
+    let job = Job { problem, space, monitor };
+    let best = job.at(&problem.setup, placement, None)?;
+    Some(job.with_axes(best))
 }
 
 impl Job<'_> {
     /// The plan with the tool leaning so.
     fn planned(&self, setup: &Setup, placement: &Placement, leans: Vec<Lean>) -> Option<Improved> {
-        let setup = Setup { leans: leans.into(), ..setup.clone() };
-        let set_up = self.problem.in_setup(&setup);
-        let planner = Planner::finer(&set_up);
-        let solution = planned(&planner, placement, None, &mut planner.workspace())?;
-        Some(Improved { setup, solution })
+        planned_in(self.problem, Setup { leans: leans.into(), ..setup.clone() }, placement)
     }
 
     /// The upright plan, where the axis of the path is allowed everywhere.
@@ -82,11 +79,7 @@ impl Job<'_> {
     fn at(&self, setup: &Setup, placement: &Placement, known: Option<Improved>) -> Option<Improved> {
         let mut best = known.or_else(|| self.upright(setup, placement));
         let upright = self.problem.in_setup(&Setup { leans: [].into(), ..setup.clone() });
-        let step = self.space.steps[0].max(self.space.steps[1]);
-        let turn = self.space.usual_turn(upright.task.path());
-        let sparse = kept_points(&upright, MOST_PLANNED_POINTS, |time| {
-            slowest(&upright).map_or(0.0, |speed| step / (speed * time)).max(step / turn)
-        });
+        let sparse = kept_points(&upright, MOST_PLANNED_POINTS, |time| points_needed(self.space, &upright, time));
         let sparse = Thinned::new(&upright, sparse);
         let dense = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
         let is_one = sparse.kept == dense.kept;
@@ -105,7 +98,8 @@ impl Job<'_> {
         on: &Thinned<'_>,
         best: Option<Improved>,
     ) -> Option<Improved> {
-        let way = LeanGrid::new(on.problem()).and_then(|grid| path_of(&grid, placement)).map(|path| path.leans);
+        let way =
+            MotionGrid::new(on.problem()).and_then(|grid| path_of(&grid, placement)).map(|path| path.motion.leans);
         self.halved(setup, placement, on, way, self.space.steps, best)
     }
 
@@ -121,44 +115,17 @@ impl Job<'_> {
     ) -> Option<Improved> {
         for _ in 0..=HALVINGS {
             let Some(leans) = way.take().filter(|_| best.is_none() || !self.monitor.should_stop()) else { break };
-            let candidate = self.spread(on, &leans).and_then(|leans| self.planned(setup, placement, leans));
+            let candidate = spread(self.space, on, &leans).and_then(|leans| self.planned(setup, placement, leans));
             if let Some(candidate) = candidate
                 && best.as_ref().is_none_or(|best| candidate.solution.objective < best.solution.objective)
             {
                 best = Some(candidate);
             }
             steps = steps.map(|step| step / 2.0);
-            let near = LeanGrid::near(on.problem(), &leans, steps, NEAR);
-            way = near.and_then(|grid| path_of(&grid, placement)).map(|path| path.leans);
+            let near = MotionGrid::near_leans(on.problem(), &leans, steps, NEAR);
+            way = path_of(&near, placement).map(|path| path.motion.leans);
         }
         best
-    }
-
-    /// Leans at every point, from those at some of them, the axis turning evenly from one of these to the next; none
-    /// where one between these is not allowed, or a step.
-    fn spread(&self, on: &Thinned<'_>, leans: &[Lean]) -> Option<Vec<Lean>> {
-        let path = on.upright.task.path();
-        let mut all = vec![Lean::NONE; path.points().len()];
-        for (point, lean) in on.kept.iter().zip(leans) {
-            all[*point] = *lean;
-        }
-        for pair in on.kept.windows(2).filter(|pair| path.segment_of(pair[0]) == path.segment_of(pair[1])) {
-            let ends = [pair[0], pair[1]].map(|point| (point, all[point]));
-            let times: Vec<f64> = (pair[0] + 1..=pair[1]).map(|point| on.upright.step_time(point)).collect();
-            let whole: f64 = times.iter().sum();
-            let mut done = 0.0;
-            for (point, time) in (pair[0] + 1..pair[1]).zip(&times) {
-                done += time;
-                all[point] = lean_between(path, ends, point, done / whole);
-            }
-        }
-        let lean = |(point, lean): (usize, &Lean)| {
-            let lean = self.space.ranges[point].nearest(lean);
-            self.space.allows(path, point, &lean).then_some(lean)
-        };
-        let leans: Vec<Lean> = all.iter().enumerate().map(lean).collect::<Option<_>>()?;
-        let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
-        steps.all(|point| self.space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
     }
 
     /// Leans and placement by turns, from a placement.
@@ -198,7 +165,7 @@ impl Job<'_> {
     fn finished(&self, known: Improved) -> Improved {
         let mut best = known;
         for _ in 0..ROUNDS {
-            best = self.together(best);
+            best = self.with_axes(self.together(best));
             let before = best.solution.objective;
             if self.monitor.should_stop() {
                 break;
@@ -210,6 +177,15 @@ impl Job<'_> {
             }
         }
         best
+    }
+
+    /// With the external axes improved for the tool that leans, and planned with lead and tilt where they move along
+    /// the path.
+    fn with_axes(&self, known: Improved) -> Improved {
+        if self.problem.external_axes.is_empty() {
+            return known;
+        }
+        with_better_axes(self.problem, &known, Some(self.space), self.monitor).unwrap_or(known)
     }
 
     /// The best placements with the axis of the path, each with its setup.
@@ -237,15 +213,49 @@ struct Start {
 }
 
 /// The cheapest way of the tool on a grid of leans.
-fn path_of(grid: &LeanGrid<'_>, placement: &Placement) -> Option<LeanPath> {
+pub(super) fn path_of(grid: &MotionGrid<'_>, placement: &Placement) -> Option<PlannedMotion> {
     let problems = grid.problems();
-    LeanPlanner::new(grid, &problems).path(placement)
+    MotionPlanner::new(grid, &problems).path(placement)
+}
+
+/// Leans at every point, from those at some of them, the axis turning evenly from one of these to the next; none
+/// where one between these is not allowed, or a step.
+pub(super) fn spread(space: &LeanSpace, on: &Thinned<'_>, leans: &[Lean]) -> Option<Vec<Lean>> {
+    let path = on.upright.task.path();
+    let mut all = vec![Lean::NONE; path.points().len()];
+    for (point, lean) in on.kept.iter().zip(leans) {
+        all[*point] = *lean;
+    }
+    for pair in on.kept.windows(2).filter(|pair| path.segment_of(pair[0]) == path.segment_of(pair[1])) {
+        let ends = [pair[0], pair[1]].map(|point| (point, all[point]));
+        let times: Vec<f64> = (pair[0] + 1..=pair[1]).map(|point| on.upright.step_time(point)).collect();
+        let whole: f64 = times.iter().sum();
+        let mut done = 0.0;
+        for (point, time) in (pair[0] + 1..pair[1]).zip(&times) {
+            done += time;
+            all[point] = lean_between(path, ends, point, done / whole);
+        }
+    }
+    let lean = |(point, lean): (usize, &Lean)| {
+        let lean = space.ranges[point].nearest(lean);
+        space.allows(path, point, &lean).then_some(lean)
+    };
+    let leans: Vec<Lean> = all.iter().enumerate().map(lean).collect::<Option<_>>()?;
+    let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
+    steps.all(|point| space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
 }
 
 /// Whether two placements are apart in some coordinate.
 fn is_apart(a: &Placement, b: &Placement) -> bool {
     let shift = [a.x - b.x, a.y - b.y, a.z - b.z];
     shift.iter().any(|by| by.abs() > APART[0]) || wrap(a.yaw - b.yaw).abs() > APART[1]
+}
+
+/// On how many points as far apart as those of a path (s) the tool can lean by a step of its grid from one to the next.
+pub(super) fn points_needed(space: &LeanSpace, upright: &Problem, time: f64) -> f64 {
+    let step = space.steps[0].max(space.steps[1]);
+    let by_joints = slowest(upright).map_or(0.0, |speed| step / (speed * time));
+    by_joints.max(step / space.usual_turn(upright.task.path()))
 }
 
 /// The speed of the slowest joint, where one is known. rad/s

@@ -86,6 +86,11 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
         let most = problem.task.path().leans().into_iter().flatten().map(Lean::angle).fold(0.0, f64::max);
         let other = 2.0 * libm::sin(most / 2.0) * 100.0;
         notes.push(match space.rule.force {
+            _ if problem.task.has_lean_forces() => {
+                "forces are those of the tool as it leans: computed from the stock for five values of lead and of tilt at every point, the \
+                 tool leaning so all along, and straight between them"
+                    .to_owned()
+            }
             LeanForce::Feed => format!(
                 "forces keep the directions of feed and wall however the tool leans (lean.force = \"feed\"); if they turned with the tool \
                  they would differ by up to {other:.0} %"
@@ -96,8 +101,12 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
             ),
         });
     }
-    if problem.moves_axes_along_segments() {
-        notes.push("external axes move along the path as is best with the axis of the path; lead and tilt are planned with them so".to_owned());
+    if !problem.external_axes.is_empty() {
+        notes.push(
+            "external axes are where they are best with the axis of the path while placements are compared; they are planned together with \
+             lead and tilt at the best few alone"
+                .to_owned(),
+        );
     }
     let worst = match (has_worst, upright) {
         (false, _) => "",

@@ -3,7 +3,7 @@
 //! Every orientation, and in it a grid of positions of each axis in turn, is searched with the same settings; the best
 //! and the worst of all are kept. Then the axes of the best are improved ([`super::axes`]).
 
-use super::axes::{GRID, improved};
+use super::axes::{GRID, Improved, improved};
 use super::infeasible::Infeasible;
 use super::lean::leaned_at;
 use super::refined::Refined;
@@ -153,7 +153,8 @@ impl Job<'_> {
                 plans_of(&outcome.cases.best, &without_tie_rule),
             ),
         };
-        let Some(found) = improved(&without_tie_rule, &start, self.monitor) else { return };
+        let start = Improved { setup: without_tie_rule.setup.clone(), solution: start };
+        let Some(found) = improved(&without_tie_rule, &start, None, self.monitor) else { return };
         let problem = self.problem.in_setup(&found.setup);
         let refined = Refined { solution: found.solution, scheme: None };
         let without_tie_rule = problem.without_tie_rule();
@@ -198,7 +199,8 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
     }
     let (setup, start) = best;
     let set_up = pinned.in_setup(&setup);
-    let setup = start.and_then(|start| improved(&set_up, &start, monitor)).map_or(setup, |found| found.setup);
+    let start = start.map(|solution| Improved { setup: setup.clone(), solution });
+    let setup = start.and_then(|start| improved(&set_up, &start, None, monitor)).map_or(setup, |found| found.setup);
     leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
 }
 

@@ -30,7 +30,8 @@ mod grid;
 mod joint_turns;
 mod knots;
 mod layered;
-pub mod lean_path;
+
+pub mod motion;
 mod obstruction;
 pub mod off_grid;
 mod rate_limit;

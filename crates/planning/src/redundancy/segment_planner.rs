@@ -77,6 +77,27 @@ impl<'a> SegmentPlanner<'a> {
 
     /// The same with other numbers of steps.
     pub fn with_budget(problem: &'a Problem, grid: Redundancy, resolution: Resolution, budget: StepBudget) -> Self {
+        let tool_hits = StateSet::of_tool(problem, &grid).map(Arc::new);
+        Self::of(problem, grid, resolution, budget, tool_hits)
+    }
+
+    /// The same where it is known what spindle and holder hit.
+    pub fn with_tool_hits(
+        problem: &'a Problem,
+        grid: Redundancy,
+        resolution: Resolution,
+        tool_hits: Option<Arc<StateSet>>,
+    ) -> Self {
+        Self::of(problem, grid, resolution, resolution.budget(), tool_hits)
+    }
+
+    fn of(
+        problem: &'a Problem,
+        grid: Redundancy,
+        resolution: Resolution,
+        budget: StepBudget,
+        tool_hits: Option<Arc<StateSet>>,
+    ) -> Self {
         let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
         let is_start = |point: &usize| starts.binary_search(point).is_ok();
         let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
@@ -95,7 +116,7 @@ impl<'a> SegmentPlanner<'a> {
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
             instructions: Instructions::best(),
-            tool_hits: StateSet::of_tool(problem, &grid).map(Arc::new),
+            tool_hits,
             travel: problem.travel_cost(Sense::Min),
             unwanted: StopHandle::default(),
         }

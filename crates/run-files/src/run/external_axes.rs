@@ -130,17 +130,13 @@ pub(super) fn external_axes(tables: &[ExternalAxisTable], at: &Place<'_>) -> Res
 /// Refuses axes that move along the path where that cannot be planned.
 ///
 /// # Errors
-/// [`InputError`] for a second such axis, one without a speed, a path of too many points, a turntable whose axis is not
+/// [`InputError`] for one without a speed, a path of too many points, a turntable whose axis is not
 /// vertical beside a limit on the turn of the spindle.
 pub(super) fn check_axes(problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
     let mut moving = problem.external_axes.iter().zip(1..).filter(|(axis, _)| axis.axis_use == AxisUse::Continuous);
-    let Some((axis, number)) = moving.next() else { return Ok(()) };
-    let key = at.element(number).key("use");
-    if let Some((_, second)) = moving.next() {
-        let allowed = "one axis with use = \"continuous\", the others fixed or indexed";
-        return Err(at.element(second).key("use").error("lets a second axis move along the path", allowed));
-    }
-    if axis.max_speed.is_none() {
+    let Some((_, first)) = moving.clone().next() else { return Ok(()) };
+    let key = at.element(first).key("use");
+    if let Some((axis, number)) = moving.find(|(axis, _)| axis.max_speed.is_none()) {
         let speed = if axis.kind == AxisKind::Rail { "speed_mm_per_s" } else { "speed_deg_per_s" };
         return Err(at.element(number).key(speed).missing("the speed of an axis that moves along the path"));
     }

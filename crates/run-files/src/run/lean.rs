@@ -62,8 +62,9 @@ pub struct LeanTable {
     /// task states the normals, or the `plane` that the cutter touches. Where left out: centre for a ball, else
     /// contact, or plane where the task states no normals.
     pub rule: Option<Word<ContactRule>>,
-    /// What forces do: `feed` keeps the directions of feed and wall, `tool` turns them with the tool; feed where left
-    /// out.
+    /// What forces do: `feed` keeps the directions of feed and wall, `tool` turns them with the tool. Where left out:
+    /// feed for those of the task, tool for those of `[forces]` and of `[cut]`, which are stated in the frame of the
+    /// tool; those of `[stock]` are computed anew for every lean.
     pub force: Option<Word<LeanForce>>,
     /// Distance between passes side by side.
     pub step_over_mm: Option<Mm<Positive>>,
@@ -88,7 +89,12 @@ pub struct LeanSegmentTable {
 }
 
 impl LeanTable {
-    /// Where the tool may lean along a task, with values of beta over a turn.
+    /// Whether forces from the stock are computed anew for every lean.
+    pub(super) fn computes_forces(&self) -> bool {
+        self.force.is_none()
+    }
+
+    /// Where the tool may lean along a task, whose file has forces of its own or not, with values of beta over a turn.
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: a cutter that is not described, a lean that it does not allow, a
@@ -99,6 +105,7 @@ impl LeanTable {
         of_points: &PointLeans,
         tool: Option<&ToolTable>,
         beta_count: usize,
+        has_columns: bool,
         at: &Place<'_>,
     ) -> Result<Arc<LeanSpace>, InputError> {
         let Some(tool) = tool else {
@@ -150,9 +157,10 @@ impl LeanTable {
             let is_scored = path.is_scored(point);
             of_points.range(point, is_scored.then(|| segments[path.segment_of(point)]))
         };
+        let usual = if has_columns { LeanForce::Feed } else { LeanForce::Tool };
         let step = |step: Option<Deg<LeanStep>>| step.map_or(STEP_DEG.to_radians(), Quantity::si);
         let space = LeanSpace {
-            rule: LeanRule { end, contact, force: self.force.map_or_else(LeanForce::default, |word| word.0) },
+            rule: LeanRule { end, contact, force: self.force.map_or(usual, |word| word.0) },
             ranges: (0..path.points().len()).map(range).collect::<Result<_, _>>()?,
             max_lean: self.max_lean_deg.map(Quantity::si),
             steps: [step(self.lead_step_deg), step(self.tilt_step_deg)],
@@ -173,17 +181,18 @@ impl LeanTable {
         Ok(Arc::new(space))
     }
 
-    /// What the user should know of a tool that leans.
-    pub(super) fn notes(&self, space: &LeanSpace, has_computed_forces: bool, has_unscored: bool) -> Vec<String> {
+    /// What the user should know of a tool that leans, whose forces come from a stock or not.
+    pub(super) fn notes(&self, space: &LeanSpace, is_of_stock: bool, has_unscored: bool) -> Vec<String> {
         if space.is_closed() {
             return vec!["[lean] leaves neither lead nor tilt: the tool keeps to the axis of the task".to_owned()];
         }
         let mut notes = Vec::new();
-        if has_computed_forces {
-            notes.push(
-                "forces are computed with the tool axis of the task: what a leaning tool removes is not computed anew"
-                    .to_owned(),
-            );
+        if is_of_stock && !self.computes_forces() {
+            notes.push(format!(
+                "forces are computed with the tool axis of the task: lean.force = \"{}\" carries them to the tool that leans; without it they \
+                 are computed anew for every lean",
+                space.rule.force.word()
+            ));
         }
         if space.rule.contact == ContactRule::Plane && !space.rule.end.is_ball() {
             let aside = if space.step_over.is_some() {

@@ -239,6 +239,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let part = part_compliances(&mut imported, run.part_compliance.as_ref(), run.stock.is_some(), &at)?;
     let is_for_stability = run.stability.is_some();
     let tables = ForceTables { forces: run.forces.as_ref(), cutting: cutting.as_ref(), is_for_stability };
+    let has_columns = imported.wrenches.is_some();
     let mut removal = None;
     let task = match &run.stock {
         Some(stock) => {
@@ -255,10 +256,11 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
                 is_for_stability,
             };
             let removed = removed(&tables, imported, &task_file, redundancy.feed, source, &at, monitor)?;
-            inputs.extend(removed.inputs);
-            notes.extend(removed.notes);
-            removal = Some(removed.forces);
-            removed.task
+            inputs.extend(removed.inputs.iter().cloned());
+            notes.extend(removed.notes.iter().cloned());
+            let task = removed.task.clone();
+            removal = Some(removed);
+            task
         }
         None => {
             if let Some(alone) =
@@ -273,13 +275,14 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         }
     };
     let task = part.of(task, &at)?;
+    let removed_forces = removal.as_ref().map(|removed| &*removed.forces);
     let segments = run.segment.unwrap_or_default();
     let criterion = run.criterion.unwrap_or_default();
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
     let ReadSets { robots: sets, inputs: files, notes: of_sets } = criterion.sets(&robot, narrowed, &at)?;
     inputs.extend(files);
     inputs.extend(lender);
-    let (force_uncertainty, about) = criterion.force_errors(removal.as_deref(), &at.key("criterion"))?;
+    let (force_uncertainty, about) = criterion.force_errors(removed_forces, &at.key("criterion"))?;
     notes.extend(about);
     let criterion = criterion.criterion(&segments, &robot, &task, force_uncertainty, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
@@ -291,22 +294,22 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let scene = around.scene;
     let (tool, tool_at) = (run.tool.as_ref(), &at.key("tool"));
     let segment_moves = transfer_table.segment_moves(&robot, &spindle, scene.as_deref(), task.path(), tool, tool_at)?;
-    let orientations = run.cell.orientations(&task, &at.key("cell"))?;
-    let task = orientations.first().map_or(task, |first| (*first.task).clone());
-    let lean = match &run.lean {
-        Some(table) => Some(table.space(&task, &of_points, tool, redundancy.beta_count, &at.key("lean"))?),
+    let (lean, task) = match &run.lean {
+        Some(table) => {
+            let at = at.key("lean");
+            let space = table.space(&task, &of_points, tool, redundancy.beta_count, has_columns, &at)?;
+            let computed = removal.as_ref().filter(|_| table.computes_forces() && !space.is_closed());
+            notes.extend(table.notes(&space, removal.is_some(), task.path().first_unscored().is_some()));
+            let task = computed.map_or(Ok(task.clone()), |removed| removed.leaning(task, &space, source, monitor))?;
+            (Some(space), task)
+        }
         None => {
             notes.extend(of_points.unused());
-            None
+            (None, task)
         }
     };
-    let has_computed_forces = removal.is_some() || run.cut.is_some();
-    notes.extend(
-        run.lean
-            .iter()
-            .zip(&lean)
-            .flat_map(|(table, space)| table.notes(space, has_computed_forces, task.path().first_unscored().is_some())),
-    );
+    let orientations = run.cell.orientations(&task, &at.key("cell"))?;
+    let task = orientations.first().map_or(task, |first| (*first.task).clone());
     let lean = lean.filter(|space| !space.is_closed());
     let parts = ProblemParts {
         robot,
@@ -343,6 +346,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     let stated = stated(&at);
+    let removal = removal.map(|removed| removed.forces);
     let of_removal = removal.iter().flat_map(|removal| removal.warnings.iter().cloned());
     let left_out = path_stability.as_ref().and_then(|analysis| analysis.variant.left_out(&problem.robot));
     let warnings = of_removal.chain(left_out).collect();

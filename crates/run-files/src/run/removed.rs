@@ -7,11 +7,15 @@ use stead_format::document::NamedFile;
 use stead_format::place::Place;
 use stead_format::task::Imported;
 use stead_format::toml_file::TomlFile;
-use stead_model::task::{Task, ToolPath};
+use stead_model::task::lean::Lean;
+use stead_model::task::{LeanForces, PointLeanForces, Task, ToolPath};
 use stead_numerics::monitor::Monitor;
-use stead_removal::forces::forces;
+use stead_planning::lean::LeanSpace;
+use stead_removal::forces::{ForcesError, forces};
+use stead_removal::leaning::leaning_forces;
 use stead_removal::outcome::RemovalForces;
 use stead_runs::ReadError;
+use stead_runs::forces::ForcesRun;
 
 /// Sections of a cut that are no farther apart are one. Relative
 const SAME_SECTION: f64 = 0.2;
@@ -25,6 +29,63 @@ pub(super) struct Removed {
     pub notes: Vec<String>,
     /// All that was computed.
     pub forces: Arc<RemovalForces>,
+    /// What was computed.
+    pub run: ForcesRun,
+    /// All that it depends on.
+    key: String,
+}
+
+/// Values of lead and of tilt to either side of the middle for which forces are computed.
+const LEANS: usize = 2;
+
+impl Removed {
+    /// The task with the forces of a tool that leans: at every point for five values of lead and of tilt, the stock as
+    /// it is before the operation, the tool leaning so all along.
+    ///
+    /// # Errors
+    /// [`ReadError`]: what the computation finds wrong, and a stop.
+    pub fn leaning(
+        &self,
+        task: Task,
+        space: &LeanSpace,
+        source: &TomlFile,
+        monitor: &Monitor,
+    ) -> Result<Task, ReadError> {
+        let key = format!("{} {space:?}", self.key);
+        let make = || {
+            let half = space.half_counts().map(|half| half.min(LEANS));
+            let leans: Vec<Vec<Lean>> = (0..task.points().len()).map(|point| space.grid(point, half)).collect();
+            let count = leans.first().map_or(0, Vec::len);
+            // Of equal ones the first is computed.
+            let way = |number: usize| leans.iter().map(|of_point| of_point[number]).collect::<Vec<Lean>>();
+            let mut ways: Vec<Vec<Lean>> = Vec::new();
+            let mut places = Vec::with_capacity(count);
+            for number in 0..count {
+                let way = way(number);
+                let known = ways.iter().position(|known| *known == way);
+                places.push(known.unwrap_or(ways.len()));
+                if known.is_none() {
+                    ways.push(way);
+                }
+            }
+            let upright = Task::new(self.forces.path.clone(), self.forces.wrenches()).map_err(ForcesError::from)?;
+            let paths: Vec<ToolPath> = ways.iter().map(|way| upright.leaned(&space.rule, way).path().clone()).collect();
+            let found = leaning_forces(&self.run.problem, &self.forces, &paths, monitor)?;
+            let of_point = |point: usize| {
+                let all = || places.iter().map(|place| &found[*place][point]);
+                let tilts = 2 * half[1] + 1;
+                PointLeanForces {
+                    leads: leans[point].iter().step_by(tilts).map(|lean| lean.lead).collect(),
+                    tilts: leans[point].iter().take(tilts).map(|lean| lean.tilt).collect(),
+                    wrenches: all().map(|forces| forces.at_feed(1.0)).collect(),
+                    edges: Some(all().map(|forces| forces.edge).collect()),
+                }
+            };
+            Ok(LeanForces::new((0..task.points().len()).map(of_point).collect())?)
+        };
+        let forces = source.sources.made(key, make).map_err(|error: ForcesError| self.run.located(&error))?;
+        Ok(task.with_lean_forces((*forces).clone()).map_err(|error| self.run.located(&error.into()))?)
+    }
 }
 
 /// Computes the forces of a task, once for all runs of shared sources in which nothing that they depend on differs.
@@ -66,21 +127,22 @@ pub(super) fn removed(
     let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
     let others = RemovalTables { cut: None, is_for_stability: false, ..*tables };
     let key = format!("{others:?} {cut:?} {:?} {feed:?}", run.inputs);
-    let made = source.sources.made(key, || forces(&run.problem, monitor));
+    let made = source.sources.made(key.clone(), || forces(&run.problem, monitor));
     let outcome = made.map_err(|error| run.located(&error))?;
     let edges = outcome.points.iter().map(|point| point.edge).collect();
     let cut = outcome.path.clone();
     let task = Task::new(if is_fed { cut.without_feeds() } else { cut }, outcome.wrenches())
         .and_then(|task| task.with_edge_parts(edges))
         .map_err(|e| at.key("stock").error(format!("gives no usable forces: {e}"), "values whose forces are finite"))?;
-    let mut notes = run.notes;
+    let mut notes = run.notes.clone();
     notes.push(
         "the forces are those of what the path removes of [stock], and the task has the points that they add"
             .to_owned(),
     );
     notes.extend(section_note(tables, &outcome));
     notes.extend(outcome.notes.iter().cloned());
-    Ok(Removed { task, inputs: run.inputs.into_iter().skip(1).collect(), notes, forces: outcome })
+    let inputs = run.inputs.iter().skip(1).cloned().collect();
+    Ok(Removed { task, inputs, notes, forces: outcome, run, key })
 }
 
 /// The path with the feed of the run (m/s).

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use stead_numerics::monitor::Progress;
 use stead_planning::candidate::{Objective, rank};
 use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::redundancy::lean_path::{LeanGrid, LeanPlanner};
+use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner};
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
 
@@ -49,9 +49,9 @@ impl Job<'_> {
             return vec![Start { setup, placement, coarse: None }];
         }
         let coarse = self.coarse(&self.problem.in_setup(&setup));
-        let Some(grid) = LeanGrid::new(&coarse) else { return Vec::new() };
+        let Some(grid) = MotionGrid::new(&coarse) else { return Vec::new() };
         let problems = grid.problems();
-        let planner = LeanPlanner::new(&grid, &problems);
+        let planner = MotionPlanner::new(&grid, &problems);
         let objective = |placement: &Placement| match planner.path_or_unreached(placement) {
             Ok(path) => Objective::Feasible(path.objective),
             Err(missed) => Objective::Infeasible { points: missed.points, segments: missed.segments },

@@ -5,7 +5,7 @@
 //! When that gains nothing, the placements before and behind along x, y, z and yaw are tried, each with leans planned
 //! anew for it: the end is a placement of which no such neighbour is better with the best leans near the ones known.
 
-use super::{Improved, Job, NEAR, Thinned, path_of};
+use super::{Improved, Job, NEAR, Thinned, path_of, spread};
 use crate::place::axes::{MOST_REFINED, refined};
 use crate::refine::neighbours;
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use stead_model::task::lean::Lean;
 use stead_numerics::monitor::Progress;
 use stead_planning::lean::MOST_PLANNED_POINTS;
 use stead_planning::problem::Placement;
-use stead_planning::redundancy::lean_path::{LeanGrid, LeanPlanner};
+use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner};
 use stead_planning::setup::Setup;
 
 /// Rounds of placement and leans at the most.
@@ -59,8 +59,8 @@ impl Job<'_> {
         let upright = self.problem.in_setup(&upright(&known.setup));
         let on = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
         let leans = self.leans_on(known, &on.kept);
-        let near = LeanGrid::near(on.problem(), &leans, self.space.steps.map(|step| step / 2.0), NEAR)?;
-        let way = path_of(&near, &known.solution.placement)?.leans;
+        let near = MotionGrid::near_leans(on.problem(), &leans, self.space.steps.map(|step| step / 2.0), NEAR);
+        let way = path_of(&near, &known.solution.placement)?.motion.leans;
         self.halved(
             &known.setup,
             &known.solution.placement,
@@ -78,12 +78,12 @@ impl Job<'_> {
         let leans = self.leans_on(known, &on.kept);
         let limit = known.solution.objective * (1.0 - GAIN);
         POLLS.into_iter().find_map(|(distance, part)| {
-            let grid = LeanGrid::near(on.problem(), &leans, self.space.steps.map(|step| step / part), NEAR)?;
+            let grid = MotionGrid::near_leans(on.problem(), &leans, self.space.steps.map(|step| step / part), NEAR);
             let problems = grid.problems();
-            let planner = LeanPlanner::new(&grid, &problems);
+            let planner = MotionPlanner::new(&grid, &problems);
             let at = |placement: &Placement| {
                 let path = (!self.monitor.should_stop()).then(|| planner.path(placement))??;
-                self.planned(&known.setup, placement, self.spread(&on, &path.leans)?)
+                self.planned(&known.setup, placement, spread(self.space, &on, &path.motion.leans)?)
             };
             let around = neighbours(self.problem, &known.solution.placement, distance);
             let tried: Vec<Option<Improved>> = around.par_iter().map(at).collect();
@@ -113,7 +113,7 @@ impl Job<'_> {
             };
             let leans: Vec<Lean> = old.iter().zip(&new).map(lean).collect();
             let placement = self.problem.cell.clamp(&placement);
-            let next = self.spread(&on, &leans).and_then(|leans| self.planned(&best.setup, &placement, leans));
+            let next = spread(self.space, &on, &leans).and_then(|leans| self.planned(&best.setup, &placement, leans));
             match next.filter(|next| next.solution.objective < best.solution.objective) {
                 Some(next) => best = next,
                 None => break,

@@ -9,10 +9,12 @@ use stead_cell::Attachment;
 use stead_cell::testing::{kr270_shapes, scene_of};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::{Joint, Pose, Robot};
+use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule};
 use stead_numerics::monitor::Monitor;
 use stead_numerics::rotation::rotation_from_zyx;
 use stead_planning::cell::Cell;
-use stead_planning::problem::{Placement, Problem};
+use stead_planning::lean::{LeanRange, LeanSpace};
+use stead_planning::problem::{Interval, Placement, Problem};
 use stead_planning::setup::{AxisPositions, Orientation, Setup};
 use stead_planning::symmetry::{Unsupported, Upright};
 use stead_planning::testing::{five_segments, slanted};
@@ -211,6 +213,66 @@ fn a_richer_use_is_never_worse_and_keeps_to_speed_and_range() {
     assert!(moves.iter().any(|length| *length > 0.01), "{moves:?}");
     for (transfer, length) in indexed.1.cycles.best.transfers.iter().zip(moves) {
         assert!(transfer.duration.unwrap() >= length / 0.5, "{transfer:?} {length}");
+    }
+}
+
+/// A rail and a turntable that both move along the path, with a tool that may lean and without.
+#[test]
+fn axes_that_move_together_are_never_worse_than_one_alone() {
+    let problem = with_speeds();
+    let monitor = Monitor::silent();
+    let turntable = |axis_use: AxisUse| ExternalAxis {
+        name: "table".to_owned(),
+        kind: AxisKind::Turntable,
+        direction: Vector3::z(),
+        point: vector![0.0, -1.9, 0.0],
+        min: -0.5,
+        max: 0.5,
+        max_speed: Some(0.4),
+        axis_use,
+        ..rail(Carried::Workpiece, Vector3::x(), [0.0, 0.0], axis_use)
+    };
+    let set_up = |uses: [AxisUse; 2], is_leaning: bool| {
+        let axes = vec![rail(Carried::Robot, vector![0.0, 1.0, 0.0], [-0.3, 0.3], uses[0]), turntable(uses[1])];
+        let problem = problem.clone().with(|parts| {
+            parts.setup = Setup::at_rest(&axes);
+            parts.external_axes = axes;
+            parts.lean = is_leaning.then(|| Arc::new(leaning(5.0)));
+        });
+        let setup = setup_at(&problem, &AT, &monitor);
+        let found = scored(&problem.in_setup(&setup), &AT).plans.best;
+        for (axis, path) in problem.external_axes.iter().zip(&found.axes) {
+            for point in problem.task.segments().iter().flat_map(|span| span.clone().skip(1)) {
+                let step = (path.positions[point] - path.positions[point - 1]).abs();
+                let most = axis.max_speed.unwrap() * problem.step_time(point);
+                assert!(step <= most * (1.0 + 1e-6), "{} {point}: {step} {most}", axis.name);
+            }
+        }
+        (found.objective, setup)
+    };
+    let (moves, stays) = (AxisUse::Continuous, AxisUse::Fixed);
+    let [both, rail, table] = [[moves, moves], [moves, stays], [stays, moves]].map(|uses| set_up(uses, false).0);
+    assert!(both < rail.min(table) * (1.0 - 1e-4), "{both} {rail} {table}");
+    let (leaning, setup) = set_up([moves, moves], true);
+    assert!(leaning < both * (1.0 - 1e-3), "{leaning} {both}");
+    assert!(setup.leans.iter().any(|lean| *lean != Lean::NONE));
+}
+
+/// A ball cutter that leans by so many degrees to every side.
+fn leaning(reach_deg: f64) -> LeanSpace {
+    let reach = Interval { min: -reach_deg.to_radians(), max: reach_deg.to_radians() };
+    LeanSpace {
+        rule: LeanRule {
+            end: CutterEnd { radius: 0.008, corner: 0.008 },
+            contact: ContactRule::Centre,
+            force: LeanForce::Feed,
+        },
+        ranges: vec![LeanRange { lead: reach, tilt: reach }; 105],
+        max_lean: None,
+        steps: [2.5_f64.to_radians(); 2],
+        step_over: None,
+        scallop: None,
+        contact_tolerance: 5e-6,
     }
 }
 

@@ -1,19 +1,20 @@
-//! A tool that leans along the path: dynamic programming over (beta, lead, tilt).
+//! A tool that leans and external axes that move along the path: dynamic programming over (beta, lead, tilt, axes).
 //!
-//! A state of a path point is a grid value of beta, one of the leans that the point may have, and a posture class, with
-//! joint angles modulo a turn. From one point to the next the axis may turn as far as the contact stays near its line
-//! ([`LeanSpace::allows_step`](crate::lean::LeanSpace::allows_step)), beta as far as its limits allow between these two
-//! leans, and each joint by its step. All states and all steps are evaluated, so that what is found is the cheapest of
-//! its grid but for what flips and turns of the wrist forbid. The plan itself is made afterwards, with the tool leaning
-//! along the way found here ([`Setup::leans`](crate::setup::Setup::leans)), so nothing of what is printed rests on this
-//! grid.
+//! A state of a path point is a grid value of beta, one of the [settings](Setting) that the point may have, a lean with
+//! positions of the external axes, and a posture class, with joint angles modulo a turn. From one point to the next the
+//! tool axis may turn as far as the contact stays near its line
+//! ([`LeanSpace::allows_step`](crate::lean::LeanSpace::allows_step)), each external axis move as fast as it may, beta
+//! change as far as its limits allow between these two settings, and each joint go by its step. All states and all
+//! steps are evaluated, so that what is found is the cheapest of its grid but for what flips and turns of the wrist
+//! forbid. The plan itself is made afterwards, with tool and axes along the way found here
+//! ([`Setup`](crate::setup::Setup)), so nothing of what is printed rests on this grid.
 //!
 //! Where something hits, all states of the points at which the plan hits are checked for collisions, and the plan is
 //! made again without those that hit, until it is free.
 
 mod grid;
 
-pub use grid::LeanGrid;
+pub use grid::{MotionGrid, Setting, SettingSteps};
 
 use super::state_set::kinds_left;
 use super::transition::{self, advance};
@@ -24,15 +25,25 @@ use crate::sense::Sense;
 use grid::{Before, steps_to};
 use rayon::prelude::*;
 use std::ops::Range as Span;
+use std::sync::Arc;
 use stead_cell::Proximity;
 use stead_model::robot::{Posture, PostureClass};
 use stead_model::task::lean::Lean;
 
-/// How the tool leans along the path.
+/// How the tool leans and the external axes move along the path.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LeanPath {
-    /// At every point.
+pub struct Motion {
+    /// How the tool leans at every point; empty where its axis is that of the path.
     pub leans: Vec<Lean>,
+    /// Positions of the external axes at every point. m or rad
+    pub axes: Vec<Vec<f64>>,
+}
+
+/// What a [`MotionPlanner`] finds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedMotion {
+    /// How tool and axes move.
+    pub motion: Motion,
     /// The objective, on the grid and with joint angles modulo a turn. m
     pub objective: f64,
     /// How often the path was planned until nothing hit.
@@ -48,36 +59,36 @@ pub struct Unreached {
     pub segments: usize,
 }
 
-/// The planner of a [`LeanGrid`]: what does not change from one placement to the next.
+/// The planner of a [`MotionGrid`]: what does not change from one placement to the next.
 #[derive(Debug, Clone)]
-pub struct LeanPlanner<'a> {
-    grid: &'a LeanGrid<'a>,
-    /// For each number of a lean.
+pub struct MotionPlanner<'a> {
+    grid: &'a MotionGrid<'a>,
+    /// For each number of a setting.
     planners: Vec<SegmentPlanner<'a>>,
-    /// For every point and each lean the leans before it.
+    /// For every point and each setting the settings before it.
     before: Vec<Vec<Vec<Before>>>,
     /// How far states must be continued for the widest change of beta.
     pad: usize,
 }
 
 /// What one pass over a segment with one evaluator found.
-struct LeanPass {
-    /// For each class the smallest sum of costs with the lean and beta number at the end.
+struct MotionPass {
+    /// For each class the smallest sum of costs with the setting and beta number at the end.
     ends: [Option<(f64, usize, usize)>; 4],
     /// Points that no state reaches from the point before, after each of which a way begins anew.
     unreached: usize,
-    /// For every point, class, lean and beta the lean and the beta number before.
+    /// For every point, class, setting and beta the setting and the beta number before.
     links: Vec<Link>,
 }
 
-/// A lean at the point before and the step of the beta number back to it.
+/// A setting at the point before and the step of the beta number back to it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Link {
-    lean: u16,
+    setting: u16,
     shift: i16,
 }
 
-/// Space of one thread for the states of a point in a lean: their own scores, the smallest costs of ways to them, and
+/// Space of one thread for the states of a point in a setting: their own scores, the smallest costs of ways to them, and
 /// the steps of beta back along these.
 #[derive(Debug, Default)]
 struct Reached {
@@ -86,7 +97,7 @@ struct Reached {
     shifts: Vec<i16>,
 }
 
-/// The states at the points of a segment: of each point the number of its lean and that of its beta.
+/// The states at the points of a segment: of each point the number of its setting and that of its beta.
 type Way = Vec<(usize, usize)>;
 
 /// A way along a segment in a class.
@@ -98,12 +109,25 @@ struct Found {
     way: Way,
 }
 
-impl<'a> LeanPlanner<'a> {
-    /// Prepares the planning of the [problems](LeanGrid::problems) of a grid.
-    pub fn new(grid: &'a LeanGrid<'a>, problems: &'a [Problem]) -> Self {
+impl<'a> MotionPlanner<'a> {
+    /// Prepares the planning of the [problems](MotionGrid::problems) of a grid.
+    pub fn new(grid: &'a MotionGrid<'a>, problems: &'a [Problem]) -> Self {
         let resolution = if grid.problem.task.path().is_thinned() { Resolution::Subset } else { Resolution::Search };
-        let planners: Vec<SegmentPlanner<'a>> =
-            problems.par_iter().map(|problem| SegmentPlanner::new(problem, problem.redundancy, resolution)).collect();
+        // What the tool hits by itself depends on how it leans alone.
+        let like = |problem: &Problem| problems.iter().position(|known| known.setup.leans == problem.setup.leans);
+        let likes: Vec<usize> =
+            problems.iter().enumerate().map(|(own, problem)| like(problem).unwrap_or(own)).collect();
+        let tool_hits: Vec<Option<Arc<StateSet>>> = (0..problems.len())
+            .into_par_iter()
+            .map(|own| {
+                let problem = Some(&problems[own]).filter(|_| likes[own] == own)?;
+                StateSet::of_tool(problem, &problem.redundancy).map(Arc::new)
+            })
+            .collect();
+        let planner = |(problem, like): (&'a Problem, usize)| {
+            SegmentPlanner::with_tool_hits(problem, problem.redundancy, resolution, tool_hits[like].clone())
+        };
+        let planners: Vec<SegmentPlanner<'a>> = problems.par_iter().zip(likes).map(planner).collect();
         let starts: Vec<usize> = grid.problem.task.segments().iter().map(|span| span.start).collect();
         let count = grid.problem.task.points().len();
         let before: Vec<Vec<Vec<Before>>> = (0..count)
@@ -116,7 +140,7 @@ impl<'a> LeanPlanner<'a> {
     }
 
     /// The cheapest way of the tool along the path at a placement; none where there is none.
-    pub fn path(&self, placement: &Placement) -> Option<LeanPath> {
+    pub fn path(&self, placement: &Placement) -> Option<PlannedMotion> {
         self.path_or_unreached(placement).ok()
     }
 
@@ -124,7 +148,7 @@ impl<'a> LeanPlanner<'a> {
     ///
     /// # Errors
     /// [`Unreached`] where there is none.
-    pub fn path_or_unreached(&self, placement: &Placement) -> Result<LeanPath, Unreached> {
+    pub fn path_or_unreached(&self, placement: &Placement) -> Result<PlannedMotion, Unreached> {
         let problem = self.grid.problem;
         let spans = problem.task.segments();
         let all = Unreached { points: problem.task.points().len(), segments: spans.len() };
@@ -148,11 +172,8 @@ impl<'a> LeanPlanner<'a> {
             }
             if again.is_empty() {
                 let costs = chosen.iter().map(|way| way.cost);
-                let lean = |(point, (number, _)): (usize, &(usize, usize))| {
-                    self.grid.leans[*number][point].unwrap_or(Lean::NONE)
-                };
-                let leans = spans.iter().zip(&chosen).flat_map(|(span, found)| span.clone().zip(&found.way).map(lean));
-                return Ok(LeanPath { leans: leans.collect(), objective: problem.objective(costs), rounds });
+                let objective = problem.objective(costs);
+                return Ok(PlannedMotion { motion: self.motion(spans, &chosen), objective, rounds });
             }
             for index in again {
                 let way = self.segment(&spans[index], placement, &forbidden);
@@ -160,6 +181,18 @@ impl<'a> LeanPlanner<'a> {
             }
         }
         Err(all)
+    }
+
+    /// The motion along the ways of all segments.
+    fn motion(&self, spans: &[Span<usize>], ways: &[Found]) -> Motion {
+        let setting = |(point, (number, _)): (usize, &(usize, usize))| self.grid.settings[*number][point].clone();
+        let all = spans.iter().zip(ways).flat_map(|(span, found)| span.clone().zip(&found.way));
+        let mut motion = Motion { leans: Vec::new(), axes: Vec::new() };
+        for Setting { lean, axes } in all.filter_map(setting) {
+            motion.leans.extend(self.grid.space.map(|_| lean));
+            motion.axes.push(axes);
+        }
+        motion
     }
 
     /// Of the ways of every segment the cheapest, or those of one posture all along.
@@ -190,8 +223,8 @@ impl<'a> LeanPlanner<'a> {
             let pass = self.pass(evaluator, span, placement, forbidden);
             unreached = unreached.min(pass.unreached);
             for class in PostureClass::ALL {
-                if let Some((cost, lean, beta)) = pass.ends[class.index()] {
-                    let way = self.trace(&pass, span, class, (lean, beta));
+                if let Some((cost, setting, beta)) = pass.ends[class.index()] {
+                    let way = self.trace(&pass, span, class, (setting, beta));
                     found.push(Found { evaluator, class, cost, way });
                 }
             }
@@ -200,7 +233,7 @@ impl<'a> LeanPlanner<'a> {
     }
 
     /// Goes through a segment in all posture classes at once.
-    fn pass(&self, evaluator: usize, span: &Span<usize>, placement: &Placement, forbidden: &[StateSet]) -> LeanPass {
+    fn pass(&self, evaluator: usize, span: &Span<usize>, placement: &Placement, forbidden: &[StateSet]) -> MotionPass {
         let (number, beta_count) = (self.planners.len(), self.grid.problem.redundancy.beta_count);
         let flips = self.planners[0].evaluators[evaluator].flips();
         let rules = &self.grid.problem.postures;
@@ -212,8 +245,8 @@ impl<'a> LeanPlanner<'a> {
         let (mut is_start, mut unreached) = (true, 0);
         for (point, row) in span.clone().zip(links.chunks_mut(4 * number * beta_count)) {
             let states = now.par_iter_mut().zip(row.par_chunks_mut(4 * beta_count)).enumerate();
-            states.for_each_init(Reached::default, |reached, (lean, (states, links))| {
-                self.evaluate(evaluator, point, lean, placement, classes, forbidden, states);
+            states.for_each_init(Reached::default, |reached, (setting, (states, links))| {
+                self.evaluate(evaluator, point, setting, placement, classes, forbidden, states);
                 for class in PostureClass::ALL {
                     let links = &mut links[class.index() * beta_count..][..beta_count];
                     if !states.is_alive(class) {
@@ -221,7 +254,7 @@ impl<'a> LeanPlanner<'a> {
                     }
                     if is_start {
                         transition::begin(states, class, 1.0);
-                    } else if !self.reach((point, lean, class), &before, states, links, reached) {
+                    } else if !self.reach((point, setting, class), &before, states, links, reached) {
                         states.clear(class);
                         continue;
                     }
@@ -233,49 +266,50 @@ impl<'a> LeanPlanner<'a> {
             unreached += usize::from(is_start);
         }
         let end = |class: PostureClass| {
-            let costs = before.iter().enumerate().filter(|(_, states)| states.is_alive(class)).flat_map(|(lean, s)| {
-                s.inner_scores(class).iter().enumerate().map(move |(beta, cost)| (*cost, lean, beta))
-            });
+            let costs =
+                before.iter().enumerate().filter(|(_, states)| states.is_alive(class)).flat_map(|(setting, s)| {
+                    s.inner_scores(class).iter().enumerate().map(move |(beta, cost)| (*cost, setting, beta))
+                });
             costs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|end| unreached == 0 && end.0.is_finite())
         };
-        LeanPass { ends: PostureClass::ALL.map(end), unreached, links }
+        MotionPass { ends: PostureClass::ALL.map(end), unreached, links }
     }
 
-    /// The allowed states of a point in one lean, as far as they are known not to hit.
+    /// The allowed states of a point in one setting, as far as they are known not to hit.
     #[allow(clippy::too_many_arguments, reason = "what is evaluated, where, and into what")]
     fn evaluate(
         &self,
         evaluator: usize,
         point: usize,
-        lean: usize,
+        setting: usize,
         placement: &Placement,
         classes: [bool; 4],
         forbidden: &[StateSet],
         states: &mut StateGrid,
     ) {
-        if self.grid.leans[lean][point].is_none() {
+        if self.grid.settings[setting][point].is_none() {
             PostureClass::ALL.into_iter().for_each(|class| states.clear(class));
             return;
         }
-        let planner = &self.planners[lean];
+        let planner = &self.planners[setting];
         planner.evaluators[evaluator].evaluate_classes(point, placement, classes, states);
         if let Some(hits) = &planner.tool_hits {
             hits.apply(point, states);
         }
-        forbidden[lean].apply(point, states);
+        forbidden[setting].apply(point, states);
     }
 
-    /// Takes the cheapest states before, over all leans, for the states of a point in one of them; false when none is
+    /// Takes the cheapest states before, over all settings, for the states of a point in one of them; false when none is
     /// reached.
     fn reach(
         &self,
-        (point, lean, class): (usize, usize, PostureClass),
+        (point, setting, class): (usize, usize, PostureClass),
         before: &[StateGrid],
         states: &mut StateGrid,
         links: &mut [Link],
         reached: &mut Reached,
     ) -> bool {
-        let step = self.planners[lean].step(point, Sense::Min);
+        let step = self.planners[setting].step(point, Sense::Min);
         let (pad, count) = (states.pad(), states.count());
         let Reached { own, best, shifts } = reached;
         own.clear();
@@ -284,7 +318,7 @@ impl<'a> LeanPlanner<'a> {
         best.resize(count, f64::INFINITY);
         shifts.resize(count, 0);
         let mut is_reached = false;
-        for (from, change) in &self.before[point][lean] {
+        for (from, change) in &self.before[point][setting] {
             let known = &before[usize::from(*from)];
             if !known.is_alive(class) {
                 continue;
@@ -299,7 +333,7 @@ impl<'a> LeanPlanner<'a> {
             for beta in 0..count {
                 if costs[beta] < best[beta] {
                     best[beta] = costs[beta];
-                    links[beta] = Link { lean: *from, shift: shifts[beta] };
+                    links[beta] = Link { setting: *from, shift: shifts[beta] };
                 }
             }
         }
@@ -308,15 +342,15 @@ impl<'a> LeanPlanner<'a> {
     }
 
     /// The way to a state at the end of a segment.
-    fn trace(&self, pass: &LeanPass, span: &Span<usize>, class: PostureClass, end: (usize, usize)) -> Way {
+    fn trace(&self, pass: &MotionPass, span: &Span<usize>, class: PostureClass, end: (usize, usize)) -> Way {
         let (number, count) = (self.planners.len(), self.grid.problem.redundancy.beta_count);
-        let (mut lean, mut beta) = end;
+        let (mut setting, mut beta) = end;
         let mut way = vec![end; span.len()];
         for place in (1..span.len()).rev() {
-            let link = pass.links[((place * number + lean) * 4 + class.index()) * count + beta];
-            lean = usize::from(link.lean);
+            let link = pass.links[((place * number + setting) * 4 + class.index()) * count + beta];
+            setting = usize::from(link.setting);
             beta = (beta as isize + isize::from(link.shift)).rem_euclid(count as isize) as usize;
-            way[place - 1] = (lean, beta);
+            way[place - 1] = (setting, beta);
         }
         way
     }
@@ -338,8 +372,8 @@ impl<'a> LeanPlanner<'a> {
         let rules = &self.grid.problem.postures;
         let postures: Vec<Posture> =
             class.postures().into_iter().filter(|p| flips.contains(*p) && rules.allows(*p)).collect();
-        let hits = |point: usize, lean: usize, beta: usize, known: &mut Proximity| {
-            let planner = &self.planners[lean];
+        let hits = |point: usize, setting: usize, beta: usize, known: &mut Proximity| {
+            let planner = &self.planners[setting];
             let (problem, kinds) = (planner.problem, kinds_left(planner.tool_hits.as_deref()));
             let angle = planner.grid.beta(beta);
             let hit = |p: &Posture| problem.next_hit(point, angle, placement, *p, kinds, known).is_some();
@@ -361,16 +395,16 @@ impl<'a> LeanPlanner<'a> {
             .into_par_iter()
             .map_init(
                 || StateGrid::new(self.grid.problem.redundancy.beta_count, self.pad),
-                |states, lean| {
+                |states, setting| {
                     let mut known = Proximity::default();
                     let mut all = Vec::new();
                     for point in &points {
-                        self.evaluate(found.evaluator, *point, lean, placement, classes, forbidden, states);
+                        self.evaluate(found.evaluator, *point, setting, placement, classes, forbidden, states);
                         let is_open = |beta: &usize| states.inner_scores(class)[*beta].is_finite();
                         let open: Vec<usize> = (0..states.count()).filter(is_open).collect();
                         all.extend(
                             open.into_iter()
-                                .filter(|beta| states.is_alive(class) && hits(*point, lean, *beta, &mut known))
+                                .filter(|beta| states.is_alive(class) && hits(*point, setting, *beta, &mut known))
                                 .map(|beta| (*point, beta)),
                         );
                     }

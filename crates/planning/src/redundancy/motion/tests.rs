@@ -1,4 +1,4 @@
-//! The plan over (beta, lead, tilt) against a reference: every pair of neighbouring states, with the limits tested one
+//! The plan over (beta, lead, tilt, external axes) against a reference: every pair of neighbouring states, with the limits tested one
 //! by one, and every state with the tool leaning there and nowhere else.
 
 use super::*;
@@ -6,7 +6,7 @@ use crate::cell::Interval;
 use crate::lean::{LeanRange, LeanSpace, lean_between};
 use crate::problem::ProblemParts;
 use crate::redundancy::joint_turns::is_allowed;
-use crate::setup::Setup;
+use crate::setup::{AxisPositions, Setup};
 use crate::testing::five_segments;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -14,6 +14,7 @@ use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
 use stead_cell::{Attachment, Solid};
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule, between};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
@@ -24,6 +25,33 @@ const BALL: LeanRule =
 fn range(lead: [f64; 2], tilt: [f64; 2]) -> LeanRange {
     let of = |[min, max]: [f64; 2]| Interval { min: min.to_radians(), max: max.to_radians() };
     LeanRange { lead: of(lead), tilt: of(tilt) }
+}
+
+/// Positions of external axes that are planned on, by the numbers of the axes.
+type Axes = Vec<(usize, Vec<f64>)>;
+
+/// A rail under the robot and a turntable under the part with few positions of each, drawn from a seed, in a problem.
+fn with_axes(problem: &Problem, seed: u64) -> (Problem, Axes) {
+    let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
+    let time = problem.step_time(1);
+    let mut axis = |kind: AxisKind, carries: Carried, half: f64| ExternalAxis {
+        name: format!("{kind:?}"),
+        kind,
+        carries,
+        direction: if kind == AxisKind::Rail { Vector3::x() } else { Vector3::z() },
+        point: Vector3::new(0.0, -1.9, 0.0),
+        min: -half,
+        max: half,
+        max_speed: Some(half * random.random_range(0.6..1.6) / time),
+        axis_use: AxisUse::Continuous,
+    };
+    let axes = [axis(AxisKind::Rail, Carried::Robot, 0.02), axis(AxisKind::Turntable, Carried::Workpiece, 0.03)];
+    let positions = axes.iter().map(|axis| axis.grid(3)).enumerate().collect();
+    let with = problem.changed(|parts| {
+        parts.setup = Setup::at_rest(&axes);
+        parts.external_axes = axes.to_vec();
+    });
+    (with.unwrap(), positions)
 }
 
 /// A short curved path with few values of beta, drawn from a seed, and where its tool may lean.
@@ -87,10 +115,15 @@ struct Node {
     joints: [f64; 6],
     axis: Vector3<f64>,
     flange: Matrix3<f64>,
+    positions: Vec<f64>,
 }
 
-/// The cheapest cost in one class, all states and all edges.
-fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Option<f64> {
+/// The cheapest cost in one class, all states and all edges, without external axes or with two of them.
+fn plain(problem: &Problem, axes: &Axes, placement: &Placement, class: PostureClass) -> Option<f64> {
+    let rows: Vec<Vec<f64>> = match axes.as_slice() {
+        [(_, first), (_, second)] => first.iter().flat_map(|a| second.iter().map(|b| vec![*a, *b])).collect(),
+        _ => vec![Vec::new()],
+    };
     let space = problem.lean.as_deref().unwrap();
     let (half, path, limits) = (space.half_counts(), problem.task.path(), &problem.redundancy);
     let posture = class.postures().into_iter().find(|posture| !posture.is_flipped()).unwrap();
@@ -106,8 +139,13 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
             // The tool leans at this point alone.
             let mut leans = vec![Lean::NONE; 7];
             leans[point] = lean;
-            let set_up = problem.in_setup(&Setup { leans: leans.into(), ..Setup::default() });
-            for k in 0..limits.beta_count {
+            let states = rows.iter().flat_map(|row| (0..limits.beta_count).map(move |k| (row, k)));
+            let at = |row: &Vec<f64>| {
+                let positions = AxisPositions::Same(row.clone());
+                problem.in_setup(&Setup { leans: leans.clone().into(), positions, ..Setup::default() })
+            };
+            for (row, k) in states {
+                let set_up = at(row);
                 let beta = limits.beta(k);
                 let Ok(state) = set_up.at(placement).state(point, beta, posture) else { continue };
                 // Limits of the joints count joint by joint, in either flip of the wrist.
@@ -130,6 +168,7 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
                     joints: state.joints,
                     axis: set_up.task.points()[point].axis,
                     flange: set_up.at(placement).base_from_flange(point, beta).rotation,
+                    positions: row.clone(),
                 });
             }
         }
@@ -139,16 +178,24 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
             }
             let steps = problem.joint_steps(point);
             let is_edge = |old: &&Node| {
-                let turned = stead_numerics::rotation::rotation_vector(&(old.flange.transpose() * node.flange)).norm();
                 let length = path.step_length(point);
-                let turns = limits
-                    .max_spindle_turn
-                    .is_none_or(|limit| turned <= (limit * length).min(std::f64::consts::FRAC_PI_2) + 1e-9);
+                let turned =
+                    || stead_numerics::rotation::rotation_vector(&(old.flange.transpose() * node.flange)).norm();
+                let turns = || {
+                    limits
+                        .max_spindle_turn
+                        .is_none_or(|limit| turned() <= (limit * length).min(std::f64::consts::FRAC_PI_2) + 1e-9)
+                };
                 let rate = wrap(node.beta - old.beta).abs() <= limits.max_beta_rate.unwrap() * length + 1e-9;
                 // A ball leaves its line by r d^2 / 6.
                 let d = libm::acos(old.axis.dot(&node.axis).min(1.0));
                 let contact = d * d * 0.008 / 6.0 <= space.contact_tolerance && d <= 15.0_f64.to_radians() + 1e-9;
-                rate && contact && turns && steps_hold(problem, &old.joints, &node.joints, &steps)
+                let time = problem.step_time(point);
+                let reaches = problem.external_axes.iter().enumerate().all(|(number, axis)| {
+                    let way = (node.positions[number] - old.positions[number]).abs();
+                    way <= axis.max_speed.unwrap() * time * (1.0 + 1e-9)
+                });
+                rate && reaches && contact && turns() && steps_hold(problem, &old.joints, &node.joints, &steps)
             };
             let least = before.iter().filter(is_edge).map(|old| old.cost).fold(f64::INFINITY, f64::min);
             node.cost += least;
@@ -161,23 +208,48 @@ fn plain(problem: &Problem, placement: &Placement, class: PostureClass) -> Optio
 
 #[test]
 fn the_cheapest_way_is_found_among_all_states_and_steps() {
+    let found: usize = (0..20).map(|seed| as_cheap_as_plain(seed, &drawn(seed), &Vec::new())).sum();
+    assert!(found > 25, "{found} ways");
+}
+
+/// With a rail and a turntable that both move along the path, the tool leaning or not.
+#[test]
+fn the_cheapest_way_of_tool_and_axes_is_found_among_all_states_and_steps() {
     let mut found = 0;
-    for seed in 0..20 {
+    for seed in 0..16 {
         let (problem, placement) = drawn(seed);
-        let grid = LeanGrid::new(&problem).unwrap();
-        let problems = grid.problems();
-        let planner = LeanPlanner::new(&grid, &problems);
-        let ways = planner.segment(&(0..7), &placement, &vec![StateSet::default(); problems.len()]).unwrap_or_default();
-        for class in PostureClass::ALL {
-            let (own, plain) = (ways.iter().find(|way| way.class == class), plain(&problem, &placement, class));
-            assert_eq!(own.is_some(), plain.is_some(), "seed {seed} {class:?}");
-            if let (Some(own), Some(plain)) = (own, plain) {
-                assert!((own.cost / plain - 1.0).abs() < 1e-9, "seed {seed} {class:?}: {} {plain}", own.cost);
-                found += 1;
+        let problem = problem.changed(|parts| {
+            parts.redundancy.beta_count = 24;
+            parts.redundancy.max_beta_rate = parts.redundancy.max_beta_rate.map(|rate| 1.5 * rate);
+            let space = Arc::make_mut(parts.lean.as_mut().unwrap());
+            space.steps = if seed % 2 == 0 { [12.0_f64.to_radians(); 2] } else { space.steps };
+            if seed % 2 == 1 {
+                space.ranges = vec![LeanRange::NONE; 7];
             }
+        });
+        let (problem, axes) = with_axes(&problem.unwrap(), seed);
+        found += as_cheap_as_plain(seed, &(problem, placement), &axes);
+    }
+    assert!(found > 20, "{found} ways");
+}
+
+/// In how many classes of a problem there is a way, each as cheap as that over all states and steps.
+fn as_cheap_as_plain(seed: u64, (problem, placement): &(Problem, Placement), axes: &Axes) -> usize {
+    let mut found = 0;
+    let half = problem.lean.as_deref().map(LeanSpace::half_counts);
+    let grid = MotionGrid::product(problem, half, axes);
+    let problems = grid.problems();
+    let planner = MotionPlanner::new(&grid, &problems);
+    let ways = planner.segment(&(0..7), placement, &vec![StateSet::default(); problems.len()]).unwrap_or_default();
+    for class in PostureClass::ALL {
+        let (own, plain) = (ways.iter().find(|way| way.class == class), plain(problem, axes, placement, class));
+        assert_eq!(own.is_some(), plain.is_some(), "seed {seed} {class:?}");
+        if let (Some(own), Some(plain)) = (own, plain) {
+            assert!((own.cost / plain - 1.0).abs() < 1e-9, "seed {seed} {class:?}: {} {plain}", own.cost);
+            found += 1;
         }
     }
-    assert!(found > 25, "{found} ways");
+    found
 }
 
 /// A wider cone is never worse, and a tool that may not lean is as before.
@@ -194,9 +266,9 @@ fn a_wider_cone_is_never_worse() {
             space.ranges = vec![range([-reach, reach], [-reach, reach]); 7];
             (space.max_lean, space.steps) = (None, [3.0_f64.to_radians(); 2]);
             let problem = problem.changed(|parts| parts.lean = Some(Arc::new(space))).unwrap();
-            let grid = LeanGrid::new(&problem).unwrap();
+            let grid = MotionGrid::new(&problem).unwrap();
             let problems = grid.problems();
-            let found = LeanPlanner::new(&grid, &problems).path(&placement).map(|path| path.objective);
+            let found = MotionPlanner::new(&grid, &problems).path(&placement).map(|path| path.objective);
             if let Some(last) = last {
                 let found = found.expect("a wider cone has what a narrower one has");
                 assert!(found <= last * (1.0 + 1e-12), "seed {seed}: {found} {last}");
@@ -233,9 +305,9 @@ fn among_a_post(radius: f64) -> Problem {
 fn ways_made_lazily_are_those_over_all_free_states() {
     let problem = among_a_post(0.12);
     let free = problem.clone().with(|parts| parts.scene = None);
-    let grids = [&problem, &free].map(|problem| LeanGrid::new(problem).unwrap());
-    let problems = grids.each_ref().map(LeanGrid::problems);
-    let [lazy, plain] = [0, 1].map(|k| LeanPlanner::new(&grids[k], &problems[k]));
+    let grids = [&problem, &free].map(|problem| MotionGrid::new(problem).unwrap());
+    let problems = grids.each_ref().map(MotionGrid::problems);
+    let [lazy, plain] = [0, 1].map(|k| MotionPlanner::new(&grids[k], &problems[k]));
     let mut changed = 0;
     for placement in [[0.1, -1.9, -0.4, 1.0], [-0.05, -1.75, -0.3, -0.6], [0.2, -1.7, -0.45, 2.4]].map(Placement::from)
     {
@@ -274,10 +346,10 @@ fn ways_made_lazily_are_those_over_all_free_states() {
 #[test]
 fn points_out_of_reach_are_counted() {
     let (problem, placement) = drawn(1);
-    let grid = LeanGrid::new(&problem).unwrap();
+    let grid = MotionGrid::new(&problem).unwrap();
     let problems = grid.problems();
     let far = Placement { x: placement.x + 20.0, ..placement };
-    let found = LeanPlanner::new(&grid, &problems).path_or_unreached(&far);
+    let found = MotionPlanner::new(&grid, &problems).path_or_unreached(&far);
     assert_eq!(found, Err(Unreached { points: 7, segments: 1 }));
 }
 
