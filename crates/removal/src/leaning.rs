@@ -11,9 +11,8 @@ use stead_numerics::monitor::Monitor;
 /// Mean force and moment at every point of paths that are that of an operation with the tool leaning, tip and axis of
 /// it at each of the points that [`forces`](crate::forces::forces) has found.
 ///
-/// Each path is cut by itself into the stock as it is before the operation, on cells twice as large as those of what is
-/// known, to which the difference from the path as it is, on the same cells, is added: a tool that does not lean has
-/// the forces that are known.
+/// Each path is cut by itself into the stock as it is before the operation; what is known changes by as much as its
+/// loads differ from those of the path as it is, so that a tool that does not lean has the forces that are known.
 ///
 /// # Errors
 /// [`ForcesError`]: a path that does not touch the stock, cells too small for the memory, a stop.
@@ -23,9 +22,9 @@ pub fn leaning_forces(
     paths: &[ToolPath],
     monitor: &Monitor,
 ) -> Result<Vec<Vec<PointForces>>, ForcesError> {
-    let upright = rough(problem, known, &known.path, monitor)?;
+    let upright = loads(problem, known, &known.path, monitor)?;
     let of_path = |path: &ToolPath| {
-        let leaning = rough(problem, known, path, monitor)?;
+        let leaning = loads(problem, known, path, monitor)?;
         let points = known.points.iter().zip(leaning.iter().zip(&upright));
         let at = |(known, (own, upright)): (&PointForces, (&PointForces, &PointForces))| PointForces {
             chip: shifted(&known.chip, &own.chip, &upright.chip),
@@ -37,13 +36,13 @@ pub fn leaning_forces(
     paths.iter().map(of_path).collect()
 }
 
-/// A wrench by as much as one rough one differs from another.
+/// A wrench changed by as much as another differs from a third.
 fn shifted(known: &Wrench, to: &Wrench, from: &Wrench) -> Wrench {
     Wrench { force: known.force + (to.force - from.force), moment: known.moment + (to.moment - from.moment) }
 }
 
-/// The loads at the points of a path on cells twice as large as those of what is known.
-fn rough(
+/// The loads at the points of a path on the cells of what is known.
+fn loads(
     problem: &ForcesProblem,
     known: &RemovalForces,
     path: &ToolPath,
@@ -51,7 +50,7 @@ fn rough(
 ) -> Result<Vec<PointForces>, ForcesError> {
     let operation = Operation { path: path.clone(), ..problem.operation.clone() };
     let problem = ForcesProblem { operation, finished_part: None, ..problem.clone() };
-    let (cell, window) = (2.0 * known.cell, window_for(known.cell));
+    let (cell, window) = (known.cell, window_for(known.cell));
     let stage = "cutting with a leaning tool";
     let run = Run::new(&problem, cell, Some(window), Requested::Forces, stage, monitor)?;
     let loads = Loads { path: &run.path, found: &run.found };

@@ -43,6 +43,7 @@ pub const FACTORS: &[Factor] = &[
             "part rail continuous",
             "robot table indexed",
             "rail and table",
+            "rail and table continuous",
             "held",
         ],
     ),

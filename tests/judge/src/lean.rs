@@ -11,7 +11,8 @@ struct Rules {
     radius: f64,
     corner: f64,
     rule: String,
-    turns_forces: bool,
+    /// What forces do, where the run says so.
+    force: Option<String>,
 }
 
 fn rules(run: &Table, has_normals: bool) -> Option<Rules> {
@@ -26,7 +27,7 @@ fn rules(run: &Table, has_normals: bool) -> Option<Rules> {
         "plane"
     };
     let rule = text(lean, "rule").unwrap_or(usual).to_owned();
-    Some(Rules { radius, corner, rule, turns_forces: text(lean, "force") == Some("tool") })
+    Some(Rules { radius, corner, rule, force: text(lean, "force").map(str::to_owned) })
 }
 
 /// Where a torus of the cutting end, its centre circle of radius R - r, has its point farthest along -n: from the tip.
@@ -36,9 +37,13 @@ fn lowest(rules: &Rules, axis: &Vector3<f64>, normal: &Vector3<f64>) -> Vector3<
     axis * rules.corner - spoke * (rules.radius - rules.corner) - normal * rules.corner
 }
 
-/// The points with a tool that leans by lead and tilt (rad) at each; the axes that are scored stay.
+/// The points with a tool that leans by lead and tilt (rad) at each; the axes that are scored stay. None for a run that
+/// does not say how, or whose forces are computed from a stock for every lean: the judge removes no material.
 pub(crate) fn leaned(points: &[Point], run: &Table, leans: &[[f64; 2]]) -> Option<Vec<Point>> {
     let rules = rules(run, points.iter().any(|point| point.normal.is_some()))?;
+    if run.contains_key("stock") && rules.force.is_none() {
+        return None;
+    }
     let lean = |(point, [lead, tilt]): (&Point, &[f64; 2])| {
         let mut leaned = point.clone();
         if *lead == 0.0 && *tilt == 0.0 {
@@ -62,7 +67,8 @@ pub(crate) fn leaned(points: &[Point], run: &Table, leans: &[[f64; 2]]) -> Optio
                 "plane" => normal * (before - after).dot(&normal),
                 _ => before - after,
             };
-        if rules.turns_forces {
+        let turns_forces = rules.force.as_deref().map_or(point.is_of_tool, |force| force == "tool");
+        if turns_forces {
             let carried = leaned.axes * point.axes.transpose();
             (leaned.force, leaned.moment) = (carried * point.force, carried * point.moment);
         } else {

@@ -54,9 +54,8 @@ fn plan<'a>(cell: &'a Cell, results: &Path, case: &Value) -> Result<Plan<'a>, St
     let leans: Vec<[f64; 2]> = rows.iter().filter_map(|row| row.lean).collect();
     let points = match leans.len() {
         0 => cell.points.clone(),
-        count if count == cell.points.len() => {
-            lean::leaned(&cell.points, &cell.run, &leans).ok_or("a tool leans in a run that does not say how")?
-        }
+        count if count == cell.points.len() => lean::leaned(&cell.points, &cell.run, &leans)
+            .ok_or("a tool leans in a run that does not say how, or with forces of the stock")?,
         _ => return Err(format!("{name}: some rows have a lean and others none")),
     };
     Ok(Plan { cell, placement, points, leans, rows, name: (*name).to_owned() })

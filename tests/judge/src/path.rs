@@ -17,6 +17,8 @@ pub(crate) struct Point {
     pub normal: Option<Vector3<f64>>,
     pub force: Vector3<f64>,
     pub moment: Vector3<f64>,
+    /// Whether the run states the force in the frame of the tool.
+    pub is_of_tool: bool,
     /// How the part yields there, where the task says so. m/N
     pub part: Option<Matrix3<f64>>,
     /// m/s
@@ -88,6 +90,7 @@ pub(crate) fn read(file: &File, run: &Table) -> Answer<Vec<Point>> {
             normal: three("normal_", "").map(|normal| normal.normalize()),
             force: three("force_", "_n").unwrap_or_else(Vector3::zeros),
             moment: three("moment_", "_nm").unwrap_or_else(Vector3::zeros),
+            is_of_tool: !has_forces,
             part: part(&value),
             speed: value("feed_mm_per_s").map(|speed| speed * 1e-3),
             is_scored: value("scored").is_none_or(|scored| scored != 0.0),

@@ -341,6 +341,9 @@ impl Writer<'_> {
             "rail and table" => {
                 rail("rail", "robot", "indexed") + &table("turn", "workpiece", up, &at, 45.0, "indexed")
             }
+            "rail and table continuous" => {
+                rail("rail", "robot", "continuous") + &table("turn", "workpiece", up, &at, 45.0, "continuous")
+            }
             "held" => table("turn", "workpiece", up, &at, 60.0, "fixed").replace("[-60.0, 60.0]", "[20.0, 20.0]"),
             _ => String::new(),
         };

@@ -3,6 +3,7 @@
 
 mod events;
 mod five_axes;
+mod leaning;
 mod oracles;
 mod probing;
 mod twin;
