@@ -85,3 +85,53 @@ fn forces_inside_a_run_say_how_far_they_are_and_stop() {
         assert!(matches!(error, Error::Stopped(Stop::Asked)) && error.is_interrupted(), "{error}");
     }
 }
+
+/// A ball that may lean in one way alone has, with its forces computed for it, those of a task whose file has tip and
+/// axis so; with its forces carried it has others, which a note says.
+#[test]
+fn a_leaning_ball_has_the_forces_of_a_task_that_leans() {
+    let bench = Bench::new();
+    let (lead, tilt) = (15.0_f64.to_radians(), (-10.0_f64).to_radians());
+    // A = cos T (cos L a + sin L f) + sin T b along x, and the centre of the ball stays.
+    let (along, aside, up) = (libm::cos(tilt) * libm::sin(lead), libm::sin(tilt), libm::cos(tilt) * libm::cos(lead));
+    let head = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z\n";
+    let row = |x: f64, tip: [f64; 3], axis: [f64; 3]| {
+        let [a, b, c] = axis;
+        format!("1,{:.6},{:.6},{:.6},1,0,0,{a:.12},{b:.12},{c:.12}\n", x + tip[0], tip[1], tip[2])
+    };
+    let task = |tip: [f64; 3], axis: [f64; 3]| -> String {
+        head.to_owned() + &(0..17).map(|k| row(f64::from(k) * 5.0, tip, axis)).collect::<String>()
+    };
+    bench.write("tasks/upright.csv", &task([0.0; 3], [0.0, 0.0, 1.0]));
+    bench.write("tasks/leaning.csv", &task([-8.0 * along, -8.0 * aside, 8.0 - 8.0 * up], [along, aside, up]));
+    let text = bench.read(RUN).replace("[criterion]", "[criterion]\ndirection = 'total'");
+    let run = |task: &str, lean: &str| {
+        let text = text.replace("../tasks/five-segments.csv", &format!("../tasks/{task}.csv"));
+        let tables = "\n[stock]\nbox_mm = [200, 80, 20]\nxyz_mm = [0, 0, -8.5]\n[tool]\ncutter_diameter_mm = 16\ncorner_radius_mm = 8\n\
+                      teeth = 4\nflute_length_mm = 40\nkt_mpa = 800\nkr = 0.4\nka_mpa = 100\nkte_n_per_mm = 20\nkre_n_per_mm = 20\n\
+                      centre_cutting = true\n[cut]\nspindle_rpm = 20000\n";
+        bench.write(RUN, &format!("{text}{tables}{lean}"));
+        let place = ["--x-mm=0", "--y-mm=-1940", "--z-mm=-400", "--yaw-deg=0"];
+        let ended = bench.stead(&[&["score", RUN, "--out", "out", "--json"][..], &place].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let forces = bench.read("out/best.csv");
+        let names: Vec<&str> = forces.lines().next().unwrap().split(',').collect();
+        let column = names.iter().position(|name| *name == "force_x_n").unwrap();
+        let force = |line: &str| -> [f64; 3] {
+            let cells: Vec<f64> = line.split(',').skip(column).take(3).map(|cell| cell.parse().unwrap()).collect();
+            [cells[0], cells[1], cells[2]]
+        };
+        let middle = forces.lines().nth(9).map(force).unwrap();
+        (middle, ended.json()["best"]["objective_mm"].as_f64().unwrap(), ended.stderr)
+    };
+    let lean = "[lean]\nlead_deg = [15, 15]\ntilt_deg = [-10, -10]\n";
+    let (of_task, stated, _) = run("leaning", "");
+    let (of_lean, found, _) = run("upright", lean);
+    let (carried, other, notes) = run("upright", &format!("{lean}force = 'feed'\n"));
+    let norm = |force: [f64; 3]| force.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let off = |a: [f64; 3], b: [f64; 3]| norm([a[0] - b[0], a[1] - b[1], a[2] - b[2]]) / norm(b);
+    assert!(off(of_lean, of_task) < 0.03, "{of_lean:?} {of_task:?}");
+    assert!((found / stated - 1.0).abs() < 0.03, "{found} {stated}");
+    assert!(off(carried, of_task) > 0.1 && (other / stated - 1.0).abs() > 0.05, "{carried:?} {of_task:?} {other}");
+    assert!(notes.contains("lean.force = \"feed\" carries them to the tool that leans"), "{notes}");
+}

@@ -1,6 +1,7 @@
 //! How far the tool may lean from the axis that the path states: in lead and tilt, at every path point.
 
 use crate::cell::Interval;
+use crate::limit::Limit;
 use nalgebra::Vector3;
 use stead_model::task::lean::{ContactRule, Lean, LeanError, LeanRule, between};
 use stead_model::task::{PathPoint, ToolPath};
@@ -9,6 +10,9 @@ use stead_model::task::{PathPoint, ToolPath};
 const ROUNDING: f64 = 1e-9;
 /// The tool axis turns by no more than this from one point to the next, where that of the path turns by less. rad
 const MOST_TURN: f64 = std::f64::consts::PI / 12.0;
+
+/// A turn from which the error of the contact is told. rad
+const SMALL_TURN: f64 = 0.01;
 
 /// Points of a path on which lead and tilt are planned, at the most.
 pub const MOST_PLANNED_POINTS: usize = 400;
@@ -174,23 +178,30 @@ impl LeanSpace {
         self.max_lean.is_none_or(|max| lean.angle() <= max + ROUNDING)
     }
 
-    /// Whether a lean is allowed at a point of an upright path: within its range and the largest angle, with no higher
-    /// ridge and, where a plane stays, with no contact farther aside than half the distance between passes.
+    /// Whether a lean is allowed at a point of an upright path: within its range and with no [margin](Self::margins)
+    /// below zero.
     pub fn allows(&self, path: &ToolPath, point: usize, lean: &Lean) -> bool {
         if !self.ranges[point].contains(lean) {
             return false;
         }
-        *lean == Lean::NONE && self.ranges[point].is_none()
-            || (self.is_within(lean) && self.leaves_no_ridge(lean) && self.keeps_to_its_pass(path, point, lean))
+        let is_kept = |margin: Option<f64>| margin.is_none_or(|margin| margin >= -ROUNDING);
+        *lean == Lean::NONE && self.ranges[point].is_none() || self.margins(path, point, lean).into_iter().all(is_kept)
     }
 
-    fn leaves_no_ridge(&self, lean: &Lean) -> bool {
-        let Some(most) = self.scallop else { return true };
-        self.rule.end.scallop(lean, self.step_over).is_none_or(|height| height <= most * (1.0 + ROUNDING))
+    /// How far a lean is from what bounds it beside its range, in the order of [`LeanSpace::LIMITS`]: by how much it is
+    /// less than the largest angle (rad), by which share the ridge is lower than it may be, and, where a plane stays, by
+    /// how much the contact is less far aside than half the distance between passes (m); none where nothing is set.
+    pub fn margins(&self, path: &ToolPath, point: usize, lean: &Lean) -> [Option<f64>; 3] {
+        let angle = self.max_lean.map(|max| max - lean.angle());
+        let ridge = self.scallop.and_then(|most| Some(1.0 - self.rule.end.scallop(lean, self.step_over)? / most));
+        [angle, ridge, self.margin_aside(path, point, lean)]
     }
 
-    fn keeps_to_its_pass(&self, path: &ToolPath, point: usize, lean: &Lean) -> bool {
-        let Some(step) = self.step_over.filter(|_| self.rule.contact == ContactRule::Plane) else { return true };
+    /// What the [margins](Self::margins) are to.
+    pub const LIMITS: [Limit; 3] = [Limit::MaxLean, Limit::Scallop, Limit::StepOver];
+
+    fn margin_aside(&self, path: &ToolPath, point: usize, lean: &Lean) -> Option<f64> {
+        let step = self.step_over.filter(|_| self.rule.contact == ContactRule::Plane && lean.tilt != 0.0)?;
         let at = &path.points()[point];
         let normal = path.surface_normals().map_or(at.axis, |normals| normals[point]);
         let (end, left) = (&self.rule.end, at.normal());
@@ -199,7 +210,7 @@ impl LeanSpace {
             contact.map_or(0.0, |contact| (contact - path.points()[point].position).dot(&left))
         };
         let shift = aside(&self.rule.leaned(at, Some(&normal), lean)) - aside(at);
-        lean.tilt == 0.0 || shift.abs() <= step / 2.0 + ROUNDING
+        Some(step / 2.0 - shift.abs())
     }
 
     /// Whether the tool axis may go from one lean to another between two points of an upright path, the second of which
@@ -226,6 +237,22 @@ impl LeanSpace {
             let error = |k: usize| self.rule.error_between(&normal(k), [&axes[0], &axes[1]]);
             error(0).max(error(1)) <= self.contact_tolerance * (1.0 + ROUNDING)
         })
+    }
+
+    /// About how far the tool axis may turn on the way to a point, the tool leaning about as told at both. rad
+    pub fn most_turn(&self, path: &ToolPath, point: usize, leans: [&Lean; 2]) -> f64 {
+        let at = [point - 1, point].map(|point| &path.points()[point]);
+        let [from, mut to] = [0, 1].map(|k| leans[k].axis(at[k]));
+        if between(&from, &to) < SMALL_TURN {
+            let ahead = Lean { lead: leans[1].lead + SMALL_TURN, ..*leans[1] };
+            to = ahead.axis(at[1]);
+        }
+        let turn = between(&from, &to);
+        let normal = |k: usize| path.surface_normals().map_or(at[k].axis, |normals| normals[point - 1 + k]);
+        let error = |k: usize| self.rule.error_between(&normal(k), [&from, &to]);
+        // The error is as the square of the turn, to a good approximation.
+        let by_contact = turn * (self.contact_tolerance / error(0).max(error(1))).sqrt();
+        by_contact.min(MOST_TURN / path.largest_part(point)).max(between(&at[0].axis, &at[1].axis))
     }
 
     /// About how far the tool axis may turn in one step of a path, from the middle of the ranges of its points. rad

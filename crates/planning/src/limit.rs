@@ -34,6 +34,18 @@ pub enum Limit {
     Clearance(usize),
     /// A zone that a point of the arm stays out of: the number of their pair in the scene.
     KeepOut(usize),
+    /// The range of the lead.
+    Lead,
+    /// The range of the tilt.
+    Tilt,
+    /// The largest angle between the tool axis and that of the path.
+    MaxLean,
+    /// The highest ridge between passes.
+    Scallop,
+    /// The distance between passes, half of which the contact may move aside.
+    StepOver,
+    /// How far the contact may leave its line between points.
+    ContactTolerance,
 }
 
 impl Limit {

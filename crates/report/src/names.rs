@@ -64,6 +64,12 @@ fn limit(limit: Limit) -> String {
         Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
         Limit::Clearance(_) => "collision.clearance_mm".to_owned(),
         Limit::KeepOut(_) => "keep_out".to_owned(),
+        Limit::Lead => "lean.lead_deg".to_owned(),
+        Limit::Tilt => "lean.tilt_deg".to_owned(),
+        Limit::MaxLean => "lean.max_lean_deg".to_owned(),
+        Limit::Scallop => "lean.scallop_mm".to_owned(),
+        Limit::StepOver => "lean.step_over_mm".to_owned(),
+        Limit::ContactTolerance => "lean.contact_tolerance_mm".to_owned(),
     }
 }
 
@@ -85,8 +91,13 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
         | Limit::MaxDeflection
         | Limit::BaseDistance
         | Limit::Clearance(_)
-        | Limit::KeepOut(_) => (bound.gain, "mm per mm"),
-        Limit::CellYaw | Limit::Joint(_) => (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg"),
+        | Limit::KeepOut(_)
+        | Limit::Scallop
+        | Limit::StepOver
+        | Limit::ContactTolerance => (bound.gain, "mm per mm"),
+        Limit::CellYaw | Limit::Joint(_) | Limit::Lead | Limit::Tilt | Limit::MaxLean => {
+            (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
+        }
         // One degree per millimetre is a thousand per metre.
         Limit::BetaRate | Limit::SpindleTurn => (bound.gain * 1e6 * 1_f64.to_radians(), "mm per deg/mm"),
         Limit::JointStep(_) | Limit::SpindleSpeed => (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg/s"),

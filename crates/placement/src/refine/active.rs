@@ -5,7 +5,7 @@
 //! derivative of the objective across it, since the objective is a minimum over plans.
 
 use super::ascent::touching;
-use super::linearise::{Curvature, linearise};
+use super::linearise::{Curvature, linearise_leaning};
 use super::programme::pose_bounds;
 use super::slacks::{NEAR_STEPS, Slack};
 use super::subproblem::{StepRequest, SubproblemStep, solve};
@@ -28,7 +28,7 @@ const TOUCHED_SHAPES: f64 = 1e-4;
 /// The bounds that hold a best placement, the largest gains first; none where the subproblem has no solution, so that
 /// they are not known.
 pub fn active_bounds(problem: &Problem, solution: &Solution) -> Option<Vec<ActiveBound>> {
-    let locals = linearise(problem, solution, Curvature::Beta, NEAR_STEPS)?;
+    let locals = linearise_leaning(problem, solution, Curvature::Beta, NEAR_STEPS)?;
     // Without its curvature the model of a long path is better scaled in so small a neighbourhood.
     let answers = [true, false].into_iter().filter_map(|curved| {
         solve(problem, solution, &locals, StepRequest { trust: NEIGHBOURHOOD, curved, pose_stays: false }).ok()
@@ -61,6 +61,7 @@ fn behind(problem: &Problem, side: Side, point: usize) -> Limit {
 /// By how much a bound at a point gives way, in the unit of its multiplier, when the limit does by one unit of
 /// [`ActiveBound::gain`].
 fn loosened(problem: &Problem, solution: &Solution, side: Side, point: usize) -> f64 {
+    let space = problem.lean.as_deref();
     match side.limit {
         Limit::CellX | Limit::CellY | Limit::CellZ => 1.0 / LENGTH_UNIT,
         Limit::MaxDeflection => 1.0 / solution.objective,
@@ -70,7 +71,18 @@ fn loosened(problem: &Problem, solution: &Solution, side: Side, point: usize) ->
             let speed = problem.robot.joints()[own].max_speed.unwrap_or(f64::INFINITY);
             if problem.joint_steps(point)[own] < speed * time { 0.0 } else { time }
         }
+        // The linear model is of the share of the ridge, half of the distance and the turn of the tool axis.
+        Limit::Scallop => space.and_then(|space| space.scallop).map_or(0.0, |most| 1.0 / most),
+        Limit::StepOver => 0.5,
+        Limit::ContactTolerance => space.map_or(0.0, |space| {
+            let leans = [point - 1, point].map(|point| problem.setup.leans.get(point).copied().unwrap_or_default());
+            let turn = space.most_turn(problem.task.upright().path(), point, [&leans[0], &leans[1]]);
+            turn / (2.0 * space.contact_tolerance)
+        }),
         Limit::CellYaw
+        | Limit::Lead
+        | Limit::Tilt
+        | Limit::MaxLean
         | Limit::Joint(_)
         | Limit::Conditioning
         | Limit::BaseDistance

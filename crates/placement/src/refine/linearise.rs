@@ -1,6 +1,7 @@
 //! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the
 //! scores.
 
+use super::lean_slopes::{LeanNeighbours, LeanSlopes, PointOfSolution};
 use super::slacks::{Slack, slacks};
 use super::{LOCAL, Solution, UNITS};
 use nalgebra::{Matrix5, SymmetricEigen};
@@ -26,6 +27,8 @@ pub struct Local {
     /// Curvature of the score where |c_i| is smooth and a margin near its kink follows its present changes, the
     /// negative part left out; over several sets their mean, or that of the worst. m per square unit
     pub curvature: Matrix5<f64>,
+    /// How it changes with lead and tilt, where the tool may lean otherwise.
+    pub leaning: Option<LeanSlopes>,
 }
 
 /// What is scored of a path point under one set of compliances, linearised.
@@ -64,10 +67,26 @@ const MIN_SHARE: usize = 200;
 /// All path points of a solution, in order, with as much curvature as requested and the shapes that have less slack
 /// than a limit (m); `None` when one cannot be reached, which a solution rules out.
 pub fn linearise(problem: &Problem, solution: &Solution, order: Curvature, within: f64) -> Option<Vec<Local>> {
+    of_all(problem, solution, order, within, None)
+}
+
+/// The same with how they change with lead and tilt, where the tool of the problem leans.
+pub fn linearise_leaning(problem: &Problem, solution: &Solution, order: Curvature, within: f64) -> Option<Vec<Local>> {
+    of_all(problem, solution, order, within, LeanNeighbours::of(problem).as_ref())
+}
+
+fn of_all(
+    problem: &Problem,
+    solution: &Solution,
+    order: Curvature,
+    within: f64,
+    leaning: Option<&LeanNeighbours>,
+) -> Option<Vec<Local>> {
     let of_plan = |plan: &'_ SegmentPlan| {
         let points: Vec<usize> = plan.points.clone().collect();
-        let local =
-            |(place, point): (usize, usize)| local(problem, &solution.placement, plan, place, point, order, within);
+        let local = |(place, point): (usize, usize)| {
+            local(problem, &solution.placement, plan, (place, point), order, within, leaning)
+        };
         points.into_par_iter().enumerate().with_min_len(MIN_SHARE).map(local).collect::<Option<Vec<_>>>()
     };
     let plans: Option<Vec<_>> = solution.plans.par_iter().map(of_plan).collect();
@@ -79,13 +98,14 @@ fn local(
     problem: &Problem,
     placement: &Placement,
     plan: &SegmentPlan,
-    place: usize,
-    point: usize,
+    (place, point): (usize, usize),
     order: Curvature,
     within: f64,
+    leaning: Option<&LeanNeighbours>,
 ) -> Option<Local> {
     let at = [placement.x, placement.y, placement.z, placement.yaw, plan.betas[place]];
-    let mut centre = gradient(problem, point, at, plan.posture)?;
+    let posture = plan.posture;
+    let mut centre = gradient(problem, point, at, posture)?;
     for set in &mut centre.sets {
         for kinked in [&mut set.changes, &mut set.parts] {
             if !is_near_kink(kinked) {
@@ -93,13 +113,24 @@ fn local(
             }
         }
     }
-    let curvature = curvature(problem, point, at, plan.posture, &centre, order);
+    let followed = Followed::of(problem, &centre);
+    let raw = second_derivatives(problem, point, at, posture, &followed, &centre, order);
+    let may_lean = problem.lean.as_deref().is_some_and(|space| !space.ranges[point].is_none());
+    let leaning = leaning.filter(|_| may_lean).and_then(|neighbours| {
+        let kinked: Vec<[bool; 2]> =
+            centre.sets.iter().map(|set| [!set.changes.is_empty(), !set.parts.is_empty()]).collect();
+        let raw = raw.as_ref().filter(|_| order == Curvature::Full);
+        let known = PointOfSolution { problem, point, at, posture, within, followed: &followed };
+        neighbours.slopes(&known, &centre, &kinked, raw)
+    });
+    let curvature = raw.map_or_else(Matrix5::zeros, |raw| convex(&raw, order));
     let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
         let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
         LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
     });
-    let slacks = slacks(problem, point, plan.betas[place], placement, plan.posture, within);
-    Some(Local { state: centre.state, sets: sets.collect(), joints: plan.joints[place], slacks, curvature })
+    let slacks = slacks(problem, point, plan.betas[place], placement, posture, within);
+    let (sets, joints) = (sets.collect(), plan.joints[place]);
+    Some(Local { state: centre.state, sets, joints, slacks, curvature, leaning })
 }
 
 /// A norm that steps of this size could bring to zero has its kink near; in scaled variables.
@@ -115,22 +146,22 @@ fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
 }
 
 /// A state, and what is scored of it under every set of compliances.
-struct Differentiated {
-    state: State<Dual<LOCAL>>,
-    sets: Vec<DifferentiatedSet>,
+pub(super) struct Differentiated {
+    pub state: State<Dual<LOCAL>>,
+    pub sets: Vec<DifferentiatedSet>,
 }
 
 /// A score, and the vectors of which its norms are taken.
-struct DifferentiatedSet {
-    score: SetScore<Dual<LOCAL>>,
+pub(super) struct DifferentiatedSet {
+    pub score: SetScore<Dual<LOCAL>>,
     /// That of the margin.
-    changes: Vec<Dual<LOCAL>>,
+    pub changes: Vec<Dual<LOCAL>>,
     /// That of the scored part, where several directions are scored and errors of the force do not smooth it.
-    parts: Vec<Dual<LOCAL>>,
+    pub parts: Vec<Dual<LOCAL>>,
 }
 
 /// The state at `at` (x, y, z in m, yaw, beta in rad) with its gradient in scaled variables.
-fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<Differentiated> {
+pub(super) fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<Differentiated> {
     let variables: [Dual<LOCAL>; LOCAL] = std::array::from_fn(|k| {
         let mut variable = Dual::variable(at[k], k);
         variable.gradient[k] = UNITS[k];
@@ -165,70 +196,102 @@ fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture)
     Some(Differentiated { state: found, sets })
 }
 
-/// Differences of exact gradients, made symmetric, without negative eigenvalues: what a convex model can use.
-fn curvature(
+/// What second derivatives are taken of: where |c_i| is smooth, with the signs of the parts as they are, and near a kink
+/// along the present direction of the vector, whose norm is the subproblem's.
+pub(super) struct Followed {
+    /// The sets of compliances that count.
+    counted: Vec<usize>,
+    /// Of every set the sign of its scored part, and the shares of its changes and parts.
+    sets: Vec<(f64, Vec<f64>, Vec<f64>)>,
+}
+
+impl Followed {
+    fn of(problem: &Problem, centre: &Differentiated) -> Self {
+        let shares = |vector: &[Dual<LOCAL>], norm: f64| -> Vec<f64> {
+            vector.iter().map(|entry| if norm > 0.0 { entry.value / norm } else { 0.0 }).collect()
+        };
+        let score = |set: &DifferentiatedSet| set.score.score().value;
+        let worst = (0..centre.sets.len()).max_by(|a, b| score(&centre.sets[*a]).total_cmp(&score(&centre.sets[*b])));
+        let counted = match worst.filter(|_| problem.is_over_worst()) {
+            Some(worst) => vec![worst],
+            None => (0..centre.sets.len()).collect(),
+        };
+        let of_set = |set: &DifferentiatedSet| {
+            let sign = if set.score.scored.value < 0.0 { -1.0 } else { 1.0 };
+            (sign, shares(&set.changes, set.score.margin.value), shares(&set.parts, set.score.scored.value))
+        };
+        Self { counted, sets: centre.sets.iter().map(of_set).collect() }
+    }
+
+    /// Of a number of every entry there.
+    fn sum(&self, there: &Differentiated, of: impl Fn(&Dual<LOCAL>) -> f64) -> f64 {
+        let along = |shares: &[f64], vector: &[Dual<LOCAL>]| -> f64 {
+            shares.iter().zip(vector).map(|(share, entry)| share * of(entry)).sum()
+        };
+        let of_set = |set: &usize| {
+            let (there, (sign, changes, parts)) = (&there.sets[*set], &self.sets[*set]);
+            let s = &there.score;
+            let margin = if changes.is_empty() { of(&s.margin) } else { along(changes, &there.changes) };
+            let scored = if parts.is_empty() { sign * of(&s.scored) } else { along(parts, &there.parts) };
+            scored + of(&s.uncertainty) + margin
+        };
+        let sum: f64 = self.counted.iter().map(of_set).sum();
+        if self.counted.len() == 1 { sum } else { sum / self.counted.len() as f64 }
+    }
+
+    /// The slope there in a variable.
+    pub fn slope(&self, there: &Differentiated, k: usize) -> f64 {
+        self.sum(there, |entry| entry.gradient[k])
+    }
+
+    /// The value there.
+    pub fn value(&self, there: &Differentiated) -> f64 {
+        self.sum(there, |entry| entry.value)
+    }
+}
+
+/// Differences of exact gradients, as many as requested.
+fn second_derivatives(
     problem: &Problem,
     point: usize,
     at: [f64; LOCAL],
     posture: Posture,
+    followed: &Followed,
     centre: &Differentiated,
     order: Curvature,
-) -> Matrix5<f64> {
+) -> Option<Matrix5<f64>> {
     let from = match order {
-        Curvature::None => return Matrix5::zeros(),
+        Curvature::None => return None,
         Curvature::Beta => LOCAL - 1,
         Curvature::Full => 0,
-    };
-    // Near a kink the norm is the subproblem's: here the vector is followed along its present direction.
-    let shares = |vector: &[Dual<LOCAL>], norm: f64| -> Vec<f64> {
-        vector.iter().map(|entry| if norm > 0.0 { entry.value / norm } else { 0.0 }).collect()
-    };
-    let along = |shares: &[f64], vector: &[Dual<LOCAL>], k: usize| -> f64 {
-        shares.iter().zip(vector).map(|(share, entry)| share * entry.gradient[k]).sum()
-    };
-    let score = |set: &DifferentiatedSet| set.score.score().value;
-    let worst = (0..centre.sets.len()).max_by(|a, b| score(&centre.sets[*a]).total_cmp(&score(&centre.sets[*b])));
-    let counted: Vec<usize> = match worst.filter(|_| problem.is_over_worst()) {
-        Some(worst) => vec![worst],
-        None => (0..centre.sets.len()).collect(),
-    };
-    let followed: Vec<(f64, Vec<f64>, Vec<f64>)> = centre
-        .sets
-        .iter()
-        .map(|set| {
-            let sign = if set.score.scored.value < 0.0 { -1.0 } else { 1.0 };
-            (sign, shares(&set.changes, set.score.margin.value), shares(&set.parts, set.score.scored.value))
-        })
-        .collect();
-    let slope_of = |there: &DifferentiatedSet, (sign, changes, parts): &(f64, Vec<f64>, Vec<f64>), k: usize| {
-        let s = &there.score;
-        let margin = if changes.is_empty() { s.margin.gradient[k] } else { along(changes, &there.changes, k) };
-        let scored = if parts.is_empty() { sign * s.scored.gradient[k] } else { along(parts, &there.parts, k) };
-        scored + s.uncertainty.gradient[k] + margin
-    };
-    let slope = |there: &Differentiated, k: usize| {
-        let sum: f64 = counted.iter().map(|set| slope_of(&there.sets[*set], &followed[*set], k)).sum();
-        if counted.len() == 1 { sum } else { sum / counted.len() as f64 }
     };
     let mut hessian = Matrix5::zeros();
     for k in from..LOCAL {
         let mut moved = at;
         moved[k] += CURVATURE_STEP * UNITS[k];
-        let Some(there) = gradient(problem, point, moved, posture) else { return Matrix5::zeros() };
+        let there = gradient(problem, point, moved, posture)?;
         for j in 0..LOCAL {
-            hessian[(j, k)] = (slope(&there, j) - slope(centre, j)) / CURVATURE_STEP;
+            hessian[(j, k)] = (followed.slope(&there, j) - followed.slope(centre, j)) / CURVATURE_STEP;
         }
     }
     if order == Curvature::Beta {
+        return Some(hessian);
+    }
+    Some((hessian + hessian.transpose()) * 0.5)
+}
+
+/// Second derivatives without negative eigenvalues: what a convex model can use.
+fn convex(hessian: &Matrix5<f64>, order: Curvature) -> Matrix5<f64> {
+    if order == Curvature::Beta {
         let beta = LOCAL - 1;
+        let mut hessian = *hessian;
         if hessian[(beta, beta)] <= 0.0 {
             return Matrix5::zeros();
         }
         hessian.set_row(beta, &hessian.column(beta).transpose());
         return hessian;
     }
-    let symmetric = (hessian + hessian.transpose()) * 0.5;
-    let eigen = SymmetricEigen::new(symmetric);
+    let eigen = SymmetricEigen::new(*hessian);
     let positive = eigen.eigenvalues.map(|value| value.max(0.0));
     eigen.eigenvectors * Matrix5::from_diagonal(&positive) * eigen.eigenvectors.transpose()
 }

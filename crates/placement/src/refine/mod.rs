@@ -23,6 +23,8 @@
 pub mod active;
 mod agreement;
 pub mod ascent;
+mod lean_rows;
+pub mod lean_slopes;
 pub mod linearise;
 pub mod programme;
 mod rows;

@@ -59,20 +59,38 @@ impl Triplets {
     }
 }
 
-/// The curvature of the objective, each point's by its share of `whole`, its beta being in the column given: an arrow
-/// of the pose block, its coupling with every beta, and the diagonal.
-pub(super) fn curvature(locals: &[Local], betas: &[usize], shares: &[f64], whole: f64) -> Triplets {
+/// The curvature of the objective, each point's by its share of `whole`, its beta and its lead, with tilt behind it,
+/// being in the columns given: an arrow of the pose block, its coupling with every beta and lean, and their own.
+pub(super) fn curvature(
+    locals: &[Local],
+    betas: &[usize],
+    leans: &[Option<usize>],
+    shares: &[f64],
+    whole: f64,
+) -> Triplets {
     let mut entries = Triplets::default();
     let mut pose = [[0.0; 4]; 4];
     for (i, local) in locals.iter().enumerate() {
         let share = shares[i] / whole;
+        let leaning = local.leaning.as_ref().zip(leans[i]);
+        let of = |j: usize, k: usize| match leaning {
+            Some((leaning, _)) => leaning.curvature[(j, k)] * share,
+            None => local.curvature[(j, k)] * share,
+        };
         for k in 0..4 {
             for j in 0..=k {
-                pose[j][k] += local.curvature[(j, k)] * share;
+                pose[j][k] += of(j, k);
             }
-            entries.add(k, betas[i], local.curvature[(k, 4)] * share);
+            entries.add(k, betas[i], of(k, 4));
         }
-        entries.add(betas[i], betas[i], local.curvature[(4, 4)] * share);
+        entries.add(betas[i], betas[i], of(4, 4));
+        let Some((_, column)) = leaning else { continue };
+        for (k, column) in [(5, column), (6, column + 1)] {
+            (0..4).for_each(|j| entries.add(j, column, of(j, k)));
+            entries.add(betas[i], column, of(4, k));
+            entries.add(column, column, of(k, k));
+        }
+        entries.add(column, column + 1, of(5, 6));
     }
     for (j, row) in pose.iter().enumerate() {
         (j..4).for_each(|k| entries.add(j, k, row[k]));

@@ -65,6 +65,40 @@ pub(super) fn slacks(
     linearised(scene, kinds, within, placement, beta, poses)
 }
 
+/// How the slacks of a state ([`slacks`]) change with lead and tilt, from problems in which the tool leans by a step (rad)
+/// more in each: in the order of the slacks. m/rad
+#[allow(clippy::too_many_arguments, reason = "a state, and its neighbours")]
+pub(super) fn room_slopes(
+    problem: &Problem,
+    ahead: [&Problem; 2],
+    step: f64,
+    point: usize,
+    beta: f64,
+    placement: &Placement,
+    posture: Posture,
+    within: f64,
+) -> Vec<[f64; 2]> {
+    let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
+    let kinds = if problem.axes_moved_to(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
+    let poses = |problem: &Problem| {
+        let joints = problem.robot.inverse(&problem.at(placement).base_from_flange(point, beta), posture).ok()?;
+        Some(problem.poses(scene, point, placement, &joints))
+    };
+    let Some(here) = poses(problem) else { return Vec::new() };
+    let near = scene.near(&here, kinds, within);
+    if near.is_empty() {
+        return Vec::new();
+    }
+    let moved = ahead.map(poses);
+    let slope = |near: &Near| {
+        scene.pair(near.pair)?;
+        let slope =
+            |there: &Option<Poses>| there.as_ref().map_or(0.0, |there| scene.room_change(near, &here, there) / step);
+        Some(moved.each_ref().map(slope))
+    };
+    near.iter().filter_map(slope).collect()
+}
+
 /// The slacks of the part against what stands in the cell, which depend on the placement alone.
 pub(super) fn placement_rooms(problem: &Problem, placement: &Placement) -> Vec<Slack> {
     let Some(scene) = problem.scene.as_deref() else { return Vec::new() };

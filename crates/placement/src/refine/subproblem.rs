@@ -9,6 +9,8 @@
 //! s_i is not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no
 //! obstacle either; likewise for the norm of the parts where several directions are scored.
 
+use super::lean_rows::lean_columns;
+use super::lean_slopes::LeanSlopes;
 use super::linearise::{Curvature, Local, linearise};
 use super::programme::{Unsolved, pose_bounds, programme};
 use super::rows::{Rows, Triplets, curvature};
@@ -41,6 +43,8 @@ pub struct SubproblemStep {
     pub placement: [f64; 4],
     /// Steps of all betas. rad
     pub betas: Vec<f64>,
+    /// Steps of lead and tilt at every point; empty where the tool keeps its axis all along. rad
+    pub leans: Vec<[f64; 2]>,
     /// Decrease of the mean score that the model promises, not negative. m
     pub promised: f64,
     /// Gradient of the model's minimum with respect to the pose, where the pose had to stay. m per scaled unit
@@ -62,9 +66,10 @@ pub fn solve<'p>(
 ) -> Result<SubproblemStep, Unsolved> {
     let vectors = |(i, local): (usize, &'p Local)| {
         let sets = local.sets.iter().enumerate();
-        sets.flat_map(move |(set, of)| [&of.changes[..], &of.parts[..]].map(|vector| ((i, set), vector)))
+        sets.flat_map(move |(set, of)| [(0, &of.changes[..]), (1, &of.parts[..])].map(|vector| ((i, set), vector)))
     };
-    let kinked = locals.iter().enumerate().flat_map(vectors).filter(|(_, vector)| !vector.is_empty()).collect();
+    let kinked = locals.iter().enumerate().flat_map(vectors).filter(|(_, (_, vector))| !vector.is_empty()).collect();
+    let (leans, lean_count) = lean_columns(locals.iter().map(|local| local.leaning.is_some()), BETA + locals.len());
     let rows = Rows::default();
     let mut build = Build {
         problem,
@@ -75,6 +80,8 @@ pub fn solve<'p>(
         unit: solution.objective,
         rows,
         betas: beta_columns(problem),
+        leans,
+        lean_count,
         travel: Travel::new(problem, solution.objective),
     };
     if request.pose_stays {
@@ -85,29 +92,39 @@ pub fn solve<'p>(
     solution.plans.iter().for_each(|plan| build.steps(plan));
     build.largest();
     build.trust_region();
+    build.lean_bounds();
     let inequalities = build.rows.bound.len() - equalities;
     let mut cones: Vec<SupportedConeT<f64>> = vec![ZeroConeT(equalities), NonnegativeConeT(inequalities)];
     cones.extend(build.cones());
+    cones.extend(build.contact_cones());
     build.answered(&cones)
 }
 
 /// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each
-/// of the n points, the score of each point (the epigraph variables), the norms that have a kink there, and the largest
+/// of the n points, those of lead and tilt where the tool may lean otherwise, the score of each point (the epigraph variables), the norms that have a kink there, and the largest
 /// score where that is minimised.
-struct Build<'a> {
-    problem: &'a Problem,
-    solution: &'a Solution,
+pub(super) struct Build<'a> {
+    pub problem: &'a Problem,
+    pub solution: &'a Solution,
     locals: &'a [Local],
-    request: StepRequest,
+    pub request: StepRequest,
     /// Points, and sets of compliances, whose score has the norm of a vector in it that needs a second-order cone.
-    kinked: Vec<((usize, usize), &'a [Dual<LOCAL>])>,
+    /// With which of its two vectors it is.
+    kinked: Vec<((usize, usize), (usize, &'a [Dual<LOCAL>]))>,
     /// Scores are in this unit. m
     unit: f64,
-    rows: Rows,
+    pub rows: Rows,
     /// Column of the change of beta at each point.
     betas: Vec<usize>,
+    /// Column of the change of lead at each point where the tool may lean otherwise, that of tilt behind it.
+    pub leans: Vec<Option<usize>>,
+    /// Number of both in all.
+    lean_count: usize,
     travel: Travel,
 }
+
+/// The entries of the columns of lead and tilt of a point, where it has them.
+type LeanTerms = std::iter::Flatten<std::option::IntoIter<[(usize, f64); 2]>>;
 
 /// Column of the first change of beta.
 const BETA: usize = 4;
@@ -145,7 +162,7 @@ impl Travel {
 impl Build<'_> {
     /// Column of the first score.
     fn epigraph(&self) -> usize {
-        BETA + self.locals.len()
+        BETA + self.locals.len() + self.lean_count
     }
 
     /// Number of scores of each point: one for every set of compliances where their mean counts, else one above all.
@@ -178,14 +195,23 @@ impl Build<'_> {
         self.problem.criterion.aggregate
     }
 
-    /// A gradient by placement and beta as entries of the columns of point `i`.
-    fn terms(&self, i: usize, gradient: &[f64; LOCAL]) -> Vec<(usize, f64)> {
-        (0..4).map(|k| (k, gradient[k])).chain([(self.betas[i], gradient[4])]).collect()
+    /// A gradient by placement and beta, and slopes by lead and tilt, as entries of the columns of point `i`.
+    fn terms(&self, i: usize, gradient: &[f64; LOCAL], lean: impl Fn(&LeanSlopes) -> [f64; 2]) -> Vec<(usize, f64)> {
+        let own = (0..4).map(|k| (k, gradient[k])).chain([(self.betas[i], gradient[4])]);
+        own.chain(self.lean_terms(i, 1.0, lean)).collect()
+    }
+
+    /// Slopes by lead and tilt, times a factor, as entries of the columns of point `i`; none where the tool keeps its
+    /// axis.
+    fn lean_terms(&self, i: usize, factor: f64, slopes: impl Fn(&LeanSlopes) -> [f64; 2]) -> LeanTerms {
+        let known = self.leans[i].zip(self.locals[i].leaning.as_ref().map(slopes));
+        let terms = |(column, [lead, tilt]): (usize, [f64; 2])| [(column, factor * lead), (column + 1, factor * tilt)];
+        known.map(terms).into_iter().flatten()
     }
 
     /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for
     /// safety.
-    fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64) {
+    pub(super) fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64) {
         let swing = 2.0 * self.request.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
         self.rows.add_between(limit, point, terms, low, high, swing);
     }
@@ -204,20 +230,22 @@ impl Build<'_> {
         }
         let condition: &Dual<LOCAL> = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
-        self.add_between(Limit::Conditioning, i, &self.terms(i, &condition.gradient), -spare, f64::INFINITY);
+        let terms = self.terms(i, &condition.gradient, |lean| lean.inverse_condition);
+        self.add_between(Limit::Conditioning, i, &terms, -spare, f64::INFINITY);
         if self.problem.constraints.min_base_distance > 0.0 {
             let spare = local.state.base_distance.value - self.problem.constraints.min_base_distance;
-            let terms = self.terms(i, &local.state.base_distance.gradient);
+            let terms = self.terms(i, &local.state.base_distance.gradient, |lean| lean.base_distance);
             self.add_between(Limit::BaseDistance, i, &terms, -spare, f64::INFINITY);
         }
         // Where the placement stays, the part and what stands in the cell stay as far apart.
         let pose_stays = self.request.pose_stays;
-        for slack in local.slacks.iter().filter(|slack| slack.is_of_joints || !pose_stays) {
-            self.add_between(slack.limit, i, &self.terms(i, &slack.slopes), -slack.spare(), f64::INFINITY);
+        for (k, slack) in local.slacks.iter().enumerate().filter(|(_, slack)| slack.is_of_joints || !pose_stays) {
+            let terms = self.terms(i, &slack.slopes, |lean| lean.slacks.get(k).copied().unwrap_or_default());
+            self.add_between(slack.limit, i, &terms, -slack.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {
             let q = local.joints[j];
-            let terms = self.terms(i, &local.state.joints[j].gradient);
+            let terms = self.terms(i, &local.state.joints[j].gradient, |lean| lean.joints[j]);
             self.add_between(Limit::Joint(j as u8 + 1), i, &terms, joint.min - q, joint.max - q);
         }
     }
@@ -239,7 +267,11 @@ impl Build<'_> {
         };
         for sign in signs {
             let slope: [f64; LOCAL] = std::array::from_fn(|k| (sign * c.gradient[k] + u.gradient[k]) / unit);
-            let row = self.terms(i, &slope).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
+            let lean = |lean: &LeanSlopes| {
+                let of = &lean.sets[set];
+                [0, 1].map(|k| (sign * of.scored[k] + of.added[k]) / unit)
+            };
+            let row = self.terms(i, &slope, lean).into_iter().chain([(epigraph, -1.0)]).chain(own.iter().copied());
             self.rows.add(row, -(sign * c.value + u.value) / unit);
         }
     }
@@ -265,6 +297,8 @@ impl Build<'_> {
                     true => row.push((column, here[4] - there[4])),
                     false => row.extend([(column, here[4]), (last, -there[4])]),
                 }
+                row.extend(self.lean_terms(i, 1.0, |lean| lean.joints[j]));
+                row.extend(self.lean_terms(i - 1, -1.0, |lean| lean.joints[j]));
                 let step = at.joints[j] - before.joints[j];
                 self.step_size(step, &row);
                 self.add_between(Limit::JointStep(j as u8 + 1), i, &row, -limits[j] - step, limits[j] - step);
@@ -308,6 +342,10 @@ impl Build<'_> {
             self.rows.add([(BETA + i, 1.0)], trust);
             self.rows.add([(BETA + i, -1.0)], trust);
         }
+        for column in self.leans.iter().flatten().flat_map(|column| [*column, *column + 1]) {
+            self.rows.add([(column, 1.0)], trust);
+            self.rows.add([(column, -1.0)], trust);
+        }
     }
 
     /// The largest score is above that of every point.
@@ -326,11 +364,12 @@ impl Build<'_> {
     fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
         let (norms, unit) = (self.norms(), self.unit);
         let mut cones = Vec::with_capacity(self.kinked.len());
-        for (place, ((i, _), vector)) in self.kinked.iter().enumerate() {
+        for (place, ((i, set), (which, vector))) in self.kinked.iter().enumerate() {
             self.rows.add([(norms + place, -1.0)], 0.0);
-            for entry in *vector {
+            for (k, entry) in vector.iter().enumerate() {
                 let slopes = entry.gradient.map(|slope| -slope / unit);
-                self.rows.add(self.terms(*i, &slopes), entry.value / unit);
+                let lean = |lean: &LeanSlopes| lean.sets[*set].kinked[*which][k].map(|slope| -slope / unit);
+                self.rows.add(self.terms(*i, &slopes, lean), entry.value / unit);
             }
             cones.push(SecondOrderConeT(1 + vector.len()));
         }
@@ -356,7 +395,7 @@ impl Build<'_> {
         let copies = self.copies() as f64;
         let (shares, total) = (self.shares(), self.problem.total_weight());
         let mut quadratic = match request.curved {
-            true => curvature(self.locals, &self.betas, &shares, unit * total),
+            true => curvature(self.locals, &self.betas, &self.leans, &shares, unit * total),
             false => Triplets::default(),
         };
         match self.aggregate() {
@@ -388,9 +427,11 @@ impl Build<'_> {
                 pose_gradient[k] = -found.z[k] * unit;
             }
         }
+        let lean = |column: &Option<usize>| column.map_or([0.0; 2], |column| [found.x[column], found.x[column + 1]]);
         Ok(SubproblemStep {
             placement: pose,
             betas: self.betas.iter().map(|column| found.x[*column]).collect(),
+            leans: if self.lean_count == 0 { Vec::new() } else { self.leans.iter().map(lean).collect() },
             promised: ((1.0 - value) * unit).max(0.0),
             pose_gradient,
             multipliers: bounds.into_iter().map(|(row, (side, point))| (side, point, found.z[row] * unit)).collect(),

@@ -195,6 +195,12 @@ fn name_of(Side { limit, is_upper }: Side) -> String {
         Limit::BaseDistance => "base_distance".to_owned(),
         Limit::Clearance(_) => "clearance".to_owned(),
         Limit::KeepOut(_) => "keep_out".to_owned(),
+        Limit::Lead => "lead".to_owned(),
+        Limit::Tilt => "tilt".to_owned(),
+        Limit::MaxLean => "lean".to_owned(),
+        Limit::Scallop => "scallop".to_owned(),
+        Limit::StepOver => "step_over".to_owned(),
+        Limit::ContactTolerance => "contact_tolerance".to_owned(),
     };
     format!("{limit}_{}", if is_upper { "max" } else { "min" })
 }

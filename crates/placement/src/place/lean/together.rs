@@ -7,7 +7,7 @@
 
 use super::{Improved, Job, NEAR, Thinned, path_of, spread};
 use crate::place::axes::{MOST_REFINED, refined};
-use crate::refine::neighbours;
+use crate::refine::{neighbours, solver};
 use rayon::prelude::*;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::Progress;
@@ -41,6 +41,7 @@ impl Job<'_> {
             let stage = "placement, lead and tilt together";
             self.monitor.report(Progress::Steps { stage, done: round, total: ROUNDS });
             let from = best.clone();
+            best = self.by_gradient(&best).unwrap_or(best);
             best = refined(self.problem, &best, self.monitor).unwrap_or(best);
             best = self.near(&best).unwrap_or(best);
             best = self.ahead(&from, best);
@@ -52,6 +53,17 @@ impl Job<'_> {
             }
         }
         best
+    }
+
+    /// Placement, betas, leads and tilts by the gradient in all of them; nothing where that gains nothing.
+    fn by_gradient(&self, known: &Improved) -> Option<Improved> {
+        let set_up = self.problem.in_setup(&known.setup);
+        if set_up.setup.leans.is_empty() || self.monitor.should_stop() {
+            return None;
+        }
+        let (run, leans) = solver::run_leaning(&set_up, &known.solution, solver::Ending::TIGHT, self.monitor);
+        let setup = Setup { leans, ..known.setup.clone() };
+        (run.solution.objective < known.solution.objective).then_some(Improved { setup, solution: run.solution })
     }
 
     /// The leans planned anew about those that are known, at the placement that is known.

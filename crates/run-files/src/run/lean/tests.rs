@@ -48,6 +48,20 @@ fn a_tool_leans_as_its_end_allows() {
     assert!(plane.notes.iter().any(|note| note.contains("lean.step_over_mm bounds that")), "{:?}", plane.notes);
 }
 
+/// Columns of the task are forces on the part; what is stated in the frame of the tool turns with it.
+#[test]
+fn forces_turn_with_the_tool_where_they_are_stated_for_it() {
+    let force = |from: &str, tables: &str| {
+        let folder = folder();
+        let file = folder.path().join("run.toml");
+        std::fs::write(&file, format!("{}{tables}{LEAN}", RUN.replace("task.csv", from))).unwrap();
+        crate::read_run(&file).unwrap().problem.lean.as_deref().unwrap().rule.force
+    };
+    let stated = format!("{BALL}[forces]\nfeed_n = 10\nnormal_n = 20\naxis_n = 5\n");
+    assert_eq!(force("path.csv", &stated), LeanForce::Tool);
+    assert_eq!(force("task.csv", BALL), LeanForce::Feed);
+}
+
 #[test]
 fn what_no_tool_can_do_is_refused() {
     refused(LEAN, None, &["lean: is there without the cutter", "a table [tool]"]);
