@@ -2,10 +2,10 @@
 //!
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
-//! ([`MotionPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
-//! so, and lead and tilt are planned anew, by turns. The best of these are refined in all at once ([`Job::together`]).
-//! External axes stay where they are best with the axis of the path, those that move along it too. A step is only taken
-//! to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
+//! ([`MotionPlanner`]), first over their whole ranges, then off that grid; placement, betas and leans are refined by the
+//! gradient in all of them, and lead and tilt are planned anew, by turns. The best of these are refined further
+//! ([`Job::together`]), with their external axes. A step is only taken to a plan that is better, so that where the axis
+//! of the path is allowed the result is never worse than with it.
 
 mod drawn;
 mod thinned;
@@ -20,6 +20,7 @@ use crate::settings::SearchSettings;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
+use stead_planning::cell::Cell;
 use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS, lean_between};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
@@ -55,9 +56,11 @@ struct Job<'a> {
 /// How the tool leans best at a placement, with the plan; none where no lean that was tried has one.
 pub(super) fn leaned_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<Improved> {
     let space = problem.lean.as_deref()?;
-    let job = Job { problem, space, monitor };
+    let pinned = problem.in_cell(Cell::at(placement));
+    let job = Job { problem: &pinned, space, monitor };
     let best = job.at(&problem.setup, placement, None)?;
-    Some(job.with_axes(best))
+    let best = job.with_axes(job.by_gradient(&best).unwrap_or(best));
+    Some(job.by_gradient(&best).unwrap_or(best))
 }
 
 impl Job<'_> {
@@ -136,7 +139,9 @@ impl Job<'_> {
             if self.monitor.should_stop() {
                 break;
             }
-            let Some(moved) = refined(self.problem, &best, self.monitor) else { break };
+            let by_gradient = self.by_gradient(&best);
+            let from = by_gradient.as_ref().unwrap_or(&best);
+            let Some(moved) = refined(self.problem, from, self.monitor).or(by_gradient) else { break };
             let placement = moved.solution.placement;
             best = self.at(&moved.setup.clone(), &placement, Some(moved)).unwrap_or(best);
             if before - best.solution.objective < GAIN * before {
@@ -322,12 +327,16 @@ pub(super) fn place_leaned(
     let worst = match &closed {
         Ok(outcome) => outcome.cases.worst.as_ref().map(|worst| {
             let known = &worst.best;
-            let found = (!monitor.should_stop()).then(|| job.at(&known.setup, &known.placement, None)).flatten();
+            let at = || leaned_at(&without_tie_rule.in_setup(&known.setup), &known.placement, monitor);
+            let found = (!monitor.should_stop()).then(at).flatten();
             found.map_or_else(|| worst.clone(), |found| cases(found, Sense::Max))
         }),
         Err(_) => {
             let drawn = worst_drawn.filter(|_| settings.worst);
-            let found = drawn.and_then(|(setup, placement)| job.at(&setup, &placement, None));
+            let at = |(setup, placement): (Setup, Placement)| {
+                leaned_at(&without_tie_rule.in_setup(&setup), &placement, monitor)
+            };
+            let found = drawn.and_then(at);
             found.map(|found| cases(found, Sense::Max))
         }
     };

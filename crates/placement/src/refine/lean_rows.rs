@@ -10,8 +10,8 @@ use stead_planning::limit::{Limit, Side};
 
 /// Leans that are apart by this tell slopes. rad
 const STEP: f64 = 1e-6;
-/// The linear model of a turn may use this share of what is allowed.
-const KEPT: f64 = 0.999;
+/// The linear model of a turn may use this share of what is allowed: a step leaves it by its square.
+const KEPT: f64 = 0.98;
 
 /// Columns of the changes of lead at each point, those of tilt behind them, from a first one; none where the tool keeps
 /// its axis. With how many there are.
@@ -99,7 +99,8 @@ impl Build<'_> {
             }
             let side = Side { limit: Limit::ContactTolerance, is_upper: true };
             self.rows.bounds.push((self.rows.bound.len(), (side, point)));
-            self.rows.add([], most.max(turn.norm()));
+            // A turn that is beyond it already goes back a little.
+            self.rows.add([], most.max(turn.norm() - self.request.trust / 2.0));
             for k in 0..3 {
                 let of = |column: Option<usize>, slopes: &[Vector3<f64>; 2], sign: f64| {
                     let terms = column.map(|column| [(column, sign * slopes[0][k]), (column + 1, sign * slopes[1][k])]);

@@ -6,8 +6,10 @@ use super::linearise::{Differentiated, DifferentiatedSet, Followed, gradient};
 use super::slacks::room_slopes;
 use nalgebra::{Matrix2, Matrix5, SMatrix, SymmetricEigen};
 use stead_model::robot::Posture;
+use stead_model::task::ToolPath;
 use stead_model::task::lean::Lean;
 use stead_numerics::scalar::Dual;
+use stead_planning::lean::LeanSpace;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::Setup;
 
@@ -154,16 +156,38 @@ fn curvature(followed: &Followed, centre: &Differentiated, there: &[Differentiat
     eigen.eigenvectors * Curvature7::from_diagonal(&positive) * eigen.eigenvectors.transpose()
 }
 
-/// How the tool leans at every point of a solution, moved by steps of lead and tilt (rad), if it may lean so at every
-/// point and turn so between them.
+/// How the tool leans at every point of a solution, moved by steps of lead and tilt (rad) as far as its limits at each
+/// point allow; none where it may not turn so between two of them.
 pub(super) fn moved_leans(problem: &Problem, steps: &[[f64; 2]]) -> Option<Vec<Lean>> {
     let space = problem.lean.as_deref()?;
     let path = problem.task.upright().path();
     let moved = |(point, (lean, step)): (usize, (&Lean, &[f64; 2]))| {
-        let lean = space.ranges[point].nearest(&Lean { lead: lean.lead + step[0], tilt: lean.tilt + step[1] });
-        space.allows(path, point, &lean).then_some(lean)
+        let to = space.ranges[point].nearest(&Lean { lead: lean.lead + step[0], tilt: lean.tilt + step[1] });
+        allowed_towards(space, path, point, [lean, &to])
     };
     let leans: Vec<Lean> = problem.setup.leans.iter().zip(steps).enumerate().map(moved).collect::<Option<_>>()?;
     let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
     steps.all(|point| space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
 }
+
+/// A lean near one that is wanted, if that is not allowed: on the way to it from the axis of the path, or where that is
+/// not allowed either, from the lean that is known. Along a limit that is curved a straight step leaves by its square.
+fn allowed_towards(space: &LeanSpace, path: &ToolPath, point: usize, [known, to]: [&Lean; 2]) -> Option<Lean> {
+    if space.allows(path, point, to) {
+        return Some(*to);
+    }
+    let from = if space.allows(path, point, &Lean::NONE) { &Lean::NONE } else { known };
+    let at = |share: f64| Lean {
+        lead: from.lead + share * (to.lead - from.lead),
+        tilt: from.tilt + share * (to.tilt - from.tilt),
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let half = (low + high) / 2.0;
+        if space.allows(path, point, &at(half)) { low = half } else { high = half }
+    }
+    Some(at(low)).filter(|lean| space.allows(path, point, lean))
+}
+
+/// How often the way to a lean that is not allowed is halved.
+const HALVINGS: usize = 40;

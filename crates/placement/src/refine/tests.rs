@@ -1,5 +1,7 @@
 //! The refinement: exact gradients, never worse, never infeasible.
 
+mod leaning;
+
 use super::slacks::NEAR_STEPS;
 use super::*;
 use nalgebra::DMatrix;

@@ -1,7 +1,7 @@
 //! Placement, leans and betas refined together.
 //!
-//! With the tool leaning as planned, placement and betas are refined by the gradient; then lead, tilt and beta are
-//! planned anew about the leans that are known, and what both changed is followed further, placement and leans at once.
+//! With the tool leaning as planned, placement, betas, leads and tilts are refined by the gradient; then lead, tilt and
+//! beta are planned anew about the leans that are known, and what both changed is followed further.
 //! When that gains nothing, the placements before and behind along x, y, z and yaw are tried, each with leans planned
 //! anew for it: the end is a placement of which no such neighbour is better with the best leans near the ones known.
 
@@ -56,9 +56,10 @@ impl Job<'_> {
     }
 
     /// Placement, betas, leads and tilts by the gradient in all of them; nothing where that gains nothing.
-    fn by_gradient(&self, known: &Improved) -> Option<Improved> {
+    pub(super) fn by_gradient(&self, known: &Improved) -> Option<Improved> {
         let set_up = self.problem.in_setup(&known.setup);
-        if set_up.setup.leans.is_empty() || self.monitor.should_stop() {
+        let is_long = self.problem.task.points().len() > MOST_REFINED;
+        if set_up.setup.leans.is_empty() || is_long || self.monitor.should_stop() {
             return None;
         }
         let (run, leans) = solver::run_leaning(&set_up, &known.solution, solver::Ending::TIGHT, self.monitor);
