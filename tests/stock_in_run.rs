@@ -114,7 +114,7 @@ fn a_leaning_ball_has_the_forces_of_a_task_that_leans() {
         let place = ["--x-mm=0", "--y-mm=-1940", "--z-mm=-400", "--yaw-deg=0"];
         let ended = bench.stead(&[&["score", RUN, "--out", "out", "--json"][..], &place].concat());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let forces = bench.read("out/best.csv");
+        let forces = bench.read("out/best-plan.csv");
         let names: Vec<&str> = forces.lines().next().unwrap().split(',').collect();
         let column = names.iter().position(|name| *name == "force_x_n").unwrap();
         let force = |line: &str| -> [f64; 3] {

@@ -189,8 +189,8 @@ impl LeanSpace {
     }
 
     /// How far a lean is from what bounds it beside its range, in the order of [`LeanSpace::LIMITS`]: by how much it is
-    /// less than the largest angle (rad), by which share the ridge is lower than it may be, and, where a plane stays, by
-    /// how much the contact is less far aside than half the distance between passes (m); none where nothing is set.
+    /// less than the largest angle (rad), by which share the ridge is lower than it may be, and, where a plane stays,
+    /// by how much the contact is less far aside than half the distance between passes (m); none where nothing is set.
     pub fn margins(&self, path: &ToolPath, point: usize, lean: &Lean) -> [Option<f64>; 3] {
         let angle = self.max_lean.map(|max| max - lean.angle());
         let ridge = self.scallop.and_then(|most| Some(1.0 - self.rule.end.scallop(lean, self.step_over)? / most));

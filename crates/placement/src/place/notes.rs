@@ -88,7 +88,7 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
         notes.push(match space.rule.force {
             _ if problem.task.has_lean_forces() => {
                 "forces are those of the tool as it leans: computed from the stock for five values of lead and of tilt at every point, the \
-                 tool leaning so all along, and straight between them"
+                 tool leaning so all along, and straight between them; stock, engagement and chips are shown for the axis of the path"
                     .to_owned()
             }
             LeanForce::Feed => format!(

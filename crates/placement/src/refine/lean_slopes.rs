@@ -133,8 +133,8 @@ pub(super) struct PointOfSolution<'a> {
     pub followed: &'a Followed,
 }
 
-/// Second derivatives in all variables without their negative part: those by placement and beta as they are known, those
-/// with lead and tilt by differences of slopes and of values.
+/// Second derivatives in all variables without their negative part: those by placement and beta as they are known,
+/// those with lead and tilt by differences of slopes and of values.
 fn curvature(followed: &Followed, centre: &Differentiated, there: &[Differentiated], raw: &Matrix5<f64>) -> Curvature7 {
     let mut hessian = Curvature7::zeros();
     hessian.fixed_view_mut::<5, 5>(0, 0).copy_from(raw);

@@ -196,8 +196,8 @@ pub(super) fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], postur
     Some(Differentiated { state: found, sets })
 }
 
-/// What second derivatives are taken of: where |c_i| is smooth, with the signs of the parts as they are, and near a kink
-/// along the present direction of the vector, whose norm is the subproblem's.
+/// What second derivatives are taken of: where |c_i| is smooth, with the signs of the parts as they are, and near a
+/// kink along the present direction of the vector, whose norm is the subproblem's.
 pub(super) struct Followed {
     /// The sets of compliances that count.
     counted: Vec<usize>,

@@ -65,8 +65,8 @@ pub(super) fn slacks(
     linearised(scene, kinds, within, placement, beta, poses)
 }
 
-/// How the slacks of a state ([`slacks`]) change with lead and tilt, from problems in which the tool leans by a step (rad)
-/// more in each: in the order of the slacks. m/rad
+/// How the slacks of a state ([`slacks`]) change with lead and tilt, from problems in which the tool leans by a step
+/// (rad) more in each: in the order of the slacks. m/rad
 #[allow(clippy::too_many_arguments, reason = "a state, and its neighbours")]
 pub(super) fn room_slopes(
     problem: &Problem,

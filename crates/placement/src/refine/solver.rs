@@ -1,7 +1,7 @@
 //! The sequential convex programme for the best placement, as an argmin solver.
 //!
-//! The iterate is the [`Solution`] itself, a placement with its plan, and, where lead and tilt are variables too, how the
-//! tool leans. It only gets better. argmin's executor runs the solver, so its observers and its termination apply.
+//! The iterate is the [`Solution`] itself, a placement with its plan, and, where lead and tilt are variables too, how
+//! the tool leans. It only gets better. argmin's executor runs the solver, so its observers and its termination apply.
 
 use super::super::outcome::RefinementStatus;
 use super::lean_slopes::moved_leans;

@@ -66,9 +66,12 @@ pub fn solve<'p>(
 ) -> Result<SubproblemStep, Unsolved> {
     let vectors = |(i, local): (usize, &'p Local)| {
         let sets = local.sets.iter().enumerate();
-        sets.flat_map(move |(set, of)| [(0, &of.changes[..]), (1, &of.parts[..])].map(|vector| ((i, set), vector)))
+        sets.flat_map(move |(set, of)| {
+            let both = [(0, &of.changes[..]), (1, &of.parts[..])];
+            both.map(|(which, vector)| Kinked { place: (i, set), which, vector })
+        })
     };
-    let kinked = locals.iter().enumerate().flat_map(vectors).filter(|(_, (_, vector))| !vector.is_empty()).collect();
+    let kinked = locals.iter().enumerate().flat_map(vectors).filter(|kinked| !kinked.vector.is_empty()).collect();
     let (leans, lean_count) = lean_columns(locals.iter().map(|local| local.leaning.is_some()), BETA + locals.len());
     let rows = Rows::default();
     let mut build = Build {
@@ -100,17 +103,25 @@ pub fn solve<'p>(
     build.answered(&cones)
 }
 
+/// A vector in the score of a point whose norm has its kink near.
+struct Kinked<'a> {
+    /// The point, and the set of compliances.
+    place: (usize, usize),
+    /// Which of its two vectors: the changes of the margin, or the parts.
+    which: usize,
+    vector: &'a [Dual<LOCAL>],
+}
+
 /// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each
-/// of the n points, those of lead and tilt where the tool may lean otherwise, the score of each point (the epigraph variables), the norms that have a kink there, and the largest
-/// score where that is minimised.
+/// of the n points, those of lead and tilt where the tool may lean otherwise, the score of each point (the epigraph
+/// variables), the norms that have a kink there, and the largest score where that is minimised.
 pub(super) struct Build<'a> {
     pub problem: &'a Problem,
     pub solution: &'a Solution,
     locals: &'a [Local],
     pub request: StepRequest,
-    /// Points, and sets of compliances, whose score has the norm of a vector in it that needs a second-order cone.
-    /// With which of its two vectors it is.
-    kinked: Vec<((usize, usize), (usize, &'a [Dual<LOCAL>]))>,
+    /// Vectors in scores whose norm needs a second-order cone.
+    kinked: Vec<Kinked<'a>>,
     /// Scores are in this unit. m
     unit: f64,
     pub rows: Rows,
@@ -256,8 +267,8 @@ impl Build<'_> {
         let scores = self.scores_of(i);
         let epigraph = scores.start + set % self.copies();
         let norms = self.norms();
-        let first = self.kinked.partition_point(|(place, _)| *place < (i, set));
-        let own = self.kinked[first..].iter().take_while(|(place, _)| *place == (i, set)).count();
+        let first = self.kinked.partition_point(|kinked| kinked.place < (i, set));
+        let own = self.kinked[first..].iter().take_while(|kinked| kinked.place == (i, set)).count();
         let own: Vec<(usize, f64)> = (first..first + own).map(|place| (norms + place, 1.0)).collect();
         let (c, u) = (&local.scored, &local.added);
         let signs: &[f64] = match self.problem.criterion.weights.is_single() {
@@ -364,7 +375,7 @@ impl Build<'_> {
     fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
         let (norms, unit) = (self.norms(), self.unit);
         let mut cones = Vec::with_capacity(self.kinked.len());
-        for (place, ((i, set), (which, vector))) in self.kinked.iter().enumerate() {
+        for (place, Kinked { place: (i, set), which, vector }) in self.kinked.iter().enumerate() {
             self.rows.add([(norms + place, -1.0)], 0.0);
             for (k, entry) in vector.iter().enumerate() {
                 let slopes = entry.gradient.map(|slope| -slope / unit);
