@@ -23,6 +23,7 @@
 pub mod active;
 mod agreement;
 pub mod ascent;
+mod kinks;
 mod lean_rows;
 pub mod lean_slopes;
 pub mod linearise;
@@ -31,6 +32,7 @@ mod rows;
 pub mod slacks;
 pub mod solver;
 pub mod subproblem;
+mod travel;
 
 pub use agreement::found_again;
 

@@ -9,17 +9,18 @@
 //! s_i is not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no
 //! obstacle either; likewise for the norm of the parts where several directions are scored.
 
+use super::kinks::Kinked;
 use super::lean_rows::lean_columns;
 use super::lean_slopes::LeanSlopes;
 use super::linearise::{Curvature, Local, linearise};
 use super::programme::{Unsolved, pose_bounds, programme};
 use super::rows::{Rows, Triplets, curvature};
 use super::slacks::NEAR_STEPS;
+use super::travel::Travel;
 use super::{LOCAL, Solution, UNITS};
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{NonnegativeConeT, SecondOrderConeT, SupportedConeT, ZeroConeT};
+use clarabel::solver::{NonnegativeConeT, SupportedConeT, ZeroConeT};
 use std::ops::Range;
-use stead_numerics::scalar::Dual;
 use stead_planning::criterion::Aggregate;
 use stead_planning::limit::{Limit, Side};
 use stead_planning::problem::{BetaPlan, Problem};
@@ -103,27 +104,18 @@ pub fn solve<'p>(
     build.answered(&cones)
 }
 
-/// A vector in the score of a point whose norm has its kink near.
-struct Kinked<'a> {
-    /// The point, and the set of compliances.
-    place: (usize, usize),
-    /// Which of its two vectors: the changes of the margin, or the parts.
-    which: usize,
-    vector: &'a [Dual<LOCAL>],
-}
-
 /// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each
 /// of the n points, those of lead and tilt where the tool may lean otherwise, the score of each point (the epigraph
 /// variables), the norms that have a kink there, and the largest score where that is minimised.
 pub(super) struct Build<'a> {
     pub problem: &'a Problem,
     pub solution: &'a Solution,
-    locals: &'a [Local],
+    pub locals: &'a [Local],
     pub request: StepRequest,
     /// Vectors in scores whose norm needs a second-order cone.
-    kinked: Vec<Kinked<'a>>,
+    pub kinked: Vec<Kinked<'a>>,
     /// Scores are in this unit. m
-    unit: f64,
+    pub unit: f64,
     pub rows: Rows,
     /// Column of the change of beta at each point.
     betas: Vec<usize>,
@@ -131,7 +123,7 @@ pub(super) struct Build<'a> {
     pub leans: Vec<Option<usize>>,
     /// Number of both in all.
     lean_count: usize,
-    travel: Travel,
+    pub travel: Travel,
 }
 
 /// The entries of the columns of lead and tilt of a point, where it has them.
@@ -148,26 +140,6 @@ fn beta_columns(problem: &Problem) -> Vec<usize> {
         BetaPlan::Constant => vec![BETA; span.len()],
     };
     problem.task.segments().iter().flat_map(of_segment).collect()
-}
-
-/// The joint travel in the objective. Where a step of a joint may change its direction inside the trust region, one
-/// more variable is not less than its size; elsewhere it is linear.
-#[derive(Debug, Default)]
-struct Travel {
-    /// What a radian of it counts. Units of the objective
-    weight: f64,
-    /// What it is at the solution, but for steps with a variable. Units of the objective
-    here: f64,
-    /// How that changes with the variables.
-    slopes: Vec<(usize, f64)>,
-    /// Variables that are sizes of steps.
-    sizes: usize,
-}
-
-impl Travel {
-    fn new(problem: &Problem, unit: f64) -> Self {
-        Self { weight: problem.travel_weight() / unit, ..Self::default() }
-    }
 }
 
 impl Build<'_> {
@@ -188,12 +160,12 @@ impl Build<'_> {
     }
 
     /// Column of the first norm with a kink.
-    fn norms(&self) -> usize {
+    pub(super) fn norms(&self) -> usize {
         self.epigraph() + self.copies() * self.locals.len()
     }
 
     /// Column of the first size of a joint's step.
-    fn sizes(&self) -> usize {
+    pub(super) fn sizes(&self) -> usize {
         self.norms() + self.kinked.len()
     }
 
@@ -207,7 +179,12 @@ impl Build<'_> {
     }
 
     /// A gradient by placement and beta, and slopes by lead and tilt, as entries of the columns of point `i`.
-    fn terms(&self, i: usize, gradient: &[f64; LOCAL], lean: impl Fn(&LeanSlopes) -> [f64; 2]) -> Vec<(usize, f64)> {
+    pub(super) fn terms(
+        &self,
+        i: usize,
+        gradient: &[f64; LOCAL],
+        lean: impl Fn(&LeanSlopes) -> [f64; 2],
+    ) -> Vec<(usize, f64)> {
         let own = (0..4).map(|k| (k, gradient[k])).chain([(self.betas[i], gradient[4])]);
         own.chain(self.lean_terms(i, 1.0, lean)).collect()
     }
@@ -239,7 +216,7 @@ impl Build<'_> {
             self.rows.bounds.push((self.rows.bound.len(), (side, i)));
             self.rows.add(scores.map(|column| (column, share)), limit / unit);
         }
-        let condition: &Dual<LOCAL> = &local.state.inverse_condition;
+        let condition = &local.state.inverse_condition;
         let spare = condition.value - self.problem.constraints.min_inverse_condition;
         let terms = self.terms(i, &condition.gradient, |lean| lean.inverse_condition);
         self.add_between(Limit::Conditioning, i, &terms, -spare, f64::INFINITY);
@@ -317,27 +294,6 @@ impl Build<'_> {
         }
     }
 
-    /// Counts the size of a joint's step (rad), where joint travel counts.
-    fn step_size(&mut self, step: f64, row: &[(usize, f64)]) {
-        if self.travel.weight == 0.0 {
-            return;
-        }
-        let swing = self.request.trust * row.iter().map(|(_, v)| v.abs()).sum::<f64>();
-        if step.abs() > swing {
-            let weight = self.travel.weight * step.signum();
-            self.travel.here += weight * step;
-            self.travel.slopes.extend(row.iter().map(|(column, slope)| (*column, weight * slope)));
-            return;
-        }
-        let size = self.sizes() + self.travel.sizes;
-        self.travel.sizes += 1;
-        self.travel.slopes.push((size, self.travel.weight));
-        for sign in [1.0, -1.0] {
-            let terms = row.iter().map(|(column, slope)| (*column, sign * slope)).chain([(size, -1.0)]);
-            self.rows.add(terms, -sign * step);
-        }
-    }
-
     /// The cell, and how far the placement and every beta may go in one step.
     fn trust_region(&mut self) {
         let trust = self.request.trust;
@@ -369,22 +325,6 @@ impl Build<'_> {
                 self.rows.add(scores.chain([(largest, -1.0)]), 0.0);
             }
         }
-    }
-
-    /// One second-order cone for each norm with a kink.
-    fn cones(&mut self) -> Vec<SupportedConeT<f64>> {
-        let (norms, unit) = (self.norms(), self.unit);
-        let mut cones = Vec::with_capacity(self.kinked.len());
-        for (place, Kinked { place: (i, set), which, vector }) in self.kinked.iter().enumerate() {
-            self.rows.add([(norms + place, -1.0)], 0.0);
-            for (k, entry) in vector.iter().enumerate() {
-                let slopes = entry.gradient.map(|slope| -slope / unit);
-                let lean = |lean: &LeanSlopes| lean.sets[*set].kinked[*which][k].map(|slope| -slope / unit);
-                self.rows.add(self.terms(*i, &slopes, lean), entry.value / unit);
-            }
-            cones.push(SecondOrderConeT(1 + vector.len()));
-        }
-        cones
     }
 
     /// What a change of each point's score counts in the objective, to first order, times the sum of all weights: none
