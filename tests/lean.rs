@@ -110,7 +110,7 @@ fn the_map_over_lead_and_tilt_is_that_of_the_search(bench: &Bench) {
     let stopped = Monitor::silent();
     stopped.stop_handle().stop();
     score.map(&stopped);
-    let files: Vec<_> = score.files().unwrap().into_iter().map(|(name, _)| name).collect();
+    let files: Vec<_> = score.to_files().unwrap().into_iter().map(|(name, _)| name).collect();
     assert!(files.iter().any(|name| name == "deflection-map.csv") && !files.iter().any(|name| name == "lean-map.csv"));
     let last = score.warnings().last().unwrap().to_string();
     assert!(score.score().interrupted && last.contains("the map over lead and tilt is left out"), "{last}");
