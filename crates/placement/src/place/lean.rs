@@ -2,8 +2,9 @@
 //!
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
-//! ([`MotionPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool leaning
-//! so, and lead and tilt are planned anew, by turns. The best of these are refined in all at once ([`Job::together`]).
+//! ([`MotionPlanner`]), first over their whole ranges, then off that grid; the placement is refined with the tool
+//! leaning so, and lead and tilt are planned anew, by turns. The best of these are refined in all at once
+//! ([`Job::together`]).
 //! External axes stay where they are best with the axis of the path, those that move along it too. A step is only taken
 //! to a plan that is better, so that where the axis of the path is allowed the result is never worse than with it.
 

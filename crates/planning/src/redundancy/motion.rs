@@ -88,8 +88,8 @@ struct Link {
     shift: i16,
 }
 
-/// Space of one thread for the states of a point in a setting: their own scores, the smallest costs of ways to them, and
-/// the steps of beta back along these.
+/// Space of one thread for the states of a point in a setting: their own scores, the smallest costs of ways to them,
+/// and the steps of beta back along these.
 #[derive(Debug, Default)]
 struct Reached {
     own: Vec<f64>,
@@ -299,8 +299,8 @@ impl<'a> MotionPlanner<'a> {
         forbidden[setting].apply(point, states);
     }
 
-    /// Takes the cheapest states before, over all settings, for the states of a point in one of them; false when none is
-    /// reached.
+    /// Takes the cheapest states before, over all settings, for the states of a point in one of them; false when none
+    /// is reached.
     fn reach(
         &self,
         (point, setting, class): (usize, usize, PostureClass),

@@ -84,7 +84,7 @@ impl Removed {
             Ok(LeanForces::new((0..task.points().len()).map(of_point).collect())?)
         };
         let forces = source.sources.made(key, make).map_err(|error: ForcesError| self.run.located(&error))?;
-        Ok(task.with_lean_forces((*forces).clone()).map_err(|error| self.run.located(&error.into()))?)
+        task.with_lean_forces((*forces).clone()).map_err(|error| self.run.located(&error.into()))
     }
 }
 

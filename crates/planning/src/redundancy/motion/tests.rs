@@ -1,5 +1,5 @@
-//! The plan over (beta, lead, tilt, external axes) against a reference: every pair of neighbouring states, with the limits tested one
-//! by one, and every state with the tool leaning there and nowhere else.
+//! The plan over (beta, lead, tilt, external axes) against a reference: every pair of neighbouring states, with the
+//! limits tested one by one, and every state with the tool leaning there and nowhere else.
 
 use super::*;
 use crate::cell::Interval;
