@@ -38,16 +38,19 @@ impl PlacementScore {
         &self.score
     }
 
-    /// Makes the deflection map of the placement, to be written with the plans; does nothing where the run file does
-    /// without. A stop that the monitor asks for leaves out the map of a long path.
+    /// Makes the deflection map of the placement and, where the tool may lean, the map over lead and tilt, to be
+    /// written with the plans; does nothing where the run file does without. A stop that the monitor asks for leaves
+    /// out that over lead and tilt, and of a long path both.
     pub fn map(&mut self, monitor: &Monitor) {
         if !self.run.maps {
             return;
         }
         self.map = feasibility::deflection_map(&self.run.problem, &self.score.placement, monitor);
-        if self.map.is_none() {
-            self.context.warnings.push(left_out("the deflection map is"));
-        }
+        let left_out = match self.map {
+            Some(_) => self.score.map_leans(&self.run.problem, monitor),
+            None => Some(left_out("the deflection map is")),
+        };
+        self.context.warnings.extend(left_out);
         self.score.interrupted |= monitor.should_stop();
     }
 

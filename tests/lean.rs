@@ -3,6 +3,7 @@
 
 use crate::common::{Bench, Ended};
 use serde_json::Value;
+use stead::{Monitor, Run};
 
 const RUN: &str = "configs/leaning-tool.toml";
 
@@ -61,6 +62,7 @@ fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let again = ok(&bench, &["score", RUN, "--placement-of", "leaned", "--json"]).json();
     let again = again["best"]["objective_mm"].as_f64().unwrap();
     assert!((again / leaned - 1.0).abs() < 1e-3, "{again} {leaned}");
+    the_map_over_lead_and_tilt_is_that_of_the_search(&bench);
     ok(&bench, &["export", RUN, "leaned/best.csv", "--approach-mm", "0", "--format", "csv", "--out", "program/part"]);
     the_program_touches_where_the_task_does(&bench);
     let refused = bench.stead(&["place", RUN, "--certify", "5", "--no-page", "--out", "certified"]);
@@ -91,6 +93,27 @@ fn every_lean_has_a_score_or_a_reason(bench: &Bench) {
         best = best.min(of(&map, row, "score_mm").unwrap_or(f64::INFINITY));
     }
     assert!(best < 1.1 * scores[worst], "{best} {}", scores[worst]);
+}
+
+/// The same placement, read with every digit, gives the same bytes, as the map takes each lean by itself; the page has
+/// them. Without maps it is removed, and a stop leaves it out where the path is too short to leave out the other map.
+fn the_map_over_lead_and_tilt_is_that_of_the_search(bench: &Bench) {
+    let score = ["score", RUN, "--placement-of", "leaned", "--out", "scored"];
+    ok(bench, &score);
+    assert_eq!(bench.read("scored/lean-map.csv"), bench.read("leaned/lean-map.csv"));
+    assert!(bench.read("scored/manifest.json").contains("lean-map.csv"));
+    assert!(bench.read("scored/report.html").contains("\"lean_map\":"));
+    ok(bench, &[&score[..], &["--set", "output.maps=false"]].concat());
+    assert!(bench.path("scored/score.json").exists() && !bench.path("scored/lean-map.csv").exists());
+    let (run, placement) = Run::read(bench.path(RUN)).unwrap().set_up_as_in(bench.path("leaned"), 1).unwrap();
+    let mut score = run.score(&placement, &Monitor::silent()).unwrap();
+    let stopped = Monitor::silent();
+    stopped.stop_handle().stop();
+    score.map(&stopped);
+    let files: Vec<_> = score.to_files().unwrap().into_iter().map(|(name, _)| name).collect();
+    assert!(files.iter().any(|name| name == "deflection-map.csv") && !files.iter().any(|name| name == "lean-map.csv"));
+    let last = score.warnings().last().unwrap().to_string();
+    assert!(score.score().interrupted && last.contains("the map over lead and tilt is left out"), "{last}");
 }
 
 /// The placement is the best one near it, with leads and tilts planned anew at each of the others.

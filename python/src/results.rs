@@ -96,7 +96,7 @@ impl Outcome {
         })
     }
 
-    /// A score with its deflection map; everything else as it is. And whether Ctrl-C stopped it.
+    /// A score with its maps; everything else as it is. And whether Ctrl-C stopped it.
     fn mapped(&self, py: Python<'_>, options: Options) -> PyResult<(Self, bool)> {
         self.extended(py, &options, |kind, monitor| {
             if let Kind::Score(score) = kind {

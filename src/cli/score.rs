@@ -15,7 +15,7 @@ pub(super) struct ScoreOptions {
     pub run: GivenRun,
     #[command(flatten)]
     pub place: GivenPlacement,
-    /// Folder for plans, deflection map, pictures and score.json [default: nothing is written]
+    /// Folder for plans, maps, pictures and score.json [default: nothing is written]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// If it is interrupted, let its results take the place of finished ones, instead of leaving them in
@@ -42,6 +42,10 @@ pub(super) const MANUAL: Manual = Manual {
             "deflection-map.{csv,svg}",
             "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
         ),
+        (
+            "lean-map.csv",
+            "with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
+        ),
         ("placement.svg", "the cell from above with the placement"),
         (
             "report.html, cell.glb, page-data.json",
@@ -56,7 +60,7 @@ pub(super) const MANUAL: Manual = Manual {
     ],
     failed: "the placement is infeasible, with the violated constraints and the path points, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",
-    interrupted: "ended early by Ctrl-C: both plans are there, critical depths and the map of a long path may be left out",
+    interrupted: "ended early by Ctrl-C: both plans are there, critical depths, the map of a long path and that over lead and tilt may be left out",
     ..Manual::NEW
 };
 

@@ -1,8 +1,9 @@
 //! Deflection over lead and tilt at a path point: for every lean the best angle about the tool axis.
 
-use crate::outcome::Case;
+use crate::outcome::{Case, left_out};
 use crate::path_subset::PathSubset;
 use stead_model::task::lean::Lean;
+use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::feasibility::{MapCell, MapReason, deflection_rows};
 use stead_planning::problem::Problem;
@@ -40,8 +41,15 @@ impl LeanReason {
 }
 
 impl LeanMap {
-    /// Of a case of a problem; none where the tool may not lean, or where the caller stops it.
-    pub(crate) fn new(problem: &Problem, case: &Case, monitor: &Monitor) -> Option<Self> {
+    /// Of a case of a problem, where the tool may lean; the caller's stop leaves it out, which is then the warning.
+    pub(crate) fn new(problem: &Problem, case: &Case, monitor: &Monitor) -> (Option<Self>, Option<Warning>) {
+        let map = Self::made(problem, case, monitor);
+        let is_left_out = map.is_none() && problem.lean.is_some() && monitor.should_stop();
+        (map, is_left_out.then(|| left_out("the map over lead and tilt is")))
+    }
+
+    /// None where the tool may not lean, or where the caller stops it.
+    fn made(problem: &Problem, case: &Case, monitor: &Monitor) -> Option<Self> {
         let space = problem.lean.as_deref()?;
         let upright = problem.in_setup(&Setup { leans: [].into(), ..case.setup.clone() });
         let scored = case.plan.points.iter().filter(|at| !space.ranges[at.point].is_none());

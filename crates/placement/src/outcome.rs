@@ -437,10 +437,9 @@ impl Outcome {
             self.warnings.push(left_out("the deflection maps are"));
             return;
         }
-        self.lean_map = LeanMap::new(problem, &self.cases.best, monitor);
-        if self.lean_map.is_none() && problem.lean.is_some() && monitor.should_stop() {
-            self.warnings.push(left_out("the map over lead and tilt is"));
-        }
+        let (lean_map, left_out) = LeanMap::new(problem, &self.cases.best, monitor);
+        self.lean_map = lean_map;
+        self.warnings.extend(left_out);
     }
 
     /// Makes the setup sheet of the best placement. A stop may leave out its tolerances, which is then among the

@@ -166,8 +166,9 @@ class Run:
             case: Case of those results: 1, the best placement, or 3, the worst.
             progress: Called with stage, steps done and steps in all.
             threads: Number of threads; it does not change the result.
-            time_limit_s: After so many seconds the critical depths and the map are left out.
-            deflection_map: Also make the deflection map, as the command does where it writes files.
+            time_limit_s: After so many seconds the critical depths and the maps are left out.
+            deflection_map: Also make the maps, that of the deflection and, where the tool may lean, that over lead and
+                tilt, as the command does where it writes files.
 
         Raises:
             Infeasible: The placement violates constraints.

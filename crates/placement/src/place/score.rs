@@ -3,6 +3,7 @@
 use super::infeasible::{Infeasible, infeasible};
 use super::notes::{self, cancellation};
 use super::plan::{stated, worst_plan};
+use crate::lean_map::LeanMap;
 use crate::outcome::{Case, Cycle, Plan};
 use crate::refine::planned;
 use crate::setup_sheet::SetupSheet;
@@ -25,6 +26,9 @@ pub struct Score {
     pub orientation: Option<String>,
     /// The best and the worst plan.
     pub plans: BySense<Plan>,
+    /// Deflection over lead and tilt at a point of the best plan, where the tool may lean and that was made
+    /// ([`Score::map_leans`]).
+    pub lean_map: Option<LeanMap>,
     /// What a fitter needs to set it up, where that was made ([`Score::make_sheet`]).
     pub sheet: Option<SetupSheet>,
     /// What should be known about the result though nothing is wrong, in sentences.
@@ -51,6 +55,14 @@ impl Score {
             active_bounds: None,
             objective_by_stiffness: None,
         })
+    }
+
+    /// Makes the map over lead and tilt, where the tool may lean. A stop may leave it out, which is then the warning
+    /// that is returned.
+    pub fn map_leans(&mut self, problem: &Problem, monitor: &Monitor) -> Option<Warning> {
+        let (lean_map, left_out) = LeanMap::new(problem, &self.cases().best, monitor);
+        self.lean_map = lean_map;
+        left_out
     }
 
     /// Makes the setup sheet. A stop may leave out its tolerances, which is then the warning that is returned.
@@ -89,6 +101,7 @@ pub fn score(
         setup: problem.setup.clone(),
         orientation: problem.orientation().map(|orientation| orientation.name.clone()),
         notes: notes::of(problem, placement, &plans.best, &cycles.best.feed, monitor),
+        lean_map: None,
         sheet: None,
         plans,
         cycles,

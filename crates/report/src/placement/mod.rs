@@ -192,9 +192,9 @@ fn map_files(
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
 /// `placement.svg`, the setup sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`, with the
-/// map of the placement `deflection-map.csv` and `deflection-map.svg`, and where stability was requested
-/// `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the run does without,
-/// `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
+/// map of the placement `deflection-map.csv` and `deflection-map.svg`, with that over lead and tilt `lean-map.csv`, and
+/// where stability was requested `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the
+/// run does without, `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -209,7 +209,8 @@ pub fn write_score(
     let beside = folder.beside_finished(SCORE, score.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);
     let outdated = if map.is_none() { &SCORE_MAP[..] } else { &[] };
-    let outdated = outdated.iter().copied().chain(problem.scene.is_none().then_some(SURROUNDINGS));
+    let outdated = outdated.iter().copied().chain(score.lean_map.is_none().then_some(LEAN_MAP));
+    let outdated = outdated.chain(problem.scene.is_none().then_some(SURROUNDINGS));
     let outdated = outdated.chain(score.sheet.is_none().then_some(SETUP_SHEET));
     folder.results(SCORE, &context.inputs).interrupted(score.interrupted).without(outdated).write(&files)
 }
@@ -236,6 +237,9 @@ pub fn score_files(
     files.extend(surroundings(problem, &[(&best, "this placement")]));
     if let Some(map) = map {
         files.extend(map_files(problem, map, [&best, &worst], SCORE_MAP, "this placement")?);
+    }
+    if let Some(map) = &score.lean_map {
+        files.push((LEAN_MAP, tables::lean_map(problem, map)?));
     }
     if let Some(stability) = &context.stability {
         let (tables, names) = (["stability-best-plan.csv", "stability-worst-plan.csv"], ["best plan", "worst plan"]);

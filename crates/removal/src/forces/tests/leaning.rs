@@ -20,8 +20,9 @@ fn slot() -> ForcesProblem {
 }
 
 /// Chip and edge part of the mean force, and their moments about the tip, of a ball with an axis: over the half of it
-/// ahead that is below the face of the block. A surface element with the normal n, out of the cutter, at the distance r
-/// from the axis turns a share dA / (2 pi r) of the time in a tooth; its chip per turn is the feed per turn times n . x.
+/// ahead that is below the face of the block. A surface element with the normal n, out of the cutter, at the distance
+/// r from the axis turns a share dA / (2 pi r) of the time in a tooth; its chip per turn is the feed per turn times
+/// n . x.
 fn of_surface(axis: &Vector3<f64>) -> [Wrench; 2] {
     let (radius, depth) = (BALL.0 * 1e-3, BALL.1 * 1e-3);
     let cutter = mill(2.0 * BALL.0, BALL.0, 0.0).cutter;
