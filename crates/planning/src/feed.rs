@@ -231,9 +231,11 @@ impl Limits {
         let point = plan.points.start + place;
         let weights = self.speeds.map(|speed| speed.map_or(0.0, f64::recip));
         let motion = LinearMotion::new(problem, point, plan.posture, weights, ends);
-        let length = motion.length();
+        // Feeds are those of what the tool touches: where it leans otherwise at both ends the tip goes another way.
+        let tip_length = motion.length();
+        let length = tip_length / problem.task.path().tip_share(point);
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
-        let nodes = motion.nodes(ends, spacing / length);
+        let nodes = motion.nodes(ends, spacing / tip_length);
         let is_in_place = problem.task.path().turns_in_place(point);
         let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
         let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));

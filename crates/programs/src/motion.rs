@@ -218,13 +218,14 @@ pub(super) fn moves(
     Ok(moves)
 }
 
-/// The feed on the way to a path point: that of the task, on the way to the first point of a segment that to the next;
-/// of the run where the task has none. m/s
+/// The feed of the tip on the way to a path point, with which the point that the tool touches has that of the task, on
+/// the way to the first point of a segment that to the next; of the run where the task has none. m/s
 fn feed_at(problem: &Problem, point: usize) -> f64 {
     let path = problem.task.path();
     let segment = &path.segments()[path.segment_of(point)];
     let of = if point == segment.start && segment.len() > 1 { point + 1 } else { point };
-    path.feed(of).unwrap_or(problem.redundancy.feed)
+    let share = if of == segment.start { 1.0 } else { path.tip_share(of) };
+    path.feed(of).unwrap_or(problem.redundancy.feed) * share
 }
 
 /// The arm in one place.

@@ -1,6 +1,7 @@
 //! An exported program, as the controller takes its text.
 
 use crate::cell::Cell;
+use crate::path::Point;
 use crate::plan::Plan;
 use crate::values::{Answer, angle_between, placed};
 use crate::verdict::Verdict;
@@ -375,6 +376,10 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
             .speed
             .or(cell.setting("redundancy", "feed_mm_per_s").map(|feed| feed * 1e-3))
             .unwrap_or(f64::NAN);
+        // What the tool touches has the feed of the path: a tip that leans otherwise has another.
+        let way = |points: &[Point]| (points[fed].place - points[fed - 1].place).norm();
+        let is_moved = fed > 0 && cell.points[fed - 1].segment == cell.points[fed].segment && way(&cell.points) > 1e-9;
+        let feed = if is_moved { feed * way(&plan.points) / way(&cell.points) } else { feed };
         let least = if program.feed_slack > 1e-4 { feed.max(1e-3) } else { feed };
         verdict.close("feed of a program (m/s)", at, step.feed, least, program.feed_slack);
         // The arm, followed from where it is.

@@ -4,7 +4,7 @@
 //! stay those of the path.
 
 use super::lean::{Lean, LeanForce, LeanRule};
-use super::{KeptPoint, PathPoint, Task, ToolPath, Wrench};
+use super::{KeptPoint, PathPoint, SAME_PLACE, Task, ToolPath, Wrench};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
@@ -47,13 +47,14 @@ impl ToolPath {
         }
     }
 
-    /// Distance of the tip to a point from the one before, both in one segment: that along the path but for a tool that
-    /// leans. m
-    pub fn tip_length(&self, point: usize) -> f64 {
-        match &self.leaned {
-            Some(_) => (self.points[point].position - self.points[point - 1].position).norm(),
-            None => self.step_length(point),
+    /// How far the tip goes to a point from the one before, both in one segment, over the distance along the path: other
+    /// than 1 for a tool that leans otherwise at both alone.
+    pub fn tip_share(&self, point: usize) -> f64 {
+        let along = self.step_length(point);
+        if self.leaned.is_none() || self.is_thinned() || along < SAME_PLACE {
+            return 1.0;
         }
+        (self.points[point].position - self.points[point - 1].position).norm() / along
     }
 
     /// How the tool leans at every point; none where it does not.

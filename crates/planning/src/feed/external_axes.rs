@@ -13,7 +13,7 @@ pub(super) fn axis_limit(problem: &Problem, segment: usize, plan: &SegmentPlan) 
         let [from, to] = [point - 1, point].map(|point| problem.axis_positions(point));
         let moves = problem.external_axes.iter().zip(from.iter().zip(to)).enumerate();
         let feeds = moves.filter_map(move |(number, (axis, (from, to)))| {
-            Some((axis.max_speed? * problem.task.path().tip_length(point) / (to - from).abs(), number + 7))
+            Some((axis.max_speed? * problem.step_length(point) / (to - from).abs(), number + 7))
         });
         let (feed, joint) = smallest(feeds)?;
         Some(FeedLimit { feed, kind: FeedLimitKind::Speed, joint, segment, point })

@@ -131,8 +131,8 @@ pub(super) fn moves(
     Ok(moves)
 }
 
-/// The feed to each path point, in mm/s: what the task states at it, for the first of a segment what it states at the
-/// next, or the run's.
+/// The feed of the tip to each path point, in mm/s: what the task states at it, for the first of a segment what it
+/// states at the next, or the run's; times the way of the tip over that of the point that the tool touches.
 fn feeds(problem: &Problem) -> Vec<f64> {
     let path = problem.task.path();
     let of_segment = |range: &std::ops::Range<usize>| {
@@ -141,7 +141,13 @@ fn feeds(problem: &Problem) -> Vec<f64> {
         first.into_iter().chain(points.into_iter().skip(1)).collect::<Vec<usize>>()
     };
     let requested = path.segments().iter().flat_map(of_segment);
-    requested.map(|point| path.feed(point).unwrap_or(problem.redundancy.feed) * 1e3).collect()
+    let upright = problem.task.upright().points();
+    let share = |point: usize| {
+        let way = |points: &[PathPoint]| (points[point].position - points[point - 1].position).norm();
+        let is_first = path.segments().iter().any(|range| range.start == point);
+        if is_first || way(upright) < 1e-9 { 1.0 } else { way(path.points()) / way(upright) }
+    };
+    requested.map(|point| path.feed(point).unwrap_or(problem.redundancy.feed) * 1e3 * share(point)).collect()
 }
 
 /// The tool at a path point in the workpiece frame: z against the tool axis, x at beta from the feed towards the left

@@ -60,8 +60,8 @@ impl Plan<'_> {
         let [start, end] = [self.stand(i - 1), self.stand(i)].map(|stand| stand.part.inverse() * stand.tool);
         let turn = (end.rotation * start.rotation.inverse()).scaled_axis();
         let way = (end.translation.vector - start.translation.vector).norm();
-        // By what the path states of the tip, which digits of joint angles do not blur.
-        let told_way = (self.wanted(i).translation.vector - self.wanted(i - 1).translation.vector).norm();
+        // By what the path states of what is touched, which digits of joint angles do not blur.
+        let told_way = self.length(i);
         let most = (0..6).map(|j| (to.joints[j] - from.joints[j]).abs()).fold(0.0, f64::max);
         let steps = (way / 0.01).max(most / 0.02).ceil().clamp(2.0, 60.0) as usize;
         let mut joints = from.joints;
