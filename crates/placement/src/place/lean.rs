@@ -268,6 +268,20 @@ fn slowest(problem: &Problem) -> Option<f64> {
     problem.robot.joints().iter().filter_map(|joint| joint.max_speed).reduce(f64::min)
 }
 
+/// The best and the worst placement in their order, with the tool leaning at both; where they are one, with the better
+/// plan.
+fn in_order(best: Improved, worst: Option<Improved>) -> (Improved, Option<Improved>) {
+    let Some(worst) = worst else { return (best, None) };
+    let is_one = best.solution.placement == worst.solution.placement;
+    let is_in_order = best.solution.objective <= worst.solution.objective;
+    match (is_in_order, is_one) {
+        (true, true) => (best.clone(), Some(best)),
+        (true, false) => (best, Some(worst)),
+        (false, true) => (worst.clone(), Some(worst)),
+        (false, false) => (worst, Some(best)),
+    }
+}
+
 /// The best and the worst placement where the tool may lean, from what was found with the axis of the path.
 ///
 /// # Errors
@@ -320,26 +334,20 @@ pub(super) fn place_leaned(
         let refined = Refined { solution: found.solution, scheme: None };
         stated_cases(&set_up, &Planner::finer(&without_tie_rule), transfer, sense, &refined, monitor)
     };
-    let of_best = cases(best, Sense::Min);
     let upright = closed.as_ref().ok().map(|outcome| outcome.cases.best.plan.objective);
     // The worst placement is the one with the axis of the path, or else of those drawn, with the tool leaning as well
     // as it can there.
-    let worst = match &closed {
-        Ok(outcome) => outcome.cases.worst.as_ref().map(|worst| {
-            let known = &worst.best;
-            let at = || leaned_at(&without_tie_rule.in_setup(&known.setup), &known.placement, monitor);
-            let found = (!monitor.should_stop()).then(at).flatten();
-            found.map_or_else(|| worst.clone(), |found| cases(found, Sense::Max))
-        }),
-        Err(_) => {
-            let drawn = worst_drawn.filter(|_| settings.worst);
-            let at = |(setup, placement): (Setup, Placement)| {
-                leaned_at(&without_tie_rule.in_setup(&setup), &placement, monitor)
-            };
-            let found = drawn.and_then(at);
-            found.map(|found| cases(found, Sense::Max))
-        }
+    let at_worst = match &closed {
+        Ok(outcome) => outcome.cases.worst.as_ref().map(|worst| (worst.best.setup.clone(), worst.best.placement)),
+        Err(_) => worst_drawn.filter(|_| settings.worst),
     };
+    let leaned =
+        |(setup, placement): (Setup, Placement)| leaned_at(&without_tie_rule.in_setup(&setup), &placement, monitor);
+    let worst = at_worst.filter(|_| closed.is_err() || !monitor.should_stop()).and_then(leaned);
+    let (best, worst) = in_order(best, worst);
+    let of_best = cases(best, Sense::Min);
+    let of_closed = || closed.as_ref().ok().and_then(|outcome| outcome.cases.worst.clone());
+    let worst = worst.map(|found| cases(found, Sense::Max)).or_else(of_closed);
     let mut outcome = match closed {
         Ok(outcome) => outcome,
         Err(_) => {
