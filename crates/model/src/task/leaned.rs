@@ -50,8 +50,11 @@ impl ToolPath {
     /// How far the tip goes to a point from the one before, both in one segment, over the distance along the path:
     /// other than 1 for a tool that leans otherwise at both alone.
     pub fn tip_share(&self, point: usize) -> f64 {
+        if self.leaned.is_none() || self.is_thinned() {
+            return 1.0;
+        }
         let along = self.step_length(point);
-        if self.leaned.is_none() || self.is_thinned() || along < SAME_PLACE {
+        if along < SAME_PLACE {
             return 1.0;
         }
         (self.points[point].position - self.points[point - 1].position).norm() / along
