@@ -86,9 +86,12 @@ pub fn score(
     monitor.report(Progress::Steps { stage: "planning", done: 0, total: 1 });
     let planner = Planner::finer(problem).unwanted_after(monitor.unwanted());
     let best = planned(&planner, placement, None, &mut planner.workspace());
-    let (Some(best), Ok(worst)) = (best, worst_plan(&planner, placement, None)) else {
+    let worst = worst_plan(&planner, placement, None);
+    let Some(best) = best.filter(|_| !planner.is_unwanted()) else {
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
+    // A placement with a best plan has a worst one too; in a narrow space the grid may miss it, and the best is both.
+    let worst = worst.unwrap_or_else(|_| best.plans.clone());
     let cancelled = cancellation(problem, best.objective);
     let [best, worst] = [best.plans, worst].map(|plans| stated(problem, placement, transfer, &plans));
     let (plans, cycles) = (BySense { best: best.0, worst: worst.0 }, BySense { best: best.1, worst: worst.1 });

@@ -6,7 +6,7 @@
 //! anew for it: the end is a placement of which no such neighbour is better with the best leans near the ones known.
 
 use super::{Improved, Job, NEAR, Thinned, path_of, spread};
-use crate::place::axes::{MOST_REFINED, refined};
+use crate::place::axes::{MOST_REFINED, planned_in, refined};
 use crate::refine::{neighbours, solver};
 use rayon::prelude::*;
 use stead_model::task::lean::Lean;
@@ -63,8 +63,13 @@ impl Job<'_> {
             return None;
         }
         let (run, leans) = solver::run_leaning(&set_up, &known.solution, solver::Ending::TIGHT, self.monitor);
-        let setup = Setup { leans, ..known.setup.clone() };
-        (run.solution.objective < known.solution.objective).then_some(Improved { setup, solution: run.solution })
+        // In a narrow space what the gradient reaches may be no plan of the grid, from which it would be found again.
+        let again = planned_in(self.problem, Setup { leans, ..known.setup.clone() }, &run.solution.placement)?;
+        if again.solution.objective >= known.solution.objective {
+            return None;
+        }
+        let is_better = again.solution.objective < run.solution.objective;
+        Some(if is_better { again } else { Improved { solution: run.solution, ..again } })
     }
 
     /// The leans planned anew about those that are known, at the placement that is known.
