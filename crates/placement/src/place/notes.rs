@@ -60,6 +60,12 @@ pub(super) fn best_alone() -> String {
     "the worst placement was not looked for: there is nothing to compare the best one with".to_owned()
 }
 
+/// That no other plan than the best one was found.
+pub(super) fn no_worst_plan() -> String {
+    "no plan was found among those that deflect most, as in a narrow space: the best plan is stated as the worst, too"
+        .to_owned()
+}
+
 /// Notes on a tool that leans: by how much, what it gains, and what was not searched.
 pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_worst: bool) -> Vec<String> {
     let Some(space) = &problem.lean else { return Vec::new() };

@@ -91,6 +91,7 @@ pub fn score(
         return Err(infeasible(&planner, placement, None, false, monitor));
     };
     // A placement with a best plan has a worst one too; in a narrow space the grid may miss it, and the best is both.
+    let has_worst = worst.is_ok();
     let worst = worst.unwrap_or_else(|_| best.plans.clone());
     let cancelled = cancellation(problem, best.objective);
     let [best, worst] = [best.plans, worst].map(|plans| stated(problem, placement, transfer, &plans));
@@ -99,11 +100,13 @@ pub fn score(
         .into_iter()
         .chain(notes::moves(&[("best plan", &cycles.best), ("worst plan", &cycles.worst)]))
         .collect();
+    let mut notes = notes::of(problem, placement, &plans.best, &cycles.best.feed, monitor);
+    notes.extend((!has_worst).then(notes::no_worst_plan));
     Ok(Score {
         placement: *placement,
         setup: problem.setup.clone(),
         orientation: problem.orientation().map(|orientation| orientation.name.clone()),
-        notes: notes::of(problem, placement, &plans.best, &cycles.best.feed, monitor),
+        notes,
         lean_map: None,
         sheet: None,
         plans,
