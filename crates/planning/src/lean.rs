@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-9;
 /// The tool axis turns by no more than this from one point to the next, where that of the path turns by less. rad
 const MOST_TURN: f64 = std::f64::consts::PI / 12.0;
 
-/// A turn from which the error of the contact is told. rad
+/// A turn from which the error of the contact is extrapolated. rad
 const SMALL_TURN: f64 = 0.01;
 
 /// Points of a path on which lead and tilt are planned, at the most.
@@ -239,7 +239,7 @@ impl LeanSpace {
         })
     }
 
-    /// About how far the tool axis may turn on the way to a point, the tool leaning about as told at both. rad
+    /// About how far the tool axis may turn on the way to a point, from a lean at the point before to one there. rad
     pub fn most_turn(&self, path: &ToolPath, point: usize, leans: [&Lean; 2]) -> f64 {
         let at = [point - 1, point].map(|point| &path.points()[point]);
         let [from, mut to] = [0, 1].map(|k| leans[k].axis(at[k]));

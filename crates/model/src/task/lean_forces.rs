@@ -107,11 +107,11 @@ impl Task {
     ///
     /// # Errors
     /// [`TaskError::Wrenches`] for those of another number of points.
-    pub fn with_lean_forces(mut self, forces: LeanForces) -> Result<Self, TaskError> {
+    pub fn with_lean_forces(mut self, forces: Arc<LeanForces>) -> Result<Self, TaskError> {
         if forces.points.len() != self.points().len() {
             return Err(TaskError::Wrenches { wrenches: forces.points.len(), points: self.points().len() });
         }
-        self.lean_forces = Some(Arc::new(forces));
+        self.lean_forces = Some(forces);
         Ok(self)
     }
 
@@ -123,17 +123,10 @@ impl Task {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
-    use super::super::testing::five_segments;
+    use super::super::testing::{BALL, five_segments};
     use super::*;
     use nalgebra::Vector3;
     use stead_numerics::rotation::rotation_from_zyx;
-
-    const BALL: LeanRule = LeanRule {
-        end: CutterEnd { radius: 0.006, corner: 0.006 },
-        contact: ContactRule::Centre,
-        force: LeanForce::Feed,
-    };
 
     /// A wrench that is affine in lead and in tilt.
     fn affine(point: usize, lead: f64, tilt: f64) -> Wrench {
@@ -157,7 +150,7 @@ mod tests {
             PointLeanForces { wrenches: all(1.0), edges: Some(all(0.3)), leads: leads.clone(), tilts: tilts.clone() }
         };
         let forces = LeanForces::new((0..105).map(point).collect()).unwrap();
-        task.with_edge_parts(edges).unwrap().with_lean_forces(forces).unwrap()
+        task.with_edge_parts(edges).unwrap().with_lean_forces(Arc::new(forces)).unwrap()
     }
 
     fn apart(a: &Wrench, b: &Wrench) -> f64 {
@@ -212,6 +205,6 @@ mod tests {
         assert!(matches!(LeanForces::new(vec![point.clone()]), Err(TaskError::NotFinite { .. })));
         let point = PointLeanForces { wrenches: vec![Wrench::zero(); 2], ..point };
         let one = LeanForces::new(vec![point]).unwrap();
-        assert!(five_segments().with_lean_forces(one).is_err());
+        assert!(five_segments().with_lean_forces(Arc::new(one)).is_err());
     }
 }

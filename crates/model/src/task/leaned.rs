@@ -117,17 +117,10 @@ fn carried(wrench: &Wrench, force: LeanForce, from: &PathPoint, to: &PathPoint) 
 
 #[cfg(test)]
 mod tests {
-    use super::super::lean::{ContactRule, CutterEnd};
-    use super::super::testing::five_segments;
+    use super::super::testing::{BALL, five_segments};
     use super::*;
     use nalgebra::Vector3;
     use stead_numerics::rotation::rotation_from_zyx;
-
-    const BALL: LeanRule = LeanRule {
-        end: CutterEnd { radius: 0.006, corner: 0.006 },
-        contact: ContactRule::Centre,
-        force: LeanForce::Feed,
-    };
 
     fn leans(task: &Task) -> Vec<Lean> {
         let of = |k: usize| Lean { lead: 0.01 * (k % 17) as f64, tilt: -0.1 + 0.01 * (k % 11) as f64 };

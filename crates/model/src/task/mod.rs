@@ -395,7 +395,15 @@ impl Task {
 pub mod testing {
     //! The shipped path for the tests of this crate and of those above.
     #![allow(clippy::unwrap_used)]
+    use super::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
     use super::*;
+
+    /// A ball cutter of 12 mm that leans about its centre, forces staying in the directions of feed and wall.
+    pub const BALL: LeanRule = LeanRule {
+        end: CutterEnd { radius: 0.006, corner: 0.006 },
+        contact: ContactRule::Centre,
+        force: LeanForce::Feed,
+    };
 
     /// The five segments of Caro 2013 with their forces, from `tasks/five-segments.csv`.
     pub fn five_segments() -> Task {

@@ -1,14 +1,16 @@
 //! What bounds lead and tilt in the subproblem: their ranges, what bounds a lean beside them, and how far the tool axis
 //! may turn from point to point for the contact to stay near its line.
 
+use super::lean_slopes::LeanSlopes;
 use super::subproblem::Build;
 use clarabel::solver::{SecondOrderConeT, SupportedConeT};
 use nalgebra::Vector3;
+use stead_model::task::PathPoint;
 use stead_model::task::lean::Lean;
 use stead_planning::lean::LeanSpace;
 use stead_planning::limit::{Limit, Side};
 
-/// Leans that are apart by this tell slopes. rad
+/// How far the leans are apart whose difference is the slope. rad
 const STEP: f64 = 1e-6;
 /// The linear model of a turn may use this share of what is allowed: a step leaves it by its square.
 const KEPT: f64 = 0.98;
@@ -27,8 +29,7 @@ pub(super) fn lean_columns(leans: impl Iterator<Item = bool>, first: usize) -> (
 }
 
 /// The tool axis at a point with its slopes by lead and tilt.
-fn axis(space: &Build<'_>, point: usize, lean: &Lean) -> (Vector3<f64>, [Vector3<f64>; 2]) {
-    let at = &space.problem.task.upright().points()[point];
+fn axis(at: &PathPoint, lean: &Lean) -> (Vector3<f64>, [Vector3<f64>; 2]) {
     let slope = |ends: [Lean; 2]| (ends[0].axis(at) - ends[1].axis(at)) / (2.0 * STEP);
     (lean.axis(at), beside(lean).map(slope))
 }
@@ -42,9 +43,16 @@ fn beside(lean: &Lean) -> [[Lean; 2]; 2] {
     ]
 }
 
+/// The entries of the columns of lead and tilt of a point, where it has them.
+pub(super) type LeanTerms = std::iter::Flatten<std::option::IntoIter<[(usize, f64); 2]>>;
+
 impl Build<'_> {
-    fn lean_space(&self) -> Option<&LeanSpace> {
-        self.problem.lean.as_deref()
+    /// Slopes by lead and tilt, times a factor, as entries of the columns of point `i`; none where the tool keeps its
+    /// axis.
+    pub(super) fn lean_terms(&self, i: usize, factor: f64, slopes: impl Fn(&LeanSlopes) -> [f64; 2]) -> LeanTerms {
+        let known = self.leans[i].zip(self.locals[i].leaning.as_ref().map(slopes));
+        let terms = |(column, [lead, tilt]): (usize, [f64; 2])| [(column, factor * lead), (column + 1, factor * tilt)];
+        known.map(terms).into_iter().flatten()
     }
 
     /// Ranges of lead and tilt, and the margins beside them.
@@ -80,6 +88,7 @@ impl Build<'_> {
     pub(super) fn contact_cones(&mut self) -> Vec<SupportedConeT<f64>> {
         let mut cones = Vec::new();
         let (problem, solution) = (self.problem, self.solution);
+        let Some(space) = problem.lean.as_deref() else { return cones };
         let path = problem.task.upright().path();
         for point in solution.plans.iter().flat_map(|plan| plan.points.clone().skip(1)) {
             let columns = [self.leans[point - 1], self.leans[point]];
@@ -87,12 +96,9 @@ impl Build<'_> {
                 continue;
             }
             let leans = [point - 1, point].map(|point| problem.setup.leans[point]);
-            let Some(most) = self.lean_space().map(|space| space.most_turn(path, point, [&leans[0], &leans[1]])) else {
-                continue;
-            };
-            let [(from, before), (to, now)] = [0, 1].map(|k| axis(self, point - 1 + k, &leans[k]));
+            let [(from, before), (to, now)] = [0, 1].map(|k| axis(&path.points()[point - 1 + k], &leans[k]));
             // A chord is a little shorter than its arc.
-            let most = KEPT * 2.0 * libm::sin(most / 2.0);
+            let most = KEPT * 2.0 * libm::sin(space.most_turn(path, point, [&leans[0], &leans[1]]) / 2.0);
             let turn = to - from;
             if turn.norm() + 4.0 * self.request.trust < most {
                 continue;

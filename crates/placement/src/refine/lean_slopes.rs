@@ -3,14 +3,13 @@
 
 use super::LOCAL;
 use super::linearise::{Differentiated, DifferentiatedSet, Followed, gradient};
-use super::slacks::room_slopes;
 use nalgebra::{Matrix2, Matrix5, SMatrix, SymmetricEigen};
 use stead_model::robot::Posture;
 use stead_model::task::ToolPath;
 use stead_model::task::lean::Lean;
 use stead_numerics::scalar::Dual;
 use stead_planning::lean::LeanSpace;
-use stead_planning::problem::{Placement, Problem};
+use stead_planning::problem::Problem;
 use stead_planning::setup::Setup;
 
 /// How far the leans are apart whose difference is the slope. rad
@@ -37,8 +36,6 @@ pub struct LeanSlopes {
     pub base_distance: [f64; 2],
     /// Under every set of compliances.
     pub sets: Vec<SetLeanSlopes>,
-    /// Of the slack of every pair of shapes that is near. m
-    pub slacks: Vec<[f64; 2]>,
     /// Curvature of the score in all variables, as [`Local::curvature`](super::linearise::Local::curvature).
     pub curvature: Curvature7,
 }
@@ -66,25 +63,26 @@ impl LeanNeighbours {
         Some(Self { problems: NEIGHBOURS.map(at) })
     }
 
-    /// The slopes at a point of a solution that is known here; none where a neighbour is out of reach.
+    /// The slopes at a point (x, y, z in m, yaw, beta in rad) in a posture, of which vectors whose kink is not near are
+    /// left out here; none where a neighbour is out of reach.
     pub fn slopes(
         &self,
-        known: &PointOfSolution<'_>,
+        (point, at, posture): (usize, [f64; LOCAL], Posture),
+        followed: &Followed,
         centre: &Differentiated,
-        kinked: &[[bool; 2]],
         raw: Option<&Matrix5<f64>>,
     ) -> Option<LeanSlopes> {
-        let PointOfSolution { point, at, posture, .. } = *known;
         let there: Vec<Differentiated> =
             self.problems.iter().map(|problem| gradient(problem, point, at, posture)).collect::<Option<_>>()?;
         let slope =
             |of: &dyn Fn(&Differentiated) -> f64| [0, 2].map(|k| (of(&there[k]) - of(&there[k + 1])) / (2.0 * STEP));
-        let entries = |set: usize, is_kinked: bool, of: &dyn Fn(&DifferentiatedSet) -> &Vec<Dual<LOCAL>>| {
-            let count = if is_kinked { of(&centre.sets[set]).len() } else { 0 };
-            (0..count).map(|k| slope(&|one| of(&one.sets[set]).get(k).map_or(0.0, |entry| entry.value))).collect()
+        let entries = |set: usize, of: &dyn Fn(&DifferentiatedSet) -> &Vec<Dual<LOCAL>>| {
+            (0..of(&centre.sets[set]).len())
+                .map(|k| slope(&|one| of(&one.sets[set]).get(k).map_or(0.0, |entry| entry.value)))
+                .collect()
         };
         let set = |set: usize| {
-            let [is_margin, is_parts] = kinked[set];
+            let is_margin = !centre.sets[set].changes.is_empty();
             let added = |one: &Differentiated| {
                 let score = &one.sets[set].score;
                 score.uncertainty.value + if is_margin { 0.0 } else { score.margin.value }
@@ -92,7 +90,7 @@ impl LeanNeighbours {
             SetLeanSlopes {
                 scored: slope(&|one| one.sets[set].score.scored.value),
                 added: slope(&added),
-                kinked: [entries(set, is_margin, &|of| &of.changes), entries(set, is_parts, &|of| &of.parts)],
+                kinked: [entries(set, &|of| &of.changes), entries(set, &|of| &of.parts)],
             }
         };
         Some(LeanSlopes {
@@ -106,31 +104,14 @@ impl LeanNeighbours {
             inverse_condition: slope(&|one| one.state.inverse_condition.value),
             base_distance: slope(&|one| one.state.base_distance.value),
             sets: (0..centre.sets.len()).map(set).collect(),
-            slacks: self.rooms(known),
-            curvature: raw.map_or_else(Curvature7::zeros, |raw| curvature(known.followed, centre, &there, raw)),
+            curvature: raw.map_or_else(Curvature7::zeros, |raw| curvature(followed, centre, &there, raw)),
         })
     }
 
-    /// The slopes of the slacks of a point.
-    fn rooms(&self, known: &PointOfSolution<'_>) -> Vec<[f64; 2]> {
-        let placement = Placement::from([known.at[0], known.at[1], known.at[2], known.at[3]]);
-        let ahead = [&self.problems[0], &self.problems[2]];
-        room_slopes(known.problem, ahead, STEP, known.point, known.at[4], &placement, known.posture, known.within)
+    /// The problems with a step (rad) more in lead and in tilt.
+    pub fn ahead(&self) -> ([&Problem; 2], f64) {
+        ([&self.problems[0], &self.problems[2]], STEP)
     }
-}
-
-/// A point of a solution.
-#[derive(Clone, Copy)]
-pub(super) struct PointOfSolution<'a> {
-    pub problem: &'a Problem,
-    pub point: usize,
-    /// x, y, z (m), yaw and beta (rad).
-    pub at: [f64; LOCAL],
-    pub posture: Posture,
-    /// Shapes with less slack are near. m
-    pub within: f64,
-    /// What the curvature follows.
-    pub followed: &'a Followed,
 }
 
 /// Second derivatives in all variables without their negative part: those by placement and beta as they are known,

@@ -1,7 +1,7 @@
 //! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the
 //! scores.
 
-use super::lean_slopes::{LeanNeighbours, LeanSlopes, PointOfSolution};
+use super::lean_slopes::{LeanNeighbours, LeanSlopes};
 use super::slacks::{Slack, slacks};
 use super::{LOCAL, Solution, UNITS};
 use nalgebra::{Matrix5, SymmetricEigen};
@@ -116,19 +116,18 @@ fn local(
     let followed = Followed::of(problem, &centre);
     let raw = second_derivatives(problem, point, at, posture, &followed, &centre, order);
     let may_lean = problem.lean.as_deref().is_some_and(|space| !space.ranges[point].is_none());
-    let leaning = leaning.filter(|_| may_lean).and_then(|neighbours| {
-        let kinked: Vec<[bool; 2]> =
-            centre.sets.iter().map(|set| [!set.changes.is_empty(), !set.parts.is_empty()]).collect();
+    let neighbours = leaning.filter(|_| may_lean);
+    let leaning = neighbours.and_then(|neighbours| {
         let raw = raw.as_ref().filter(|_| order == Curvature::Full);
-        let known = PointOfSolution { problem, point, at, posture, within, followed: &followed };
-        neighbours.slopes(&known, &centre, &kinked, raw)
+        neighbours.slopes((point, at, posture), &followed, &centre, raw)
     });
     let curvature = raw.map_or_else(Matrix5::zeros, |raw| convex(&raw, order));
     let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
         let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
         LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
     });
-    let slacks = slacks(problem, point, plan.betas[place], placement, posture, within);
+    let ahead = neighbours.map(LeanNeighbours::ahead);
+    let slacks = slacks(problem, ahead, point, plan.betas[place], placement, posture, within);
     let (sets, joints) = (sets.collect(), plan.joints[place]);
     Some(Local { state: centre.state, sets, joints, slacks, curvature, leaning })
 }

@@ -22,6 +22,8 @@ pub struct Slack {
     pub slack: f64,
     /// Its slopes by x, y, z, yaw and beta. m per scaled unit
     pub slopes: [f64; LOCAL],
+    /// Its slopes by lead and tilt, where the tool may lean otherwise. m/rad
+    pub lean_slopes: [f64; 2],
 }
 
 impl Slack {
@@ -47,9 +49,10 @@ const STEP: f64 = 1e-4;
 const KEPT: f64 = 1e-6;
 
 /// The slacks up to a limit (m) of a state of the arm; those of the part against the cell at the first point at which
-/// they stand so.
+/// they stand so. Where the tool may lean otherwise, `leaning` are problems with a step (rad) more in lead and in tilt.
 pub(super) fn slacks(
     problem: &Problem,
+    leaning: Option<([&Problem; 2], f64)>,
     point: usize,
     beta: f64,
     placement: &Placement,
@@ -58,45 +61,16 @@ pub(super) fn slacks(
 ) -> Vec<Slack> {
     let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
     let kinds = if problem.axes_moved_to(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
-    let poses = |placement: &Placement, beta: f64| {
+    let poses_in = |problem: &Problem, placement: &Placement, beta: f64| {
         let joints = problem.robot.inverse(&problem.at(placement).base_from_flange(point, beta), posture).ok()?;
         Some(problem.poses(scene, point, placement, &joints))
     };
-    linearised(scene, kinds, within, placement, beta, poses)
-}
-
-/// How the slacks of a state ([`slacks`]) change with lead and tilt, from problems in which the tool leans by a step
-/// (rad) more in each: in the order of the slacks. m/rad
-#[allow(clippy::too_many_arguments, reason = "a state, and its neighbours")]
-pub(super) fn room_slopes(
-    problem: &Problem,
-    ahead: [&Problem; 2],
-    step: f64,
-    point: usize,
-    beta: f64,
-    placement: &Placement,
-    posture: Posture,
-    within: f64,
-) -> Vec<[f64; 2]> {
-    let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
-    let kinds = if problem.axes_moved_to(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
-    let poses = |problem: &Problem| {
-        let joints = problem.robot.inverse(&problem.at(placement).base_from_flange(point, beta), posture).ok()?;
-        Some(problem.poses(scene, point, placement, &joints))
+    let poses = |placement: &Placement, beta: f64| poses_in(problem, placement, beta);
+    let leaned = || match leaning {
+        Some((ahead, step)) => ahead.map(|problem| poses_in(problem, placement, beta).map(|there| (there, step))),
+        None => [None, None],
     };
-    let Some(here) = poses(problem) else { return Vec::new() };
-    let near = scene.near(&here, kinds, within);
-    if near.is_empty() {
-        return Vec::new();
-    }
-    let moved = ahead.map(poses);
-    let slope = |near: &Near| {
-        scene.pair(near.pair)?;
-        let slope =
-            |there: &Option<Poses>| there.as_ref().map_or(0.0, |there| scene.room_change(near, &here, there) / step);
-        Some(moved.each_ref().map(slope))
-    };
-    near.iter().filter_map(slope).collect()
+    linearised(scene, kinds, within, placement, beta, poses, leaned)
 }
 
 /// The slacks of the part against what stands in the cell, which depend on the placement alone.
@@ -105,7 +79,7 @@ pub(super) fn placement_rooms(problem: &Problem, placement: &Placement) -> Vec<S
     let joints = problem.robot.mid_range();
     let at = |point| {
         let poses = |placement: &Placement, _: f64| Some(problem.poses(scene, point, placement, &joints));
-        linearised(scene, &[PairKind::WorkpieceCell], NEAR_STEPS, placement, 0.0, poses)
+        linearised(scene, &[PairKind::WorkpieceCell], NEAR_STEPS, placement, 0.0, poses, || [None, None])
     };
     problem.points_after_axes_moved().flat_map(at).collect()
 }
@@ -118,6 +92,7 @@ fn linearised(
     placement: &Placement,
     beta: f64,
     poses: impl Fn(&Placement, f64) -> Option<Poses>,
+    leaned: impl Fn() -> [Option<(Poses, f64)>; 2],
 ) -> Vec<Slack> {
     let Some(here) = poses(placement, beta) else { return Vec::new() };
     let near = scene.near(&here, kinds, within);
@@ -132,6 +107,7 @@ fn linearised(
     };
     // At the end of the reach there is a state on one side alone.
     let moved: [_; LOCAL] = std::array::from_fn(|k| moved(k, STEP).or_else(|| moved(k, -STEP)));
+    let leaned = leaned();
     let slack = |near: &Near| {
         let pair = scene.pair(near.pair)?;
         let slope = |there: &Option<(Poses, f64)>| {
@@ -142,6 +118,7 @@ fn linearised(
             is_of_joints: pair.kind != PairKind::WorkpieceCell,
             slack: near.room,
             slopes: std::array::from_fn(|k| slope(&moved[k])),
+            lean_slopes: leaned.each_ref().map(slope),
         })
     };
     near.iter().filter_map(slack).collect()

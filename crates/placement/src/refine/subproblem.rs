@@ -126,9 +126,6 @@ pub(super) struct Build<'a> {
     pub travel: Travel,
 }
 
-/// The entries of the columns of lead and tilt of a point, where it has them.
-type LeanTerms = std::iter::Flatten<std::option::IntoIter<[(usize, f64); 2]>>;
-
 /// Column of the first change of beta.
 const BETA: usize = 4;
 
@@ -189,14 +186,6 @@ impl Build<'_> {
         own.chain(self.lean_terms(i, 1.0, lean)).collect()
     }
 
-    /// Slopes by lead and tilt, times a factor, as entries of the columns of point `i`; none where the tool keeps its
-    /// axis.
-    fn lean_terms(&self, i: usize, factor: f64, slopes: impl Fn(&LeanSlopes) -> [f64; 2]) -> LeanTerms {
-        let known = self.leans[i].zip(self.locals[i].leaning.as_ref().map(slopes));
-        let terms = |(column, [lead, tilt]): (usize, [f64; 2])| [(column, factor * lead), (column + 1, factor * tilt)];
-        known.map(terms).into_iter().flatten()
-    }
-
     /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for
     /// safety.
     pub(super) fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64) {
@@ -227,8 +216,8 @@ impl Build<'_> {
         }
         // Where the placement stays, the part and what stands in the cell stay as far apart.
         let pose_stays = self.request.pose_stays;
-        for (k, slack) in local.slacks.iter().enumerate().filter(|(_, slack)| slack.is_of_joints || !pose_stays) {
-            let terms = self.terms(i, &slack.slopes, |lean| lean.slacks.get(k).copied().unwrap_or_default());
+        for slack in local.slacks.iter().filter(|slack| slack.is_of_joints || !pose_stays) {
+            let terms = self.terms(i, &slack.slopes, |_| slack.lean_slopes);
             self.add_between(slack.limit, i, &terms, -slack.spare(), f64::INFINITY);
         }
         for (j, joint) in self.problem.robot.joints().iter().enumerate() {

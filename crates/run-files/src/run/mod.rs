@@ -256,11 +256,10 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
                 is_for_stability,
             };
             let removed = removed(&tables, imported, &task_file, redundancy.feed, source, &at, monitor)?;
-            inputs.extend(removed.inputs.iter().cloned());
-            notes.extend(removed.notes.iter().cloned());
-            let task = removed.task.clone();
-            removal = Some(removed);
-            task
+            inputs.extend(removed.inputs);
+            notes.extend(removed.notes);
+            removal = Some(removed.removal);
+            removed.task
         }
         None => {
             if let Some(alone) =
@@ -275,7 +274,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         }
     };
     let task = part.of(task, &at)?;
-    let removed_forces = removal.as_ref().map(|removed| &*removed.forces);
+    let removed_forces = removal.as_ref().map(|removal| &*removal.forces);
     let segments = run.segment.unwrap_or_default();
     let criterion = run.criterion.unwrap_or_default();
     let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
@@ -300,7 +299,10 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
             let space = table.space(&task, &of_points, tool, redundancy.beta_count, has_columns, &at)?;
             let computed = removal.as_ref().filter(|_| table.computes_forces() && !space.is_closed());
             notes.extend(table.notes(&space, removal.is_some(), task.path().first_unscored().is_some()));
-            let task = computed.map_or(Ok(task.clone()), |removed| removed.leaning(task, &space, source, monitor))?;
+            let task = match computed {
+                Some(removal) => removal.leaning(task, &space, source, monitor)?,
+                None => task,
+            };
             (Some(space), task)
         }
         None => {
@@ -346,7 +348,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     let stated = stated(&at);
-    let removal = removal.map(|removed| removed.forces);
+    let removal = removal.map(|removal| removal.forces);
     let of_removal = removal.iter().flat_map(|removal| removal.warnings.iter().cloned());
     let left_out = path_stability.as_ref().and_then(|analysis| analysis.variant.left_out(&problem.robot));
     let warnings = of_removal.chain(left_out).collect();

@@ -27,10 +27,15 @@ pub(super) struct Removed {
     /// Files beside that of the task.
     pub inputs: Vec<InputFile>,
     pub notes: Vec<String>,
-    /// All that was computed.
+    pub removal: Removal,
+}
+
+/// What was computed of a stock.
+pub(super) struct Removal {
+    /// All of it.
     pub forces: Arc<RemovalForces>,
-    /// What was computed.
-    pub run: ForcesRun,
+    /// What it was computed of.
+    run: ForcesRun,
     /// All that it depends on.
     key: String,
 }
@@ -38,7 +43,7 @@ pub(super) struct Removed {
 /// Values of lead and of tilt to either side of the middle for which forces are computed.
 const LEANS: usize = 2;
 
-impl Removed {
+impl Removal {
     /// The task with the forces of a tool that leans: at every point for five values of lead and of tilt, the stock as
     /// it is before the operation, the tool leaning so all along.
     ///
@@ -84,7 +89,7 @@ impl Removed {
             Ok(LeanForces::new((0..task.points().len()).map(of_point).collect())?)
         };
         let forces = source.sources.made(key, make).map_err(|error: ForcesError| self.run.located(&error))?;
-        task.with_lean_forces((*forces).clone()).map_err(|error| self.run.located(&error.into()))
+        task.with_lean_forces(forces).map_err(|error| self.run.located(&error.into()))
     }
 }
 
@@ -142,7 +147,7 @@ pub(super) fn removed(
     notes.extend(section_note(tables, &outcome));
     notes.extend(outcome.notes.iter().cloned());
     let inputs = run.inputs.iter().skip(1).cloned().collect();
-    Ok(Removed { task, inputs, notes, forces: outcome, run, key })
+    Ok(Removed { task, inputs, notes, removal: Removal { forces: outcome, run, key } })
 }
 
 /// The path with the feed of the run (m/s).
