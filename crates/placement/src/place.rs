@@ -45,6 +45,7 @@ mod score;
 mod searched;
 mod sets;
 mod setups;
+mod thinned;
 
 pub use from_here::improve;
 use infeasible::infeasible;

@@ -4,7 +4,6 @@
 //! Each use starts from the answer of the poorer one, and a step is only taken to a setup whose plan is better, so a
 //! richer use is never worse.
 
-use super::motion::{Together, moving};
 use crate::evaluator::Evaluator;
 use crate::path_subset::PathSubset;
 use crate::refine::{Solution, planned, refine};
@@ -12,7 +11,6 @@ use rayon::prelude::*;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::compass::CompassSteps;
-use stead_planning::lean::LeanSpace;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::axis_path::AxisGrid;
@@ -26,9 +24,9 @@ pub(super) const PATH_GRID: usize = 13;
 /// A step of a position that is this share of the range is the last.
 const LAST_STEP: f64 = 1e-3;
 /// Rounds of axes and placement.
-const ROUNDS: usize = 3;
+pub(super) const ROUNDS: usize = 3;
 /// A round that gains less (relative) is the last.
-const GAIN: f64 = 1e-4;
+pub(super) const GAIN: f64 = 1e-4;
 /// How often the positions of an axis along the path are narrowed down.
 const NARROWINGS: usize = 3;
 /// With more path points the placement is not refined again for other positions of the axes.
@@ -45,47 +43,8 @@ pub(super) struct Improved {
     pub solution: Solution,
 }
 
-/// Improves the positions of the axes from a placement with its setup, and the placement with them, by turns; nothing
-/// where that gains nothing. Where a [`LeanSpace`] is given, axes that move along the path are planned with the leans.
-///
-/// Of several axes that move along the path each is first moved by itself, the others as if they were indexed, so that
-/// all together are never worse than the best of them alone.
-pub(super) fn improved(
-    problem: &Problem,
-    start: &Improved,
-    space: Option<&LeanSpace>,
-    monitor: &Monitor,
-) -> Option<Improved> {
-    let moving = moving(problem);
-    let least = |a: Improved, b: Improved| if b.solution.objective < a.solution.objective { b } else { a };
-    let alone = |number: &usize| by_turns(problem, start, &[*number], monitor);
-    let mut best = match moving.len() {
-        0 | 1 => by_turns(problem, start, &moving, monitor),
-        _ => moving
-            .iter()
-            .map(alone)
-            .reduce(least)
-            .map_or_else(|| start.clone(), |best| by_turns(problem, &best, &moving, monitor)),
-    };
-    let together = Together { problem, space, moving: &moving, monitor };
-    let is_joint = moving.len() > 1 || (!moving.is_empty() && space.is_some());
-    for round in 0..ROUNDS {
-        if !is_joint || monitor.should_stop() {
-            break;
-        }
-        monitor.report(Progress::Steps { stage: "external axes together", done: round, total: ROUNDS });
-        let Some(better) = together.at(&best) else { break };
-        let before = best.solution.objective;
-        best = refined(problem, &better, monitor).unwrap_or(better);
-        if before - best.solution.objective < GAIN * before {
-            break;
-        }
-    }
-    (best.solution.objective < start.solution.objective).then_some(best)
-}
-
 /// One axis after the other, those of some numbers along the path, and the placement, by turns.
-fn by_turns(problem: &Problem, start: &Improved, moving: &[usize], monitor: &Monitor) -> Improved {
+pub(super) fn by_turns(problem: &Problem, start: &Improved, moving: &[usize], monitor: &Monitor) -> Improved {
     let mut best = start.clone();
     let axes = || problem.external_axes.iter().enumerate().filter(|(_, axis)| axis.max > axis.min);
     for round in 0..ROUNDS {

@@ -2,18 +2,19 @@
 //!
 //! The search knows the axis of the path alone. From the best placements that it finds, and from those of placements
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
-//! ([`MotionPlanner`]), first over their whole ranges, then off that grid; placement, betas and leans are refined by
+//! ([`MotionGrid`]), first over their whole ranges, then off that grid; placement, betas and leans are refined by
 //! the gradient in all of them, and lead and tilt are planned anew, by turns. The best of these are refined further
 //! ([`Job::together`]), with their external axes. A step is only taken to a plan that is better, so that where the axis
 //! of the path is allowed the result is never worse than with it.
 
 mod drawn;
-mod thinned;
 mod together;
 
-use super::axes::{Improved, improved as with_better_axes, kept_points, planned_in, refined};
+use super::axes::{Improved, kept_points, planned_in, refined};
 use super::infeasible::Infeasible;
+use super::motion::with_better_axes;
 use super::refined::Refined;
+use super::thinned::{Thinned, path_of, points_needed, spread};
 use super::{notes, stated_cases};
 use crate::outcome::{Case, Cases, Outcome, left_out};
 use crate::settings::SearchSettings;
@@ -21,14 +22,13 @@ use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::cell::Cell;
-use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS, lean_between};
+use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner, PlannedMotion};
+use stead_planning::redundancy::motion::MotionGrid;
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
 use stead_planning::transfer::TransferSettings;
-pub(super) use thinned::Thinned;
 
 /// Two starts are no nearer than this in one coordinate (m, rad).
 const APART: [f64; 2] = [0.05, 0.2];
@@ -217,55 +217,10 @@ struct Start {
     coarse: Option<f64>,
 }
 
-/// The cheapest way of the tool on a grid of leans.
-pub(super) fn path_of(grid: &MotionGrid<'_>, placement: &Placement) -> Option<PlannedMotion> {
-    let problems = grid.problems();
-    MotionPlanner::new(grid, &problems).path(placement)
-}
-
-/// Leans at every point, from those at some of them, the axis turning evenly from one of these to the next; none
-/// where one between these is not allowed, or a step.
-pub(super) fn spread(space: &LeanSpace, on: &Thinned<'_>, leans: &[Lean]) -> Option<Vec<Lean>> {
-    let path = on.upright.task.path();
-    let mut all = vec![Lean::NONE; path.points().len()];
-    for (point, lean) in on.kept.iter().zip(leans) {
-        all[*point] = *lean;
-    }
-    for pair in on.kept.windows(2).filter(|pair| path.segment_of(pair[0]) == path.segment_of(pair[1])) {
-        let ends = [pair[0], pair[1]].map(|point| (point, all[point]));
-        let times: Vec<f64> = (pair[0] + 1..=pair[1]).map(|point| on.upright.step_time(point)).collect();
-        let whole: f64 = times.iter().sum();
-        let mut done = 0.0;
-        for (point, time) in (pair[0] + 1..pair[1]).zip(&times) {
-            done += time;
-            all[point] = lean_between(path, ends, point, done / whole);
-        }
-    }
-    let lean = |(point, lean): (usize, &Lean)| {
-        let lean = space.ranges[point].nearest(lean);
-        space.allows(path, point, &lean).then_some(lean)
-    };
-    let leans: Vec<Lean> = all.iter().enumerate().map(lean).collect::<Option<_>>()?;
-    let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
-    steps.all(|point| space.allows_step(path, point, [&leans[point - 1], &leans[point]])).then_some(leans)
-}
-
 /// Whether two placements are apart in some coordinate.
 fn is_apart(a: &Placement, b: &Placement) -> bool {
     let shift = [a.x - b.x, a.y - b.y, a.z - b.z];
     shift.iter().any(|by| by.abs() > APART[0]) || wrap(a.yaw - b.yaw).abs() > APART[1]
-}
-
-/// On how many points as far apart as those of a path (s) the tool can lean by a step of its grid from one to the next.
-pub(super) fn points_needed(space: &LeanSpace, upright: &Problem, time: f64) -> f64 {
-    let step = space.steps[0].max(space.steps[1]);
-    let by_joints = slowest(upright).map_or(0.0, |speed| step / (speed * time));
-    by_joints.max(step / space.usual_turn(upright.task.path()))
-}
-
-/// The speed of the slowest joint, where one is known. rad/s
-fn slowest(problem: &Problem) -> Option<f64> {
-    problem.robot.joints().iter().filter_map(|joint| joint.max_speed).reduce(f64::min)
 }
 
 /// The best and the worst placement in their order, with the tool leaning at both; where they are one, with the better

@@ -4,11 +4,11 @@
 //! nothing; both may gain together. So all of them are planned at once ([`MotionGrid`]): on a coarse grid over their
 //! whole ranges, and about what is known, in ever smaller steps. A step is only taken to a plan that is better.
 
-use super::axes::{Improved, PATH_GRID, kept_points, planned_in};
-use super::lean::{self, Thinned};
+use super::axes::{GAIN, Improved, PATH_GRID, ROUNDS, between, by_turns, kept_points, planned_in, refined};
+use super::thinned::{Thinned, path_of, points_needed, spread};
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_model::task::lean::Lean;
-use stead_numerics::monitor::Monitor;
+use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::motion::{Motion, MotionGrid, SettingSteps};
@@ -22,27 +22,64 @@ const COARSE_LEANS: usize = 1;
 const HALVINGS: usize = 5;
 /// How often a motion is followed with the same steps at the most.
 const FOLLOWED: usize = 3;
-/// A motion that is better by less (relative) is not followed.
-const GAIN: f64 = 1e-4;
+
+/// Improves the positions of the axes from a placement with its setup, and the placement with them, by turns; nothing
+/// where that gains nothing. Where a [`LeanSpace`] is given, axes that move along the path are planned with the leans.
+///
+/// Of several axes that move along the path each is first moved by itself, the others as if they were indexed, so that
+/// all together are never worse than the best of them alone.
+pub(super) fn with_better_axes(
+    problem: &Problem,
+    start: &Improved,
+    space: Option<&LeanSpace>,
+    monitor: &Monitor,
+) -> Option<Improved> {
+    let moving = moving(problem);
+    let least = |a: Improved, b: Improved| if b.solution.objective < a.solution.objective { b } else { a };
+    let alone = |number: &usize| by_turns(problem, start, &[*number], monitor);
+    let mut best = match moving.len() {
+        0 | 1 => by_turns(problem, start, &moving, monitor),
+        _ => moving
+            .iter()
+            .map(alone)
+            .reduce(least)
+            .map_or_else(|| start.clone(), |best| by_turns(problem, &best, &moving, monitor)),
+    };
+    let together = Together { problem, space, moving: &moving, monitor };
+    let is_joint = moving.len() > 1 || (!moving.is_empty() && space.is_some());
+    for round in 0..ROUNDS {
+        if !is_joint || monitor.should_stop() {
+            break;
+        }
+        monitor.report(Progress::Steps { stage: "external axes together", done: round, total: ROUNDS });
+        let Some(better) = together.at(&best) else { break };
+        let before = best.solution.objective;
+        best = refined(problem, &better, monitor).unwrap_or(better);
+        if before - best.solution.objective < GAIN * before {
+            break;
+        }
+    }
+    (best.solution.objective < start.solution.objective).then_some(best)
+}
 
 /// The external axes of a problem that move along the path, by their numbers.
-pub(super) fn moving(problem: &Problem) -> Vec<usize> {
+fn moving(problem: &Problem) -> Vec<usize> {
     let moves = |(_, axis): &(usize, &ExternalAxis)| axis.axis_use == AxisUse::Continuous && axis.max > axis.min;
     problem.external_axes.iter().enumerate().filter(moves).map(|(number, _)| number).collect()
 }
 
 /// External axes that move along the path, planned together with each other and, where a [`LeanSpace`] is given, with
 /// the leans.
-pub(super) struct Together<'a> {
-    pub problem: &'a Problem,
-    pub space: Option<&'a LeanSpace>,
-    pub moving: &'a [usize],
-    pub monitor: &'a Monitor,
+struct Together<'a> {
+    problem: &'a Problem,
+    space: Option<&'a LeanSpace>,
+    moving: &'a [usize],
+    monitor: &'a Monitor,
 }
 
 impl Together<'_> {
     /// A better motion at the placement that is known; nothing where there is none.
-    pub(super) fn at(&self, known: &Improved) -> Option<Improved> {
+    fn at(&self, known: &Improved) -> Option<Improved> {
         let placement = &known.solution.placement;
         let upright = self.problem.in_setup(&Setup { leans: [].into(), ..known.setup.clone() });
         let steps = self.steps();
@@ -64,7 +101,7 @@ impl Together<'_> {
                         break;
                     }
                     let grid = MotionGrid::near(on.problem(), &motion, &steps, 1);
-                    let Some(found) = lean::path_of(&grid, placement) else { break };
+                    let Some(found) = path_of(&grid, placement) else { break };
                     if found.objective > last * (1.0 - GAIN) {
                         break;
                     }
@@ -96,7 +133,7 @@ impl Together<'_> {
             .iter()
             .zip(&steps.axes)
             .map(|(axis, step)| axis.max_speed.map_or(0.0, |speed| step / (speed * time)));
-        let by_lean = self.space.map(|space| lean::points_needed(space, upright, time));
+        let by_lean = self.space.map(|space| points_needed(space, upright, time));
         by_axes.chain(by_lean).fold(0.0, f64::max)
     }
 
@@ -118,17 +155,17 @@ impl Together<'_> {
         let each = libm::floor(libm::pow((MOST_SETTINGS / leans) as f64, 1.0 / self.moving.len() as f64)) as usize;
         let axes = self.moving.iter().map(|number| (*number, problem.external_axes[*number].grid(each.min(PATH_GRID))));
         let grid = MotionGrid::product(problem, half, &axes.collect::<Vec<_>>());
-        Some(lean::path_of(&grid, placement)?.motion)
+        Some(path_of(&grid, placement)?.motion)
     }
 
     /// The plan with a motion over all points, or what is known where it is no better.
     fn better(&self, on: &Thinned<'_>, motion: &Motion, known: Improved) -> Improved {
         let setup = || {
             let leans = match self.space {
-                Some(space) => lean::spread(space, on, &motion.leans)?.into(),
+                Some(space) => spread(space, on, &motion.leans)?.into(),
                 None => known.setup.leans.clone(),
             };
-            let rows = super::axes::between(on.upright, &on.kept, &motion.axes);
+            let rows = between(on.upright, &on.kept, &motion.axes);
             Some(Setup { positions: AxisPositions::shortest(rows, &on.upright.task), leans, ..known.setup.clone() })
         };
         let found = setup().and_then(|setup| planned_in(self.problem, setup, &known.solution.placement));

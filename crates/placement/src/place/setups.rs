@@ -1,11 +1,12 @@
 //! The choice among setups: in which orientation the part lies, where the external axes stand.
 //!
 //! Every orientation, and in it a grid of positions of each axis in turn, is searched with the same settings; the best
-//! and the worst of all are kept. Then the axes of the best are improved ([`super::axes`]).
+//! and the worst of all are kept. Then the axes of the best are improved ([`super::motion`]).
 
-use super::axes::{GRID, Improved, improved};
+use super::axes::{GRID, Improved};
 use super::infeasible::Infeasible;
 use super::lean::leaned_at;
+use super::motion::with_better_axes;
 use super::refined::Refined;
 use super::{notes, place_as_set_up, stated_cases};
 use crate::outcome::{Case, Outcome};
@@ -154,7 +155,7 @@ impl Job<'_> {
             ),
         };
         let start = Improved { setup: without_tie_rule.setup.clone(), solution: start };
-        let Some(found) = improved(&without_tie_rule, &start, None, self.monitor) else { return };
+        let Some(found) = with_better_axes(&without_tie_rule, &start, None, self.monitor) else { return };
         let problem = self.problem.in_setup(&found.setup);
         let refined = Refined { solution: found.solution, scheme: None };
         let without_tie_rule = problem.without_tie_rule();
@@ -200,7 +201,8 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
     let (setup, start) = best;
     let set_up = pinned.in_setup(&setup);
     let start = start.map(|solution| Improved { setup: setup.clone(), solution });
-    let setup = start.and_then(|start| improved(&set_up, &start, None, monitor)).map_or(setup, |found| found.setup);
+    let setup =
+        start.and_then(|start| with_better_axes(&set_up, &start, None, monitor)).map_or(setup, |found| found.setup);
     leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
 }
 

@@ -1,19 +1,8 @@
 //! Norms in scores that have their kink near, as second-order cones of the subproblem.
 
-use super::LOCAL;
 use super::lean_slopes::LeanSlopes;
-use super::subproblem::Build;
+use super::variables::{Build, Kinked};
 use clarabel::solver::{SecondOrderConeT, SupportedConeT};
-use stead_numerics::scalar::Dual;
-
-/// A vector in the score of a point whose norm has its kink near.
-pub(super) struct Kinked<'a> {
-    /// The point, and the set of compliances.
-    pub place: (usize, usize),
-    /// Which of its two vectors: the changes of the margin, or the parts.
-    pub which: usize,
-    pub vector: &'a [Dual<LOCAL>],
-}
 
 impl Build<'_> {
     /// One second-order cone for each norm with a kink.

@@ -1,8 +1,7 @@
 //! What bounds lead and tilt in the subproblem: their ranges, what bounds a lean beside them, and how far the tool axis
 //! may turn from point to point for the contact to stay near its line.
 
-use super::lean_slopes::LeanSlopes;
-use super::subproblem::Build;
+use super::variables::Build;
 use clarabel::solver::{SecondOrderConeT, SupportedConeT};
 use nalgebra::Vector3;
 use stead_model::task::PathPoint;
@@ -14,19 +13,6 @@ use stead_planning::limit::{Limit, Side};
 const STEP: f64 = 1e-6;
 /// The linear model of a turn may use this share of what is allowed: a step leaves it by its square.
 const KEPT: f64 = 0.98;
-
-/// Columns of the changes of lead at each point, those of tilt behind them, from a first one; none where the tool keeps
-/// its axis. With how many there are.
-pub(super) fn lean_columns(leans: impl Iterator<Item = bool>, first: usize) -> (Vec<Option<usize>>, usize) {
-    let mut next = first;
-    let mut column = |may_lean: bool| {
-        let own = may_lean.then_some(next);
-        next += if may_lean { 2 } else { 0 };
-        own
-    };
-    let columns = leans.map(&mut column).collect();
-    (columns, next - first)
-}
 
 /// The tool axis at a point with its slopes by lead and tilt.
 fn axis(at: &PathPoint, lean: &Lean) -> (Vector3<f64>, [Vector3<f64>; 2]) {
@@ -43,18 +29,7 @@ fn beside(lean: &Lean) -> [[Lean; 2]; 2] {
     ]
 }
 
-/// The entries of the columns of lead and tilt of a point, where it has them.
-pub(super) type LeanTerms = std::iter::Flatten<std::option::IntoIter<[(usize, f64); 2]>>;
-
 impl Build<'_> {
-    /// Slopes by lead and tilt, times a factor, as entries of the columns of point `i`; none where the tool keeps its
-    /// axis.
-    pub(super) fn lean_terms(&self, i: usize, factor: f64, slopes: impl Fn(&LeanSlopes) -> [f64; 2]) -> LeanTerms {
-        let known = self.leans[i].zip(self.locals[i].leaning.as_ref().map(slopes));
-        let terms = |(column, [lead, tilt]): (usize, [f64; 2])| [(column, factor * lead), (column + 1, factor * tilt)];
-        known.map(terms).into_iter().flatten()
-    }
-
     /// Ranges of lead and tilt, and the margins beside them.
     pub(super) fn lean_bounds(&mut self) {
         let problem = self.problem;

@@ -2,7 +2,7 @@
 //! leaning a little otherwise, beta counting from the feed as it is seen from each of these axes.
 
 use super::LOCAL;
-use super::linearise::{Differentiated, DifferentiatedSet, Followed, gradient};
+use super::differentiated::{Differentiated, DifferentiatedSet, Followed, gradient};
 use nalgebra::{Matrix2, Matrix5, SMatrix, SymmetricEigen};
 use stead_model::robot::Posture;
 use stead_model::task::ToolPath;

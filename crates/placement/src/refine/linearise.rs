@@ -1,6 +1,7 @@
 //! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the
 //! scores.
 
+use super::differentiated::{Differentiated, DifferentiatedSet, Followed, gradient};
 use super::lean_slopes::{LeanNeighbours, LeanSlopes};
 use super::slacks::{Slack, slacks};
 use super::{LOCAL, Solution, UNITS};
@@ -8,8 +9,7 @@ use nalgebra::{Matrix5, SymmetricEigen};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
-use stead_planning::criterion::Criterion;
-use stead_planning::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores};
+use stead_planning::evaluate::reference::State;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::SegmentPlan;
 
@@ -34,16 +34,17 @@ pub struct Local {
 /// What is scored of a path point under one set of compliances, linearised.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocalScore {
-    /// See [`SetScore::scored`]. m
+    /// See [`scored`](stead_planning::evaluate::reference::SetScore::scored). m
     pub scored: Dual<LOCAL>,
     /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near.
     /// m
     pub added: Dual<LOCAL>,
     /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
-    /// criterion asks, whose Euclidean norm is [`SetScore::margin`]. Empty elsewhere. m
+    /// criterion asks, whose Euclidean norm is [`margin`](stead_planning::evaluate::reference::SetScore::margin). Empty
+    /// elsewhere. m
     pub changes: Vec<Dual<LOCAL>>,
     /// Where several directions are scored and their norm has its kink near: the parts along them, whose norm is
-    /// [`SetScore::scored`]. Empty elsewhere. m
+    /// [`scored`](stead_planning::evaluate::reference::SetScore::scored). Empty elsewhere. m
     pub parts: Vec<Dual<LOCAL>>,
 }
 
@@ -142,111 +143,6 @@ fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
     let size = square(&mut changes.iter().map(|change| change.value));
     let slope = square(&mut changes.iter().flat_map(|change| change.gradient));
     size < KINK * KINK * slope
-}
-
-/// A state, and what is scored of it under every set of compliances.
-pub(super) struct Differentiated {
-    pub state: State<Dual<LOCAL>>,
-    pub sets: Vec<DifferentiatedSet>,
-}
-
-/// A score, and the vectors of which its norms are taken.
-pub(super) struct DifferentiatedSet {
-    pub score: SetScore<Dual<LOCAL>>,
-    /// That of the margin.
-    pub changes: Vec<Dual<LOCAL>>,
-    /// That of the scored part, where several directions are scored and errors of the force do not smooth it.
-    pub parts: Vec<Dual<LOCAL>>,
-}
-
-/// The state at `at` (x, y, z in m, yaw, beta in rad) with its gradient in scaled variables.
-pub(super) fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<Differentiated> {
-    let variables: [Dual<LOCAL>; LOCAL] = std::array::from_fn(|k| {
-        let mut variable = Dual::variable(at[k], k);
-        variable.gradient[k] = UNITS[k];
-        variable
-    });
-    let [x, y, z, yaw, beta] = variables;
-    let placement = Placement::from([x, y, z, yaw]);
-    let found = problem.at(&placement).state(point, beta, posture).ok()?;
-    let Criterion { confidence, force_uncertainty, weights, stiffness, .. } = &problem.criterion;
-    let robots = problem.scored_robots();
-    let scores = match stiffness {
-        Some(_) => set_scores(problem, point, &placement, &found.joints),
-        None if *confidence > 0.0 => {
-            vec![(found.own, scored_part_by_parameters(problem, point, &placement, &found.joints))]
-        }
-        None => vec![(found.own, Vec::new())],
-    };
-    let mut parts = match weights.is_single() || *force_uncertainty > 0.0 {
-        true => vec![Vec::new(); robots.len()],
-        false => scored_parts(problem, point, &placement, &found.joints),
-    };
-    let sets = scores.into_iter().zip(robots).zip(&mut parts).map(|(((score, slopes), robot), parts)| {
-        let changes = match robot.uncertainty() {
-            Some(known) if *confidence > 0.0 => {
-                known.changes(&slopes).map(|change| change.scale(*confidence)).collect()
-            }
-            _ => Vec::new(),
-        };
-        DifferentiatedSet { score, changes, parts: std::mem::take(parts) }
-    });
-    let sets = sets.collect();
-    Some(Differentiated { state: found, sets })
-}
-
-/// What second derivatives are taken of: where |c_i| is smooth, with the signs of the parts as they are, and near a
-/// kink along the present direction of the vector, whose norm is the subproblem's.
-pub(super) struct Followed {
-    /// The sets of compliances that count.
-    counted: Vec<usize>,
-    /// Of every set the sign of its scored part, and the shares of its changes and parts.
-    sets: Vec<(f64, Vec<f64>, Vec<f64>)>,
-}
-
-impl Followed {
-    fn of(problem: &Problem, centre: &Differentiated) -> Self {
-        let shares = |vector: &[Dual<LOCAL>], norm: f64| -> Vec<f64> {
-            vector.iter().map(|entry| if norm > 0.0 { entry.value / norm } else { 0.0 }).collect()
-        };
-        let score = |set: &DifferentiatedSet| set.score.score().value;
-        let worst = (0..centre.sets.len()).max_by(|a, b| score(&centre.sets[*a]).total_cmp(&score(&centre.sets[*b])));
-        let counted = match worst.filter(|_| problem.is_over_worst()) {
-            Some(worst) => vec![worst],
-            None => (0..centre.sets.len()).collect(),
-        };
-        let of_set = |set: &DifferentiatedSet| {
-            let sign = if set.score.scored.value < 0.0 { -1.0 } else { 1.0 };
-            (sign, shares(&set.changes, set.score.margin.value), shares(&set.parts, set.score.scored.value))
-        };
-        Self { counted, sets: centre.sets.iter().map(of_set).collect() }
-    }
-
-    /// Of a number of every entry there.
-    fn sum(&self, there: &Differentiated, of: impl Fn(&Dual<LOCAL>) -> f64) -> f64 {
-        let along = |shares: &[f64], vector: &[Dual<LOCAL>]| -> f64 {
-            shares.iter().zip(vector).map(|(share, entry)| share * of(entry)).sum()
-        };
-        let of_set = |set: &usize| {
-            let (there, (sign, changes, parts)) = (&there.sets[*set], &self.sets[*set]);
-            let s = &there.score;
-            let margin = if changes.is_empty() { of(&s.margin) } else { along(changes, &there.changes) };
-            let scored = if parts.is_empty() { sign * of(&s.scored) } else { along(parts, &there.parts) };
-            scored + of(&s.uncertainty) + margin
-        };
-        let sum: f64 = self.counted.iter().map(of_set).sum();
-        if self.counted.len() == 1 { sum } else { sum / self.counted.len() as f64 }
-    }
-
-    /// The slope there in a variable.
-    pub fn slope(&self, there: &Differentiated, k: usize) -> f64 {
-        self.sum(there, |entry| entry.gradient[k])
-    }
-
-    /// The value there.
-    pub fn value(&self, there: &Differentiated) -> f64 {
-        self.sum(there, |entry| entry.value)
-    }
 }
 
 /// Differences of exact gradients, as many as requested.

@@ -23,6 +23,7 @@
 pub mod active;
 mod agreement;
 pub mod ascent;
+mod differentiated;
 mod kinks;
 mod lean_rows;
 pub mod lean_slopes;
@@ -33,6 +34,7 @@ pub mod slacks;
 pub mod solver;
 pub mod subproblem;
 mod travel;
+mod variables;
 
 pub use agreement::found_again;
 

@@ -1,43 +1,32 @@
 //! The convex subproblem of the refinement, solved by clarabel.
 //!
-//! Variables, all scaled: pose step (4), beta steps (n), epigraph variables t (n, in units of the present objective),
-//! and where the largest score is minimised, that. Minimised is the aggregate of t (mean, mean square or largest) plus
-//! the curvature model; for every path point `t_i >= +-c_i + u_i`, linearised (u is what the score adds to |c_i|); then
-//! joint limits, joint steps, conditioning, c_max and the distances of shapes, linearised, the limits on beta, the
-//! cell, the trust region. Rows that cannot become active inside the trust region are left out. Where the margin of a
-//! point for uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and
-//! s_i is not less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no
-//! obstacle either; likewise for the norm of the parts where several directions are scored.
+//! Variables, all scaled: pose step (4), beta steps (n), steps of lead and tilt where the tool may lean, epigraph
+//! variables t (n, in units of the present objective), and where the largest score is minimised, that. Minimised is the
+//! aggregate of t (mean, mean square or largest) plus the curvature model; for every path point `t_i >= +-c_i + u_i`,
+//! linearised (u is what the score adds to |c_i|); then joint limits, joint steps, conditioning, c_max and the
+//! distances of shapes, linearised, the limits on beta, on leans and on the turn of the tool axis, the cell, the trust
+//! region. Rows that cannot become active inside the trust region are left out. Where the margin of a point for
+//! uncertain compliances has its kink near, one more variable s_i holds it: `t_i >= +-c_i + u_i + s_i`, and s_i is not
+//! less than the norm of the linearised changes of c_i (a second-order cone), so that this kink is no obstacle either;
+//! likewise for the norm of the parts where several directions are scored.
 
-use super::kinks::Kinked;
-use super::lean_rows::lean_columns;
 use super::lean_slopes::LeanSlopes;
 use super::linearise::{Curvature, Local, linearise};
 use super::programme::{Unsolved, pose_bounds, programme};
 use super::rows::{Rows, Triplets, curvature};
 use super::slacks::NEAR_STEPS;
-use super::travel::Travel;
+use super::variables::{BETA, Build, Kinked, Travel, beta_columns, lean_columns};
 use super::{LOCAL, Solution, UNITS};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{NonnegativeConeT, SupportedConeT, ZeroConeT};
-use std::ops::Range;
 use stead_planning::criterion::Aggregate;
 use stead_planning::limit::{Limit, Side};
-use stead_planning::problem::{BetaPlan, Problem};
+use stead_planning::problem::Problem;
 use stead_planning::redundancy::SegmentPlan;
 
-/// What a subproblem is asked.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StepRequest {
-    /// Half width of the trust region in scaled variables.
-    pub trust: f64,
-    /// Whether the objective has the curvature of the scores.
-    pub curved: bool,
-    /// Whether the pose has to stay, so that only the betas move.
-    pub pose_stays: bool,
-}
+pub use super::variables::StepRequest;
 
-/// What it answers.
+/// What a subproblem answers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SubproblemStep {
     /// Step of x, y, z (m) and yaw (rad).
@@ -104,95 +93,7 @@ pub fn solve<'p>(
     build.answered(&cones)
 }
 
-/// The subproblem as it is being built. Its variables are the change of the placement (4), the change of beta at each
-/// of the n points, those of lead and tilt where the tool may lean otherwise, the score of each point (the epigraph
-/// variables), the norms that have a kink there, and the largest score where that is minimised.
-pub(super) struct Build<'a> {
-    pub problem: &'a Problem,
-    pub solution: &'a Solution,
-    pub locals: &'a [Local],
-    pub request: StepRequest,
-    /// Vectors in scores whose norm needs a second-order cone.
-    pub kinked: Vec<Kinked<'a>>,
-    /// Scores are in this unit. m
-    pub unit: f64,
-    pub rows: Rows,
-    /// Column of the change of beta at each point.
-    betas: Vec<usize>,
-    /// Column of the change of lead at each point where the tool may lean otherwise, that of tilt behind it.
-    pub leans: Vec<Option<usize>>,
-    /// Number of both in all.
-    lean_count: usize,
-    pub travel: Travel,
-}
-
-/// Column of the first change of beta.
-const BETA: usize = 4;
-
-/// Column of the change of beta at each point: its own, or where beta stays that of the first point with the same.
-fn beta_columns(problem: &Problem) -> Vec<usize> {
-    let of_segment = |span: &Range<usize>| match problem.redundancy.beta {
-        BetaPlan::Free => span.clone().map(|i| BETA + i).collect(),
-        BetaPlan::ConstantPerSegment => vec![BETA + span.start; span.len()],
-        BetaPlan::Constant => vec![BETA; span.len()],
-    };
-    problem.task.segments().iter().flat_map(of_segment).collect()
-}
-
 impl Build<'_> {
-    /// Column of the first score.
-    fn epigraph(&self) -> usize {
-        BETA + self.locals.len() + self.lean_count
-    }
-
-    /// Number of scores of each point: one for every set of compliances where their mean counts, else one above all.
-    fn copies(&self) -> usize {
-        if self.problem.is_over_worst() { 1 } else { self.problem.scored_robots().len() }
-    }
-
-    /// Columns of the scores of a point.
-    fn scores_of(&self, i: usize) -> Range<usize> {
-        let first = self.epigraph() + i * self.copies();
-        first..first + self.copies()
-    }
-
-    /// Column of the first norm with a kink.
-    pub(super) fn norms(&self) -> usize {
-        self.epigraph() + self.copies() * self.locals.len()
-    }
-
-    /// Column of the first size of a joint's step.
-    pub(super) fn sizes(&self) -> usize {
-        self.norms() + self.kinked.len()
-    }
-
-    /// Number of variables; the largest score is the last.
-    fn variables(&self) -> usize {
-        self.sizes() + self.travel.sizes + usize::from(self.aggregate() == Aggregate::Max)
-    }
-
-    fn aggregate(&self) -> Aggregate {
-        self.problem.criterion.aggregate
-    }
-
-    /// A gradient by placement and beta, and slopes by lead and tilt, as entries of the columns of point `i`.
-    pub(super) fn terms(
-        &self,
-        i: usize,
-        gradient: &[f64; LOCAL],
-        lean: impl Fn(&LeanSlopes) -> [f64; 2],
-    ) -> Vec<(usize, f64)> {
-        let own = (0..4).map(|k| (k, gradient[k])).chain([(self.betas[i], gradient[4])]);
-        own.chain(self.lean_terms(i, 1.0, lean)).collect()
-    }
-
-    /// `low <= terms <= high` at a point, each side only if a step inside the trust region can reach it, twice over for
-    /// safety.
-    pub(super) fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64) {
-        let swing = 2.0 * self.request.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
-        self.rows.add_between(limit, point, terms, low, high, swing);
-    }
-
     /// What holds at point `i` by itself: its score, the largest deflection, conditioning and joint limits.
     fn point(&mut self, i: usize) {
         let (local, unit) = (&self.locals[i], self.unit);

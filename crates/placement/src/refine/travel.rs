@@ -1,27 +1,6 @@
 //! The joint travel in the objective of the subproblem.
 
-use super::subproblem::Build;
-use stead_planning::problem::Problem;
-
-/// The joint travel in the objective. Where a step of a joint may change its direction inside the trust region, one
-/// more variable is not less than its size; elsewhere it is linear.
-#[derive(Debug, Default)]
-pub(super) struct Travel {
-    /// What a radian of it counts. Units of the objective
-    pub weight: f64,
-    /// What it is at the solution, but for steps with a variable. Units of the objective
-    pub here: f64,
-    /// How that changes with the variables.
-    pub slopes: Vec<(usize, f64)>,
-    /// Variables that are sizes of steps.
-    pub sizes: usize,
-}
-
-impl Travel {
-    pub fn new(problem: &Problem, unit: f64) -> Self {
-        Self { weight: problem.travel_weight() / unit, ..Self::default() }
-    }
-}
+use super::variables::Build;
 
 impl Build<'_> {
     /// Counts the size of a joint's step (rad), where joint travel counts.

@@ -5,8 +5,9 @@
 //! When that gains nothing, the placements before and behind along x, y, z and yaw are tried, each with leans planned
 //! anew for it: the end is a placement of which no such neighbour is better with the best leans near the ones known.
 
-use super::{Improved, Job, NEAR, Thinned, path_of, spread};
+use super::{Improved, Job, NEAR};
 use crate::place::axes::{MOST_REFINED, planned_in, refined};
+use crate::place::thinned::{Thinned, path_of, spread};
 use crate::refine::{neighbours, solver};
 use rayon::prelude::*;
 use stead_model::task::lean::Lean;
