@@ -6,6 +6,7 @@ mod assess;
 mod bad_input;
 mod by_origin;
 mod calm;
+mod cam_files;
 mod cell_setup;
 mod certify;
 mod circularity;

@@ -99,10 +99,14 @@ impl Reader {
     /// Settings of many kinds; long lines are not divided, so that there are few points.
     fn settings(self, bytes: &[u8]) -> ReadSettings {
         let kind = bytes.len();
-        let format = if self == Self::Gcode { CamFormat::Gcode } else { CamFormat::Cldata };
         let gcode = self == Self::Gcode;
+        // CLDATA as told from the file half of the time, else in one of its dialects.
+        let dialect = CamFormat::WORDS.get(kind % 16).map_or(CamFormat::Cldata, |(_, format)| *format);
+        let format = if gcode || dialect == CamFormat::Gcode { CamFormat::Gcode } else { dialect };
         ReadSettings {
-            skip_cycles: false,
+            skip_cycles: kind % 11 == 1,
+            keep_links: kind % 5 == 2,
+            ignore: if gcode { Vec::new() } else { vec!["QUILLX".to_owned()] },
             format: Some(format),
             units: (gcode && kind.is_multiple_of(3)).then_some(LengthUnit::Millimetre),
             machine: Machine::ALL.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),

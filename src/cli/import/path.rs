@@ -25,8 +25,8 @@ pub(in super::super) struct PathOptions {
     /// Unit of length, where the file does not state it
     #[arg(long, value_parser = PossibleValuesParser::new(["mm", "inch"]).map(|word| unit(&word)))]
     pub units: Option<LengthUnit>,
-    /// What the file is written in [default: told from the file]
-    #[arg(long, value_parser = PossibleValuesParser::new(["cldata", "gcode"]).map(|word| format(&word)))]
+    /// What the file is written in; cldata: a dialect told from the file [default: told from the file]
+    #[arg(long, value_parser = PossibleValuesParser::new(CamFormat::WORDS.map(|(word, _)| word)).map(|word| format(&word)))]
     pub format: Option<CamFormat>,
     /// Machine that G-code with rotary axes is for
     #[arg(long, value_parser = PossibleValuesParser::new(Machine::ALL.map(|(word, _)| word)).try_map(|word| machine(&word)))]
@@ -41,6 +41,12 @@ pub(in super::super) struct PathOptions {
     /// Leave out the holes of drilling cycles, and list them
     #[arg(long)]
     pub skip_cycles: bool,
+    /// Take links between cuts that are programmed at feed as cuts, not as rapid moves
+    #[arg(long)]
+    pub keep_links: bool,
+    /// Words of CLDATA to pass over whatever they do, or codes of G-code whose blocks are passed over
+    #[arg(long, value_name = "WORD,..", value_delimiter = ',')]
+    pub ignore: Vec<String>,
     /// Print segments, points, length, extents, tilt, feeds, and what was changed and why
     #[arg(long)]
     pub report: bool,
@@ -73,6 +79,8 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
         pivot: options.pivot_mm.map(|mm| mm.map(|mm| mm / 1e3).into()),
         tool_centre_point: options.tcp,
         skip_cycles: options.skip_cycles,
+        keep_links: options.keep_links,
+        ignore: options.ignore.iter().map(|word| word.trim().to_owned()).filter(|word| !word.is_empty()).collect(),
         resampling: Resampling { chord: options.chord_mm / 1e3, step: options.step_mm / 1e3 },
     };
     let path = import_path(&options.program, &settings).map_err(stead::Error::from)?;
@@ -95,7 +103,7 @@ fn unit(word: &str) -> LengthUnit {
 }
 
 fn format(word: &str) -> CamFormat {
-    if word == "gcode" { CamFormat::Gcode } else { CamFormat::Cldata }
+    CamFormat::WORDS.into_iter().find(|(own, _)| *own == word).map_or(CamFormat::Cldata, |(_, format)| format)
 }
 
 fn machine(word: &str) -> Result<Machine, String> {

@@ -30,10 +30,34 @@ pub(super) enum ArcError {
     Radius(f64, f64),
 }
 
+impl ArcError {
+    /// What is wrong, and what is allowed.
+    pub fn words(self) -> (String, &'static str) {
+        match self {
+            Self::Axis => ("the axis of the arc has no length".to_owned(), "a direction, as 0,0,1"),
+            Self::Radius(from, to) => {
+                let [from, to] = [from, to].map(millimetres);
+                let problem = format!("the arc misses its end: radius {from} at its start, {to} there");
+                (problem, "the same radius, above 0, within 0.05 mm")
+            }
+        }
+    }
+}
+
+/// A length (m) for messages.
+pub(super) fn millimetres(length: f64) -> String {
+    format!("{:.4} mm", length * 1e3)
+}
+
 impl Arc {
     /// The radius at the start. m
     pub fn radius(&self) -> Option<f64> {
-        Unit::try_new(self.axis, 1e-9).map(|_| self.arm(self.start).norm())
+        Unit::try_new(self.axis, 1e-9).map(|_| self.distance(self.start))
+    }
+
+    /// How far a point is from its axis, which has a length. m
+    pub fn distance(&self, point: Vector3<f64>) -> f64 {
+        self.arm(point).norm()
     }
 
     /// The part of a turn from start to end, a whole one where they are one above the other. rad

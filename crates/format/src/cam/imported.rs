@@ -2,19 +2,21 @@
 
 use super::segments::{Counts, Point, Resampling, Segments, expected_points, segments};
 use super::tool::{self, ProgramTool, Use};
-use super::{Move, Program, counted, rounded};
+use super::{CamFormat, Move, Program, counted, rounded};
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::InputError;
+use stead_disk::quote::shorten;
 use stead_model::plausibility;
 use stead_model::task::ToolPath;
 
 /// The points of a program, ready to be written as a task file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportedPath {
+    format: CamFormat,
     segments: Vec<Vec<Point>>,
     rapids: Vec<Vec<Move>>,
     counts: Counts,
@@ -70,7 +72,10 @@ impl ImportedPath {
             let problem = format!("{} cutting moves, none of which can be scored", counts.cutting);
             return Err(InputError::new(file, problem).allowed(SCORED));
         }
-        let mut notes = Vec::new();
+        let lost = |(why, count): (&String, &usize)| {
+            format!("{count} moves at feed are not scored, from or to where the tool is not known: {why}")
+        };
+        let mut notes: Vec<String> = program.lost.iter().map(lost).collect();
         let mut note = |count: usize, text: &str| {
             if count > 0 {
                 notes.push(format!("{count} {text}"));
@@ -81,10 +86,12 @@ impl ImportedPath {
         note(counts.added, "points added, on lines longer than the step or turns of the tool axis by more than 5 deg");
         note(counts.plunging, "points of plunges along the tool axis, where there is no wall: followed, not scored");
         note(counts.turning, "points of turns of the tool in place, where there is no wall: followed, not scored");
-        notes.extend(program.notes.iter().map(|(text, count)| match count {
-            1 => text.clone(),
-            count => format!("{text} ({count} times)"),
-        }));
+        notes.extend(program.notes.iter().map(|(text, found)| format!("{text}{}", found.words())));
+        if !program.unknown.is_empty() {
+            let words: Vec<String> =
+                program.unknown.iter().map(|(word, found)| format!("{word}{}", found.words())).collect();
+            notes.push(format!("not known, taken not to move the tool: {}", words.join(", ")));
+        }
         if !program.holes_left_out.is_empty() {
             let place = |(place, line): &(Vector3<f64>, usize)| {
                 let [x, y, z] = [place.x, place.y, place.z].map(|value| rounded(value * 1e3));
@@ -105,6 +112,10 @@ impl ImportedPath {
         let uses = program.uses();
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let cutter = tool::text(&uses, &name);
+        notes.extend(uses.iter().filter(|one| one.tool.is_other_shape).map(|one| {
+            let description = shorten(&one.tool.description);
+            format!("{description}: its shape is not that of a run file, of which the diameter alone is taken")
+        }));
         let tool = uses.first().map(|one| one.tool.clone());
         if cutter.is_some() && uses.len() > 1 {
             let words: Vec<String> = uses.iter().take(NAMED_TOOLS).map(Use::words).collect();
@@ -114,8 +125,8 @@ impl ImportedPath {
                 words.join("; ")
             ));
         }
-        let tools = program.tools;
-        Ok(Self { segments, rapids, counts, resampling, has_feeds, tools, cutter, tool, notes })
+        let (tools, format) = (program.tools, program.format);
+        Ok(Self { format, segments, rapids, counts, resampling, has_feeds, tools, cutter, tool, notes })
     }
 
     /// The task file, checked as it will be read; `file` is its name in messages.
@@ -186,6 +197,11 @@ impl ImportedPath {
         self.tool.as_ref()
     }
 
+    /// What the program is written in.
+    pub fn format(&self) -> CamFormat {
+        self.format
+    }
+
     /// Number of segments.
     pub fn segment_count(&self) -> usize {
         self.segments.len()
@@ -235,6 +251,7 @@ impl fmt::Display for ImportedPath {
             Some([low, high]) => format!("{low:.3} to {high:.3} {unit}"),
             None => "none".to_owned(),
         };
+        writeln!(f, "format    {}", self.format.word())?;
         writeln!(f, "read      {cutting} cutting and {rapid} rapid moves")?;
         writeln!(f, "segments  {}", self.segments.len())?;
         writeln!(f, "points    {points}, of which {scored} are scored")?;

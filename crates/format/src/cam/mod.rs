@@ -1,13 +1,15 @@
 //! Tool paths from CAM systems: CLDATA and G-code into the points of a task file.
 //!
 //! A reader ([`cldata`], [`gcode`]) turns a program into straight [`Move`]s of the tool centre point, in the workpiece
-//! frame, SI inside. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`]
+//! frame, SI inside: [`course`] is what both have in common. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`]
 //! holds the points, writes them as a task file, and says what was found and what was changed.
 
 mod arc;
 pub mod cldata;
+mod course;
 pub mod gcode;
 mod imported;
+mod links;
 mod segments;
 #[cfg(test)]
 mod tests;
@@ -56,17 +58,52 @@ impl LengthUnit {
     }
 }
 
-/// What a program is written in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CamFormat {
-    /// Cutter location data, APT words in text.
+    /// CLDATA, its dialect told from the file.
+    #[default]
     Cldata,
+    /// That of Siemens NX.
+    Nx,
+    /// That of SolidWorks CAM and CAMWorks.
+    Solidworks,
+    /// That of PTC Creo and Pro/NC.
+    Creo,
+    /// That of Dassault CATIA.
+    Catia,
+    /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
+    Autodesk,
+    /// That of the CAMplete post of Autodesk.
+    Camplete,
+    /// Plain APT words of no system that can be told.
+    Apt,
     /// G-code of ISO 6983.
     Gcode,
 }
 
+impl CamFormat {
+    /// All of them with their names as options and keys have them.
+    pub const WORDS: [(&'static str, Self); 9] = [
+        ("cldata", Self::Cldata),
+        ("nx", Self::Nx),
+        ("solidworks", Self::Solidworks),
+        ("creo", Self::Creo),
+        ("catia", Self::Catia),
+        ("autodesk", Self::Autodesk),
+        ("camplete", Self::Camplete),
+        ("apt", Self::Apt),
+        ("gcode", Self::Gcode),
+    ];
+
+    /// Its name as an option has it.
+    pub fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|(_, format)| *format == self).map_or("", |(word, _)| word)
+    }
+}
+
 /// How a program is read.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ReadSettings {
     /// The format; told from the file where left out.
     pub format: Option<CamFormat>,
@@ -81,6 +118,10 @@ pub struct ReadSettings {
     pub tool_centre_point: bool,
     /// Whether the holes of drilling cycles are left out.
     pub skip_cycles: bool,
+    /// Whether links between cuts that are programmed at feed are taken as cuts.
+    pub keep_links: bool,
+    /// Words of CLDATA that are passed over whatever they do, or codes of G-code, whose blocks are.
+    pub ignore: Vec<String>,
     /// How densely points are taken.
     pub resampling: Resampling,
 }
@@ -102,28 +143,71 @@ pub struct Move {
     pub line: usize,
 }
 
+/// How often something was found, and in which lines.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Found {
+    /// How often.
+    pub times: usize,
+    /// The first of its lines, where these are told.
+    pub lines: Vec<usize>,
+}
+
 /// A program as its moves; the first only says where the tool starts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Program {
+    /// What it is written in.
+    pub format: CamFormat,
     /// The moves in their order.
     pub moves: Vec<Move>,
     /// Tools and tool paths that the program names, in their order.
     pub tools: Vec<String>,
     /// What is known of the tool, each with the move that it is made from on.
     pub tools_from: Vec<(usize, ProgramTool)>,
-    /// What was made of the program that is not plain, with how often.
-    pub notes: BTreeMap<String, usize>,
+    /// Whether it says that rapid moves are made at feed.
+    pub has_rapids_at_feed: bool,
+    /// Moves at feed that are not scored, by why not.
+    pub lost: BTreeMap<String, usize>,
+    /// What was made of the program that is not plain.
+    pub notes: BTreeMap<String, Found>,
     /// Holes of drilling cycles that were left out: places in the workpiece frame (m), with the line.
     pub holes_left_out: Vec<(Vector3<f64>, usize)>,
     /// Words that do not move the tool and were passed over, with how often.
     pub passed_over: BTreeMap<String, usize>,
+    /// Words that are not known, taken not to move the tool.
+    pub unknown: BTreeMap<String, Found>,
+}
+
+impl Found {
+    fn at(&mut self, line: Option<usize>) {
+        self.times += 1;
+        self.lines.extend(line.filter(|_| self.lines.len() < NAMED_LINES));
+    }
+
+    /// In brackets behind what it is of; nothing of a single one without a line.
+    fn words(&self) -> String {
+        let lines = self.lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        match (self.times, self.lines.len()) {
+            (1, 0) => String::new(),
+            (times, 0) => format!(" ({times} times)"),
+            (1, _) => format!(" (line {lines})"),
+            (times, told) if times == told => format!(" (lines {lines})"),
+            (times, _) => format!(" ({times} times, first in lines {lines})"),
+        }
+    }
 }
 
 impl Program {
     fn note(&mut self, text: impl Into<String>) {
-        *self.notes.entry(text.into()).or_default() += 1;
+        self.notes.entry(text.into()).or_default().at(None);
+    }
+
+    fn note_at(&mut self, text: impl Into<String>, line: usize) {
+        self.notes.entry(text.into()).or_default().at(Some(line));
     }
 }
+
+/// Lines that are named of what was found.
+const NAMED_LINES: usize = 5;
 
 /// Reads a program and resamples it into the points of a task.
 ///
@@ -151,37 +235,31 @@ pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Resul
                 .allowed("--format cldata or --format gcode, for a file that is one of them")
         })?,
     };
-    let program = match format {
-        CamFormat::Cldata => cldata::read(file, text, settings)?,
+    let mut program = match format {
         CamFormat::Gcode => gcode::read(file, text, settings)?,
+        _ => cldata::read(file, text, settings)?,
     };
+    if !settings.keep_links {
+        links::take_out(&mut program);
+    }
     ImportedPath::new(file, program, settings.resampling)
 }
 
-/// Lines that are looked at to tell the format.
-const TELLING_LINES: usize = 2000;
-
-/// The format by the first line that is of one alone.
-fn format_of(text: &str) -> Option<CamFormat> {
-    text.lines().take(TELLING_LINES).find_map(|line| {
+/// CLDATA or G-code, by the first line that is of one alone.
+pub(crate) fn format_of(text: &str) -> Option<CamFormat> {
+    text.lines().find_map(|line| {
         let line = line.trim();
-        if line.starts_with("$$") {
-            return Some(CamFormat::Cldata);
-        }
-        if line.starts_with('%') || line.starts_with('(') || line.starts_with(';') {
-            return Some(CamFormat::Gcode);
-        }
-        let word: String =
-            line.chars().take_while(|c| c.is_ascii_alphabetic()).collect::<String>().to_ascii_uppercase();
-        let rest = line[word.len()..].trim_start();
-        let is_cldata = word.len() > 1 && (rest.starts_with('/') || cldata::is_known(&word));
-        let is_gcode = word.len() == 1 && rest.starts_with(|c: char| c.is_ascii_digit() || "+-.#".contains(c));
-        if is_cldata {
-            Some(CamFormat::Cldata)
-        } else if is_gcode || gcode::foreign(line).is_some() {
+        let mut chars = line.chars();
+        let is_gcode = line.starts_with(['%', '(', ';'])
+            || (chars.next().is_some_and(|c| c.is_ascii_alphabetic())
+                && chars.find(|c| *c != ' ').is_some_and(|c| c.is_ascii_digit() || "+-.#".contains(c))
+                && !cldata::is_labelled(line));
+        if is_gcode {
             Some(CamFormat::Gcode)
+        } else if cldata::is_statement(line) {
+            Some(CamFormat::Cldata)
         } else {
-            None
+            gcode::foreign(line).map(|_| CamFormat::Gcode)
         }
     })
 }

@@ -4,6 +4,7 @@ use super::*;
 use crate::task::{Imported, parse_csv};
 
 mod cldata_words;
+mod dialects;
 mod gcode_words;
 
 const FINE: Resampling = Resampling { chord: 1e-5, step: 1e-2 };

@@ -19,6 +19,12 @@ pub struct ProgramTool {
     pub corner_radius: Option<f64>,
     /// Length. m
     pub length: Option<f64>,
+    /// Whether that is stated as the length of its flutes, without the shank.
+    pub is_length_of_flutes: bool,
+    /// Angle between the side and the axis, where it is tapered. rad
+    pub taper: Option<f64>,
+    /// Whether its shape is another than a run file has: with a neck, a barrel, a corner beside the flank.
+    pub is_other_shape: bool,
     /// Speed of the spindle. rev/s
     pub spindle_speed: Option<f64>,
     /// Whether it turns counterclockwise, seen from the spindle.
@@ -154,10 +160,19 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     if let Some(corner) = tool.corner_radius {
         lines.row(&key(format!("corner_radius_mm = {:?}", mm(corner))), "of the CAM file");
     }
+    if let Some(taper) = tool.taper {
+        lines.row(&key(format!("taper_deg = {:?}", rounded(taper.to_degrees()))), "of the CAM file");
+    }
     match (tool.length, tool.diameter) {
         (Some(length), _) => {
-            let comment = "of the CAM file, perhaps with its shank: kept out of the part between segments";
+            let comment = match tool.is_length_of_flutes {
+                true => "of the CAM file: kept out of the part between segments",
+                false => "of the CAM file, perhaps with its shank: kept out of the part between segments",
+            };
             lines.row(&key(format!("flute_length_mm = {:?}", mm(length))), comment);
+        }
+        (None, Some(_)) if tool.is_other_shape => {
+            lines.row("# flute_length_mm = 10.0", "to be stated: the shape of this cutter is not that of a run file");
         }
         (None, Some(diameter)) => lines.row(&format!("flute_length_mm = {:?}", mm(3.0 * diameter)), "guess"),
         (None, None) => {}

@@ -21,7 +21,7 @@ ranges! {
 }
 
 words!(LengthUnit: "mm" => LengthUnit::Millimetre, "inch" => LengthUnit::Inch);
-words!(CamFormat: "cldata" => CamFormat::Cldata, "gcode" => CamFormat::Gcode);
+words!(CamFormat);
 words!(Machine:
     "table-ac" => Machine::TableAc,
     "table-bc" => Machine::TableBc,
@@ -54,12 +54,12 @@ pub struct ForcesFile {
 }
 
 /// How a path from CAM is read: the options of `stead import path`.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReadingTable {
     /// Unit of length, where the path does not state it.
     pub units: Option<Word<LengthUnit>>,
-    /// What the path is written in; told from the file where left out.
+    /// What the path is written in; told from the file where left out, and the dialect of `cldata` always.
     pub format: Option<Word<CamFormat>>,
     /// The machine that G-code with rotary axes is for.
     pub machine: Option<Word<Machine>>,
@@ -69,6 +69,11 @@ pub struct ReadingTable {
     pub tcp: Option<bool>,
     /// Whether the holes of drilling cycles are left out; false where left out.
     pub skip_cycles: Option<bool>,
+    /// Whether links between cuts that are programmed at feed are taken as cuts; false where left out, which makes them
+    /// rapid moves.
+    pub keep_links: Option<bool>,
+    /// Words of CLDATA that are passed over whatever they do, or codes of G-code whose blocks are passed over.
+    pub ignore: Option<Vec<String>>,
     /// Largest distance between path points; 10 where left out.
     pub step_mm: Option<Mm<Step>>,
     /// How far a point that is left out may be from the line that stands for it; 0.01 where left out.

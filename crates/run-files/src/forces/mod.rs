@@ -115,8 +115,8 @@ impl RemovalTables<'_> {
         let mut before = Vec::new();
         for (table, number) in self.before.iter().zip(1..) {
             let at = at.key("before").element(number);
-            let reading = table.reading.unwrap_or(self.reading);
-            let named_before = read_path(&at.key("path"), &reading, &source.sources)?;
+            let reading = table.reading.as_ref().unwrap_or(&self.reading);
+            let named_before = read_path(&at.key("path"), reading, &source.sources)?;
             if is_same(&named_before.file, &named.file) {
                 return Err(at
                     .key("path")
@@ -220,24 +220,27 @@ pub(crate) fn path_of(
         rapids: imported.rapids().iter().map(air).collect(),
         spindle_speed: imported.tool().and_then(|tool| tool.spindle_speed),
         tool: imported.tool().cloned(),
-        notes: imported.notes().iter().map(|note| format!("{name}: {note}")).collect(),
+        notes: imported.notes().iter().map(|note| format!("{name}: {}", keyed(note))).collect(),
         input,
     })
 }
 
 /// An error of an import with the keys of `[reading]` in place of the options of the command line.
 fn by_keys(error: InputError) -> InputError {
-    let keys = ["units", "format", "machine", "pivot_mm", "tcp", "skip_cycles", "step_mm", "chord_mm"];
-    let keyed = |text: &str| {
-        let option = |key: &str| format!("--{}", key.replace('_', "-"));
-        keys.iter().fold(text.to_owned(), |text, key| text.replace(&option(key), &format!("reading.{key}")))
-    };
     InputError {
         problem: keyed(&error.problem).into(),
         field: error.field.as_deref().map(|field| keyed(field).into()),
         allowed: error.allowed.as_deref().map(|allowed| keyed(allowed).into()),
         ..error
     }
+}
+
+/// A text with the keys of `[reading]` in place of the options of the command line.
+fn keyed(text: &str) -> String {
+    let keys =
+        ["units", "format", "machine", "pivot_mm", "tcp", "skip_cycles", "keep_links", "ignore", "step_mm", "chord_mm"];
+    let option = |key: &str| format!("--{}", key.replace('_', "-"));
+    keys.iter().fold(text.to_owned(), |text, key| text.replace(&option(key), &format!("reading.{key}")))
 }
 
 impl ReadingTable {
@@ -253,6 +256,8 @@ impl ReadingTable {
             pivot: self.pivot_mm.map(|pivot| pivot.vector()),
             tool_centre_point: self.tcp.unwrap_or_default(),
             skip_cycles: self.skip_cycles.unwrap_or_default(),
+            keep_links: self.keep_links.unwrap_or_default(),
+            ignore: self.ignore.clone().unwrap_or_default(),
             resampling,
         }
     }

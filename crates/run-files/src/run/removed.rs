@@ -130,7 +130,7 @@ pub(super) fn removed(
     let run = tables.run(path, source, at)?;
     // Of the cut nothing else counts, such as depths for the stability.
     let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
-    let others = RemovalTables { cut: None, is_for_stability: false, ..*tables };
+    let others = RemovalTables { reading: tables.reading.clone(), cut: None, is_for_stability: false, ..*tables };
     let key = format!("{others:?} {cut:?} {:?} {feed:?}", run.inputs);
     let made = source.sources.made(key.clone(), || forces(&run.problem, monitor));
     let outcome = made.map_err(|error| run.located(&error))?;

@@ -1,5 +1,6 @@
 //! Drilling cycles of CLDATA: a plunge along the tool axis at each of the points that follow.
 
+use super::dialect::HoleDepth;
 use super::statement::{Minor, Statement};
 
 /// What a cycle does at each point, in the unit of the file.
@@ -16,24 +17,26 @@ pub(super) struct Cycle {
 }
 
 /// Cycles that plunge along the tool axis and come back the same way.
-const KINDS: [&str; 6] = ["DRILL", "DEEP", "BRKCHP", "TAP", "BORE", "REAM"];
+const KINDS: [&str; 7] = ["DRILL", "DEEP", "DEEP2", "BRKCHP", "TAP", "BORE", "REAM"];
+/// Words with a number of what is left out: pecks.
+const PECKS: [&str; 4] = ["STEP", "INCR", "1STPECK", "SUBPECK"];
 /// Units of feed.
 const FEEDS: [&str; 6] = ["MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV"];
 
 /// The forms that are taken, for messages.
-pub(super) const FORMS: &str = "CYCLE/DRILL, DEEP, BRKCHP, TAP, BORE or REAM with DEPTH,d or FEDTO,-d (or as d,unit,feed,clearance) and CLEAR,c \
-                                or RAPTO,c; or --skip-cycles, which leaves all holes out and lists them";
+pub(super) const FORMS: &str = "CYCLE/DRILL, DEEP, BRKCHP, TAP, BORE or REAM with DEPTH,d or FEDTO (-d of NX, d of SolidWorks and CAMplete; or as \
+                                d,unit,feed,clearance) and RAPTO,c or CLEAR,c; or --skip-cycles, which leaves all holes out and lists them";
 
 impl Cycle {
     /// A cycle of one of these forms; nothing of any other.
-    pub fn of(statement: &Statement<'_>) -> Option<Self> {
+    pub fn of(statement: &Statement<'_>, hole_depth: HoleDepth) -> Option<Self> {
         let word = |minor: Minor<'_>| match minor {
             Minor::Word(word) => Some(word.to_ascii_uppercase()),
             Minor::Number(..) => None,
         };
         let mut minors = statement.minors.iter().copied().peekable();
         minors.next().and_then(word).filter(|kind| KINDS.contains(&&kind[..]))?;
-        let (mut depth, mut clear, mut retract, mut feed) = (None, None, None, None);
+        let (mut depth, mut clear, mut rapid_to, mut retract, mut feed) = (None, None, None, None, None);
         let mut is_first = true;
         while let Some(minor) = minors.next() {
             let mut number = || match minors.peek() {
@@ -54,8 +57,16 @@ impl Cycle {
                 Minor::Word(text) => match &text.to_ascii_uppercase()[..] {
                     "DEEP" | "BRKCHP" if is_first => continue,
                     "DEPTH" => depth = Some(number()?),
-                    "FEDTO" => depth = Some(-number()?),
-                    "CLEAR" | "RAPTO" => clear = Some(number()?.max(clear.unwrap_or(0.0))),
+                    "FEDTO" => {
+                        let to = number()?;
+                        depth = Some(match hole_depth {
+                            HoleDepth::Depth => to,
+                            HoleDepth::Coordinate => -to,
+                            HoleDepth::Either => to.abs(),
+                        });
+                    }
+                    "CLEAR" => clear = Some(number()?),
+                    "RAPTO" => rapid_to = Some(number()?),
                     "RTRCTO" | "RETURN" => match number() {
                         Some(value) => retract = Some(value),
                         None => {
@@ -66,7 +77,7 @@ impl Cycle {
                         minors.next_if(|minor| word(*minor).is_some_and(|word| word == "REV"));
                         minors.next_if(|minor| matches!(minor, Minor::Number(..)))?;
                     }
-                    "STEP" | "INCR" => {
+                    pecks if PECKS.contains(&pecks) => {
                         minors.next_if(|minor| matches!(minor, Minor::Number(..)))?;
                     }
                     unit if FEEDS.contains(&unit) => feed = Some((number()?, unit.to_owned())),
@@ -76,7 +87,7 @@ impl Cycle {
             is_first = false;
         }
         let depth = depth.filter(|depth| *depth > 0.0)?;
-        let clear = clear.filter(|clear| *clear > 0.0)?;
+        let clear = rapid_to.or(clear).filter(|clear| *clear > 0.0)?;
         Some(Self { clear, depth, retract: retract.unwrap_or(clear).max(clear), feed })
     }
 }

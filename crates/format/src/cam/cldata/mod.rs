@@ -1,18 +1,19 @@
-//! CLDATA: cutter locations in text, the words of APT (ISO 4343) as NX, SolidWorks CAM and others write them.
+//! CLDATA: cutter locations in text, the words of APT (ISO 4343) in the dialects of CAM systems.
 //!
-//! Positions are in the frame of the last `MSYS` or `CSYS`, the tool axis is modal, `RAPID` is for the next `GOTO`
-//! alone, and `CIRCLE` makes it an arc. With 11 numbers, as NX writes them, it turns as a left-handed screw along its
-//! axis; with 6 (SolidWorks CAM) and 7 (Creo), as a right-handed one.
+//! What is particular to a dialect is data ([`dialect`]); the reader interprets it. Positions are in the frame of the
+//! file, `RAPID` is for the next `GOTO` alone, and an arc is a word and the move behind it.
 
 mod cutter;
 mod cycle;
+mod dialect;
 mod reader;
 mod statement;
-mod words;
+mod told;
 
-pub(super) use words::is_known;
+pub(super) use told::{is_labelled, is_statement};
 
 use super::{LengthUnit, Program, ReadSettings};
+use dialect::Dialect;
 use reader::Reader;
 use statement::{Statement, Statements};
 use std::path::Path;
@@ -25,9 +26,10 @@ use stead_disk::input::InputError;
 /// many as the word has, a tool axis without length, an arc that misses its end, a word that moves the tool in a way
 /// that is not known.
 pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
-    let unit = unit_of(file, text, settings.units)?;
-    let mut reader = Reader::new(file, unit, settings);
-    let mut statements = Statements::new(text);
+    let dialect = Dialect::of(text, settings.format);
+    let unit = unit_of(file, dialect, text, settings.units)?;
+    let mut reader = Reader::new(file, dialect, unit, settings)?;
+    let mut statements = Statements::new(dialect, text);
     let mut statement = Statement::default();
     while statements.next_into(&mut statement) {
         if !reader.take(&statement)? {
@@ -37,15 +39,34 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
     reader.finish(&statement)
 }
 
-/// The unit that a file states, or the one given for a file that does not.
-fn unit_of(file: &Path, text: &str, given: Option<LengthUnit>) -> Result<LengthUnit, InputError> {
-    let mut unit = given;
-    let mut statements = Statements::new(text);
-    let mut statement = Statement::default();
-    while statements.next_into(&mut statement) {
-        if !["UNIT", "UNITS"].iter().any(|word| statement.word.eq_ignore_ascii_case(word)) {
-            continue;
+/// The statements of the unit, in lines that may hold one: most are moves, which a look at their letters shows.
+fn statements_of_unit<'a>(dialect: &'static Dialect, text: &'a str) -> Vec<Statement<'a>> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    for (line, number) in text.split_inclusive('\n').zip(1..) {
+        if line.bytes().any(|byte| byte.eq_ignore_ascii_case(&b'u')) {
+            let mut statements = Statements::new(dialect, &text[at..]);
+            let mut statement = Statement::default();
+            while statements.next_into(&mut statement) && statement.line == 1 {
+                if ["UNIT", "UNITS"].iter().any(|word| statement.word.eq_ignore_ascii_case(word)) {
+                    found.push(Statement { line: number, ..statement.clone() });
+                }
+            }
         }
+        at += line.len();
+    }
+    found
+}
+
+/// The unit that a file states, or the one given for a file that does not.
+fn unit_of(
+    file: &Path,
+    dialect: &'static Dialect,
+    text: &str,
+    given: Option<LengthUnit>,
+) -> Result<LengthUnit, InputError> {
+    let mut unit = given;
+    for statement in statements_of_unit(dialect, text) {
         let fail = |problem: String, allowed: &str| {
             InputError::new(file, problem)
                 .at_line(statement.line)

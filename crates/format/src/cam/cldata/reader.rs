@@ -1,12 +1,15 @@
-//! The modal state of CLDATA, statement by statement.
+//! The interpreter of CLDATA: what each word of a dialect does to the state of the tool.
 
 mod arcs;
+mod points;
 
-use super::super::{LARGEST, LengthUnit, Move, Program, ReadSettings, Resampling};
+use super::super::course::{Course, Frame, NO_LENGTH};
+use super::super::{LARGEST, LengthUnit, Program, ReadSettings};
 use super::cutter::cutter;
 use super::cycle::{Cycle, FORMS};
+use super::dialect::{CutterForm, Dialect, Effect, Ending, FrameForm};
 use super::statement::Statement;
-use super::words::is_harmless;
+use arcs::Pending;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 use stead_disk::input::InputError;
@@ -14,24 +17,8 @@ use stead_disk::quote::one_line;
 
 /// Directions of a frame may be this far from unit length and right angles: digits as printed.
 const FRAME_ROUNDING: f64 = 1e-3;
-/// A tool axis is shorter than this is none.
-const NO_LENGTH: f64 = 1e-6;
-
-/// An arc that the next GOTO ends.
-#[derive(Clone, Copy)]
-struct Pending {
-    centre: Vector3<f64>,
-    axis: Vector3<f64>,
-    radius: Option<f64>,
-    /// Whole turns of a helix.
-    turns: Option<u32>,
-    line: usize,
-}
-
-/// Moves that meet at more than this turn back. cos
-const TURNED_BACK: f64 = -0.9;
-/// The most turns of a helix.
-const MOST_TURNS: f64 = 1000.0;
+/// An unknown word with so many numbers may hold a position, a direction or a frame.
+const NUMBERS_OF_A_PLACE: usize = 3;
 
 /// Units of feed, for messages.
 const FEED_UNITS: &str = "MMPM, IPM, MMPR, IPR, PERMIN or PERREV";
@@ -45,211 +32,214 @@ enum Holes {
 /// Reads statements into moves.
 pub(super) struct Reader<'a> {
     file: &'a Path,
+    dialect: &'static Dialect,
+    settings: &'a ReadSettings,
     unit: LengthUnit,
-    resampling: Resampling,
-    program: Program,
-    rotation: Matrix3<f64>,
-    origin: Vector3<f64>,
-    /// Tool axis as last stated, in the frame of the file.
-    axis: Vector3<f64>,
-    feed: Option<f64>,
+    course: Course,
     /// rev/s
     spindle: Option<f64>,
     is_rapid: bool,
-    is_after_change: bool,
+    /// Whether `MULTAX/OFF` holds.
+    is_three_axis: bool,
+    /// The frame that the file names as that of its positions, where it is not applied.
+    named: Option<Frame>,
+    offset: Option<f64>,
     pending: Option<Pending>,
-    holes: Option<Holes>,
-    skips_cycles: bool,
-    /// Direction in which the last cutting move has arrived.
-    arrived: Option<Vector3<f64>>,
-    /// The line of the last arc, where it set out against the move before it.
-    against: Option<usize>,
+    /// The way out of the next arc, in the workpiece frame.
+    tangent: Option<Vector3<f64>>,
+    /// The arc whose circle the next points may lie on, where the dialect has such.
+    circle: Option<Pending>,
+    /// A cycle that is open, with its line.
+    holes: Option<(Holes, usize)>,
+    /// Length of flutes (m) that is stated before any move from this one on.
+    flutes: Option<(f64, usize)>,
     is_ended: bool,
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(file: &'a Path, unit: LengthUnit, settings: &ReadSettings) -> Self {
-        Self {
+    pub fn new(
+        file: &'a Path,
+        dialect: &'static Dialect,
+        unit: LengthUnit,
+        settings: &'a ReadSettings,
+    ) -> Result<Self, InputError> {
+        let is_path = |word: &&String| {
+            matches!(dialect.effect(word), Some(Effect::Move(_) | Effect::Rapid | Effect::Arc(_) | Effect::End(_)))
+        };
+        if let Some(word) = settings.ignore.iter().find(is_path) {
+            return Err(InputError::new(file, "is a word of the path itself")
+                .in_field("--ignore")
+                .found(format!("'{}'", one_line(word)))
+                .allowed("words that do not move the tool"));
+        }
+        let mut course = Course::new(settings.resampling);
+        (course.is_after_change, course.program.format) = (true, dialect.format);
+        Ok(Self {
             file,
+            dialect,
+            settings,
             unit,
-            resampling: settings.resampling,
-            program: Program::default(),
-            rotation: Matrix3::identity(),
-            origin: Vector3::zeros(),
-            axis: Vector3::z(),
-            feed: None,
+            course,
             spindle: None,
             is_rapid: false,
-            is_after_change: true,
+            is_three_axis: false,
+            named: None,
+            offset: None,
             pending: None,
+            tangent: None,
+            circle: None,
             holes: None,
-            skips_cycles: settings.skip_cycles,
-            arrived: None,
-            against: None,
+            flutes: None,
             is_ended: false,
-        }
+        })
     }
 
     /// Takes a statement; false after the one that ends the program.
     pub fn take(&mut self, statement: &Statement<'_>) -> Result<bool, InputError> {
-        if let (Some(pending), false) = (self.pending, is_one_of(statement.word, &["GOTO", "FEDRAT"])) {
+        let Some(effect) = self.effect(statement)? else { return Ok(true) };
+        if let (Some(pending), false) = (&self.pending, matches!(effect, Effect::Move(_) | Effect::Feed)) {
             return Err(self.fail_at(
                 pending.line,
-                "CIRCLE",
+                pending.word,
                 "is not followed by its end",
-                "a GOTO behind each CIRCLE",
+                "a GOTO behind each arc",
             ));
         }
-        let word = statement.word.to_ascii_uppercase();
-        match &word[..] {
-            "GOTO" => self.goto(statement)?,
-            "FROM" => {
-                self.is_after_change = true;
-                self.goto(statement)?;
+        if !matches!(effect, Effect::Move(_)) {
+            self.circle = None;
+        }
+        match effect {
+            Effect::Move(ends) => self.goto(statement, ends)?,
+            Effect::Rapid => self.is_rapid = true,
+            Effect::Arc(form) => self.arc(statement, form)?,
+            Effect::Tangent => self.tangent = Some(self.course.frame.rotation * self.direction(statement)?),
+            Effect::Frame(form) => self.frame(statement, form)?,
+            Effect::Axis => self.course.axis = self.direction(statement)?,
+            Effect::Axes => self.is_three_axis = statement.has("OFF"),
+            Effect::Feed => self.fedrat(statement)?,
+            Effect::Spindle => self.spindl(statement),
+            Effect::Unit => {}
+            Effect::Cutter(form) => self.cutter(statement, form)?,
+            Effect::Tool => self.tool(statement)?,
+            Effect::Section => self.section(statement)?,
+            Effect::Cycle => self.cycle(statement)?,
+            Effect::Compensation => {
+                if !statement.has("OFF") && !statement.has("LENGTH") {
+                    self.course.program.note("CUTCOM: the points are taken as those of the tool centre");
+                }
             }
-            "GOHOME" => self.go_home(statement)?,
-            "RAPID" => self.is_rapid = true,
-            "CIRCLE" => self.circle(statement)?,
-            "FEDRAT" => self.fedrat(statement)?,
-            "SPINDL" => self.spindl(statement),
-            "MSYS" => self.msys(statement)?,
-            "CSYS" => self.csys(statement)?,
-            "UNIT" | "UNITS" | "MULTAX" => {}
-            "CUTCOM" if !statement.has("OFF") => {
-                self.program.note("CUTCOM: the points are taken as those of the tool centre");
+            Effect::Offset => self.offset(statement)?,
+            Effect::Mode if ["INCR", "INCREM", "INC", "DELTA"].iter().any(|word| statement.has(word)) => {
+                let allowed = "positions from the origin: let the CAM system write them so";
+                return Err(self.fail(statement, "positions that count from the last one", allowed));
             }
-            "CUTCOM" => {}
-            "CYCLE" => self.cycle(statement)?,
-            "MODE" if ["ABSOL", "ABS"].iter().any(|word| statement.has(word)) => {}
-            "TRNTYP" if statement.numbers().all(|number| number == 0.0) => {}
-            "TRNTYP" => {
-                let allowed = "TRNTYP without an origin: let the CAM system write positions in the frame of the part";
-                return Err(self.fail(statement, "an origin other than 0,0,0", allowed));
+            Effect::Mode => {}
+            Effect::Text | Effect::Nothing => self.pass_over(statement.word),
+            Effect::Refused(why) => {
+                let allowed = format!(
+                    "GOTO, RAPID, arcs and drilling cycles: let the CAM system write straight moves and arcs; or --ignore {}, if it does nothing here",
+                    statement.word.to_ascii_uppercase()
+                );
+                return Err(self.fail(statement, &format!("is not read: {why}"), &allowed));
             }
-            "TOOL PATH" => self.is_after_change = true,
-            "LOAD" | "LOADTL" | "TOOLNO" | "TURRET" | "UNLOAD" => self.tool(statement),
-            "TLDATA" | "CUTTER" => {
-                self.numbers(statement, |count| count > 0, "numbers of the tool")?;
-                self.tool(statement);
-                let tool = cutter(statement, self.unit.metres());
-                self.program.change_tool(|last| *last = tool.turning_as(last));
-            }
-            "END-OF-PATH" => self.is_ended = true,
-            "FINI" => {
+            Effect::End(Ending::Path) => self.is_ended = true,
+            Effect::End(Ending::Program) => {
                 self.is_ended = true;
                 return Ok(false);
-            }
-            word if is_harmless(word) => {
-                if word == "INSERT" {
-                    self.program.note("INSERT: text for the post-processor, whatever it does");
-                }
-                *self.program.passed_over.entry(one_line(word)).or_default() += 1;
-            }
-            _ => {
-                return Err(self.fail(
-                    statement,
-                    "may move the tool, or what its positions count from, in a way that is not known here",
-                    "GOTO, RAPID, CIRCLE, FROM and drilling cycles: let the CAM system write straight moves and arcs",
-                ));
             }
         }
         Ok(true)
     }
 
+    /// What a statement does by its dialect; nothing where its word is ignored, or one that nobody knows.
+    fn effect(&mut self, statement: &Statement<'_>) -> Result<Option<Effect>, InputError> {
+        let word = statement.word;
+        let ignored = self.settings.ignore.iter().find(|own| own.eq_ignore_ascii_case(word));
+        if let Some(own) = ignored {
+            let text = format!("{} passed over, as asked (--ignore)", one_line(&own.to_ascii_uppercase()));
+            self.course.program.note_at(text, statement.line);
+            return Ok(None);
+        }
+        let known = self.dialect.effect(word);
+        if known.is_some() {
+            return Ok(known);
+        }
+        let count = statement.numbers().count();
+        let name = one_line(&word.to_ascii_uppercase());
+        if count >= NUMBERS_OF_A_PLACE {
+            let problem = format!(
+                "is not known, and its {count} numbers may move the tool, or what its positions count from, in a way that is not known here"
+            );
+            let allowed = format!(
+                "--ignore {name}, if it does nothing of that; else let the CAM system write straight moves and arcs"
+            );
+            return Err(self.fail(statement, &problem, &allowed));
+        }
+        self.course.program.unknown.entry(name).or_default().at(Some(statement.line));
+        Ok(None)
+    }
+
     /// The program, when the file is at its end.
-    pub fn finish(mut self, last: &Statement<'_>) -> Result<Program, InputError> {
-        if self.pending.is_some() {
-            return Err(self.fail(last, "the file ends before the end of the arc", "a GOTO behind each CIRCLE"));
+    pub fn finish(self, last: &Statement<'_>) -> Result<Program, InputError> {
+        if let Some(pending) = &self.pending {
+            let problem = "the file ends before the end of the arc";
+            return Err(self.fail_at(last.line.max(pending.line), pending.word, problem, "a GOTO behind each arc"));
         }
+        let mut program = self.course.program;
         if !self.is_ended {
-            self.program.note("no FINI and no END-OF-PATH: the file may be cut short");
+            program.note("no FINI and no END-OF-PATH: the file may be cut short");
         }
-        Ok(self.program)
+        for word in &self.settings.ignore {
+            let start = format!("{} passed over", word.to_ascii_uppercase());
+            if !program.notes.keys().any(|note| note.starts_with(&start)) {
+                program.note(format!("--ignore {}: no such word in the file", one_line(word)));
+            }
+        }
+        Ok(program)
     }
 
-    fn goto(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let given = self.numbers(statement, |count| count == 3 || count == 6, "3 or 6 finite numbers")?;
-        if let [_, _, _, i, j, k] = given[..] {
-            let axis = Vector3::new(i, j, k);
-            let length = axis.norm();
-            if length < NO_LENGTH {
-                return Err(self.fail(statement, "the tool axis has no length", "a direction, as 0,0,1"));
-            }
-            if (length - 1.0).abs() > FRAME_ROUNDING {
-                self.program.note("tool axes made of unit length");
-            }
-            self.axis = axis / length;
+    fn pass_over(&mut self, word: &str) {
+        let counts = &mut self.course.program.passed_over;
+        match counts.get_mut(word) {
+            Some(count) => *count += 1,
+            None => *counts.entry(one_line(&word.to_ascii_uppercase())).or_default() += 1,
         }
-        let end = Move {
-            position: self.place(Vector3::new(given[0], given[1], given[2])),
-            axis: self.rotation * self.axis,
-            feed: self.feed,
-            is_rapid: self.is_rapid || self.is_after_change,
-            is_arc: false,
-            line: statement.line,
-        };
-        if let Some(pending) = self.pending.take() {
-            self.arc(statement, &pending, end)?;
-        } else if let (Some(holes), false) = (&self.holes, statement.word.eq_ignore_ascii_case("FROM")) {
-            match holes {
-                Holes::Drilled(cycle) => {
-                    let unit = self.unit.metres();
-                    let above = |height: f64| end.position + end.axis * (height * unit);
-                    let feed = match &cycle.feed {
-                        Some((value, word)) => Some(self.feed_in(statement, *value, word)?),
-                        None => self.feed,
-                    };
-                    self.program.moves.extend([
-                        Move { position: above(cycle.clear), is_rapid: true, ..end },
-                        Move { position: above(-cycle.depth), is_rapid: false, feed, ..end },
-                        Move { position: above(cycle.retract), is_rapid: true, ..end },
-                    ]);
-                    self.program.note("holes of drilling cycles taken as a plunge and a rapid retract, not scored");
-                    (self.is_rapid, self.is_after_change) = (false, false);
-                }
-                Holes::LeftOut => {
-                    self.program.holes_left_out.push((end.position, statement.line));
-                    self.is_after_change = true;
-                }
-            }
-            (self.arrived, self.against) = (None, None);
-            return Ok(());
-        } else {
-            if self.is_after_change && !self.is_rapid && !self.program.moves.is_empty() && statement.word != "FROM" {
-                self.program.note("first moves of a tool or tool path, taken as rapid ones though RAPID is not there");
-            }
-            let way = self.program.moves.last().map(|last| end.position - last.position);
-            let way = way.filter(|_| !end.is_rapid).and_then(|way| way.try_normalize(1e-9));
-            self.goes_on(way)?;
-            self.arrived = way;
-            self.program.moves.push(end);
-        }
-        (self.is_rapid, self.is_after_change) = (false, false);
-        Ok(())
     }
 
-    /// A rapid move home, or to where nothing is known of.
-    fn go_home(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        if statement.numbers().next().is_some() {
-            self.is_rapid = true;
-            self.goto(statement)?;
-        }
-        self.is_after_change = true;
-        Ok(())
+    /// A direction of the file, of unit length.
+    fn direction(&self, statement: &Statement<'_>) -> Result<Vector3<f64>, InputError> {
+        let allowed = "3 finite numbers: a direction, as 0,0,1";
+        let given = self.numbers(statement, |count| count >= 3, allowed)?;
+        let direction = Vector3::new(given[0], given[1], given[2]).try_normalize(NO_LENGTH);
+        direction.ok_or_else(|| self.fail(statement, "the direction has no length", allowed))
     }
 
     fn cycle(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        self.holes = if statement.has("OFF") || statement.has("END") {
+        let ends = ["OFF", "END", "INIT", "CLEAR"];
+        let first = statement.words().next().unwrap_or_default();
+        self.holes = if ends.iter().any(|word| first.eq_ignore_ascii_case(word)) {
             None
-        } else if self.skips_cycles {
-            Some(Holes::LeftOut)
+        } else if self.settings.skip_cycles {
+            Some((Holes::LeftOut, statement.line))
         } else {
             self.numbers(statement, |_| true, FORMS)?;
-            let cycle = Cycle::of(statement);
+            let cycle = Cycle::of(statement, self.dialect.hole_depth);
             let problem = "a cycle whose moves are not known here";
-            Some(Holes::Drilled(cycle.ok_or_else(|| self.fail(statement, problem, FORMS))?))
+            let cycle = cycle.ok_or_else(|| self.fail(statement, problem, FORMS))?;
+            Some((Holes::Drilled(cycle), statement.line))
         };
         Ok(())
+    }
+
+    /// Refuses what begins while a cycle is open: holes may follow, or cuts.
+    fn no_cycle_is_open(&self, statement: &Statement<'_>) -> Result<(), InputError> {
+        match &self.holes {
+            Some((_, line)) => {
+                let problem = format!("the cycle of line {line} is still open here: holes may follow, or cuts");
+                Err(self.fail(statement, &problem, "CYCLE/OFF before, behind the last hole"))
+            }
+            None => Ok(()),
+        }
     }
 
     fn fedrat(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
@@ -261,13 +251,13 @@ impl<'a> Reader<'a> {
         let words: Vec<&str> = statement.words().collect();
         let word = match words[..] {
             [] => {
-                self.program.note(format!("FEDRAT without a unit, taken in {} per minute", self.unit.word()));
+                self.course.program.note(format!("FEDRAT without a unit, taken in {} per minute", self.unit.word()));
                 "PERMIN"
             }
             [word] => word,
             _ => return Err(self.fail(statement, "not one unit of feed", FEED_UNITS)),
         };
-        self.feed = Some(self.feed_in(statement, value, word)?);
+        self.course.feed = Some(self.feed_in(statement, value, word)?);
         Ok(())
     }
 
@@ -298,61 +288,129 @@ impl<'a> Reader<'a> {
             self.spindle = (speed > 0.0 && speed.is_finite() && !is_surface_speed).then_some(speed / 60.0);
         }
         let speed = self.spindle;
-        self.program.change_tool(|tool| {
+        self.course.program.change_tool(|tool| {
             tool.spindle_speed = speed;
             tool.is_counterclockwise = statement.has("CCLW") || (tool.is_counterclockwise && !statement.has("CLW"));
         });
     }
 
-    fn msys(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let given = self.numbers(statement, |count| count == 9, "9 numbers: origin, x axis, y axis")?;
-        let [x, y] = [3, 6].map(|k| Vector3::new(given[k], given[k + 1], given[k + 2]));
-        let origin = Vector3::new(given[0], given[1], given[2]);
-        self.set_frame(statement, origin, Matrix3::from_columns(&[x, y, x.cross(&y)]))
-    }
-
-    fn csys(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let given =
-            self.numbers(statement, |count| count == 12, "12 numbers: three rows of a rotation and an origin")?;
-        let at = |row: usize, column: usize| given[4 * row + column];
-        let origin = Vector3::from_fn(|row, _| at(row, 3));
-        self.set_frame(statement, origin, Matrix3::from_fn(at))
-    }
-
-    fn set_frame(
-        &mut self,
-        statement: &Statement<'_>,
-        origin: Vector3<f64>,
-        rotation: Matrix3<f64>,
-    ) -> Result<(), InputError> {
+    fn frame(&mut self, statement: &Statement<'_>, form: FrameForm) -> Result<(), InputError> {
+        let (counts, allowed): (&[usize], &str) = match form {
+            FrameForm::OriginXY => (&[9], "9 numbers: origin, x axis, y axis"),
+            FrameForm::Rows => (&[12], "12 numbers: three rows of a rotation and an origin"),
+            FrameForm::RowsBelow => (&[12], "three comments below with a row of a rotation and of an origin each"),
+            FrameForm::AxesOrigin => (&[12], "12 numbers: x, y and z axis, origin"),
+            FrameForm::NumberOriginXY => (&[9, 10], "a number, origin, x axis, y axis"),
+            FrameForm::OriginXZ => (&[3, 9], "an origin, and x and z axis where they turn"),
+            FrameForm::Zero => {
+                (&[0, 1, 3], "no origin but 0,0,0: let the CAM system write positions in the frame of the part")
+            }
+        };
+        let given = self.numbers(statement, |count| counts.contains(&count), allowed)?;
+        let at = |k: usize| Vector3::new(given[k], given[k + 1], given[k + 2]);
+        let [origin, x, y] = match form {
+            FrameForm::Zero if given.iter().all(|number| *number == 0.0) => return Ok(()),
+            FrameForm::Zero => return Err(self.fail(statement, "an origin other than 0,0,0", allowed)),
+            FrameForm::OriginXY => [at(0), at(3), at(6)],
+            FrameForm::NumberOriginXY => [9, 6, 3].map(|k| at(given.len() - k)),
+            FrameForm::AxesOrigin => [at(9), at(0), at(3)],
+            FrameForm::Rows | FrameForm::RowsBelow => {
+                [3, 0, 1].map(|column| Vector3::from_fn(|row, _| given[4 * row + column]))
+            }
+            FrameForm::OriginXZ if given.len() == 3 => [at(0), Vector3::x(), Vector3::y()],
+            FrameForm::OriginXZ => [at(0), at(3), at(6).cross(&at(3))],
+        };
+        // All three axes of a statement that has them.
+        let z = match form {
+            FrameForm::AxesOrigin => at(6),
+            FrameForm::Rows | FrameForm::RowsBelow => Vector3::from_fn(|row, _| given[4 * row + 2]),
+            _ => x.cross(&y),
+        };
+        let rotation = Matrix3::from_columns(&[x, y, z]);
         let off = (rotation.tr_mul(&rotation) - Matrix3::identity()).abs().max();
         if off > FRAME_ROUNDING || rotation.determinant() < 0.0 {
             let allowed = "unit vectors at right angles, right-handed";
             return Err(self.fail(statement, "the axes of the frame are no rotation", allowed));
         }
-        let x = rotation.column(0).normalize();
-        let z = x.cross(&rotation.column(1)).normalize();
-        let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
-        let origin = origin * self.unit.metres();
-        let is_same = (rotation - self.rotation).abs().max() < 1e-9 && (origin - self.origin).norm() < 1e-9;
-        if !is_same {
-            self.program.note(format!("{}: positions and tool axes turned into the frame of the part", statement.word));
+        if form == FrameForm::RowsBelow {
+            self.section(statement)?;
         }
-        (self.rotation, self.origin) = (rotation, origin);
+        let z = x.cross(&y).normalize();
+        let x = x.normalize();
+        let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
+        self.set_frame(statement, Frame { rotation, origin: origin * self.unit.metres() })
+    }
+
+    /// Applies a frame, or takes it as that of all positions where the dialect names it so.
+    fn set_frame(&mut self, statement: &Statement<'_>, frame: Frame) -> Result<(), InputError> {
+        let word = statement.word.trim_start_matches(['$', '-', '>', '*']);
+        let is_same = frame.is_near(&self.course.frame);
+        if self.dialect.applies_frames {
+            if !is_same {
+                let note = format!("frame of {word}: positions and tool axes turned into that of the part");
+                self.course.program.note(note);
+            }
+            self.course.frame = frame;
+            return Ok(());
+        }
+        if self.named.is_some_and(|named| !frame.is_near(&named)) {
+            let problem = "a second coordinate system, and the file does not say in which of them its positions are";
+            return Err(self.fail(
+                statement,
+                problem,
+                "one coordinate system for the whole file: write a file for each",
+            ));
+        }
+        if !is_same {
+            self.course
+                .program
+                .note(format!("frame of {word}: positions are taken as those in it, and it as the part's"));
+        }
+        self.named = Some(frame);
         Ok(())
     }
 
-    fn tool(&mut self, statement: &Statement<'_>) {
-        self.is_after_change = true;
-        let text = one_line(&format!("{}/{}", statement.word, statement.text()));
-        if !self.program.tools.contains(&text) {
-            self.program.tools.push(text);
-        }
+    /// A new path: the way to its first point is a rapid move.
+    fn section(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
+        self.no_cycle_is_open(statement)?;
+        self.course.is_after_change = true;
+        Ok(())
     }
 
-    /// A position of the file in the workpiece frame. m
-    fn place(&self, position: Vector3<f64>) -> Vector3<f64> {
-        self.origin + self.rotation * position * self.unit.metres()
+    fn tool(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
+        self.section(statement)?;
+        let text = one_line(&format!("{}/{}", statement.word, statement.text()));
+        if !self.course.program.tools.contains(&text) {
+            self.course.program.tools.push(text);
+        }
+        Ok(())
+    }
+
+    fn cutter(&mut self, statement: &Statement<'_>, form: CutterForm) -> Result<(), InputError> {
+        self.numbers(statement, |count| count > 0, "numbers of the tool")?;
+        let read = cutter(statement, form, self.unit.metres());
+        let moves = self.course.program.moves.len();
+        if form == CutterForm::Flutes {
+            self.flutes = read.length.map(|length| (length, moves));
+        } else {
+            self.tool(statement)?;
+            self.course.program.change_tool(|last| *last = read.turning_as(last));
+        }
+        // Of the tool that is named before or behind it, without a move in between.
+        if let Some((length, _)) = self.flutes.filter(|(_, from)| *from == moves) {
+            self.course.program.change_tool(|tool| (tool.length, tool.is_length_of_flutes) = (Some(length), true));
+        }
+        Ok(())
+    }
+
+    fn offset(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
+        let given = self.numbers(statement, |count| count <= 1, "the number of a work offset")?.first().copied();
+        if self.offset.is_some() && given.is_some() && self.offset != given {
+            let problem = "a second work offset, and how the two lie to each other is not in the file";
+            return Err(self.fail(statement, problem, "one work offset for the whole file"));
+        }
+        self.offset = given.or(self.offset);
+        Ok(())
     }
 
     /// The numbers of a statement, so many as are right, finite and not too large.
@@ -367,9 +425,7 @@ impl<'a> Reader<'a> {
         if numbers.iter().any(|number| !number.is_finite() || number.abs() > largest) {
             return Err(self.fail(statement, "not finite numbers of a usual size", allowed));
         }
-        let has_words = is_one_of(statement.word, &["GOTO", "FROM", "GOHOME", "MSYS", "CSYS"])
-            && statement.words().next().is_some();
-        if !is_right(numbers.len()) || has_words {
+        if !is_right(numbers.len()) {
             let problem = format!("{} numbers that can be read", numbers.len());
             return Err(self.fail(statement, &problem, allowed));
         }
@@ -379,14 +435,11 @@ impl<'a> Reader<'a> {
     fn fail(&self, statement: &Statement<'_>, problem: &str, allowed: &str) -> InputError {
         let found = statement.text();
         let found = if found.is_empty() { statement.word.to_owned() } else { found };
-        self.fail_at(statement.line, statement.word, problem, allowed).found(format!("'{found}'"))
+        let word = statement.word.trim_start_matches(['$', '-', '>', '*']);
+        self.fail_at(statement.line, word, problem, allowed).found(format!("'{found}'"))
     }
 
     fn fail_at(&self, line: usize, word: &str, problem: &str, allowed: &str) -> InputError {
         InputError::new(self.file, problem).at_line(line).in_field(word).allowed(allowed)
     }
-}
-
-fn is_one_of(word: &str, words: &[&str]) -> bool {
-    words.iter().any(|one| word.eq_ignore_ascii_case(one))
 }

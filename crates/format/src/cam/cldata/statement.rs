@@ -1,5 +1,6 @@
 //! Statements of CLDATA: a word, and behind a slash words and numbers, over one line or several.
 
+use super::dialect::{Dialect, Effect, FrameForm};
 use std::str::Lines;
 
 /// A word or number behind the slash.
@@ -44,6 +45,17 @@ impl<'a> Statement<'a> {
         self.words().any(|own| own.eq_ignore_ascii_case(word))
     }
 
+    /// Adds what stands behind the slash.
+    fn take(&mut self, text: &'a str) {
+        let texts = |text: &'a str| text.split(',').map(str::trim).filter(|text| !text.is_empty()).map(minor);
+        if text.contains(['(', ')']) {
+            // Geometry within a statement: (CIRCLE/x,y,z,r).
+            self.minors.extend(text.split(['(', ')', '/']).flat_map(texts));
+        } else {
+            self.minors.extend(texts(text));
+        }
+    }
+
     /// What stands behind the slash, as written.
     pub fn text(&self) -> String {
         let texts: Vec<&str> = self
@@ -57,11 +69,12 @@ impl<'a> Statement<'a> {
     }
 }
 
-/// Words whose statement is free text.
-const FREE_TEXT: [&str; 5] = ["PARTNO", "PPRINT", "INSERT", "REMARK", "TPRINT"];
+/// Comment lines that hold the rows of a frame, at the most: its name and the three rows.
+const FRAME_LINES: usize = 4;
 
-/// The statements of a text.
+/// The statements of a text, in a dialect, whose comments that mean something are statements too.
 pub(super) struct Statements<'a> {
+    dialect: &'static Dialect,
     lines: Lines<'a>,
     line: usize,
     /// What stands behind a semicolon.
@@ -69,27 +82,37 @@ pub(super) struct Statements<'a> {
 }
 
 impl<'a> Statements<'a> {
-    pub fn new(text: &'a str) -> Self {
-        Self { lines: text.lines(), line: 0, rest: None }
+    pub fn new(dialect: &'static Dialect, text: &'a str) -> Self {
+        Self { dialect, lines: text.lines(), line: 0, rest: None }
     }
 
-    /// The rest of a line behind a semicolon, or the next line, without comment.
-    fn next_part(&mut self) -> Option<&'a str> {
-        if let Some(rest) = self.rest.take() {
-            return Some(rest.trim());
-        }
+    fn next_line(&mut self) -> Option<&'a str> {
         let line = self.lines.next()?;
         self.line += 1;
-        Some(line.find("$$").map_or(line, |comment| &line[..comment]).trim())
+        Some(line.trim())
     }
 
     /// Reads the next statement into one that is used again; whether there was one.
     pub fn next_into(&mut self, statement: &mut Statement<'a>) -> bool {
         statement.minors.clear();
         let mut is_continued = false;
-        while let Some(line) = self.next_part() {
+        loop {
+            let line = match self.rest.take() {
+                Some(rest) => rest.trim(),
+                None => match self.next_line() {
+                    Some(line) => line,
+                    None => return is_continued,
+                },
+            };
+            if line.starts_with("$$") {
+                if !is_continued && self.comment(line, statement) {
+                    return true;
+                }
+                continue;
+            }
+            let line = line.find("$$").map_or(line, |comment| line[..comment].trim());
             let line = if is_continued { line } else { without_label(line) };
-            let is_free = !is_continued && is_free_text(line);
+            let is_free = !is_continued && self.is_free_text(line);
             let line = match line.split_once(';') {
                 Some((first, rest)) if !is_free => {
                     self.rest = Some(rest);
@@ -106,39 +129,81 @@ impl<'a> Statements<'a> {
             }
             let mut rest = body;
             if !is_continued {
-                let end = body.find(['/', ',']).unwrap_or(body.len());
-                let free = is_free;
-                let end = if free { body.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(body.len()) } else { end };
+                let end = match is_free {
+                    true => body.find(|c: char| !is_of_word(c)).unwrap_or(body.len()),
+                    false => body.find(['/', ',']).unwrap_or(body.len()),
+                };
                 statement.word = body[..end].trim_end();
                 statement.line = self.line;
-                rest = if free { "" } else { body[end..].trim_start_matches(['/', ',']) };
+                rest = if is_free { "" } else { body[end..].trim_start_matches(['/', ',']) };
             }
-            statement.minors.extend(rest.split(',').map(str::trim).filter(|text| !text.is_empty()).map(minor));
+            statement.take(rest);
             if !goes_on {
                 return true;
             }
             is_continued = true;
         }
-        is_continued
+    }
+
+    /// Takes a comment with the lines that it goes on in; whether it means something.
+    fn comment(&mut self, mut line: &'a str, statement: &mut Statement<'a>) -> bool {
+        let known = self.dialect.of_comment(line);
+        statement.line = self.line;
+        if let Some((word, effect, rest)) = known {
+            statement.word = word;
+            if effect == Effect::Frame(FrameForm::RowsBelow) {
+                self.rows_below(statement);
+                return true;
+            }
+            statement.take(rest.trim_end_matches('$'));
+        }
+        while line.ends_with('$') && !line.ends_with("$$") {
+            // A comment may end in a dollar sign: no move is lost to it.
+            let is_move = |next: &str| without_label(next.trim()).starts_with("GOTO");
+            if self.lines.clone().next().is_none_or(is_move) {
+                break;
+            }
+            let next = self.next_line().unwrap_or_default();
+            line = next.find("$$").map_or(next, |comment| next[..comment].trim_end());
+            if known.is_some() {
+                statement.take(line.trim_end_matches('$'));
+            }
+        }
+        known.is_some()
+    }
+
+    /// Takes the comments below with four numbers each.
+    fn rows_below(&mut self, statement: &mut Statement<'a>) {
+        for _ in 0..FRAME_LINES {
+            let next = self.lines.clone().next().and_then(|line| line.trim().strip_prefix("$$"));
+            let Some(row) = next.filter(|row| !row.starts_with('*')) else { return };
+            self.next_line();
+            let numbers = || row.split_whitespace().map(minor);
+            if numbers().count() == 4 && numbers().all(|minor| matches!(minor, Minor::Number(..))) {
+                statement.minors.extend(numbers());
+            }
+        }
+    }
+
+    fn is_free_text(&self, text: &str) -> bool {
+        // Most statements are moves.
+        let word = &text[..text.find(|c: char| !is_of_word(c)).unwrap_or(text.len())];
+        word != "GOTO" && self.dialect.effect(word) == Some(Effect::Text)
     }
 }
 
-fn is_free_text(text: &str) -> bool {
-    FREE_TEXT.iter().any(|word| starts_with(text, word))
+fn is_of_word(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
 }
 
 /// A statement without the label before it, as in `A1) GOTO/1,2,3`.
-fn without_label(text: &str) -> &str {
-    match text.split_once(')') {
-        Some((label, rest)) if !label.is_empty() && label.chars().all(|c| c.is_ascii_alphanumeric()) => {
-            rest.trim_start()
+pub(super) fn without_label(text: &str) -> &str {
+    match text.find(')') {
+        Some(end) if end > 0 && text.as_bytes()[..end].iter().all(u8::is_ascii_alphanumeric) => {
+            text[end + 1..].trim_start()
         }
         _ => text,
     }
-}
-
-fn starts_with(text: &str, word: &str) -> bool {
-    text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word))
 }
 
 fn minor(text: &str) -> Minor<'_> {
@@ -155,7 +220,7 @@ mod tests {
     #[test]
     fn comments_continuations_and_free_text() {
         let text = "$$ a comment\n\nGOTO/1.,-.5, $ \n 3 $$ more\nRAPID\r\nRAPID/\nPPRINT a / b, 'c'\nTOOL PATH/A,TOOL,B\n  FINI";
-        let mut statements = Statements::new(text);
+        let mut statements = Statements::new(Dialect::of(text, None), text);
         let (mut one, mut found) = (Statement::default(), Vec::new());
         while statements.next_into(&mut one) {
             found.push((one.line, one.word.to_owned(), one.text()));

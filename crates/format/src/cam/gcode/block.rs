@@ -1,5 +1,6 @@
 //! Blocks of G-code: letters with numbers, comments left out; and programs that are something else by their name.
 
+use super::codes::{FOREIGN, POST};
 use std::path::Path;
 use stead_disk::input::InputError;
 
@@ -29,6 +30,11 @@ impl Block<'_> {
     /// The number of a letter, where the block has it.
     pub fn get(&self, letter: char) -> Option<f64> {
         self.words.iter().find(|(own, _)| *own == letter).map(|(_, value)| *value)
+    }
+
+    /// The first of its words with one of these letters.
+    pub fn first(&self, letters: &str) -> Word {
+        self.words.iter().find(|(letter, _)| letters.contains(*letter)).copied().unwrap_or(('G', 2.0))
     }
 
     /// That one of its words is wrong.
@@ -72,32 +78,26 @@ pub(super) fn words<'a>(line: &'a str, words: &mut Vec<Word>) -> Result<(), &'a 
     }
 }
 
-/// What a line is written in, where that is a language which is not read.
-pub(crate) fn foreign(line: &str) -> Option<&'static str> {
-    const HEIDENHAIN: &str = "Heidenhain conversational";
+/// That a line is of a language that is not read: what it is, and what to post.
+pub(crate) fn foreign(line: &str) -> Option<(&'static str, &'static str)> {
     let line = line.trim().trim_start_matches('/').to_ascii_uppercase();
     let body = line.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
-    let starts = |words: &[&str]| words.iter().any(|word| body.starts_with(word));
-    let is_numbered = body.len() < line.len();
-    if starts(&["BEGIN PGM", "CYCL DEF", "CYCL CALL", "TOOL CALL", "BLK FORM", "FN ", "LBL ", "CALL LBL", "PLANE "])
-        || (is_numbered && starts(&["L ", "CC ", "C ", "CR "]))
-    {
-        return Some(HEIDENHAIN);
-    }
     let code = line.split(['(', ';']).next().unwrap_or_default();
     let code = code.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
+    let begins = |names: &[&str]| names.iter().any(|name| body.starts_with(name) || code.starts_with(name));
+    if let Some((_, is, post)) = FOREIGN.iter().find(|(names, ..)| begins(names)) {
+        return Some((is, post));
+    }
+    if body.len() < line.len() && ["L ", "CC ", "C ", "CR "].iter().any(|word| body.starts_with(word)) {
+        return Some((FOREIGN[0].1, POST));
+    }
     let is_o_word = code.starts_with("O<")
         || (code.starts_with('O')
             && ["SUB", "IF", "WHILE", "DO", "CALL", "REPEAT", "ELSE", "END"].iter().any(|w| code.contains(w)));
     if is_o_word {
-        return Some("a macro program (O-words)");
+        return Some(("a macro program (O-words) is not read", POST));
     }
-    if code.contains(['#', '=']) {
-        return Some("a macro program (variables)");
-    }
-    let is_macro =
-        ["IF", "WHILE", "GOTO", "REPEAT", "FOR", "CALL", "DEF ", "PROC ", "MCALL", "CYCLE", "TRAORI", "TRANS", "ROT"];
-    is_macro.iter().any(|word| code.starts_with(word)).then_some("a macro program (control words)")
+    code.contains(['#', '=']).then_some(("a macro program (variables) is not read", POST))
 }
 
 #[cfg(test)]
@@ -118,6 +118,9 @@ mod tests {
     #[test]
     fn other_languages_by_name() {
         for (line, name) in [
+            ("CYCLE800(1,\"TC1\",0,57,0,0,0,30,0,0,0)", Some("a tilted plane of a Siemens or Heidenhain control")),
+            ("PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", Some("a tilted plane of a Siemens or Heidenhain control")),
+            ("N20 TRAORI", Some("five axes of a Siemens control")),
             ("0 BEGIN PGM PART MM", Some("Heidenhain conversational")),
             ("7 L X+10 Y+5 R0 FMAX", Some("Heidenhain conversational")),
             ("CYCL DEF 32.0 TOLERANCE", Some("Heidenhain conversational")),
@@ -128,7 +131,9 @@ mod tests {
             ("O1234 (PART)", None),
             ("N10 G1 X5 (IF = #)", None),
         ] {
-            assert_eq!(foreign(line), name, "{line}");
+            let found = foreign(line).map(|(is, _)| is.rsplit_once(" not read").unwrap().0);
+            let found = found.map(|is| is.trim_end_matches(" is").trim_end_matches(" are"));
+            assert_eq!(found, name, "{line}");
         }
     }
 }

@@ -1,14 +1,14 @@
 //! G-code of ISO 6983: straight moves and arcs with up to five axes.
 //!
-//! Positions are those of the work offset (G54 to G59) as the workpiece frame. Angles of rotary axes are those of a
+//! What each code does is data ([`codes`]). Positions are those of the work offset (G54 to G59) as the workpiece frame. Angles of rotary axes are those of a
 //! named [`Machine`], along a move in proportion to the way, so moves that turn the tool are taken in small parts.
 
 mod arc;
 mod block;
+mod codes;
 mod comment;
 mod machine;
 mod reader;
-mod state;
 
 pub(super) use block::foreign;
 pub use machine::Machine;
@@ -17,6 +17,7 @@ use super::{Program, ReadSettings};
 use reader::Reader;
 use std::path::Path;
 use stead_disk::input::InputError;
+use stead_disk::quote::shorten;
 
 /// Reads the moves of a G-code program.
 ///
@@ -25,16 +26,16 @@ use stead_disk::input::InputError;
 /// same block or mode contradicts, an arc that misses its end, a unit that is not stated, rotary axes without their
 /// machine.
 pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
-    let mut reader = Reader::new(file, settings);
-    let mut words = Vec::new();
-    for (place, line) in text.lines().enumerate() {
-        let number = place + 1;
-        if let Some(language) = foreign(line) {
-            return Err(InputError::new(file, format!("{language} is not read"))
-                .at_line(number)
-                .found(format!("'{}'", line.trim()))
-                .allowed("G-code with numbers alone, or CLDATA: let the CAM system post one of them"));
+    // Before any block: what is refused in one says less than the language does.
+    for (line, number) in text.lines().zip(1..) {
+        if let Some((is, post)) = foreign(line) {
+            let error = InputError::new(file, is).at_line(number).found(format!("'{}'", shorten(line)));
+            return Err(error.allowed(post));
         }
+    }
+    let mut reader = Reader::new(file, settings)?;
+    let mut words = Vec::new();
+    for (line, number) in text.lines().zip(1..) {
         if let Err(text) = block::words(line, &mut words) {
             return Err(InputError::new(file, "not a letter with a number")
                 .at_line(number)
@@ -44,9 +45,7 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
         if line.trim_start().starts_with('/') && !words.is_empty() {
             reader.note_block_delete();
         }
-        if let Some(tool) = comment::tool_in(line) {
-            reader.described.push(tool);
-        }
+        reader.comment(line);
         if !reader.take(number, &words)? {
             break;
         }

@@ -33,7 +33,7 @@ fn every_word_is_understood() {
     near(read.moves.last().unwrap().position, [0.0, 0.0, 9.0]);
     assert_eq!(read.tools, ["TLDATA/MILL,.5,0.,3.,0.,0.", "LOADTL/1"]);
     assert_eq!(read.passed_over.keys().collect::<Vec<_>>(), ["COOLNT", "MACHIN", "PARTNO"]);
-    for note in ["CUTCOM", "MSYS", "CSYS"] {
+    for note in ["CUTCOM", "frame of MSYS", "frame of CSYS"] {
         assert!(read.notes.keys().any(|own| own.starts_with(note)), "{note} in {:?}", read.notes);
     }
 }
@@ -71,19 +71,39 @@ fn each_broken_statement_names_line_word_value_and_what_is_allowed() {
         ("MSYS/0,0,0,1,0,0,1,0,0", "MSYS", ["no rotation", "right angles"]),
         ("CSYS/1,0,0,0,0,1,0,0,0,0,-1,0", "CSYS", ["no rotation", "right-handed"]),
         ("CIRCLE/0,0,0,0,0,1,5,0", "CIRCLE", ["8 numbers", "6 or 11"]),
-        ("MODE/INCR", "MODE", ["may move the tool", "'INCR'"]),
-        ("RETRCT", "RETRCT", ["may move the tool", "'RETRCT'"]),
-        ("XFORM/1", "XFORM", ["may move the tool", "straight moves"]),
+        ("MODE/INCR", "MODE", ["count from the last one", "'INCR'"]),
+        ("SET/MODE,INCR", "SET", ["count from the last one", "'MODE,INCR'"]),
+        ("RETRCT", "RETRCT", ["a retract to where the machine says", "--ignore RETRCT"]),
+        ("XFORM/1,0,0", "XFORM", ["3 numbers may move the tool", "--ignore XFORM"]),
+        ("MCS/1,0,0,0,1,0,0,0,-1,0,0,0", "MCS", ["no rotation", "right-handed"]),
+        ("MCSYS/NUM,1,POINT,0,0,0,VECTOR,1,0,0", "MCSYS", ["7 numbers", "origin, x axis, y axis"]),
+        ("ORIGIN/0,0", "ORIGIN", ["2 numbers", "an origin"]),
+        ("TLAXIS/0,0,0", "TLAXIS", ["no length", "a direction"]),
+        ("INDIRV/1,0", "INDIRV", ["2 numbers", "a direction"]),
+        ("TLON,GOFWD/(CIRCLE/0,5,0,5),ON,(LINE/0,5,0,5,5,0)", "TLON", ["without its way out", "INDIRV/i,j,k"]),
+        ("INDIRV/1,0,0\nTLON,GOFWD/(CYLNDR/0,5,0,0,0,1,5),ON,(LINE/0,5,0,5,5,0)", "TLON", ["13 numbers", "INTOF"]),
+        ("INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,5,0,5),ON,(LINE/0,5,0,5,5,0)", "TLON", ["not along the circle", "INTOF"]),
+        ("MOVARC/0,5,0,0,0,1,5,ANGLE,900", "MOVARC", ["words that are not known", "degrees up to 360"]),
+        ("MOVARC/0,5,0,0,0,1", "MOVARC", ["6 numbers", "centre, axis, radius"]),
+        ("ZERO/1\nZERO/2", "ZERO", ["second work offset", "'2'"]),
+        (
+            "CYCLE/DRILL,DEPTH,5,CLEAR,2\nTOOL PATH/B,TOOL,T",
+            "TOOL PATH",
+            ["cycle of line 4 is still open", "CYCLE/OFF"],
+        ),
+        ("CYCLE/DRILL,DEPTH,5,CLEAR,2\nLOADTL/2", "LOADTL", ["cycle of line 4 is still open", "CYCLE/OFF"]),
+        ("CYCLE/DRILL,DEPTH,5,CLEAR,2\nCIRCLE/0,0,0,0,0,1", "CIRCLE", ["cycle of line 4", "CYCLE/OFF"]),
         ("TRNTYP/WORLD,0,0,5", "TRNTYP", ["an origin other", "frame of the part"]),
         ("CIRCLE/0,0,0,0,0,1,5,0,0,0,0,TIMES,2.5", "CIRCLE", ["with words", "6 or 11"]),
         ("CIRCLE/0,0,0,0,0,1\nRAPID", "CIRCLE", ["not followed by its end", "a GOTO behind"]),
         ("TLDATA/MILL,nan", "TLDATA", ["not finite", "'MILL,nan'"]),
-        ("NURBS/1,2", "NURBS", ["may move the tool", "GOTO, RAPID, CIRCLE, FROM"]),
+        ("NURBS/1,2", "NURBS", ["a spline", "GOTO, RAPID, arcs"]),
         ("CYCLE/DRILL,5", "CYCLE", ["a cycle whose moves are not known", "'DRILL,5'"]),
-        ("GODLTA/0,0,5", "GODLTA", ["may move the tool", "straight moves"]),
+        ("GODLTA/0,0,5", "GODLTA", ["counts from the last position", "straight moves"]),
         ("P1=POINT/0,0,0", "P1=POINT", ["may move the tool", "straight moves"]),
     ] {
-        refused(&line(text), &settings(), &format!(":4: {word}"), &parts);
+        let at = 4 + text.matches('\n').count() - usize::from(text.ends_with("\nRAPID"));
+        refused(&line(text), &settings(), &format!(":{at}: {word}"), &parts);
     }
 }
 
@@ -144,14 +164,26 @@ fn arcs_of_nx_are_left_handed_and_those_of_solidworks_and_creo_right_handed() {
 }
 
 #[test]
-fn an_arc_that_turns_back_at_both_ends_is_refused_with_its_line() {
+fn an_arc_that_turns_back_at_both_ends_is_taken_the_other_way_round_with_its_line() {
     let path = |axis: &str| {
         format!(
             "UNITS/MM\nFEDRAT/600\nGOTO/-20,-10,0\nGOTO/0,-10,0\nCIRCLE/0,0,0,0,0,{axis}\nGOTO/10,0,0\nGOTO/10,20,0\nFINI\n"
         )
     };
-    assert!(program(&path("1"), &settings()).is_ok());
-    refused(&path("-1"), &settings(), ":5: CIRCLE", &["arrives against", "left-handed"]);
+    let [right, turned] = ["1", "-1"].map(|axis| program(&path(axis), &settings()).unwrap());
+    assert_eq!(turned.moves.len(), right.moves.len());
+    for (one, other) in right.moves.iter().zip(&turned.moves) {
+        assert!((one.position - other.position).norm() < 1e-12);
+    }
+    let note = "arcs that would turn back at both ends, taken the other way round";
+    assert_eq!(turned.notes[note].lines, [5]);
+    assert!(!right.notes.contains_key(note));
+    // At one end alone it stays, and so does one whose way out is stated.
+    let one_end = program(&path("-1").replace("GOTO/10,20,0", "GOTO/10,-20,0"), &settings()).unwrap();
+    assert!(one_end.moves.iter().any(|one| one.position.y > 9e-3) && !one_end.notes.contains_key(note));
+    let stated = path("-1").replace("CIRCLE/0,0,0,0,0,-1\n", "MOVARC/0,0,0,0,0,-1,10,ANGLE,270\n");
+    let stated = program(&stated, &settings()).unwrap();
+    assert!(stated.moves.iter().any(|one| one.position.y > 9e-3) && !stated.notes.contains_key(note));
 }
 
 #[test]
@@ -199,9 +231,14 @@ fn drilling_cycles_are_plunges_that_are_not_scored_or_left_out_and_listed() {
             "{said}"
         );
     }
-    for cycle in
-        ["CYCLE/DRILL,126,85,1,MMPR", "CYCLE/CSINK,DIAMET,5", "CYCLE/DRILL,FEDTO,5,RAPTO,3", "CYCLE/DRILL,DEPTH,5"]
-    {
+    let above = path("CYCLE/DRILL,FEDTO,5,RAPTO,3");
+    let nx = ReadSettings { format: Some(CamFormat::Nx), ..settings() };
+    refused(&above, &nx, ":8: CYCLE", &["a cycle whose moves", "-d of NX"]);
+    let below = path("CYCLE/DRILL,FEDTO,-5,RAPTO,3");
+    let solidworks = ReadSettings { format: Some(CamFormat::Solidworks), ..settings() };
+    refused(&below, &solidworks, ":8: CYCLE", &["a cycle whose moves", "d of SolidWorks"]);
+    assert!(program(&above, &solidworks).is_ok() && program(&below, &nx).is_ok());
+    for cycle in ["CYCLE/DRILL,126,85,1,MMPR", "CYCLE/CSINK,DIAMET,5", "CYCLE/DRILL,DEPTH,5"] {
         refused(&path(cycle), &settings(), ":8: CYCLE", &["a cycle whose moves", "--skip-cycles"]);
     }
     for cycle in ["CYCLE/DRILL,FEDTO,-5,RAPTO,1e300", "CYCLE/DRILL,FEDTO,-nan,RAPTO,3"] {

@@ -1,0 +1,176 @@
+//! G codes as data: what each does, and the sentence of each refusal.
+
+use super::super::LengthUnit;
+use super::block::Motion;
+use Code::{
+    Absolute, Control, Cycle, CycleEnd, Dwell, Home, InverseTime, Machine, Mode, Motion as Moves, Nothing, Offset,
+    Plane, Refused, ToInitial, Unit,
+};
+
+/// What a code does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Code {
+    Motion(Motion),
+    /// The plane of arcs, by its normal: 0 for x.
+    Plane(usize),
+    Unit(LengthUnit),
+    Dwell,
+    /// A move to a reference point of the machine.
+    Home,
+    /// A move in coordinates of the machine.
+    Machine,
+    Absolute(bool),
+    InverseTime(bool),
+    /// Whether tool centre point control is on.
+    Control(bool),
+    Offset,
+    /// A canned cycle at each of the positions that follow.
+    Cycle,
+    CycleEnd,
+    /// Whether the tool goes back to the height before the cycle, not to its plane R.
+    ToInitial(bool),
+    Mode(Tilt),
+    Nothing,
+    /// Refused: what it is, and what to do.
+    Refused(&'static str, &'static str),
+}
+
+/// Tilted work planes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Tilt {
+    Plane,
+    /// The tool stands normal to it from here on.
+    Tool,
+    /// So, about its tip.
+    ToolAboutTip,
+    End,
+}
+
+const SHIFT: Code =
+    Refused("a shift of positions by the program", "positions in one work offset, G54 to G59: post without it");
+const MACRO: Code = Refused("a macro call", "straight moves and arcs: post without macros");
+const COMPENSATION: Code = Refused(
+    "cutter compensation: the path is not that of the tool centre",
+    "G40: let the CAM system write the path of the tool centre",
+);
+const TILTED_OTHERWISE: Code =
+    Refused("a tilted work plane of another form", "G68.2 X Y Z I J K without P and Q, or CLDATA: post one of them");
+
+/// Codes by ten times their number.
+pub(super) const CODES: &[(i64, Code)] = &[
+    (0, Moves(Motion::Rapid)),
+    (10, Moves(Motion::Line)),
+    (20, Moves(Motion::Clockwise)),
+    (30, Moves(Motion::CounterClockwise)),
+    (40, Dwell),
+    (50, Nothing),
+    (51, Refused("a spline, or smoothing of the path by the control", "straight moves and arcs: post without it")),
+    (90, Nothing),
+    (100, Refused("offsets that the program sets", "one work offset, G54 to G59: post without it")),
+    (150, Nothing),
+    (160, Refused("polar coordinates", "X, Y and Z: post without polar coordinates")),
+    (170, Plane(2)),
+    (180, Plane(1)),
+    (190, Plane(0)),
+    (200, Unit(LengthUnit::Inch)),
+    (210, Unit(LengthUnit::Millimetre)),
+    (280, Home),
+    (300, Home),
+    (400, Nothing),
+    (410, COMPENSATION),
+    (411, COMPENSATION),
+    (420, COMPENSATION),
+    (421, COMPENSATION),
+    (430, Nothing),
+    (434, Control(true)),
+    (490, Control(false)),
+    (500, Nothing),
+    (510, Refused("a scaling of positions", "positions as they are: post without scaling")),
+    (520, SHIFT),
+    (530, Machine),
+    (531, Mode(Tilt::Tool)),
+    (536, Mode(Tilt::ToolAboutTip)),
+    (540, Offset),
+    (541, Offset),
+    (550, Offset),
+    (560, Offset),
+    (570, Offset),
+    (580, Offset),
+    (590, Offset),
+    (610, Nothing),
+    (611, Nothing),
+    (640, Nothing),
+    (650, MACRO),
+    (660, MACRO),
+    (661, MACRO),
+    (670, MACRO),
+    (680, Refused("a rotation of positions by the program", "positions as they are: post without G68")),
+    (682, Mode(Tilt::Plane)),
+    (683, TILTED_OTHERWISE),
+    (684, TILTED_OTHERWISE),
+    (690, Mode(Tilt::End)),
+    (730, Cycle),
+    (740, Cycle),
+    (760, Cycle),
+    (800, CycleEnd),
+    (810, Cycle),
+    (820, Cycle),
+    (830, Cycle),
+    (840, Cycle),
+    (850, Cycle),
+    (860, Cycle),
+    (870, Cycle),
+    (880, Cycle),
+    (890, Cycle),
+    (900, Absolute(true)),
+    (910, Absolute(false)),
+    (911, Nothing),
+    (920, SHIFT),
+    (930, InverseTime(true)),
+    (940, InverseTime(false)),
+    (960, Refused("constant surface speed, of a lathe", "a milling program: G97")),
+    (970, Nothing),
+    (980, ToInitial(true)),
+    (990, ToInitial(false)),
+];
+
+/// The codes that are taken, for messages.
+pub(super) const TAKEN: &str = "G0-G4, G17-G19, G20, G21, G28, G30, G40, G43, G43.4, G49, G53, G53.1, G54-G59, G61, G64, G68.2, G69, G80, G90, \
+                                G91, G93, G94, G97-G99";
+
+/// Programs that are something else, by how a line of theirs begins, what they are, and what to post.
+pub(super) const FOREIGN: &[(&[&str], &str, &str)] = &[
+    (
+        &["BEGIN PGM", "CYCL DEF", "CYCL CALL", "TOOL CALL", "BLK FORM", "FN ", "LBL ", "CALL LBL"],
+        "Heidenhain conversational is not read",
+        POST,
+    ),
+    (
+        &["PLANE ", "CYCLE800"],
+        "a tilted plane of a Siemens or Heidenhain control is not read",
+        "CLDATA, or G68.2 of a Fanuc control: let the CAM system post one of them",
+    ),
+    (
+        &["TRAORI"],
+        "five axes of a Siemens control are not read",
+        "CLDATA, which has the tool axis at every point: let the CAM system post it",
+    ),
+    (
+        &["IF", "WHILE", "GOTO", "REPEAT", "FOR", "CALL", "DEF ", "PROC ", "MCALL", "CYCLE", "TRANS", "ROT"],
+        "a macro program (control words) is not read",
+        POST,
+    ),
+];
+
+/// What to do about a program of another language.
+pub(super) const POST: &str = "G-code with numbers alone, or CLDATA: let the CAM system post one of them";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_code_stands_twice() {
+        assert!(CODES.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    }
+}
