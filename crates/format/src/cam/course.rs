@@ -84,27 +84,24 @@ impl Course {
     }
 
     /// Whether a move at feed to a place is a cut: not the first of a tool, nor one from or to where nobody knows.
-    pub fn is_cut(&mut self, to: [Option<f64>; 3]) -> bool {
-        let is_first = std::mem::take(&mut self.is_after_change);
-        let [from_known, to_known] = [self.place, to].map(|place| place.iter().all(Option::is_some));
-        if is_first {
+    pub fn is_cut(&mut self, to: [Option<f64>; 3], line: usize) -> bool {
+        if std::mem::take(&mut self.is_after_change) {
             if !self.program.moves.is_empty() {
-                self.program.note("first moves of a tool or path, at feed in the program, taken as rapid ones");
+                self.program.note("first moves of a tool or path, at feed in the program, taken as rapid ones", line);
             }
             return false;
         }
-        if from_known && to_known {
-            return true;
-        }
         let missing = (0..3).filter(|axis| self.place[*axis].is_none() || to[*axis].is_none());
-        let words: Vec<String> = missing
+        let why: Vec<String> = missing
             .map(|axis| match self.unknown[axis] {
                 Some((code, line)) => format!("{} not known since {code}, line {line}", ["X", "Y", "Z"][axis]),
                 None => format!("{} not known before", ["X", "Y", "Z"][axis]),
             })
             .collect();
-        *self.program.lost.entry(words.join(", ")).or_default() += 1;
-        false
+        if !why.is_empty() {
+            self.program.lost.entry(why.join(", ")).or_default().at(line);
+        }
+        why.is_empty()
     }
 
     /// Goes straight to the end of a move.
@@ -116,16 +113,14 @@ impl Course {
         self.program.moves.push(end);
     }
 
-    /// Goes along an arc; where it's told by its axis alone, it's turned if it would turn back at both ends.
+    /// Goes along an arc; where it is told by its axis alone, it is turned if it would turn back at both ends.
     pub fn go_round(&mut self, arc: Arc, end: Move, is_certain: bool, line: usize) -> Result<(), ArcError> {
         let points = arc.points(&self.resampling)?;
         let [out, back] = arc.tangents();
         self.meet(Some(out));
-        let first = self.program.moves.len();
-        self.turned_back = match self.arrived {
-            Some(way) if way.dot(&out) < TURNED_BACK && !is_certain => Some(TurnedBack { arc, end, first, line }),
-            _ => None,
-        };
+        let is_against = self.arrived.is_some_and(|way| way.dot(&out) < TURNED_BACK);
+        let turned_back = TurnedBack { arc, end, first: self.program.moves.len(), line };
+        self.turned_back = Some(turned_back).filter(|_| is_against && !is_certain);
         self.arrived = Some(back);
         self.push_all(points, end);
         Ok(())
@@ -144,14 +139,14 @@ impl Course {
     /// Turns the last arc the other way where it sets out against the move before it and arrives against the one behind
     /// it, which sets out along a direction.
     fn meet(&mut self, way: Option<Vector3<f64>>) {
-        let is_against = |before: Vector3<f64>| way.is_some_and(|way| before.dot(&way) < TURNED_BACK);
-        let Some(last) = self.turned_back.take().filter(|_| self.arrived.is_some_and(is_against)) else { return };
+        let Some(last) = self.turned_back.take() else { return };
+        let is_against = self.arrived.zip(way).is_some_and(|(before, way)| before.dot(&way) < TURNED_BACK);
         let arc = Arc { axis: -last.arc.axis, ..last.arc };
-        if let Ok(points) = arc.points(&self.resampling) {
+        if let (true, Ok(points)) = (is_against, arc.points(&self.resampling)) {
             self.program.moves.truncate(last.first);
             self.push_all(points, last.end);
             self.arrived = Some(arc.tangents()[1]);
-            self.program.note_at("arcs that would turn back at both ends, taken the other way round", last.line);
+            self.program.note("arcs that would turn back at both ends, taken the other way round", last.line);
         }
     }
 

@@ -2,9 +2,10 @@
 
 use super::segments::{Counts, Point, Resampling, Segments, expected_points, segments};
 use super::tool::{self, ProgramTool, Use};
-use super::{CamFormat, Move, Program, counted, rounded};
+use super::{CamFormat, Found, Move, Program, counted, rounded};
 use crate::task::parse_csv;
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
@@ -72,10 +73,8 @@ impl ImportedPath {
             let problem = format!("{} cutting moves, none of which can be scored", counts.cutting);
             return Err(InputError::new(file, problem).allowed(SCORED));
         }
-        let lost = |(why, count): (&String, &usize)| {
-            format!("{count} moves at feed are not scored, from or to where the tool is not known: {why}")
-        };
-        let mut notes: Vec<String> = program.lost.iter().map(lost).collect();
+        let mut notes =
+            listed("moves at feed that are not scored, from or to where the tool is not known: ", &program.lost);
         let mut note = |count: usize, text: &str| {
             if count > 0 {
                 notes.push(format!("{count} {text}"));
@@ -86,11 +85,9 @@ impl ImportedPath {
         note(counts.added, "points added, on lines longer than the step or turns of the tool axis by more than 5 deg");
         note(counts.plunging, "points of plunges along the tool axis, where there is no wall: followed, not scored");
         note(counts.turning, "points of turns of the tool in place, where there is no wall: followed, not scored");
-        notes.extend(program.notes.iter().map(|(text, found)| format!("{text}{}", found.words())));
+        notes.extend(listed("", &program.notes));
         if !program.unknown.is_empty() {
-            let words: Vec<String> =
-                program.unknown.iter().map(|(word, found)| format!("{word}{}", found.words())).collect();
-            notes.push(format!("not known, taken not to move the tool: {}", words.join(", ")));
+            notes.push(format!("not known, taken not to move the tool: {}", listed("", &program.unknown).join(", ")));
         }
         if !program.holes_left_out.is_empty() {
             let place = |(place, line): &(Vector3<f64>, usize)| {
@@ -227,6 +224,11 @@ impl ImportedPath {
         let values = self.segments.iter().flatten().filter_map(of);
         values.map(|value| [value; 2]).reduce(|[low, high], [value, _]| [low.min(value), high.max(value)])
     }
+}
+
+/// What was found, each with how often and where.
+fn listed(start: &str, all: &BTreeMap<String, Found>) -> Vec<String> {
+    all.iter().map(|(text, found)| format!("{start}{text}{}", found.words())).collect()
 }
 
 /// Adds a number behind a comma, without zeros that say nothing.

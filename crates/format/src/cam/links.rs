@@ -14,34 +14,32 @@ const ALONG: f64 = 0.99;
 const STRAIGHT_DOWN: f64 = 0.999;
 /// Moves closer to the plane normal to the axis than this are in it. sin
 const LEVEL: f64 = 1e-4;
-/// Places and axes that differ by less are the same. m
+/// Places that differ by less are the same. m
 const SAME: f64 = 1e-9;
-/// A rounding of directions under which they are counted as one.
+/// Axes that differ by less are the same.
 const SAME_AXIS: f64 = 1e-5;
 
 /// Makes links rapid moves, and notes how long they are.
 pub(super) fn take_out(program: &mut Program) {
     let levels = levels(program);
     let moves = &mut program.moves;
-    let mut length = 0.0;
-    let mut start = 1;
+    let (mut length, mut line, mut start) = (0.0, 0, 1);
     while start < moves.len() {
         let axis = moves[start].axis;
         let is_level = |at: usize| {
             let (before, here) = (&moves[at - 1], &moves[at]);
-            let way = direction(before, here);
+            let is_along = |one: &Move| (one.axis - axis).norm() < SAME_AXIS;
             !here.is_rapid
-                && (here.axis - before.axis).norm() < SAME_AXIS
-                && (here.axis - axis).norm() < SAME_AXIS
-                && way.is_some_and(|way| way.dot(&axis).abs() < LEVEL)
-                && here.position.dot(&axis) > levels[at] - 1e-9
+                && is_along(here)
+                && is_along(before)
+                && along(moves, at).is_some_and(|part| part.abs() < LEVEL)
+                && here.position.dot(&axis) > levels[at] - SAME
         };
         let end = (start..moves.len()).find(|at| !is_level(*at)).unwrap_or(moves.len());
-        let leads = |at: usize, sense: f64| {
-            direction(&moves[at - 1], &moves[at]).is_some_and(|way| sense * way.dot(&axis) > ALONG)
-        };
-        let is_link = end > start && start > 1 && end < moves.len() && !moves[start - 1].is_rapid;
-        if is_link && leads(start - 1, 1.0) && leads(end, -1.0) {
+        let is_run = start > 1 && end > start && end < moves.len() && !moves[start - 1].is_rapid;
+        let leads = |at: usize, sense: f64| along(moves, at).is_some_and(|part| sense * part > ALONG);
+        if is_run && leads(start - 1, 1.0) && leads(end, -1.0) {
+            line = if line == 0 { moves[start].line } else { line };
             for at in start..end {
                 length += (moves[at].position - moves[at - 1].position).norm();
                 moves[at].is_rapid = true;
@@ -50,9 +48,9 @@ pub(super) fn take_out(program: &mut Program) {
         start = end.max(start + 1);
     }
     if length > 0.0 {
-        let millimetres = (length * 1e3).round();
+        let length = (length * 1e3).round();
         program
-            .note(format!("links at feed, taken as rapid moves: {millimetres} mm (--keep-links takes them as cuts)"));
+            .note(format!("links at feed, taken as rapid moves: {length} mm (--keep-links takes them as cuts)"), line);
     }
 }
 
@@ -65,35 +63,30 @@ fn levels(program: &Program) -> Vec<f64> {
         let top = tops.entry(key(&one.axis)).or_insert(f64::NEG_INFINITY);
         *top = top.max(one.position.dot(&one.axis));
     }
-    // Where the first move of an operation that moves leads down, and the next one too, the level where it ends.
-    let mut operation = None;
-    let mut is_begun = false;
-    let mut top_of = (Vector3::zeros(), f64::INFINITY);
-    (0..moves.len())
-        .map(|at| {
-            let here = &moves[at];
-            if here.is_rapid {
-                (operation, is_begun) = (None, false);
-            } else if program.has_rapids_at_feed && !is_begun && at > 0 {
-                let goes_down = |at: usize| {
-                    let (before, here) = (&moves[at - 1], moves.get(at)?);
-                    direction(before, here).map(|way| !here.is_rapid && way.dot(&here.axis) < -STRAIGHT_DOWN)
-                };
-                if let Some(is_down) = goes_down(at) {
-                    is_begun = true;
-                    let is_stop = is_down && goes_down(at + 1) == Some(true);
-                    operation = is_stop.then(|| here.position.dot(&here.axis));
-                }
+    // Where the first move of an operation leads down, and the next one too, the level where it ends.
+    let (mut operation, mut is_begun) = (f64::INFINITY, false);
+    let mut last = (Vector3::zeros(), f64::INFINITY);
+    let mut level = |at: usize| {
+        let here = &moves[at];
+        let is_down = |at: usize| along(moves, at).map(|part| part < -STRAIGHT_DOWN && !moves[at].is_rapid);
+        if here.is_rapid {
+            (operation, is_begun) = (f64::INFINITY, false);
+        } else if let (true, false, Some(goes_down)) = (program.has_rapids_at_feed, is_begun, is_down(at)) {
+            is_begun = true;
+            if goes_down && is_down(at + 1) == Some(true) {
+                operation = here.position.dot(&here.axis);
             }
-            if top_of.0 != here.axis {
-                top_of = (here.axis, tops.get(&key(&here.axis)).copied().unwrap_or(f64::INFINITY));
-            }
-            top_of.1.min(operation.unwrap_or(f64::INFINITY))
-        })
-        .collect()
+        }
+        if last.0 != here.axis {
+            last = (here.axis, tops.get(&key(&here.axis)).copied().unwrap_or(f64::INFINITY));
+        }
+        last.1.min(operation)
+    };
+    (0..moves.len()).map(&mut level).collect()
 }
 
-/// The direction of a move, nothing where it ends where it starts.
-fn direction(before: &Move, here: &Move) -> Option<Vector3<f64>> {
-    (here.position - before.position).try_normalize(SAME)
+/// How much of the direction of a move is along its tool axis; nothing where it ends where it starts.
+fn along(moves: &[Move], at: usize) -> Option<f64> {
+    let (before, here) = (moves.get(at.checked_sub(1)?)?, moves.get(at)?);
+    (here.position - before.position).try_normalize(SAME).map(|way| way.dot(&here.axis))
 }

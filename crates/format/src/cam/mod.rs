@@ -4,6 +4,15 @@
 //! frame, SI inside: [`course`] is what both have in common. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`]
 //! holds the points, writes them as a task file, and says what was found and what was changed.
 
+/// Refuses what does not hold.
+macro_rules! ensure {
+    ($holds:expr, $refused:expr) => {
+        if !$holds {
+            return Err($refused);
+        }
+    };
+}
+
 mod arc;
 pub mod cldata;
 mod course;
@@ -15,6 +24,7 @@ mod segments;
 mod tests;
 mod tool;
 
+pub use cldata::CamFormat;
 pub use imported::ImportedPath;
 pub use segments::Resampling;
 pub use tool::ProgramTool;
@@ -55,50 +65,6 @@ impl LengthUnit {
             Self::Millimetre => "mm",
             Self::Inch => "inch",
         }
-    }
-}
-
-/// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CamFormat {
-    /// CLDATA, its dialect told from the file.
-    #[default]
-    Cldata,
-    /// That of Siemens NX.
-    Nx,
-    /// That of SolidWorks CAM and CAMWorks.
-    Solidworks,
-    /// That of PTC Creo and Pro/NC.
-    Creo,
-    /// That of Dassault CATIA.
-    Catia,
-    /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
-    Autodesk,
-    /// That of the CAMplete post of Autodesk.
-    Camplete,
-    /// Plain APT words of no system that can be told.
-    Apt,
-    /// G-code of ISO 6983.
-    Gcode,
-}
-
-impl CamFormat {
-    /// All of them with their names as options and keys have them.
-    pub const WORDS: [(&'static str, Self); 9] = [
-        ("cldata", Self::Cldata),
-        ("nx", Self::Nx),
-        ("solidworks", Self::Solidworks),
-        ("creo", Self::Creo),
-        ("catia", Self::Catia),
-        ("autodesk", Self::Autodesk),
-        ("camplete", Self::Camplete),
-        ("apt", Self::Apt),
-        ("gcode", Self::Gcode),
-    ];
-
-    /// Its name as an option has it.
-    pub fn word(self) -> &'static str {
-        Self::WORDS.iter().find(|(_, format)| *format == self).map_or("", |(word, _)| word)
     }
 }
 
@@ -143,14 +109,34 @@ pub struct Move {
     pub line: usize,
 }
 
-/// How often something was found, and in which lines.
+/// How often something was found, and the first of its lines.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Found {
     /// How often.
     pub times: usize,
-    /// The first of its lines, where these are told.
+    /// Some of its lines, in their order.
     pub lines: Vec<usize>,
 }
+
+impl Found {
+    fn at(&mut self, line: usize) {
+        self.times += 1;
+        self.lines.extend(Some(line).filter(|_| self.lines.len() < NAMED_LINES));
+    }
+
+    /// Behind what it is of.
+    fn words(&self) -> String {
+        let lines = self.lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+        match self.times {
+            1 => format!(" (line {lines})"),
+            times if times == self.lines.len() => format!(" (lines {lines})"),
+            times => format!(" ({times} times, first in lines {lines})"),
+        }
+    }
+}
+
+/// Lines that are named of what was found.
+const NAMED_LINES: usize = 5;
 
 /// A program as its moves; the first only says where the tool starts.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -166,7 +152,7 @@ pub struct Program {
     /// Whether it says that rapid moves are made at feed.
     pub has_rapids_at_feed: bool,
     /// Moves at feed that are not scored, by why not.
-    pub lost: BTreeMap<String, usize>,
+    pub lost: BTreeMap<String, Found>,
     /// What was made of the program that is not plain.
     pub notes: BTreeMap<String, Found>,
     /// Holes of drilling cycles that were left out: places in the workpiece frame (m), with the line.
@@ -177,37 +163,11 @@ pub struct Program {
     pub unknown: BTreeMap<String, Found>,
 }
 
-impl Found {
-    fn at(&mut self, line: Option<usize>) {
-        self.times += 1;
-        self.lines.extend(line.filter(|_| self.lines.len() < NAMED_LINES));
-    }
-
-    /// In brackets behind what it is of; nothing of a single one without a line.
-    fn words(&self) -> String {
-        let lines = self.lines.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
-        match (self.times, self.lines.len()) {
-            (1, 0) => String::new(),
-            (times, 0) => format!(" ({times} times)"),
-            (1, _) => format!(" (line {lines})"),
-            (times, told) if times == told => format!(" (lines {lines})"),
-            (times, _) => format!(" ({times} times, first in lines {lines})"),
-        }
-    }
-}
-
 impl Program {
-    fn note(&mut self, text: impl Into<String>) {
-        self.notes.entry(text.into()).or_default().at(None);
-    }
-
-    fn note_at(&mut self, text: impl Into<String>, line: usize) {
-        self.notes.entry(text.into()).or_default().at(Some(line));
+    fn note(&mut self, text: impl Into<String>, line: usize) {
+        self.notes.entry(text.into()).or_default().at(line);
     }
 }
-
-/// Lines that are named of what was found.
-const NAMED_LINES: usize = 5;
 
 /// Reads a program and resamples it into the points of a task.
 ///

@@ -3,11 +3,50 @@
 //! Sources: files of NX and SolidWorks CAM; help of PTC Creo (CL Output for Circular Interpolation), of CATIA V5
 //! (Syntaxes Interpreted by APT Import); posts of Autodesk (Common APT ISO 4343, Mori APT, CAMplete).
 
-use super::super::CamFormat;
+use super::super::LengthUnit;
 use Effect::{
-    Arc, Axes, Axis, Compensation, Cutter, Cycle, End, Feed, Frame, Mode, Move, Nothing, Offset, Rapid, Refused,
-    Section, Spindle, Tangent, Text, Tool, Unit,
+    Arc, Axes, Axis, Compensation, Cutter, Cycle, End, Feed, Frame, Mode, Move, NoFrame, Nothing, Offset, Rapid,
+    Refused, Section, Spindle, Tangent, Text, Tool, Unit,
 };
+
+/// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum CamFormat {
+    /// CLDATA, its dialect told from the file.
+    #[default]
+    Cldata,
+    /// That of Siemens NX.
+    Nx,
+    /// That of SolidWorks CAM and CAMWorks.
+    Solidworks,
+    /// That of PTC Creo and Pro/NC.
+    Creo,
+    /// That of Dassault CATIA.
+    Catia,
+    /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
+    Autodesk,
+    /// That of the CAMplete post of Autodesk.
+    Camplete,
+    /// Plain APT words of no system that can be told.
+    Apt,
+    /// G-code of ISO 6983.
+    Gcode,
+}
+
+impl CamFormat {
+    /// All of them with their names as options and keys have them.
+    pub const WORDS: [(&'static str, Self); 9] = [
+        ("cldata", Self::Cldata),
+        ("nx", Self::Nx),
+        ("solidworks", Self::Solidworks),
+        ("creo", Self::Creo),
+        ("catia", Self::Catia),
+        ("autodesk", Self::Autodesk),
+        ("camplete", Self::Camplete),
+        ("apt", Self::Apt),
+        ("gcode", Self::Gcode),
+    ];
+}
 
 /// What a word does: a method of the reader each.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +58,8 @@ pub(super) enum Effect {
     /// The way out of an arc.
     Tangent,
     Frame(FrameForm),
+    /// An origin that must be 0,0,0.
+    NoFrame,
     /// The tool axis.
     Axis,
     /// Whether points have axes.
@@ -58,36 +99,40 @@ pub(super) enum Ending {
     Program,
 }
 
-/// How an arc is written; the move behind it is its end, but for that of a tangent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ArcForm {
-    /// Centre, axis, with 7 and 11 numbers the radius. With 11 numbers left-handed about the axis, else right-handed.
-    Circle,
-    /// So, and the eighth of 11 numbers is the angle of the turn in degrees.
-    CircleWithSweep,
-    /// Centre, axis, radius, right-handed, with `ANGLE` the angle of the turn in degrees.
-    Swept,
-    /// By the way out that stands before: circle and a line from its centre to the end.
+/// How an arc is written: words and how many numbers, of which the first are centre and axis, or by its way out; the
+/// move behind it is its end, but for that of a way out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ArcForm {
+    /// For each way to write it its words, how many numbers, and what they are.
+    pub ways: &'static [(&'static [&'static str], usize, ArcNumbers)],
+    pub allowed: &'static str,
+}
+
+/// What the numbers of an arc are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum ArcNumbers {
+    /// Centre and axis, then the radius, where they are so many: right-handed.
+    Right,
+    /// The same, left-handed.
+    Left,
+    /// The same, left-handed, and the eighth is a number of whole turns.
+    Turns(usize),
+    /// Which of them is the angle of the turn in degrees, and the sign of the hand.
+    Angle(usize, f64),
+    /// Centre, radius; at the end the place where it ends.
     OfTangent,
 }
 
-/// How a frame is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum FrameForm {
-    /// Origin, x axis, y axis.
-    OriginXY,
-    /// Three rows of a rotation and an origin.
-    Rows,
-    /// So, in the comments below.
-    RowsBelow,
-    /// x, y and z axis, origin.
-    AxesOrigin,
-    /// A number, origin, x axis, y axis.
-    NumberOriginXY,
-    /// Origin, and x and z axis where they turn.
-    OriginXZ,
-    /// An origin that must be 0,0,0.
-    Zero,
+/// How a frame is written: the places of its numbers, where they are so many.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FrameForm {
+    pub counts: &'static [usize],
+    pub origin: [usize; 3],
+    pub x: [usize; 3],
+    pub y: Option<[usize; 3]>,
+    pub z: Option<[usize; 3]>,
+    pub is_in_comments_below: bool,
+    pub allowed: &'static str,
 }
 
 /// How a cutter is written.
@@ -102,6 +147,20 @@ pub(super) enum CutterForm {
     /// Length of the flutes.
     Flutes,
     Diameter,
+}
+
+/// What a number of a cycle is, by the word before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OfCycle {
+    Depth,
+    /// A depth or a coordinate, by the dialect.
+    To,
+    Clear,
+    RapidTo,
+    Retract,
+    Feed,
+    /// A peck, a dwell, or nothing.
+    Other,
 }
 
 /// What `GOTO` with three numbers means for the tool axis.
@@ -166,11 +225,11 @@ const PLAIN: Dialect = Dialect {
 pub(super) static DIALECTS: &[Dialect] = &[
     Dialect {
         format: CamFormat::Creo,
-        told_by: &[Sign::Begins("$$->"), Sign::Comment("Pro/CLfile")],
+        told_by: &[Sign::Begins("$$->"), Sign::Comment("PRO/CLFILE")],
         three: Three::Upright,
         applies_frames: false,
         arcs_go_on: true,
-        words: &[("$$->CUTTER", Cutter(CutterForm::Diameter)), ("$$->CSYS", Frame(FrameForm::Rows))],
+        words: &[("$$->CUTTER", Cutter(CutterForm::Diameter)), ("$$->CSYS", Frame(ROWS))],
         ..PLAIN
     },
     Dialect {
@@ -185,7 +244,7 @@ pub(super) static DIALECTS: &[Dialect] = &[
         told_by: &[Sign::Begins("CSI_TOOL_PATH/"), Sign::Begins("CSI_PROGRAM_COMMENT/"), Sign::Begins("MCS/")],
         three: Three::Upright,
         hole_depth: HoleDepth::Depth,
-        words: &[("CIRCLE", Arc(ArcForm::CircleWithSweep))],
+        words: &[("CIRCLE", Arc(CIRCLE_WITH_ANGLE))],
         ..PLAIN
     },
     Dialect {
@@ -200,7 +259,7 @@ pub(super) static DIALECTS: &[Dialect] = &[
         format: CamFormat::Catia,
         told_by: &[Sign::Comment("CATIA")],
         three: Three::Holds,
-        words: &[("$$*CATIA0", Frame(FrameForm::RowsBelow)), ("CUTTER", Cutter(CutterForm::AptWithCentre))],
+        words: &[("$$*CATIA0", Frame(ROWS_BELOW)), ("CUTTER", Cutter(CutterForm::AptWithCentre))],
         ..PLAIN
     },
     Dialect {
@@ -218,6 +277,125 @@ pub(super) static DIALECTS: &[Dialect] = &[
     PLAIN,
 ];
 
+const CIRCLE: ArcForm = ArcForm {
+    ways: &[
+        (&[], 6, ArcNumbers::Right),
+        (&[], 7, ArcNumbers::Right),
+        (&[], 11, ArcNumbers::Left),
+        (&["TIMES"], 12, ArcNumbers::Turns(11)),
+    ],
+    allowed: "6 or 11 finite numbers, or 7 with the radius; behind 11 TIMES and a number of turns up to 1000",
+};
+const CIRCLE_WITH_ANGLE: ArcForm = ArcForm {
+    ways: &[(&[], 6, ArcNumbers::Right), (&[], 7, ArcNumbers::Right), (&[], 11, ArcNumbers::Angle(7, -1.0))],
+    allowed: "6 finite numbers, 7 with the radius, or 11, of which the eighth is the angle of the turn up to 360",
+};
+const MOVARC: ArcForm = ArcForm {
+    ways: &[
+        (&[], 7, ArcNumbers::Right),
+        (&["CENTER", "AXIS", "RADIUS"], 7, ArcNumbers::Right),
+        (&["ANGLE"], 8, ArcNumbers::Angle(7, 1.0)),
+        (&["CENTER", "AXIS", "RADIUS", "ANGLE"], 8, ArcNumbers::Angle(7, 1.0)),
+    ],
+    allowed: "centre, axis, radius, or these behind CENTER, AXIS and RADIUS; ANGLE and degrees up to 360",
+};
+const TLON: ArcForm = ArcForm {
+    ways: &[
+        (&["GOFWD", "CIRCLE", "ON", "LINE"], 10, ArcNumbers::OfTangent),
+        (&["GOFWD", "CIRCLE", "ON", "INTOF", "LINE"], 11, ArcNumbers::OfTangent),
+    ],
+    allowed: "INDIRV/i,j,k, then TLON,GOFWD/(CIRCLE/centre,radius),ON[,2,INTOF],(LINE/centre,end)",
+};
+
+const ROWS: FrameForm = FrameForm {
+    counts: &[12],
+    origin: [3, 7, 11],
+    x: [0, 4, 8],
+    y: Some([1, 5, 9]),
+    z: Some([2, 6, 10]),
+    is_in_comments_below: false,
+    allowed: "12 numbers: three rows of a rotation and an origin",
+};
+const ROWS_BELOW: FrameForm = FrameForm {
+    is_in_comments_below: true,
+    allowed: "three comments below with a row of a rotation and of an origin each",
+    ..ROWS
+};
+const MSYS: FrameForm = FrameForm {
+    counts: &[9],
+    origin: [0, 1, 2],
+    x: [3, 4, 5],
+    y: Some([6, 7, 8]),
+    z: None,
+    is_in_comments_below: false,
+    allowed: "9 numbers: origin, x axis, y axis",
+};
+const MCSYS: FrameForm = FrameForm {
+    counts: &[10],
+    origin: [1, 2, 3],
+    x: [4, 5, 6],
+    y: Some([7, 8, 9]),
+    allowed: "10 numbers: its own, origin, x axis, y axis",
+    ..MSYS
+};
+const MCS: FrameForm = FrameForm {
+    origin: [9, 10, 11],
+    x: [0, 1, 2],
+    y: Some([3, 4, 5]),
+    z: Some([6, 7, 8]),
+    allowed: "12 numbers: x, y and z axis, origin",
+    ..ROWS
+};
+const ORIGIN: FrameForm = FrameForm {
+    counts: &[3, 9],
+    y: None,
+    z: Some([6, 7, 8]),
+    allowed: "an origin, and x and z axis where they turn",
+    ..MSYS
+};
+
+/// Cycles that plunge along the tool axis and come back the same way.
+pub(super) const CYCLES: [&str; 7] = ["DRILL", "DEEP", "DEEP2", "BRKCHP", "TAP", "BORE", "REAM"];
+
+/// Words of cycles. A number without a word is the depth at first, and the clearance behind a feed.
+pub(super) const OF_CYCLES: &[(&str, OfCycle)] = &[
+    ("DEEP", OfCycle::Other),
+    ("BRKCHP", OfCycle::Other),
+    ("DEPTH", OfCycle::Depth),
+    ("FEDTO", OfCycle::To),
+    ("CLEAR", OfCycle::Clear),
+    ("RAPTO", OfCycle::RapidTo),
+    ("RTRCTO", OfCycle::Retract),
+    ("RETURN", OfCycle::Retract),
+    ("AUTO", OfCycle::Other),
+    ("DWELL", OfCycle::Other),
+    ("REV", OfCycle::Other),
+    ("STEP", OfCycle::Other),
+    ("INCR", OfCycle::Other),
+    ("1STPECK", OfCycle::Other),
+    ("SUBPECK", OfCycle::Other),
+    ("MMPM", OfCycle::Feed),
+    ("IPM", OfCycle::Feed),
+    ("PERMIN", OfCycle::Feed),
+    ("MMPR", OfCycle::Feed),
+    ("IPR", OfCycle::Feed),
+    ("PERREV", OfCycle::Feed),
+];
+
+/// The cycles that are taken, for messages.
+pub(super) const CYCLES_TAKEN: &str = "CYCLE/DRILL, DEEP, BRKCHP, TAP, BORE or REAM with DEPTH,d or FEDTO (-d of NX, d of SolidWorks and CAMplete; or as \
+                                       d,unit,feed,clearance) and RAPTO,c or CLEAR,c; or --skip-cycles, which leaves all holes out and lists them";
+
+/// Units of feed: millimetres, inches or the unit of the file, a minute or a turn of the spindle.
+pub(super) const FEEDS: &[(&str, Option<LengthUnit>, bool)] = &[
+    ("MMPM", Some(LengthUnit::Millimetre), false),
+    ("IPM", Some(LengthUnit::Inch), false),
+    ("PERMIN", None, false),
+    ("MMPR", Some(LengthUnit::Millimetre), true),
+    ("IPR", Some(LengthUnit::Inch), true),
+    ("PERREV", None, true),
+];
+
 const SPLINE: Effect = Refused("a spline");
 const TRANSFORMATION: Effect = Refused("a transformation of what follows");
 const TURN: Effect = Refused("a turn of table or head");
@@ -230,18 +408,18 @@ pub(super) const COMMON: &[(&str, Effect)] = &[
     ("GOTO", Move(Ends::To)),
     ("FEDRAT", Feed),
     ("RAPID", Rapid),
-    ("CIRCLE", Arc(ArcForm::Circle)),
+    ("CIRCLE", Arc(CIRCLE)),
     ("FROM", Move(Ends::Start)),
     ("GOHOME", Move(Ends::Home)),
-    ("MOVARC", Arc(ArcForm::Swept)),
+    ("MOVARC", Arc(MOVARC)),
     ("INDIRV", Tangent),
-    ("TLON", Arc(ArcForm::OfTangent)),
-    ("MSYS", Frame(FrameForm::OriginXY)),
-    ("CSYS", Frame(FrameForm::Rows)),
-    ("MCS", Frame(FrameForm::AxesOrigin)),
-    ("MCSYS", Frame(FrameForm::NumberOriginXY)),
-    ("ORIGIN", Frame(FrameForm::OriginXZ)),
-    ("TRNTYP", Frame(FrameForm::Zero)),
+    ("TLON", Arc(TLON)),
+    ("MSYS", Frame(MSYS)),
+    ("CSYS", Frame(ROWS)),
+    ("MCS", Frame(MCS)),
+    ("MCSYS", Frame(MCSYS)),
+    ("ORIGIN", Frame(ORIGIN)),
+    ("TRNTYP", NoFrame),
     ("TLAXIS", Axis),
     ("MULTAX", Axes),
     ("SPINDL", Spindle),

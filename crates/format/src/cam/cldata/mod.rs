@@ -10,12 +10,13 @@ mod reader;
 mod statement;
 mod told;
 
+pub use dialect::CamFormat;
 pub(super) use told::{is_labelled, is_statement};
 
 use super::{LengthUnit, Program, ReadSettings};
 use dialect::Dialect;
 use reader::Reader;
-use statement::{Statement, Statements};
+use statement::Statements;
 use std::path::Path;
 use stead_disk::input::InputError;
 
@@ -29,33 +30,13 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
     let dialect = Dialect::of(text, settings.format);
     let unit = unit_of(file, dialect, text, settings.units)?;
     let mut reader = Reader::new(file, dialect, unit, settings)?;
-    let mut statements = Statements::new(dialect, text);
-    let mut statement = Statement::default();
-    while statements.next_into(&mut statement) {
-        if !reader.take(&statement)? {
+    let mut statements = Statements::new(file, dialect, text);
+    while let Some(statement) = statements.next() {
+        if !reader.take(statement)? {
             break;
         }
     }
-    reader.finish(&statement)
-}
-
-/// The statements of the unit, in lines that may hold one: most are moves, which a look at their letters shows.
-fn statements_of_unit<'a>(dialect: &'static Dialect, text: &'a str) -> Vec<Statement<'a>> {
-    let mut found = Vec::new();
-    let mut at = 0;
-    for (line, number) in text.split_inclusive('\n').zip(1..) {
-        if line.bytes().any(|byte| byte.eq_ignore_ascii_case(&b'u')) {
-            let mut statements = Statements::new(dialect, &text[at..]);
-            let mut statement = Statement::default();
-            while statements.next_into(&mut statement) && statement.line == 1 {
-                if ["UNIT", "UNITS"].iter().any(|word| statement.word.eq_ignore_ascii_case(word)) {
-                    found.push(Statement { line: number, ..statement.clone() });
-                }
-            }
-        }
-        at += line.len();
-    }
-    found
+    reader.finish(statements.last())
 }
 
 /// The unit that a file states, or the one given for a file that does not.
@@ -65,25 +46,27 @@ fn unit_of(
     text: &str,
     given: Option<LengthUnit>,
 ) -> Result<LengthUnit, InputError> {
+    let known = [("MM", LengthUnit::Millimetre), ("INCH", LengthUnit::Inch), ("INCHES", LengthUnit::Inch)];
     let mut unit = given;
-    for statement in statements_of_unit(dialect, text) {
-        let fail = |problem: String, allowed: &str| {
-            InputError::new(file, problem)
-                .at_line(statement.line)
-                .in_field(statement.word)
-                .found(format!("'{}'", statement.text()))
-                .allowed(allowed)
-        };
-        let known = [("MM", LengthUnit::Millimetre), ("INCH", LengthUnit::Inch), ("INCHES", LengthUnit::Inch)];
-        let stated = known.iter().find(|(word, _)| statement.has(word)).map(|(_, unit)| *unit);
-        let stated = stated.ok_or_else(|| fail("names no unit of length".to_owned(), "MM or INCHES"))?;
-        match unit {
-            Some(unit) if unit != stated => {
+    let mut at = 0;
+    for (line, number) in text.split_inclusive('\n').zip(1..) {
+        let mut statements = Statements::new(file, dialect, &text[at..]);
+        at += line.len();
+        // Most lines are moves, which a look at their letters shows.
+        let may_state = line.bytes().any(|byte| byte.eq_ignore_ascii_case(&b'u'));
+        while may_state && let Some(statement) = statements.next().filter(|statement| statement.line == 1) {
+            if !["UNIT", "UNITS"].iter().any(|word| statement.word.eq_ignore_ascii_case(word)) {
+                continue;
+            }
+            let fail = |problem: &str, allowed: &str| statement.fail(problem, allowed).at_line(number);
+            let stated = known.iter().find(|(word, _)| statement.has(word)).map(|(_, unit)| *unit);
+            let stated = stated.ok_or_else(|| fail("names no unit of length", "MM or INCHES"))?;
+            if let Some(unit) = unit.filter(|unit| *unit != stated) {
                 let other = if given.is_some() { "--units" } else { "the file before" };
                 let problem = format!("is not what {other} says: {}", unit.word());
-                return Err(fail(problem, "one unit of length for the whole file"));
+                return Err(fail(&problem, "one unit of length for the whole file"));
             }
-            _ => unit = Some(stated),
+            unit = Some(stated);
         }
     }
     unit.ok_or_else(|| {

@@ -1,7 +1,9 @@
 //! Statements of CLDATA: a word, and behind a slash words and numbers, over one line or several.
 
-use super::dialect::{Dialect, Effect, FrameForm};
+use super::dialect::{Dialect, Effect};
+use std::path::Path;
 use std::str::Lines;
+use stead_disk::input::InputError;
 
 /// A word or number behind the slash.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,8 +15,9 @@ pub(super) enum Minor<'a> {
 }
 
 /// A statement with its line.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Statement<'a> {
+    pub file: &'a Path,
     /// Line of its first word, from 1.
     pub line: usize,
     /// Its word as written.
@@ -45,149 +48,153 @@ impl<'a> Statement<'a> {
         self.words().any(|own| own.eq_ignore_ascii_case(word))
     }
 
-    /// Adds what stands behind the slash.
-    fn take(&mut self, text: &'a str) {
-        let texts = |text: &'a str| text.split(',').map(str::trim).filter(|text| !text.is_empty()).map(minor);
-        if text.contains(['(', ')']) {
-            // Geometry within a statement: (CIRCLE/x,y,z,r).
-            self.minors.extend(text.split(['(', ')', '/']).flat_map(texts));
-        } else {
-            self.minors.extend(texts(text));
-        }
+    /// Whether its words are these.
+    pub fn has_just(&self, words: &[&str]) -> bool {
+        self.words().count() == words.len() && self.words().zip(words).all(|(own, word)| own.eq_ignore_ascii_case(word))
     }
 
     /// What stands behind the slash, as written.
     pub fn text(&self) -> String {
-        let texts: Vec<&str> = self
-            .minors
-            .iter()
-            .map(|minor| match minor {
-                Minor::Number(_, text) | Minor::Word(text) => *text,
-            })
-            .collect();
-        texts.join(",")
+        let text = |minor: &Minor<'a>| match minor {
+            Minor::Number(_, text) | Minor::Word(text) => *text,
+        };
+        self.minors.iter().map(text).collect::<Vec<_>>().join(",")
+    }
+
+    /// Its word without the marks of a comment.
+    pub fn name(&self) -> &'a str {
+        self.word.trim_start_matches(['$', '-', '>', '*'])
+    }
+
+    /// That it is wrong.
+    pub fn fail(&self, problem: impl Into<String>, allowed: impl Into<String>) -> InputError {
+        let found = if self.minors.is_empty() { self.name().to_owned() } else { self.text() };
+        let error = InputError::new(self.file, problem).at_line(self.line).in_field(self.name());
+        error.found(format!("'{found}'")).allowed(allowed)
+    }
+
+    /// Adds what stands behind the slash.
+    fn take(&mut self, text: &'a str) {
+        let minors = |text: &'a str| text.split(',').map(str::trim).filter(|text| !text.is_empty()).map(minor);
+        if text.contains(['(', ')']) {
+            // Geometry within a statement: (CIRCLE/x,y,z,r).
+            self.minors.extend(text.split(['(', ')', '/']).flat_map(minors));
+        } else {
+            self.minors.extend(minors(text));
+        }
     }
 }
 
 /// Comment lines that hold the rows of a frame, at the most: its name and the three rows.
 const FRAME_LINES: usize = 4;
 
-/// The statements of a text, in a dialect, whose comments that mean something are statements too.
+/// The statements of a text in a dialect, whose comments that mean something are statements too.
 pub(super) struct Statements<'a> {
     dialect: &'static Dialect,
     lines: Lines<'a>,
     line: usize,
     /// What stands behind a semicolon.
     rest: Option<&'a str>,
+    statement: Statement<'a>,
 }
 
 impl<'a> Statements<'a> {
-    pub fn new(dialect: &'static Dialect, text: &'a str) -> Self {
-        Self { dialect, lines: text.lines(), line: 0, rest: None }
+    pub fn new(file: &'a Path, dialect: &'static Dialect, text: &'a str) -> Self {
+        let statement = Statement { file, line: 1, word: "", minors: Vec::new() };
+        Self { dialect, lines: text.lines(), line: 0, rest: None, statement }
+    }
+
+    /// The last one that was read.
+    pub fn last(&self) -> &Statement<'a> {
+        &self.statement
     }
 
     fn next_line(&mut self) -> Option<&'a str> {
-        let line = self.lines.next()?;
         self.line += 1;
-        Some(line.trim())
+        self.lines.next().map(str::trim)
     }
 
-    /// Reads the next statement into one that is used again; whether there was one.
-    pub fn next_into(&mut self, statement: &mut Statement<'a>) -> bool {
-        statement.minors.clear();
+    /// The next statement.
+    pub fn next(&mut self) -> Option<&Statement<'a>> {
         let mut is_continued = false;
         loop {
-            let line = match self.rest.take() {
-                Some(rest) => rest.trim(),
-                None => match self.next_line() {
-                    Some(line) => line,
-                    None => return is_continued,
-                },
+            let Some(line) = self.rest.take().map(str::trim).or_else(|| self.next_line()) else {
+                return is_continued.then_some(&self.statement);
             };
             if line.starts_with("$$") {
-                if !is_continued && self.comment(line, statement) {
-                    return true;
+                if !is_continued && self.comment(line) {
+                    return Some(&self.statement);
                 }
                 continue;
             }
-            let line = line.find("$$").map_or(line, |comment| line[..comment].trim());
-            let line = if is_continued { line } else { without_label(line) };
+            let mut line = without_comment(if is_continued { line } else { without_label(line) });
             let is_free = !is_continued && self.is_free_text(line);
-            let line = match line.split_once(';') {
-                Some((first, rest)) if !is_free => {
-                    self.rest = Some(rest);
-                    first.trim()
-                }
-                _ => line,
-            };
-            let (body, goes_on) = match line.strip_suffix('$') {
-                Some(body) => (body.trim_end(), true),
-                None => (line, false),
-            };
+            if let (Some((first, rest)), false) = (line.split_once(';'), is_free) {
+                (line, self.rest) = (first.trim(), Some(rest));
+            }
+            let body = line.strip_suffix('$').unwrap_or(line).trim_end();
+            let goes_on = line.ends_with('$');
             if body.is_empty() && !goes_on && !is_continued {
                 continue;
             }
             let mut rest = body;
             if !is_continued {
-                let end = match is_free {
-                    true => body.find(|c: char| !is_of_word(c)).unwrap_or(body.len()),
-                    false => body.find(['/', ',']).unwrap_or(body.len()),
-                };
-                statement.word = body[..end].trim_end();
-                statement.line = self.line;
-                rest = if is_free { "" } else { body[end..].trim_start_matches(['/', ',']) };
+                let end = if is_free { body.find(|c| !is_of_word(c)) } else { body.find(['/', ',']) };
+                let (word, behind) = body.split_at(end.unwrap_or(body.len()));
+                self.begin(word.trim_end());
+                rest = if is_free { "" } else { behind.trim_start_matches(['/', ',']) };
             }
-            statement.take(rest);
+            self.statement.take(rest);
             if !goes_on {
-                return true;
+                return Some(&self.statement);
             }
             is_continued = true;
         }
     }
 
+    fn begin(&mut self, word: &'a str) {
+        (self.statement.word, self.statement.line) = (word, self.line);
+        self.statement.minors.clear();
+    }
+
     /// Takes a comment with the lines that it goes on in; whether it means something.
-    fn comment(&mut self, mut line: &'a str, statement: &mut Statement<'a>) -> bool {
+    fn comment(&mut self, mut line: &'a str) -> bool {
         let known = self.dialect.of_comment(line);
-        statement.line = self.line;
         if let Some((word, effect, rest)) = known {
-            statement.word = word;
-            if effect == Effect::Frame(FrameForm::RowsBelow) {
-                self.rows_below(statement);
+            self.begin(word);
+            if matches!(effect, Effect::Frame(form) if form.is_in_comments_below) {
+                self.rows_below();
                 return true;
             }
-            statement.take(rest.trim_end_matches('$'));
+            self.statement.take(rest.trim_end_matches('$'));
         }
-        while line.ends_with('$') && !line.ends_with("$$") {
-            // A comment may end in a dollar sign: no move is lost to it.
-            let is_move = |next: &str| without_label(next.trim()).starts_with("GOTO");
-            if self.lines.clone().next().is_none_or(is_move) {
-                break;
-            }
-            let next = self.next_line().unwrap_or_default();
-            line = next.find("$$").map_or(next, |comment| next[..comment].trim_end());
+        // A comment may end in a dollar sign: no move is lost to it.
+        let is_move = |next: &str| without_label(next.trim()).starts_with("GOTO");
+        while line.ends_with('$') && !line.ends_with("$$") && !self.lines.clone().next().is_none_or(is_move) {
+            line = without_comment(self.next_line().unwrap_or_default());
             if known.is_some() {
-                statement.take(line.trim_end_matches('$'));
+                self.statement.take(line.trim_end_matches('$'));
             }
         }
         known.is_some()
     }
 
     /// Takes the comments below with four numbers each.
-    fn rows_below(&mut self, statement: &mut Statement<'a>) {
+    fn rows_below(&mut self) {
         for _ in 0..FRAME_LINES {
             let next = self.lines.clone().next().and_then(|line| line.trim().strip_prefix("$$"));
             let Some(row) = next.filter(|row| !row.starts_with('*')) else { return };
             self.next_line();
-            let numbers = || row.split_whitespace().map(minor);
-            if numbers().count() == 4 && numbers().all(|minor| matches!(minor, Minor::Number(..))) {
-                statement.minors.extend(numbers());
+            let minors: Vec<Minor<'a>> = row.split_whitespace().map(minor).collect();
+            if minors.len() == 4 && minors.iter().all(|minor| matches!(minor, Minor::Number(..))) {
+                self.statement.minors.extend(minors);
             }
         }
     }
 
     fn is_free_text(&self, text: &str) -> bool {
         // Most statements are moves.
-        let word = &text[..text.find(|c: char| !is_of_word(c)).unwrap_or(text.len())];
+        let word = &text[..text.find(|c| !is_of_word(c)).unwrap_or(text.len())];
         word != "GOTO" && self.dialect.effect(word) == Some(Effect::Text)
     }
 }
@@ -198,19 +205,17 @@ fn is_of_word(c: char) -> bool {
 
 /// A statement without the label before it, as in `A1) GOTO/1,2,3`.
 pub(super) fn without_label(text: &str) -> &str {
-    match text.find(')') {
-        Some(end) if end > 0 && text.as_bytes()[..end].iter().all(u8::is_ascii_alphanumeric) => {
-            text[end + 1..].trim_start()
-        }
-        _ => text,
-    }
+    let end = text.find(')').unwrap_or(0);
+    let is_label = end > 0 && text.as_bytes()[..end].iter().all(u8::is_ascii_alphanumeric);
+    if is_label { text[end + 1..].trim_start() } else { text }
+}
+
+fn without_comment(text: &str) -> &str {
+    text.find("$$").map_or(text, |comment| &text[..comment]).trim()
 }
 
 fn minor(text: &str) -> Minor<'_> {
-    match text.parse::<f64>() {
-        Ok(value) => Minor::Number(value, text),
-        Err(_) => Minor::Word(text),
-    }
+    text.parse().map_or(Minor::Word(text), |value| Minor::Number(value, text))
 }
 
 #[cfg(test)]
@@ -220,9 +225,9 @@ mod tests {
     #[test]
     fn comments_continuations_and_free_text() {
         let text = "$$ a comment\n\nGOTO/1.,-.5, $ \n 3 $$ more\nRAPID\r\nRAPID/\nPPRINT a / b, 'c'\nTOOL PATH/A,TOOL,B\n  FINI";
-        let mut statements = Statements::new(Dialect::of(text, None), text);
-        let (mut one, mut found) = (Statement::default(), Vec::new());
-        while statements.next_into(&mut one) {
+        let mut statements = Statements::new(Path::new("f"), Dialect::of(text, None), text);
+        let mut found = Vec::new();
+        while let Some(one) = statements.next() {
             found.push((one.line, one.word.to_owned(), one.text()));
         }
         let expected = [(3, "GOTO", "1.,-.5,3"), (5, "RAPID", ""), (6, "RAPID", ""), (7, "PPRINT", "")];

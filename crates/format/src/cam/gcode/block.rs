@@ -32,24 +32,21 @@ impl Block<'_> {
         self.words.iter().find(|(own, _)| *own == letter).map(|(_, value)| *value)
     }
 
+    /// Whether it has one of some letters.
+    pub fn has(&self, letters: &str) -> bool {
+        self.words.iter().any(|(letter, _)| letters.contains(*letter))
+    }
+
     /// The first of its words with one of these letters.
     pub fn first(&self, letters: &str) -> Word {
         self.words.iter().find(|(letter, _)| letters.contains(*letter)).copied().unwrap_or(('G', 2.0))
     }
 
     /// That one of its words is wrong.
-    pub fn fail(&self, word: Word, problem: &str, allowed: &str) -> InputError {
-        failed(self.file, self.line, word, problem, allowed)
+    pub fn fail(&self, (letter, value): Word, problem: &str, allowed: &str) -> InputError {
+        let error = InputError::new(self.file, problem).at_line(self.line).in_field(letter.to_string());
+        error.found(format!("'{letter}{value}'")).allowed(allowed)
     }
-}
-
-/// That a word of a line is wrong.
-pub(super) fn failed(file: &Path, line: usize, (letter, value): Word, problem: &str, allowed: &str) -> InputError {
-    InputError::new(file, problem)
-        .at_line(line)
-        .in_field(letter.to_string())
-        .found(format!("'{letter}{value}'"))
-        .allowed(allowed)
 }
 
 /// The words of a line, or the text that is none of them.

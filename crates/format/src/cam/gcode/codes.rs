@@ -4,7 +4,7 @@ use super::super::LengthUnit;
 use super::block::Motion;
 use Code::{
     Absolute, Control, Cycle, CycleEnd, Dwell, Home, InverseTime, Machine, Mode, Motion as Moves, Nothing, Offset,
-    Plane, Refused, ToInitial, Unit,
+    Plane, Refused, ToPlane, Unit,
 };
 
 /// What a code does.
@@ -15,8 +15,8 @@ pub(super) enum Code {
     Plane(usize),
     Unit(LengthUnit),
     Dwell,
-    /// A move to a reference point of the machine.
-    Home,
+    /// A move to a reference point of the machine, and the name of the code.
+    Home(&'static str),
     /// A move in coordinates of the machine.
     Machine,
     Absolute(bool),
@@ -27,8 +27,8 @@ pub(super) enum Code {
     /// A canned cycle at each of the positions that follow.
     Cycle,
     CycleEnd,
-    /// Whether the tool goes back to the height before the cycle, not to its plane R.
-    ToInitial(bool),
+    /// Whether the tool goes back to plane R behind a hole, not to the height before the cycle.
+    ToPlane(bool),
     Mode(Tilt),
     Nothing,
     /// Refused: what it is, and what to do.
@@ -74,8 +74,8 @@ pub(super) const CODES: &[(i64, Code)] = &[
     (190, Plane(0)),
     (200, Unit(LengthUnit::Inch)),
     (210, Unit(LengthUnit::Millimetre)),
-    (280, Home),
-    (300, Home),
+    (280, Home("G28")),
+    (300, Home("G30")),
     (400, Nothing),
     (410, COMPENSATION),
     (411, COMPENSATION),
@@ -130,8 +130,8 @@ pub(super) const CODES: &[(i64, Code)] = &[
     (940, InverseTime(false)),
     (960, Refused("constant surface speed, of a lathe", "a milling program: G97")),
     (970, Nothing),
-    (980, ToInitial(true)),
-    (990, ToInitial(false)),
+    (980, ToPlane(false)),
+    (990, ToPlane(true)),
 ];
 
 /// The codes that are taken, for messages.

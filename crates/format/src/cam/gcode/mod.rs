@@ -14,6 +14,7 @@ pub(super) use block::foreign;
 pub use machine::Machine;
 
 use super::{Program, ReadSettings};
+use block::Block;
 use reader::Reader;
 use std::path::Path;
 use stead_disk::input::InputError;
@@ -34,21 +35,18 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
         }
     }
     let mut reader = Reader::new(file, settings)?;
-    let mut words = Vec::new();
+    let (mut words, mut last) = (Vec::new(), 1);
     for (line, number) in text.lines().zip(1..) {
         if let Err(text) = block::words(line, &mut words) {
-            return Err(InputError::new(file, "not a letter with a number")
-                .at_line(number)
-                .found(format!("'{}'", text.trim()))
-                .allowed("G-code words, as X-1.5, and comments in ( ) or behind ;"));
+            let error = InputError::new(file, "not a letter with a number").at_line(number);
+            let allowed = "G-code words, as X-1.5, and comments in ( ) or behind ;";
+            return Err(error.found(format!("'{}'", text.trim())).allowed(allowed));
         }
-        if line.trim_start().starts_with('/') && !words.is_empty() {
-            reader.note_block_delete();
-        }
-        reader.comment(line);
-        if !reader.take(number, &words)? {
+        last = number;
+        reader.comment(line, number);
+        if !reader.take(&Block { file, line: number, words: &words })? {
             break;
         }
     }
-    Ok(reader.finish())
+    Ok(reader.finish(last))
 }

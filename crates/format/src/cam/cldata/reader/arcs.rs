@@ -2,8 +2,8 @@
 
 use super::super::super::Move;
 use super::super::super::arc::{Arc, MISSED, millimetres};
-use super::super::dialect::ArcForm;
-use super::super::statement::{Minor, Statement};
+use super::super::dialect::{ArcForm, ArcNumbers};
+use super::super::statement::Statement;
 use super::Reader;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
@@ -12,7 +12,6 @@ use stead_disk::input::InputError;
 /// An arc that the next point ends.
 #[derive(Clone)]
 pub(super) struct Pending {
-    pub word: &'static str,
     pub line: usize,
     /// In the workpiece frame. m
     centre: Vector3<f64>,
@@ -21,15 +20,17 @@ pub(super) struct Pending {
     /// Whole turns of a helix.
     turns: Option<u32>,
     /// Angle of the turn as it is stated. rad
-    sweep: Option<f64>,
-    /// What the first part rises in a turn of 1 rad, once it is there. m
-    rise: Option<f64>,
+    angle: Option<f64>,
+    /// Whether the sense of the turn is stated, not told from the axis.
+    is_certain: bool,
+    /// What an arc that goes on rises in a turn of 1 rad. m
+    rise: f64,
 }
 
 /// The most turns of a helix.
 const MOST_TURNS: f64 = 1000.0;
 /// A stated turn fits one that differs by less. rad
-const SWEEP_ROUNDING: f64 = PI / 180.0;
+const ANGLE_ROUNDING: f64 = PI / 180.0;
 /// A point that is nearer to the circle of the arc before goes on along it. m
 const ON_CIRCLE: f64 = 2e-5;
 
@@ -37,103 +38,60 @@ impl Reader<'_> {
     /// Takes the word of an arc.
     pub(super) fn arc(&mut self, statement: &Statement<'_>, form: ArcForm) -> Result<(), InputError> {
         self.no_cycle_is_open(statement)?;
-        if form == ArcForm::OfTangent {
-            return self.arc_of_tangent(statement);
-        }
-        let allowed = match form {
-            ArcForm::Swept => {
-                "centre, axis, radius, or these behind CENTER, AXIS and RADIUS; ANGLE and degrees up to 360"
-            }
-            _ => "6 or 11 finite numbers, or 7 with the radius; behind 11 TIMES and a number of turns",
+        let given = self.numbers(statement, &[], form.allowed)?;
+        let way = form.ways.iter().find(|(words, count, _)| *count == given.len() && statement.has_just(words));
+        let has_words = statement.words().next().is_some();
+        let problem = match has_words {
+            true => "an arc with words that are not known here".to_owned(),
+            false => format!("{} numbers that can be read", given.len()),
         };
-        let mut given = self.numbers(statement, |_| true, allowed)?;
-        let words: Vec<String> = statement.words().map(str::to_ascii_uppercase).collect();
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let angle = |angle: f64| Some(angle).filter(|angle| *angle > 0.0 && *angle <= 361.0);
-        let (mut turns, mut sweep) = (None, None);
-        let is_form = match (form, &words[..], given.len()) {
-            (ArcForm::Swept, [] | ["CENTER", "AXIS", "RADIUS"], 7) => true,
-            (ArcForm::Swept, ["ANGLE"] | ["CENTER", "AXIS", "RADIUS", "ANGLE"], 8) => {
-                sweep = angle(given[7]);
-                sweep.is_some()
+        let (_, _, numbers) = *way.ok_or_else(|| statement.fail(problem, form.allowed))?;
+        let (unit, frame) = (self.unit.metres(), self.course.frame);
+        let at = |place: usize| Vector3::new(given[place], given[place + 1], given[place + 2]);
+        let centre = frame.place(at(0) * unit);
+        let is_of_tangent = numbers == ArcNumbers::OfTangent;
+        let radius = if is_of_tangent { Some(given[3]) } else { given.get(6).copied() };
+        let (axis, mut turns, mut angle) = (at(3), None, None);
+        let hand = match numbers {
+            ArcNumbers::Right | ArcNumbers::OfTangent => 1.0,
+            ArcNumbers::Left => -1.0,
+            ArcNumbers::Turns(place) => {
+                let is_whole = given[place].fract() == 0.0 && (1.0..=MOST_TURNS).contains(&given[place]);
+                ensure!(is_whole, statement.fail("an arc with words that are not known here", form.allowed));
+                turns = Some(given[place] as u32);
+                -1.0
             }
-            (ArcForm::Circle | ArcForm::CircleWithSweep, [], 6 | 7) | (ArcForm::Circle, [], 11) => true,
-            (ArcForm::CircleWithSweep, [], 11) => {
-                sweep = angle(given[7]);
-                true
+            ArcNumbers::Angle(place, hand) => {
+                let is_usual = (0.0..=360.0 + 1.0).contains(&given[place]);
+                ensure!(is_usual, statement.fail("an angle that is not known here", form.allowed));
+                // An arc of 11 numbers may state none.
+                angle = Some(given[place].to_radians()).filter(|angle| *angle > 0.0);
+                hand
             }
-            (ArcForm::Circle, ["TIMES"], 12) => {
-                let is_last = matches!(statement.minors[..], [.., Minor::Word(_), Minor::Number(..)]);
-                let times = given[11];
-                turns =
-                    (is_last && times.fract() == 0.0 && (1.0..=MOST_TURNS).contains(&times)).then_some(times as u32);
-                turns.is_some()
-            }
-            _ => false,
         };
-        if !is_form {
-            let problem = match words.len() {
-                0 => format!("{} numbers that can be read", given.len()),
-                _ => "an arc with words that are not known here".to_owned(),
-            };
-            return Err(self.fail(statement, &problem, allowed));
+        let radius = radius.map(|radius| radius * unit);
+        let axis = frame.rotation * axis * hand;
+        let line = statement.line;
+        let mut pending = Pending { line, centre, axis, radius, turns, angle, is_certain: is_of_tangent, rise: 0.0 };
+        if is_of_tangent {
+            let tangent = self.state.tangent.take();
+            let tangent = tangent.ok_or_else(|| statement.fail("an arc without its way out", form.allowed))?;
+            pending.axis = (self.start_of_arc(statement)?.position - centre).cross(&tangent);
+            let is_along = pending.axis.norm() > 0.5 * radius.unwrap_or_default();
+            ensure!(is_along, statement.fail("the way out is not along the circle", form.allowed));
+            let place = at(given.len() - 3) * unit;
+            self.end_arc(statement, pending, self.end(statement, place))?;
+            self.course.place = [place.x, place.y, place.z].map(Some);
+        } else {
+            self.state.pending = Some(pending);
         }
-        let hand = if given.len() > 8 { -1.0 } else { 1.0 };
-        given.truncate(7);
-        let frame = self.course.frame;
-        self.pending = Some(Pending {
-            word: if form == ArcForm::Swept { "MOVARC" } else { "CIRCLE" },
-            line: statement.line,
-            centre: frame.place(Vector3::new(given[0], given[1], given[2]) * self.unit.metres()),
-            axis: frame.rotation * Vector3::new(given[3], given[4], given[5]) * hand,
-            radius: given.get(6).map(|radius| radius * self.unit.metres()),
-            turns,
-            sweep: sweep.map(f64::to_radians),
-            rise: None,
-        });
         Ok(())
     }
 
-    /// An arc by its way out, its circle, and the line from its centre to its end.
-    fn arc_of_tangent(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        const ALLOWED: &str = "INDIRV/i,j,k, then TLON,GOFWD/(CIRCLE/centre,radius),ON[,2,INTOF],(LINE/centre,end)";
-        let given = self.numbers(statement, |count| count == 10 || count == 11, ALLOWED)?;
-        let known = ["GOFWD", "CIRCLE", "ON", "INTOF", "LINE"];
-        let is_known = |word: &str| known.iter().any(|own| own.eq_ignore_ascii_case(word));
-        let tangent = match self.tangent.take() {
-            Some(tangent) if statement.words().all(is_known) => tangent,
-            Some(_) => return Err(self.fail(statement, "an arc of another form", ALLOWED)),
-            None => return Err(self.fail(statement, "an arc without its way out", ALLOWED)),
-        };
-        let frame = self.course.frame;
-        let at = |k: usize| Vector3::new(given[k], given[k + 1], given[k + 2]) * self.unit.metres();
-        let [centre, place] = [at(0), at(given.len() - 3)];
-        let position = frame.place(place);
-        let start = self.start_of_arc(statement)?;
-        let (centre, radius) = (frame.place(centre), given[3] * self.unit.metres());
-        let axis = (start.position - centre).cross(&tangent);
-        if axis.norm() < 0.5 * radius {
-            return Err(self.fail(statement, "the way out is not along the circle", ALLOWED));
-        }
-        let end = Move {
-            position,
-            axis: frame.rotation * self.course.axis,
-            feed: self.course.feed,
-            is_rapid: false,
-            is_arc: true,
-            line: statement.line,
-        };
-        let arc = Arc { start: start.position, end: position, centre, axis, more_turns: 0 };
-        self.fits(statement, &arc, Some(radius), false)?;
-        self.course.place = place.map(Some).into();
-        self.draw(statement, arc, end, true, statement.line)
-    }
-
     fn start_of_arc(&self, statement: &Statement<'_>) -> Result<Move, InputError> {
-        match self.course.program.moves.last() {
-            Some(start) if !self.course.is_after_change && self.course.place.iter().all(Option::is_some) => Ok(*start),
-            _ => Err(self.fail(statement, "an arc without a start", "a GOTO before the arc")),
-        }
+        let is_known = !self.course.is_after_change && self.course.place.iter().all(Option::is_some);
+        let start = self.course.program.moves.last().filter(|_| is_known);
+        start.copied().ok_or_else(|| statement.fail("an arc without a start", "a GOTO before the arc"))
     }
 
     /// Goes along an arc to its end.
@@ -143,84 +101,62 @@ impl Reader<'_> {
         mut pending: Pending,
         end: Move,
     ) -> Result<(), InputError> {
-        let start = self.start_of_arc(statement)?;
-        if end.is_rapid {
-            let problem = format!("RAPID and {} for the same move", pending.word);
-            return Err(self.fail(statement, &problem, "an arc as a cutting move"));
-        }
-        let Pending { centre, axis, .. } = pending;
-        let mut arc = Arc { start: start.position, end: end.position, centre, axis, more_turns: 0 };
-        let has_axis = axis.norm() > 1e-9;
-        let mut is_certain = false;
-        if let (Some(turns), true) = (pending.turns, has_axis) {
-            let turn = arc.turn();
-            let off = arc.radius().unwrap_or(0.0) * turn.min(TAU - turn);
-            if off > MISSED {
-                return Err(self.fail(
-                    statement,
-                    &format!("a helix whose end is {} beside its start, along the turn", millimetres(off)),
-                    "whole turns behind TIMES: let the CAM system write straight moves",
-                ));
+        let start = self.start_of_arc(statement)?.position;
+        let problem = "RAPID and the end of an arc for the same move";
+        ensure!(!end.is_rapid, statement.fail(problem, "an arc as a cutting move"));
+        let Pending { centre, axis, turns, angle, .. } = pending;
+        let mut arc = Arc { start, end: end.position, centre, axis, more_turns: 0 };
+        if let Some(found) = arc.radius() {
+            let (turn, stated) = (arc.turn(), pending.radius.unwrap_or(found));
+            let problem = || {
+                let [found, stated] = [found, stated].map(millimetres);
+                format!("the arc misses its start: radius {found}, stated {stated}")
+            };
+            ensure!((stated - found).abs() < MISSED, statement.fail(problem(), "the same radius within 0.05 mm"));
+            if let Some(turns) = turns {
+                let off = found * turn.min(TAU - turn);
+                let problem = || format!("a helix whose end is {} beside its start, along the turn", millimetres(off));
+                let allowed = "whole turns behind TIMES: let the CAM system write straight moves";
+                ensure!(off < MISSED, statement.fail(problem(), allowed));
+                arc.more_turns = if turn < PI { turns } else { turns - 1 };
             }
-            arc.more_turns = if turn < PI { turns } else { turns - 1 };
-        } else if let (Some(sweep), true) = (pending.sweep, has_axis) {
-            let rounding = SWEEP_ROUNDING.max(2.0 * MISSED / arc.distance(start.position).max(MISSED));
-            let fits = |arc: &Arc| (arc.turn() - sweep).abs() < rounding;
-            let other = Arc { axis: -axis, ..arc };
-            is_certain = fits(&arc) != fits(&other);
-            if is_certain && fits(&other) {
-                arc = other;
-                self.course.program.note_at("arcs taken the way round that their angle fits", pending.line);
-            } else if !fits(&arc) {
-                let turn = format!("{:.3}", arc.turn().to_degrees());
-                let problem =
-                    format!("the arc turns by {turn} deg to its end, and {:.3} are stated", sweep.to_degrees());
-                return Err(self.fail(statement, &problem, "the same angle within 1 deg"));
+            if let Some(angle) = angle {
+                let rounding = ANGLE_ROUNDING.max(2.0 * MISSED / found.max(MISSED));
+                let fits = |turn: f64| (turn - angle).abs() < rounding;
+                let other = Arc { axis: -axis, ..arc };
+                pending.is_certain = fits(turn) != fits(other.turn());
+                if pending.is_certain && !fits(turn) {
+                    arc = other;
+                    self.course.program.note("arcs taken the way round that their angle fits", pending.line);
+                }
+                let problem = || {
+                    let [turn, angle] = [turn, angle].map(f64::to_degrees);
+                    format!("the arc turns by {turn:.3} deg to its end, and {angle:.3} are stated")
+                };
+                ensure!(fits(arc.turn()), statement.fail(problem(), "the same angle within 1 deg"));
             }
+            let rise = arc.rise().abs();
+            let may_rise = turns.is_some() || self.dialect.arcs_go_on || rise < MISSED;
+            let problem = || format!("the arc misses its end, which is {} out of its plane", millimetres(rise));
+            ensure!(may_rise, statement.fail(problem(), "an end in the plane of the arc within 0.05 mm"));
         }
-        let may_rise = pending.turns.is_some() || self.dialect.arcs_go_on;
-        self.fits(statement, &arc, pending.radius, may_rise)?;
-        self.draw(statement, arc, end, is_certain, pending.line)?;
+        self.draw(statement, arc, end, pending.is_certain, pending.line)?;
         if self.dialect.arcs_go_on {
-            pending.rise = Some(arc.rise() / arc.turn());
-            self.circle = Some(pending);
+            pending.rise = arc.rise() / arc.turn();
+            self.state.circle = Some(pending);
         }
         Ok(())
     }
 
     /// The arc to a point on the circle of the arc before.
     pub(super) fn on_circle(&self, end: &Move) -> Option<Arc> {
-        let pending = self.circle.as_ref().filter(|_| !end.is_rapid)?;
+        let Pending { centre, axis, rise, .. } = *self.state.circle.as_ref().filter(|_| !end.is_rapid)?;
         let start = self.course.program.moves.last()?.position;
-        let Pending { centre, axis, .. } = *pending;
         let arc = Arc { start, end: end.position, centre, axis, more_turns: 0 };
         let [from, to] = [start, end.position].map(|point| arc.distance(point));
-        let rise = pending.rise? * arc.turn();
+        let off = (from - to).abs().max((arc.rise() - rise * arc.turn()).abs());
         let has_moved = (end.position - start - axis.normalize() * arc.rise()).norm() > ON_CIRCLE;
-        ((from - to).abs() < ON_CIRCLE && (arc.rise() - rise).abs() < ON_CIRCLE && has_moved).then_some(arc)
-    }
-
-    /// Refuses an arc that misses the radius that is stated, or the plane of its start.
-    fn fits(
-        &self,
-        statement: &Statement<'_>,
-        arc: &Arc,
-        radius: Option<f64>,
-        may_rise: bool,
-    ) -> Result<(), InputError> {
-        if let (Some(stated), Some(found)) = (radius, arc.radius())
-            && (stated - found).abs() > MISSED
-        {
-            let [found, stated] = [found, stated].map(millimetres);
-            let problem = format!("the arc misses its start: radius {found}, stated {stated}");
-            return Err(self.fail(statement, &problem, "the same radius within 0.05 mm"));
-        }
-        if !may_rise && arc.rise().abs() > MISSED {
-            let problem =
-                format!("the arc misses its end, which is {} out of its plane", millimetres(arc.rise().abs()));
-            return Err(self.fail(statement, &problem, "an end in the plane of the arc within 0.05 mm"));
-        }
-        Ok(())
+        (off < ON_CIRCLE && has_moved).then_some(arc)
     }
 
     pub(super) fn draw(
@@ -233,7 +169,7 @@ impl Reader<'_> {
     ) -> Result<(), InputError> {
         self.course.go_round(arc, end, is_certain, line).map_err(|error| {
             let (problem, allowed) = error.words();
-            self.fail(statement, &problem, allowed)
+            statement.fail(problem, allowed)
         })
     }
 }

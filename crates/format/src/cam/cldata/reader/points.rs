@@ -16,107 +16,90 @@ impl Reader<'_> {
             self.course.is_after_change = true;
             return Ok(());
         }
-        let given = self.numbers(statement, |_| true, ALLOWED)?;
-        let (is_on_arc, mut places) = (self.pending.is_some() || self.circle.is_some(), &given[..]);
-        let axis = |numbers: &[f64]| Vector3::new(numbers[3], numbers[4], numbers[5]);
-        let is_direction = |numbers: &[f64]| (axis(numbers).norm() - 1.0).abs() < FRAME_ROUNDING;
+        let given = self.numbers(statement, &[], ALLOWED)?;
+        let is_on_arc = self.state.pending.is_some() || self.state.circle.is_some();
         let are_points = self.dialect.arcs_go_on && is_on_arc && given.len() > 3 && given.len().is_multiple_of(3);
-        match given.len() {
-            _ if statement.words().next().is_some() => {
-                return Err(self.fail(statement, &format!("{} numbers that can be read", given.len()), ALLOWED));
-            }
-            3 => self.stand_by_three(statement)?,
-            6 if !are_points || is_direction(&given) => {
-                let axis = axis(&given);
+        let axis = match given[..] {
+            [_, _, _, i, j, k] => Some(Vector3::new(i, j, k)),
+            _ => None,
+        };
+        let axis = axis.filter(|axis| !are_points || (axis.norm() - 1.0).abs() < FRAME_ROUNDING);
+        let is_form = (axis.is_some() || given.len() == 3 || are_points) && statement.words().next().is_none();
+        ensure!(is_form, statement.fail(format!("{} numbers that can be read", given.len()), ALLOWED));
+        match axis {
+            Some(axis) => {
                 let length = axis.norm();
-                if length < NO_LENGTH {
-                    return Err(self.fail(statement, "the tool axis has no length", "a direction, as 0,0,1"));
-                }
+                ensure!(length > NO_LENGTH, statement.fail("the tool axis has no length", "a direction, as 0,0,1"));
                 if (length - 1.0).abs() > FRAME_ROUNDING {
-                    self.course.program.note("tool axes made of unit length");
+                    self.course.program.note("tool axes made of unit length", statement.line);
                 }
                 self.course.axis = axis / length;
-                places = &given[..3];
             }
-            _ if are_points => self.stand_by_three(statement)?,
-            count => return Err(self.fail(statement, &format!("{count} numbers that can be read"), ALLOWED)),
+            None => self.stand_by_three(statement)?,
         }
-        for place in places.chunks_exact(3) {
-            let place = Vector3::from_column_slice(place) * self.unit.metres();
-            self.to(statement, ends, place)?;
-        }
-        Ok(())
+        let places = if axis.is_some() { &given[..3] } else { &given[..] };
+        let unit = self.unit.metres();
+        places.chunks_exact(3).try_for_each(|place| self.to(statement, ends, Vector3::from_column_slice(place) * unit))
     }
 
     /// The tool axis of a point with three numbers.
     fn stand_by_three(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
         let is_tilted = (self.course.axis - Vector3::z()).norm() > NO_LENGTH;
-        match self.dialect.three {
-            Three::Upright => self.course.axis = Vector3::z(),
-            Three::Asked if self.is_three_axis && is_tilted => {
-                let problem = "three numbers behind MULTAX/OFF while the tool is tilted: in some systems its axis holds, in others it is 0,0,1";
-                let allowed = "the system that wrote the file: --format catia, nx or solidworks (it holds), autodesk, camplete or creo (0,0,1)";
-                return Err(self.fail(statement, problem, allowed));
-            }
-            Three::Holds | Three::Asked => {}
+        let is_asked = self.dialect.three == Three::Asked && self.state.is_three_axis && is_tilted;
+        let problem = "three numbers behind MULTAX/OFF while the tool is tilted: in some systems its axis holds, in others it is 0,0,1";
+        let allowed = "the system that wrote the file: --format catia, nx or solidworks (it holds), autodesk, camplete or creo (0,0,1)";
+        ensure!(!is_asked, statement.fail(problem, allowed));
+        if self.dialect.three == Three::Upright {
+            self.course.axis = Vector3::z();
         }
         Ok(())
     }
 
+    /// The end of a move to a place in the frame (m).
+    pub(super) fn end(&self, statement: &Statement<'_>, place: Vector3<f64>) -> Move {
+        let frame = &self.course.frame;
+        let (position, axis) = (frame.place(place), frame.rotation * self.course.axis);
+        Move { position, axis, feed: self.course.feed, is_rapid: false, is_arc: false, line: statement.line }
+    }
+
     /// Moves to a place in the frame. m
     fn to(&mut self, statement: &Statement<'_>, ends: Ends, place: Vector3<f64>) -> Result<(), InputError> {
-        let frame = self.course.frame;
         let known = [place.x, place.y, place.z].map(Some);
-        let mut end = Move {
-            position: frame.place(place),
-            axis: frame.rotation * self.course.axis,
-            feed: self.course.feed,
-            is_rapid: std::mem::take(&mut self.is_rapid) || ends != Ends::To,
-            is_arc: false,
-            line: statement.line,
-        };
-        if let Some(pending) = self.pending.take() {
+        let mut end = self.end(statement, place);
+        end.is_rapid = std::mem::take(&mut self.state.is_rapid) || ends != Ends::To;
+        self.state.tangent = None;
+        if let Some(pending) = self.state.pending.take() {
             self.end_arc(statement, pending, end)?;
         } else if let Some(arc) = self.on_circle(&end) {
             self.draw(statement, arc, end, true, statement.line)?;
-        } else if let (Some(_), Ends::To) = (&self.holes, ends) {
+        } else if self.state.holes.is_some() && ends == Ends::To {
             self.hole(statement, end)?;
         } else {
-            self.circle = None;
-            if !end.is_rapid {
-                end.is_rapid = !self.course.is_cut(known);
-            }
+            self.state.circle = None;
+            end.is_rapid = end.is_rapid || !self.course.is_cut(known, statement.line);
             self.course.go(end);
             self.course.is_after_change = ends != Ends::To;
         }
         self.course.place = known;
-        self.tangent = None;
         Ok(())
     }
 
     /// A hole at a point.
     fn hole(&mut self, statement: &Statement<'_>, end: Move) -> Result<(), InputError> {
-        match &self.holes {
-            Some((Holes::Drilled(cycle), _)) => {
-                let unit = self.unit.metres();
-                let above = |height: f64| end.position + end.axis * (height * unit);
-                let feed = match &cycle.feed {
-                    Some((value, word)) => Some(self.feed_in(statement, *value, word)?),
-                    None => self.course.feed,
-                };
-                self.course.program.moves.extend([
-                    Move { position: above(cycle.clear), is_rapid: true, ..end },
-                    Move { position: above(-cycle.depth), is_rapid: false, feed, ..end },
-                    Move { position: above(cycle.retract), is_rapid: true, ..end },
-                ]);
-                self.course.program.note("holes of drilling cycles taken as a plunge and a rapid retract, not scored");
-                self.course.is_after_change = false;
-            }
-            _ => {
-                self.course.program.holes_left_out.push((end.position, statement.line));
-                self.course.is_after_change = true;
-            }
+        if let Some((Holes::Drilled(cycle), _)) = &self.state.holes {
+            let above = |height: f64| end.position + end.axis * (height * self.unit.metres());
+            let own = cycle.feed.as_ref().map(|(value, word)| self.feed_in(statement, *value, word)).transpose()?;
+            self.course.program.moves.extend([
+                Move { position: above(cycle.clear), is_rapid: true, ..end },
+                Move { position: above(-cycle.depth), is_rapid: false, feed: own.or(end.feed), ..end },
+                Move { position: above(cycle.retract), is_rapid: true, ..end },
+            ]);
+            let note = "holes of drilling cycles taken as a plunge and a rapid retract, not scored";
+            self.course.program.note(note, statement.line);
+        } else {
+            self.course.program.holes_left_out.push((end.position, statement.line));
         }
+        self.course.is_after_change = self.settings.skip_cycles;
         self.course.end_run();
         Ok(())
     }

@@ -8,6 +8,13 @@ use super::Reader;
 impl Reader<'_> {
     /// Takes what a block says of the tool in the spindle: `T`, `M6`, `S`, `M3` and `M4`.
     pub(super) fn change_tool(&mut self, block: &Block<'_>) {
+        if let Some(tool) = block.get('T') {
+            let name = format!("T{tool}");
+            if !self.course.program.tools.contains(&name) {
+                self.course.program.tools.push(name);
+            }
+            self.called = Some(tool.clamp(0.0, 1e9) as u32);
+        }
         let has = |number: f64| block.words.contains(&('M', number));
         let is_changed = has(6.0) || (block.get('T').is_some() && self.course.program.tools.len() == 1);
         let (number, speed) = (self.called.filter(|_| is_changed), block.get('S'));

@@ -5,7 +5,7 @@ use super::super::arc::arc_of;
 use super::super::block::{Block, Motion, Word};
 use super::super::codes::Code;
 use super::{Reader, code_of};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use stead_disk::input::InputError;
 
 /// No rotary axis is programmed beyond this. deg
@@ -36,20 +36,17 @@ impl Reader<'_> {
     /// Moves to the position of a block.
     pub(super) fn travel(&mut self, block: &Block<'_>) -> Result<(), InputError> {
         let first = block.first("XYZABCIJKR");
-        let Some(motion) = self.modes.motion else {
-            return Err(block.fail(first, "a position before any of G0 to G3", "G0, G1, G2 or G3 before"));
-        };
+        let problem = "a position before any of G0 to G3";
+        let motion = self.modes.motion.ok_or_else(|| block.fail(first, problem, "G0, G1, G2 or G3 before"))?;
         let metres = self.unit(block, first)?.metres();
         if motion == Motion::Cycle {
             return self.leave_out_hole(block, metres);
         }
         let is_arc = matches!(motion, Motion::Clockwise | Motion::CounterClockwise);
-        if is_arc && self.course.is_after_change {
-            return Err(block.fail(first, "an arc right after a tool change", "G0 to its start before"));
-        }
-        if !is_arc && let Some(word) = block.words.iter().find(|(letter, _)| "IJKR".contains(*letter)) {
-            return Err(block.fail(*word, "a centre or radius without an arc", "I, J, K and R with G2 and G3"));
-        }
+        let problem = "an arc right after a tool change";
+        ensure!(!is_arc || !self.course.is_after_change, block.fail(first, problem, "G0 to its start before"));
+        let problem = "a centre or radius without an arc";
+        ensure!(is_arc || !block.has("IJKR"), block.fail(block.first("IJKR"), problem, "I, J, K and R with G2 and G3"));
         let end = self.target(block, metres)?;
         if end.angles != [0.0; 3] && !self.modes.is_controlled && self.settings.pivot.is_none() {
             return self.turn_without_control(block, motion, end);
@@ -57,50 +54,46 @@ impl Reader<'_> {
         if motion == Motion::Rapid || self.course.program.moves.is_empty() {
             self.course.is_after_change = false;
         }
-        if motion == Motion::Rapid || !self.course.is_cut(end.place) {
-            if end.is_known() {
-                self.push(block, &end, true)?;
-            }
-            self.stand(end);
-            return Ok(());
-        }
-        let from = Target { place: self.course.place, angles: self.angles };
+        let is_cut = motion != Motion::Rapid && self.course.is_cut(end.place, block.line);
+        let from = Target { place: self.course.place, angles: self.modes.angles };
         let first_move = self.course.program.moves.len();
-        if is_arc {
+        if is_arc && is_cut {
             self.go_round(block, motion, [&from, &end], metres)?;
-        } else {
-            for state in self.parts(&from, &end) {
-                self.push(block, &state, false)?;
+        } else if end.is_known() {
+            for part in if is_cut { from.parts_to(&end) } else { vec![end] } {
+                let part = self.end(block, &part, !is_cut)?;
+                self.course.go(part);
             }
         }
-        let feed = self.feed_of(block, first, first_move, metres)?;
-        self.course.program.moves[first_move..].iter_mut().for_each(|one| one.feed = feed);
+        if is_cut {
+            let feed = self.feed_of(block, first, first_move, metres)?;
+            self.course.program.moves[first_move..].iter_mut().for_each(|one| one.feed = feed);
+        }
         self.stand(end);
         Ok(())
     }
 
     fn stand(&mut self, at: Target) {
-        (self.course.place, self.angles) = (at.place, at.angles);
+        (self.course.place, self.modes.angles) = (at.place, at.angles);
     }
 
-    /// Adds the straight move to a place.
-    fn push(&mut self, block: &Block<'_>, to: &Target, is_rapid: bool) -> Result<(), InputError> {
-        let end = self.end(block, to, is_rapid)?;
-        self.course.go(end);
-        Ok(())
+    /// How the tool stands in the frame at angles of the rotary axes, and where its tip is. m
+    pub(super) fn pose(&self, programmed: Vector3<f64>, angles: [f64; 3]) -> (Matrix3<f64>, Vector3<f64>) {
+        let machine = self.settings.machine.filter(|_| !self.modes.is_tilted);
+        let Some(machine) = machine else { return (Matrix3::identity(), programmed) };
+        let pivot = self.settings.pivot.filter(|_| !self.modes.is_controlled);
+        let tip = pivot.map_or(programmed, |pivot| machine.tip(programmed, angles, pivot));
+        (machine.workpiece_from_tool(angles), tip)
     }
 
     /// The end of a move.
     fn end(&mut self, block: &Block<'_>, to: &Target, is_rapid: bool) -> Result<Move, InputError> {
         self.has_turned[usize::from(self.modes.is_controlled)] |= to.angles != [0.0; 3];
         let (rotation, tip) = self.pose(to.position(), to.angles);
-        let frame = self.course.frame;
-        let position = frame.place(tip);
-        if !position.iter().all(|value| value.abs() <= 2.0 * LARGEST) {
-            let word = ('X', to.position().x);
-            return Err(block.fail(word, "not a position of a usual size", "up to 100 m"));
-        }
-        let axis = frame.rotation * (rotation * self.course.axis);
+        let frame = &self.course.frame;
+        let (position, axis) = (frame.place(tip), frame.rotation * (rotation * self.course.axis));
+        let problem = "not a position of a usual size";
+        ensure!(position.amax() <= 2.0 * LARGEST, block.fail(('X', to.position().x), problem, "up to 100 m"));
         Ok(Move { position, axis, feed: None, is_rapid, is_arc: false, line: block.line })
     }
 
@@ -113,13 +106,11 @@ impl Reader<'_> {
         metres: f64,
     ) -> Result<(), InputError> {
         let fail = |letters: &str, problem: &str, allowed: &str| block.fail(block.first(letters), problem, allowed);
-        if end.angles != from.angles {
-            return Err(fail("ABC", "an arc that turns the tool", "arcs at a constant tool axis"));
-        }
-        if self.settings.machine.is_some() && end.angles != [0.0; 3] {
-            let problem = "an arc with a tilted tool, whose plane is that of the machine";
-            return Err(fail("IJKR", problem, "straight moves there"));
-        }
+        let is_still = end.angles == from.angles;
+        ensure!(is_still, fail("ABC", "an arc that turns the tool", "arcs at a constant tool axis"));
+        let is_plain = self.settings.machine.is_none() || end.angles == [0.0; 3];
+        let problem = "an arc with a tilted tool, whose plane is that of the machine";
+        ensure!(is_plain, fail("IJKR", problem, "straight moves there"));
         let mut axis = Vector3::zeros();
         axis[self.modes.plane] = if motion == Motion::Clockwise { -1.0 } else { 1.0 };
         let mut arc = arc_of(block, axis, [from.position(), end.position()], metres)?;
@@ -133,34 +124,14 @@ impl Reader<'_> {
         })
     }
 
-    /// The straight move from here in parts in which the tool turns a little, the end last.
-    fn parts(&self, from: &Target, end: &Target) -> Vec<Target> {
-        let turn = (0..3).map(|k| (end.angles[k] - from.angles[k]).abs()).fold(0.0, f64::max);
-        let parts = (turn / TURN_STEP - 1e-6).ceil().clamp(1.0, 1e5) as u32;
-        let between = |from: f64, to: f64, part: u32| from + (to - from) * f64::from(part) / f64::from(parts);
-        let mut states: Vec<Target> = (1..parts)
-            .map(|part| Target {
-                place: std::array::from_fn(|k| {
-                    from.place[k].zip(end.place[k]).map(|(from, to)| between(from, to, part))
-                }),
-                angles: std::array::from_fn(|k| between(from.angles[k], end.angles[k], part)),
-            })
-            .collect();
-        states.push(*end);
-        states
-    }
-
     /// The feed of the moves of a block, which are there from a place on; nothing where they have no length. m/s
     fn feed_of(&self, block: &Block<'_>, word: Word, from: usize, metres: f64) -> Result<Option<f64>, InputError> {
         if !self.modes.is_inverse_time {
-            return match self.course.feed {
-                Some(feed) => Ok(Some(feed * metres / 60.0)),
-                None => Err(block.fail(word, "a cutting move before the first feed", "F before or with it")),
-            };
+            let refused = || block.fail(word, "a cutting move before the first feed", "F before or with it");
+            return self.course.feed.map(|feed| Some(feed * metres / 60.0)).ok_or_else(refused);
         }
-        let Some(per_minute) = block.get('F') else {
-            return Err(block.fail(word, "G93 without a feed in the block", "F with each move under G93"));
-        };
+        let refused = || block.fail(word, "G93 without a feed in the block", "F with each move under G93");
+        let per_minute = block.get('F').ok_or_else(refused)?;
         let moves = &self.course.program.moves;
         let length: f64 = moves[from - 1..].windows(2).map(|pair| (pair[1].position - pair[0].position).norm()).sum();
         let before = moves[from - 1].feed.unwrap_or(1e-3);
@@ -170,34 +141,30 @@ impl Reader<'_> {
     /// Takes a hole of a canned cycle, which is left out: behind it the tool is over it, at R or at the height before.
     fn leave_out_hole(&mut self, block: &Block<'_>, metres: f64) -> Result<(), InputError> {
         let along = self.modes.plane;
-        let depth = ['X', 'Y', 'Z'][along];
-        let words: Vec<Word> =
-            block.words.iter().copied().filter(|word| "XYZABC".contains(word.0) && word.0 != depth).collect();
-        let has_cycle = block.words.iter().any(|word| word.0 == 'G' && code_of(word.1) == Some(Code::Cycle));
+        let is_across = |word: &Word| "XYZABC".contains(word.0) && word.0 != ['X', 'Y', 'Z'][along];
+        let across: Vec<Word> = block.words.iter().copied().filter(is_across).collect();
         if let Some(plane) = block.get('R') {
-            let plane = plane * metres;
-            self.hole.plane = match self.modes.is_incremental {
-                true => self.hole.initial.map(|initial| initial + plane),
-                false => Some(plane),
-            };
+            let from = if self.modes.is_incremental { self.modes.heights[0] } else { Some(0.0) };
+            self.modes.heights[1] = from.map(|from| from + plane * metres);
+        }
+        let is_begun = block.words.iter().any(|word| word.0 == 'G' && code_of(word.1) == Some(Code::Cycle));
+        if across.is_empty() && !is_begun {
+            return Ok(());
         }
         let repeats = block.get('L').or(block.get('K')).filter(|_| self.modes.is_incremental).unwrap_or(1.0);
-        if !words.is_empty() || has_cycle {
-            for _ in 0..repeats.clamp(1.0, MOST_REPEATS) as usize {
-                let mut at = self.target(&Block { words: &words, ..*block }, metres)?;
-                let mut place = at.position();
-                place[along] = self.hole.plane.unwrap_or_default();
-                self.course.program.holes_left_out.push((self.course.frame.place(place), block.line));
-                at.place[along] = if self.modes.is_to_initial { self.hole.initial } else { self.hole.plane };
-                self.stand(at);
-            }
-            if self.course.place[along].is_none() {
-                self.course.forget(std::array::from_fn(|axis| axis == along), "a canned cycle", block.line);
-            }
-            let at = Target { place: self.course.place, angles: self.angles };
+        for _ in 0..repeats.clamp(1.0, MOST_REPEATS) as usize {
+            let mut at = self.target(&Block { words: &across, ..*block }, metres)?;
+            at.place[along] = self.modes.heights[1];
+            self.course.program.holes_left_out.push((self.course.frame.place(at.position()), block.line));
+            at.place[along] = self.modes.heights[usize::from(self.modes.is_to_plane)];
             if at.is_known() {
-                self.push(block, &at, true)?;
+                let end = self.end(block, &at, true)?;
+                self.course.go(end);
             }
+            self.stand(at);
+        }
+        if self.course.place[along].is_none() {
+            self.course.forget(std::array::from_fn(|axis| axis == along), "a canned cycle", block.line);
         }
         self.course.is_after_change = false;
         Ok(())
@@ -206,66 +173,65 @@ impl Reader<'_> {
     /// Takes a move with the tool turned whose tip is not known: a rapid one leaves the tool at a place that is not
     /// known.
     fn turn_without_control(&mut self, block: &Block<'_>, motion: Motion, end: Target) -> Result<(), InputError> {
-        if motion != Motion::Rapid {
-            let word = block.words.iter().find(|(letter, _)| "ABC".contains(*letter));
-            let word = word.or_else(|| block.words.iter().find(|(letter, _)| "XYZ".contains(*letter)));
-            let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
-            let problem = "a rotary axis without tool centre point control";
-            return Err(block.fail(word.copied().unwrap_or(('G', 1.0)), problem, allowed));
-        }
-        self.course
-            .program
-            .note("rapid moves of a turned tool without tool centre point control: where it is then is not known here");
+        let word = if block.has("ABC") { block.first("ABC") } else { block.first("XYZ") };
+        let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
+        let problem = "a rotary axis without tool centre point control";
+        ensure!(motion == Motion::Rapid, block.fail(word, problem, allowed));
+        let note = "rapid moves of a turned tool without tool centre point control: where it is then is not known here";
+        self.course.program.note(note, block.line);
         self.course.is_after_change = false;
         self.stand(end);
-        self.course.forget([true; 3], "a turn of the tool without tool centre point control", block.line);
+        self.course.forget([true; 3], "a turn without tool centre point control", block.line);
         Ok(())
     }
 
     /// Where a block leads to.
-    fn target(&mut self, block: &Block<'_>, metres: f64) -> Result<Target, InputError> {
-        let mut end = Target { place: self.course.place, angles: self.angles };
+    fn target(&self, block: &Block<'_>, metres: f64) -> Result<Target, InputError> {
+        let mut end = Target { place: self.course.place, angles: self.modes.angles };
         for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
-            if value.abs() * metres > LARGEST {
-                return Err(block.fail((letter, value), "not a position of a usual size", "up to 100 m"));
-            }
-            end.place[axis] = match (self.modes.is_incremental, self.course.place[axis]) {
-                (false, _) => Some(value * metres),
-                (true, Some(before)) => Some(before + value * metres),
-                (true, None) => {
-                    let problem = "G91 from where the tool is not known";
-                    return Err(block.fail((letter, value), problem, "a position with G90 before"));
-                }
-            };
+            let word = (letter, value);
+            let is_usual = value.abs() * metres <= LARGEST;
+            ensure!(is_usual, block.fail(word, "not a position of a usual size", "up to 100 m"));
+            let from = if self.modes.is_incremental { self.course.place[axis] } else { Some(0.0) };
+            let problem = "G91 from where the tool is not known";
+            let from = from.ok_or_else(|| block.fail(word, problem, "a position with G90 before"))?;
+            end.place[axis] = Some(from + value * metres);
         }
         for (axis, letter) in ['A', 'B', 'C'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
             let word = (letter, value);
-            if value.abs() > LARGEST_ANGLE {
-                return Err(block.fail(word, "not an angle of a usual size", "up to 36000 deg"));
-            }
-            let before = if self.modes.is_incremental { self.angles[axis] } else { 0.0 };
+            let is_usual = value.abs() <= LARGEST_ANGLE;
+            ensure!(is_usual, block.fail(word, "not an angle of a usual size", "up to 36000 deg"));
+            let before = if self.modes.is_incremental { self.modes.angles[axis] } else { 0.0 };
             let angle = before + value.to_radians();
-            if self.modes.is_tilted && angle != 0.0 {
-                let allowed =
-                    "G53.1, which turns the tool normal to the plane, or angles without G68.2: post one of them";
-                return Err(block.fail(word, "a rotary axis within a tilted work plane", allowed));
-            }
+            let allowed = "G53.1, which turns the tool normal to the plane, or angles without G68.2: post one of them";
+            let is_plain = !self.modes.is_tilted || angle == 0.0;
+            ensure!(is_plain, block.fail(word, "a rotary axis within a tilted work plane", allowed));
             end.angles[axis] = angle;
-            match self.settings.machine {
-                Some(machine) if machine.has(axis) => {}
-                Some(machine) => {
-                    let problem = format!("not a rotary axis of {}", machine.word());
-                    return Err(block.fail(word, &problem, "another --machine"));
-                }
-                None if end.angles[axis] == 0.0 => continue,
-                None => {
-                    let allowed = "--machine table-ac, table-bc, head-ac or head-bc";
-                    return Err(block.fail(word, "a rotary axis of a machine that is not named", allowed));
-                }
+            if let Some(machine) = self.settings.machine {
+                let problem = format!("not a rotary axis of {}", machine.word());
+                ensure!(machine.has(axis), block.fail(word, &problem, "another --machine"));
+            } else {
+                let allowed = "--machine table-ac, table-bc, head-ac or head-bc";
+                ensure!(angle == 0.0, block.fail(word, "a rotary axis of a machine that is not named", allowed));
             }
         }
         Ok(end)
+    }
+}
+
+impl Target {
+    /// The straight move to an end in parts in which the tool turns a little, the end last.
+    fn parts_to(&self, end: &Self) -> Vec<Self> {
+        let turn = (0..3).map(|k| (end.angles[k] - self.angles[k]).abs()).fold(0.0, f64::max);
+        let parts = (turn / TURN_STEP - 1e-6).ceil().clamp(1.0, 1e5) as u32;
+        let between = |from: f64, to: f64, part: u32| from + (to - from) * f64::from(part) / f64::from(parts);
+        let place = |k: usize, part| self.place[k].zip(end.place[k]).map(|(from, to)| between(from, to, part));
+        let at = |part| Self {
+            place: std::array::from_fn(|k| place(k, part)),
+            angles: std::array::from_fn(|k| between(self.angles[k], end.angles[k], part)),
+        };
+        (1..parts).map(at).chain([*end]).collect()
     }
 }
