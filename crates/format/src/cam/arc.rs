@@ -1,6 +1,7 @@
 //! Arcs as points that are nowhere farther from the arc than the chord error.
 
 use super::Resampling;
+use super::refusals::NO_AXIS_OF_ARC;
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -33,14 +34,10 @@ pub(super) enum ArcError {
 impl ArcError {
     /// What is wrong, and what is allowed.
     pub fn words(self) -> (String, &'static str) {
-        match self {
-            Self::Axis => ("the axis of the arc has no length".to_owned(), "a direction, as 0,0,1"),
-            Self::Radius(from, to) => {
-                let [from, to] = [from, to].map(millimetres);
-                let problem = format!("the arc misses its end: radius {from} at its start, {to} there");
-                (problem, "the same radius, above 0, within 0.05 mm")
-            }
-        }
+        let Self::Radius(from, to) = self else { return (NO_AXIS_OF_ARC.0.to_owned(), NO_AXIS_OF_ARC.1) };
+        let [from, to] = [from, to].map(millimetres);
+        let problem = format!("the arc misses its end: radius {from} at its start, {to} there");
+        (problem, "the same radius, above 0, within 0.05 mm")
     }
 }
 

@@ -17,11 +17,13 @@ pub(super) struct Frame {
     pub origin: Vector3<f64>,
 }
 
-impl Frame {
-    pub fn identity() -> Self {
+impl Default for Frame {
+    fn default() -> Self {
         Self { rotation: Matrix3::identity(), origin: Vector3::zeros() }
     }
+}
 
+impl Frame {
     /// A position of the frame (m) in the workpiece frame.
     pub fn place(&self, position: Vector3<f64>) -> Vector3<f64> {
         self.origin + self.rotation * position
@@ -42,6 +44,7 @@ struct TurnedBack {
 }
 
 /// The modal state.
+#[derive(Default)]
 pub(super) struct Course {
     resampling: Resampling,
     pub program: Program,
@@ -62,18 +65,7 @@ pub(super) struct Course {
 
 impl Course {
     pub fn new(resampling: Resampling) -> Self {
-        Self {
-            resampling,
-            program: Program::default(),
-            frame: Frame::identity(),
-            axis: Vector3::z(),
-            place: [None; 3],
-            unknown: [None; 3],
-            feed: None,
-            is_after_change: false,
-            arrived: None,
-            turned_back: None,
-        }
+        Self { resampling, axis: Vector3::z(), ..Self::default() }
     }
 
     /// The place is not known any more in some axes, by a code of a line.
@@ -91,15 +83,22 @@ impl Course {
             }
             return false;
         }
-        let missing = (0..3).filter(|axis| self.place[*axis].is_none() || to[*axis].is_none());
-        let why: Vec<String> = missing
-            .map(|axis| match self.unknown[axis] {
-                Some((code, line)) => format!("{} not known since {code}, line {line}", ["X", "Y", "Z"][axis]),
-                None => format!("{} not known before", ["X", "Y", "Z"][axis]),
-            })
-            .collect();
+        // Axes that are not known, and since when.
+        let mut why: Vec<(Option<(&str, usize)>, String)> = Vec::new();
+        for axis in (0..3).filter(|axis| self.place[*axis].is_none() || to[*axis].is_none()) {
+            match why.last_mut().filter(|(since, _)| *since == self.unknown[axis]) {
+                Some((_, axes)) => *axes += [", X", ", Y", ", Z"][axis],
+                None => why.push((self.unknown[axis], ["X", "Y", "Z"][axis].to_owned())),
+            }
+        }
+        let words = |(since, axes): &(Option<(&str, usize)>, String)| match since {
+            Some((code, line)) => format!("{axes} not known since {code}, line {line}"),
+            None => format!("{axes} not known before"),
+        };
         if !why.is_empty() {
-            self.program.lost.entry(why.join(", ")).or_default().at(line);
+            let words = why.iter().map(words).collect::<Vec<_>>().join("; ");
+            let text = "moves at feed that are not scored, from or to where the tool is not known";
+            self.program.note(format!("{text}: {words}"), line);
         }
         why.is_empty()
     }
@@ -114,8 +113,14 @@ impl Course {
     }
 
     /// Goes along an arc; where it is told by its axis alone, it is turned if it would turn back at both ends.
-    pub fn go_round(&mut self, arc: Arc, end: Move, is_certain: bool, line: usize) -> Result<(), ArcError> {
-        let points = arc.points(&self.resampling)?;
+    pub fn go_round(
+        &mut self,
+        arc: Arc,
+        end: Move,
+        is_certain: bool,
+        line: usize,
+    ) -> Result<(), (String, &'static str)> {
+        let points = arc.points(&self.resampling).map_err(ArcError::words)?;
         let [out, back] = arc.tangents();
         self.meet(Some(out));
         let is_against = self.arrived.is_some_and(|way| way.dot(&out) < TURNED_BACK);

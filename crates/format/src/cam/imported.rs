@@ -1,8 +1,9 @@
 //! An imported tool path: its points as a task file, and what was found and changed.
 
+use super::refusals::*;
 use super::segments::{Counts, Point, Resampling, Segments, expected_points, segments};
 use super::tool::{self, ProgramTool, Use};
-use super::{CamFormat, Found, Move, Program, counted, rounded};
+use super::{CamFormat, Found, Move, Program, rounded};
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -38,8 +39,6 @@ const LARGEST_COUNT: f64 = 2e7;
 const NAMED_TOOLS: usize = 8;
 /// Feeds of cutting moves. m/s
 const FEEDS: std::ops::RangeInclusive<f64> = 1e-7..=1e2;
-/// What can be scored of a program, where nothing is.
-const SCORED: &str = "at least one cutting move at 5.05 deg or more from the tool axis";
 
 impl ImportedPath {
     /// Resamples a program.
@@ -49,32 +48,22 @@ impl ImportedPath {
     pub(super) fn new(file: &Path, program: Program, resampling: Resampling) -> Result<Self, InputError> {
         let cutting = || program.moves.iter().filter(|one| !one.is_rapid);
         let has_feeds = cutting().any(|one| one.feed.is_some());
+        let fail = |(problem, allowed): (String, &str)| InputError::new(file, problem).allowed(allowed);
+        let fail_at = |one: &Move, (problem, allowed): Refusal| fail((problem.to_owned(), allowed)).at_line(one.line);
         if let (true, Some(without)) = (has_feeds, cutting().find(|one| one.feed.is_none())) {
-            return Err(InputError::new(file, "a cutting move before the first feed")
-                .at_line(without.line)
-                .allowed("a feed before the first cutting move, or none in the whole program"));
+            return Err(fail_at(without, FEED_TOO_LATE));
         }
-        if let Some((line, feed)) =
-            cutting().find_map(|one| one.feed.filter(|feed| !FEEDS.contains(feed)).map(|feed| (one.line, feed)))
-        {
-            return Err(InputError::new(file, "a cutting move with no usual feed")
-                .at_line(line)
-                .found(format!("{:e} mm/s", feed * 1e3))
-                .allowed("a feed from 0.0001 to 100000 mm/s"));
+        let is_unusual = |one: &&Move| one.feed.is_some_and(|feed| !FEEDS.contains(&feed));
+        if let Some(one) = cutting().find(is_unusual) {
+            let feed = one.feed.unwrap_or_default() * 1e3;
+            return Err(fail_at(one, UNUSUAL_FEED).found(format!("{feed:e} mm/s")));
         }
         let expected = expected_points(&program, resampling);
-        if expected > LARGEST_COUNT {
-            let problem = format!("{expected:.0} points within --step-mm");
-            return Err(InputError::new(file, problem)
-                .allowed(format!("{LARGEST_COUNT:.0} points at most: a larger --step-mm")));
-        }
+        ensure!(expected <= LARGEST_COUNT, fail((format!("{expected:.0} points within --step-mm"), TOO_MANY)));
         let Segments { segments, rapids, counts } = segments(&program, resampling);
-        if !segments.iter().flatten().any(|point| point.is_scored) {
-            let problem = format!("{} cutting moves, none of which can be scored", counts.cutting);
-            return Err(InputError::new(file, problem).allowed(SCORED));
-        }
-        let mut notes =
-            listed("moves at feed that are not scored, from or to where the tool is not known: ", &program.lost);
+        let problem = || format!("{} cutting moves, none of which can be scored", counts.cutting);
+        ensure!(segments.iter().flatten().any(|point| point.is_scored), fail((problem(), SCORED)));
+        let mut notes = Vec::new();
         let mut note = |count: usize, text: &str| {
             if count > 0 {
                 notes.push(format!("{count} {text}"));
@@ -85,10 +74,7 @@ impl ImportedPath {
         note(counts.added, "points added, on lines longer than the step or turns of the tool axis by more than 5 deg");
         note(counts.plunging, "points of plunges along the tool axis, where there is no wall: followed, not scored");
         note(counts.turning, "points of turns of the tool in place, where there is no wall: followed, not scored");
-        notes.extend(listed("", &program.notes));
-        if !program.unknown.is_empty() {
-            notes.push(format!("not known, taken not to move the tool: {}", listed("", &program.unknown).join(", ")));
-        }
+        notes.extend(listed(&program.notes));
         if !program.holes_left_out.is_empty() {
             let place = |(place, line): &(Vector3<f64>, usize)| {
                 let [x, y, z] = [place.x, place.y, place.z].map(|value| rounded(value * 1e3));
@@ -98,7 +84,7 @@ impl ImportedPath {
             notes.push(format!("{} holes left out (--skip-cycles): {}", places.len(), places.join("; ")));
         }
         if !program.passed_over.is_empty() {
-            notes.push(format!("words passed over: {}", counted(&program.passed_over)));
+            notes.push(format!("words passed over: {}", listed(&program.passed_over).join(", ")));
         }
         let points = || segments.iter().flatten();
         notes.extend(plausibility::tool_axes(points().map(|point| &point.axis), "in the frame of the part"));
@@ -227,8 +213,8 @@ impl ImportedPath {
 }
 
 /// What was found, each with how often and where.
-fn listed(start: &str, all: &BTreeMap<String, Found>) -> Vec<String> {
-    all.iter().map(|(text, found)| format!("{start}{text}{}", found.words())).collect()
+fn listed(all: &BTreeMap<String, Found>) -> Vec<String> {
+    all.iter().map(|(text, found)| format!("{text}{}", found.words())).collect()
 }
 
 /// Adds a number behind a comma, without zeros that say nothing.

@@ -19,6 +19,7 @@ mod course;
 pub mod gcode;
 mod imported;
 mod links;
+mod refusals;
 mod segments;
 #[cfg(test)]
 mod tests;
@@ -33,7 +34,6 @@ pub use tool::file_beside;
 use gcode::Machine;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 use stead_disk::files;
 use stead_disk::input::InputError;
@@ -151,21 +151,23 @@ pub struct Program {
     pub tools_from: Vec<(usize, ProgramTool)>,
     /// Whether it says that rapid moves are made at feed.
     pub has_rapids_at_feed: bool,
-    /// Moves at feed that are not scored, by why not.
-    pub lost: BTreeMap<String, Found>,
     /// What was made of the program that is not plain.
     pub notes: BTreeMap<String, Found>,
     /// Holes of drilling cycles that were left out: places in the workpiece frame (m), with the line.
     pub holes_left_out: Vec<(Vector3<f64>, usize)>,
-    /// Words that do not move the tool and were passed over, with how often.
-    pub passed_over: BTreeMap<String, usize>,
-    /// Words that are not known, taken not to move the tool.
-    pub unknown: BTreeMap<String, Found>,
+    /// Words that do not move the tool and were passed over.
+    pub passed_over: BTreeMap<String, Found>,
 }
 
 impl Program {
     fn note(&mut self, text: impl Into<String>, line: usize) {
         self.notes.entry(text.into()).or_default().at(line);
+    }
+
+    fn name_tool(&mut self, name: String) {
+        if !self.tools.contains(&name) {
+            self.tools.push(name);
+        }
     }
 }
 
@@ -208,12 +210,11 @@ pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Resul
 /// CLDATA or G-code, by the first line that is of one alone.
 pub(crate) fn format_of(text: &str) -> Option<CamFormat> {
     text.lines().find_map(|line| {
-        let line = line.trim();
+        let line = cldata::without_label(line.trim());
         let mut chars = line.chars();
         let is_gcode = line.starts_with(['%', '(', ';'])
             || (chars.next().is_some_and(|c| c.is_ascii_alphabetic())
-                && chars.find(|c| *c != ' ').is_some_and(|c| c.is_ascii_digit() || "+-.#".contains(c))
-                && !cldata::is_labelled(line));
+                && chars.find(|c| *c != ' ').is_some_and(|c| c.is_ascii_digit() || "+-.#".contains(c)));
         if is_gcode {
             Some(CamFormat::Gcode)
         } else if cldata::is_statement(line) {
@@ -227,15 +228,4 @@ pub(crate) fn format_of(text: &str) -> Option<CamFormat> {
 /// A number without the digits that its unit has brought in.
 fn rounded(value: f64) -> f64 {
     (value * 1e9).round() / 1e9
-}
-
-/// What was counted, as `NAME 3, OTHER 1`.
-fn counted(counts: &BTreeMap<String, usize>) -> String {
-    let mut text = String::new();
-    for (name, count) in counts {
-        let comma = if text.is_empty() { "" } else { ", " };
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{comma}{name} {count}");
-    }
-    text
 }

@@ -58,7 +58,7 @@ fn a_pocket_becomes_a_segment_with_its_plunge_and_its_retract_unscored() {
     let steps = points.windows(2).map(|pair| (pair[1].position - pair[0].position).norm());
     assert!(steps.fold(0.0, f64::max) <= 0.01 + 1e-12);
     let said = format!("{path}");
-    for part in ["1 moves end where they start", "2 points of plunges", "PAINT 1", "5.000 to 20.000 mm/s"] {
+    for part in ["1 moves end where they start", "2 points of plunges", "PAINT (line 24)", "5.000 to 20.000 mm/s"] {
         assert!(said.contains(part), "{part} in {said}");
     }
 }

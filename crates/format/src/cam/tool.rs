@@ -127,6 +127,9 @@ fn mm(metres: f64) -> f64 {
     rounded(metres * 1e3)
 }
 
+/// Where a figure is from.
+const STATED: &str = "of the CAM file";
+
 /// Lines with a comment in one column.
 struct Lines(String);
 
@@ -149,33 +152,28 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     let described = shorten(&tool.description);
     let is_known = tool.diameter.is_some();
     let key = |text: String| if is_known { text } else { format!("# {text}") };
-    lines.row(&key("[tool]".to_owned()), if described.is_empty() { "of the CAM file" } else { &described });
+    lines.row(&key("[tool]".to_owned()), if described.is_empty() { STATED } else { &described });
     match tool.diameter {
-        Some(diameter) => lines.row(&format!("cutter_diameter_mm = {:?}", mm(diameter)), "of the CAM file"),
+        Some(diameter) => lines.row(&format!("cutter_diameter_mm = {:?}", mm(diameter)), STATED),
         None => lines.row("# cutter_diameter_mm = 10.0", "guess: the CAM file does not state it"),
     }
-    if tool.is_counterclockwise {
-        lines.row(&key("rotation = \"counterclockwise\"".to_owned()), "seen from the spindle");
-    }
-    if let Some(corner) = tool.corner_radius {
-        lines.row(&key(format!("corner_radius_mm = {:?}", mm(corner))), "of the CAM file");
-    }
-    if let Some(taper) = tool.taper {
-        lines.row(&key(format!("taper_deg = {:?}", rounded(taper.to_degrees()))), "of the CAM file");
-    }
-    match (tool.length, tool.diameter) {
-        (Some(length), _) => {
-            let comment = match tool.is_length_of_flutes {
-                true => "of the CAM file: kept out of the part between segments",
-                false => "of the CAM file, perhaps with its shank: kept out of the part between segments",
-            };
-            lines.row(&key(format!("flute_length_mm = {:?}", mm(length))), comment);
+    let flutes = match (tool.length, tool.diameter) {
+        (Some(length), _) if tool.is_length_of_flutes => Some((mm(length), STATED)),
+        (Some(length), _) => Some((mm(length), "of the CAM file, perhaps with its shank")),
+        (None, diameter) => diameter.filter(|_| !tool.is_other_shape).map(|diameter| (mm(3.0 * diameter), "guess")),
+    };
+    for (name, value) in [
+        ("rotation", tool.is_counterclockwise.then(|| ("\"counterclockwise\"".to_owned(), "seen from the spindle"))),
+        ("corner_radius_mm", tool.corner_radius.map(|corner| (format!("{:?}", mm(corner)), STATED))),
+        ("taper_deg", tool.taper.map(|taper| (format!("{:?}", rounded(taper.to_degrees())), STATED))),
+        ("flute_length_mm", flutes.map(|(length, comment)| (format!("{length:?}"), comment))),
+    ] {
+        if let Some((value, comment)) = value {
+            lines.row(&key(format!("{name} = {value}")), comment);
         }
-        (None, Some(_)) if tool.is_other_shape => {
-            lines.row("# flute_length_mm = 10.0", "to be stated: the shape of this cutter is not that of a run file");
-        }
-        (None, Some(diameter)) => lines.row(&format!("flute_length_mm = {:?}", mm(3.0 * diameter)), "guess"),
-        (None, None) => {}
+    }
+    if flutes.is_none() && is_known {
+        lines.row("# flute_length_mm = 10.0", "to be stated: the shape of this cutter is not that of a run file");
     }
     for (row, comment) in [
         ("teeth = 2", "guess"),
@@ -189,7 +187,7 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     }
     lines.0.push_str(if is_known { "\n[cut]\n" } else { "\n# [cut]\n" });
     let (speed, comment) = match tool.spindle_speed {
-        Some(speed) => (rounded(speed * 60.0), "of the CAM file"),
+        Some(speed) => (rounded(speed * 60.0), STATED),
         None => (9000.0, "guess"),
     };
     lines.row(&key(format!("spindle_rpm = {speed:?}")), comment);

@@ -1,7 +1,7 @@
 //! Drilling cycles of CLDATA: a plunge along the tool axis at each of the points that follow.
 
 use super::dialect::{CYCLES, HoleDepth, OF_CYCLES, OfCycle};
-use super::statement::{Minor, Statement};
+use super::statement::Statement;
 
 /// What a cycle does at each point, in the unit of the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,22 +24,21 @@ impl Cycle {
         CYCLES.iter().find(|known| known.eq_ignore_ascii_case(kind))?;
         let (mut last, mut of) = ("", Some(OfCycle::Depth));
         for minor in &statement.minors[1..] {
-            match *minor {
-                Minor::Word(word) => {
-                    of = Some(OF_CYCLES.iter().find(|(known, _)| known.eq_ignore_ascii_case(word))?.1);
-                    last = word;
-                }
-                Minor::Number(value, _) => match of.take()? {
-                    OfCycle::Depth => depth = Some(value),
-                    OfCycle::To if hole_depth == HoleDepth::Coordinate => depth = Some(-value),
-                    OfCycle::To if hole_depth == HoleDepth::Depth => depth = Some(value),
-                    OfCycle::To => depth = Some(value.abs()),
-                    OfCycle::Clear => clear = Some(value),
-                    OfCycle::RapidTo => rapid_to = Some(value),
-                    OfCycle::Retract => retract = Some(value),
-                    OfCycle::Feed => (feed, of) = (Some((value, last.to_owned())), Some(OfCycle::Clear)),
-                    OfCycle::Other => {}
-                },
+            let Some(value) = minor.number else {
+                of = Some(OF_CYCLES.iter().find(|(known, _)| known.eq_ignore_ascii_case(minor.text))?.1);
+                last = minor.text;
+                continue;
+            };
+            match of.take()? {
+                OfCycle::Depth => depth = Some(value),
+                OfCycle::To if hole_depth == HoleDepth::Coordinate => depth = Some(-value),
+                OfCycle::To if hole_depth == HoleDepth::Depth => depth = Some(value),
+                OfCycle::To => depth = Some(value.abs()),
+                OfCycle::Clear => clear = Some(value),
+                OfCycle::RapidTo => rapid_to = Some(value),
+                OfCycle::Retract => retract = Some(value),
+                OfCycle::Feed => (feed, of) = (Some((value, last.to_owned())), Some(OfCycle::Clear)),
+                OfCycle::Other => {}
             }
         }
         let depth = depth.filter(|depth| *depth > 0.0)?;

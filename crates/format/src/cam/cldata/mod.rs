@@ -11,8 +11,10 @@ mod statement;
 mod told;
 
 pub use dialect::CamFormat;
-pub(super) use told::{is_labelled, is_statement};
+pub(super) use statement::without_label;
+pub(super) use told::is_statement;
 
+use super::refusals::NO_UNIT;
 use super::{LengthUnit, Program, ReadSettings};
 use dialect::Dialect;
 use reader::Reader;
@@ -29,7 +31,7 @@ use stead_disk::input::InputError;
 pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, InputError> {
     let dialect = Dialect::of(text, settings.format);
     let unit = unit_of(file, dialect, text, settings.units)?;
-    let mut reader = Reader::new(file, dialect, unit, settings)?;
+    let mut reader = Reader::new(dialect, unit, settings);
     let mut statements = Statements::new(file, dialect, text);
     while let Some(statement) = statements.next() {
         if !reader.take(statement)? {
@@ -58,9 +60,9 @@ fn unit_of(
             if !["UNIT", "UNITS"].iter().any(|word| statement.word.eq_ignore_ascii_case(word)) {
                 continue;
             }
-            let fail = |problem: &str, allowed: &str| statement.fail(problem, allowed).at_line(number);
+            let fail = |problem: &str, allowed: &str| statement.fail((problem, allowed)).at_line(number);
             let stated = known.iter().find(|(word, _)| statement.has(word)).map(|(_, unit)| *unit);
-            let stated = stated.ok_or_else(|| fail("names no unit of length", "MM or INCHES"))?;
+            let stated = stated.ok_or_else(|| fail(NO_UNIT.0, NO_UNIT.1))?;
             if let Some(unit) = unit.filter(|unit| *unit != stated) {
                 let other = if given.is_some() { "--units" } else { "the file before" };
                 let problem = format!("is not what {other} says: {}", unit.word());

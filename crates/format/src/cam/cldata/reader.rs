@@ -4,6 +4,7 @@ mod arcs;
 mod points;
 
 use super::super::course::{Course, Frame, NO_LENGTH};
+use super::super::refusals::*;
 use super::super::{LARGEST, LengthUnit, Program, ReadSettings};
 use super::cutter::cutter;
 use super::cycle::Cycle;
@@ -11,7 +12,6 @@ use super::dialect::{CYCLES_TAKEN, CutterForm, Dialect, Effect, Ending, FEEDS, F
 use super::statement::Statement;
 use arcs::Pending;
 use nalgebra::{Matrix3, Vector3};
-use std::path::Path;
 use stead_disk::input::InputError;
 use stead_disk::quote::one_line;
 
@@ -60,22 +60,10 @@ struct State {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(
-        file: &Path,
-        dialect: &'static Dialect,
-        unit: LengthUnit,
-        settings: &'a ReadSettings,
-    ) -> Result<Self, InputError> {
-        let is_path = |word: &&String| {
-            matches!(dialect.effect(word), Some(Effect::Move(_) | Effect::Rapid | Effect::Arc(_) | Effect::End(_)))
-        };
-        if let Some(word) = settings.ignore.iter().find(is_path) {
-            let error = InputError::new(file, "is a word of the path itself").in_field("--ignore");
-            return Err(error.found(format!("'{}'", one_line(word))).allowed("words that do not move the tool"));
-        }
+    pub fn new(dialect: &'static Dialect, unit: LengthUnit, settings: &'a ReadSettings) -> Self {
         let mut course = Course::new(settings.resampling);
         (course.is_after_change, course.program.format) = (true, dialect.format);
-        Ok(Self { dialect, settings, unit, course, state: State::default() })
+        Self { dialect, settings, unit, course, state: State::default() }
     }
 
     /// Takes a statement; false after the one that ends the program.
@@ -84,7 +72,7 @@ impl<'a> Reader<'a> {
         let is_move = matches!(effect, Effect::Move(_));
         if let (Some(pending), false) = (&self.state.pending, is_move || effect == Effect::Feed) {
             let problem = format!("stands between the arc of line {} and its end", pending.line);
-            return Err(statement.fail(problem, "a GOTO behind each arc"));
+            return Err(statement.fail((problem, BEHIND_ARC)));
         }
         if !is_move {
             self.state.circle = None;
@@ -96,9 +84,7 @@ impl<'a> Reader<'a> {
             Effect::Tangent => self.state.tangent = Some(self.course.frame.rotation * self.direction(statement)?),
             Effect::Frame(form) => self.frame(statement, form)?,
             Effect::NoFrame => {
-                let allowed = "no origin but 0,0,0: let the CAM system write positions in the frame of the part";
-                let is_zero = statement.numbers().all(|number| number == 0.0);
-                ensure!(is_zero, statement.fail("an origin other than 0,0,0", allowed));
+                ensure!(statement.numbers().all(|number| number == 0.0), statement.fail(ANOTHER_ORIGIN));
             }
             Effect::Axis => self.course.axis = self.direction(statement)?,
             Effect::Axes => self.state.is_three_axis = statement.has("OFF"),
@@ -115,18 +101,13 @@ impl<'a> Reader<'a> {
             Effect::Offset => self.offset(statement)?,
             Effect::Mode => {
                 let counts_on = ["INCR", "INCREM", "INC", "DELTA"].iter().any(|word| statement.has(word));
-                let allowed = "positions from the origin: let the CAM system write them so";
-                ensure!(!counts_on, statement.fail("positions that count from the last one", allowed));
+                ensure!(!counts_on, statement.fail(COUNTS_ON));
             }
             Effect::Unit => {}
             Effect::Text | Effect::Nothing => {
-                *self.course.program.passed_over.entry(name_of(statement)).or_default() += 1;
+                self.course.program.passed_over.entry(name_of(statement)).or_default().at(statement.line);
             }
-            Effect::Refused(why) => {
-                let allowed = "GOTO, RAPID, arcs and drilling cycles: let the CAM system write straight moves and arcs";
-                let allowed = format!("{allowed}; or --ignore {}, if it does nothing here", name_of(statement));
-                return Err(statement.fail(format!("is not read: {why}"), allowed));
-            }
+            Effect::Refused(why) => return Err(statement.fail(not_read(why, &name_of(statement)))),
             Effect::End(ending) => {
                 self.state.is_ended = true;
                 return Ok(ending == Ending::Path);
@@ -137,29 +118,24 @@ impl<'a> Reader<'a> {
 
     /// What a statement does by its dialect; nothing where its word is ignored, or one that nobody knows.
     fn effect(&mut self, statement: &Statement<'_>) -> Result<Option<Effect>, InputError> {
+        let (known, program) = (self.dialect.effect(statement.word), &mut self.course.program);
         if self.settings.ignore.iter().any(|own| own.eq_ignore_ascii_case(statement.word)) {
-            let text = format!("{} passed over, as asked (--ignore)", name_of(statement));
-            self.course.program.note(text, statement.line);
+            let is_path = matches!(known, Some(Effect::Move(_) | Effect::Rapid | Effect::Arc(_) | Effect::End(_)));
+            ensure!(!is_path, statement.fail(IGNORED_PATH));
+            program.note(format!("{} passed over, as asked (--ignore)", name_of(statement)), statement.line);
             return Ok(None);
         }
-        let known = self.dialect.effect(statement.word);
         if known.is_none() {
             let (name, count) = (name_of(statement), statement.numbers().count());
-            let problem =
-                format!("is not known, and its {count} numbers may move the tool, or what its positions count from");
-            let allowed = format!(
-                "--ignore {name}, if it does nothing of that; else let the CAM system write straight moves and arcs"
-            );
-            ensure!(count < NUMBERS_OF_A_PLACE, statement.fail(problem, allowed));
-            self.course.program.unknown.entry(name).or_default().at(statement.line);
+            ensure!(count < NUMBERS_OF_A_PLACE, statement.fail(not_known(count, &name)));
+            program.note(format!("not known, taken not to move the tool: {name}"), statement.line);
         }
         Ok(known)
     }
 
     /// The program, when the file is at its end.
     pub fn finish(self, last: &Statement<'_>) -> Result<Program, InputError> {
-        let problem = "the file ends before the end of the arc";
-        ensure!(self.state.pending.is_none(), last.fail(problem, "a GOTO behind each arc"));
+        ensure!(self.state.pending.is_none(), last.fail(HALF_AN_ARC));
         let mut program = self.course.program;
         if !self.state.is_ended {
             program.note("no FINI and no END-OF-PATH: the file may be cut short", last.line);
@@ -169,10 +145,9 @@ impl<'a> Reader<'a> {
 
     /// A direction of the file, of unit length.
     fn direction(&self, statement: &Statement<'_>) -> Result<Vector3<f64>, InputError> {
-        let allowed = "3 finite numbers: a direction, as 0,0,1";
-        let given = self.numbers(statement, &[3], allowed)?;
+        let given = self.numbers(statement, &[3], NUMBERS_OF_DIRECTION)?;
         let direction = Vector3::from_column_slice(&given).try_normalize(NO_LENGTH);
-        direction.ok_or_else(|| statement.fail("the direction has no length", allowed))
+        direction.ok_or_else(|| statement.fail(NO_DIRECTION))
     }
 
     fn cycle(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
@@ -185,8 +160,7 @@ impl<'a> Reader<'a> {
         } else {
             self.numbers(statement, &[], CYCLES_TAKEN)?;
             let cycle = Cycle::of(statement, self.dialect.hole_depth);
-            let refused = || statement.fail("a cycle whose moves are not known here", CYCLES_TAKEN);
-            Some(Holes::Drilled(cycle.ok_or_else(refused)?))
+            Some(Holes::Drilled(cycle.ok_or_else(|| statement.fail((ANOTHER_CYCLE, CYCLES_TAKEN)))?))
         };
         self.state.holes = holes.map(|holes| (holes, statement.line));
         Ok(())
@@ -196,12 +170,12 @@ impl<'a> Reader<'a> {
     fn no_cycle_is_open(&self, statement: &Statement<'_>) -> Result<(), InputError> {
         let Some((_, line)) = &self.state.holes else { return Ok(()) };
         let problem = format!("the cycle of line {line} is still open here: holes may follow, or cuts");
-        Err(statement.fail(problem, "CYCLE/OFF before, behind the last hole"))
+        Err(statement.fail((problem, CLOSE_CYCLE)))
     }
 
     fn fedrat(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let value = self.numbers(statement, &[1], "one feed above 0 and its unit")?[0];
-        ensure!(value > 0.0, statement.fail("not a feed", "a feed above 0"));
+        let value = self.numbers(statement, &[1], NUMBERS_OF_FEED)?[0];
+        ensure!(value > 0.0, statement.fail(NOT_A_FEED));
         let words: Vec<&str> = statement.words().collect();
         if words.is_empty() {
             let note = format!("FEDRAT without a unit, taken in {} per minute", self.unit.word());
@@ -216,12 +190,11 @@ impl<'a> Reader<'a> {
     /// A feed in the unit of a word. m/s
     fn feed_in(&self, statement: &Statement<'_>, value: f64, word: &str) -> Result<f64, InputError> {
         let known = FEEDS.iter().find(|(own, ..)| own.eq_ignore_ascii_case(word));
-        let allowed = "MMPM, IPM, MMPR, IPR, PERMIN or PERREV";
-        let (_, unit, is_per_turn) = known.ok_or_else(|| statement.fail("not a unit of feed", allowed))?;
-        let speed = if *is_per_turn { self.state.spindle } else { Some(1.0 / 60.0) };
-        let problem = "a feed per revolution without a spindle speed";
-        let speed = speed.ok_or_else(|| statement.fail(problem, "SPINDL with RPM before"))?;
-        Ok(value * unit.unwrap_or(self.unit).metres() * speed)
+        let (_, unit, is_per_turn) = known.ok_or_else(|| statement.fail(NOT_A_FEED_UNIT))?;
+        let length = value * unit.unwrap_or(self.unit).metres();
+        let speed = if *is_per_turn { self.state.spindle } else { None };
+        ensure!(speed.is_some() || !is_per_turn, statement.fail(NO_SPEED));
+        Ok(speed.map_or(length / 60.0, |speed| length * speed))
     }
 
     fn spindl(&mut self, statement: &Statement<'_>) {
@@ -247,8 +220,7 @@ impl<'a> Reader<'a> {
         }
         let off = (rotation.tr_mul(&rotation) - Matrix3::identity()).abs().max();
         let is_rotation = off < FRAME_ROUNDING && rotation.determinant() > 0.0;
-        let allowed = "unit vectors at right angles, right-handed";
-        ensure!(is_rotation, statement.fail("the axes of the frame are no rotation", allowed));
+        ensure!(is_rotation, statement.fail(NO_ROTATION));
         if form.is_in_comments_below {
             self.section(statement)?;
         }
@@ -256,21 +228,15 @@ impl<'a> Reader<'a> {
         let z = x.cross(&rotation.column(1)).normalize();
         let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
         let frame = Frame { rotation, origin: at(form.origin) * self.unit.metres() };
-        let named = std::mem::replace(&mut self.state.named, Some(frame));
-        let what = if self.dialect.applies_frames {
-            "positions and tool axes turned into that of the part"
-        } else {
-            let problem = "a second coordinate system, and the file does not say in which of them its positions are";
-            let is_one = named.is_none_or(|named| frame.is_near(&named));
-            ensure!(is_one, statement.fail(problem, "one coordinate system for the whole file: write a file for each"));
-            "positions are taken as those in it, and it as the part's"
-        };
+        let is_applied = self.dialect.applies_frames;
+        let is_one = is_applied || self.state.named.is_none_or(|named| frame.is_near(&named));
+        ensure!(is_one, statement.fail(SECOND_FRAME));
         if !frame.is_near(&self.course.frame) {
+            let what = if is_applied { FRAME_APPLIED } else { FRAME_NAMED };
             self.course.program.note(format!("frame of {}: {what}", statement.name()), statement.line);
         }
-        if self.dialect.applies_frames {
-            self.course.frame = frame;
-        }
+        let of_positions = if is_applied { &mut self.course.frame } else { self.state.named.get_or_insert(frame) };
+        *of_positions = frame;
         Ok(())
     }
 
@@ -283,16 +249,12 @@ impl<'a> Reader<'a> {
 
     fn tool(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
         self.section(statement)?;
-        let text = one_line(&format!("{}/{}", statement.name(), statement.text()));
-        if !self.course.program.tools.contains(&text) {
-            self.course.program.tools.push(text);
-        }
+        self.course.program.name_tool(one_line(&format!("{}/{}", statement.name(), statement.text())));
         Ok(())
     }
 
     fn cutter(&mut self, statement: &Statement<'_>, form: CutterForm) -> Result<(), InputError> {
-        let numbers = self.numbers(statement, &[], "finite numbers of the tool")?;
-        ensure!(!numbers.is_empty(), statement.fail("no numbers that can be read", "numbers of the tool"));
+        ensure!(!self.numbers(statement, &[], NO_CUTTER.1)?.is_empty(), statement.fail(NO_CUTTER));
         let read = cutter(statement, form, self.unit.metres());
         let moves = self.course.program.moves.len();
         if form == CutterForm::Flutes {
@@ -309,12 +271,9 @@ impl<'a> Reader<'a> {
     }
 
     fn offset(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let given =
-            self.numbers(statement, &[0, 1], "the number of a work offset")?.first().copied().or(self.state.offset);
-        let problem = "a second work offset, and how the two lie to each other is not in the file";
-        let is_one = self.state.offset.is_none() || given == self.state.offset;
-        ensure!(is_one, statement.fail(problem, "one work offset for the whole file"));
-        self.state.offset = given;
+        let given = self.numbers(statement, &[0, 1], SECOND_OFFSET.1)?.first().copied();
+        let offset = *self.state.offset.get_or_insert(given.unwrap_or_default());
+        ensure!(given.is_none_or(|given| given == offset), statement.fail(SECOND_OFFSET));
         Ok(())
     }
 
@@ -322,10 +281,8 @@ impl<'a> Reader<'a> {
     fn numbers(&self, statement: &Statement<'_>, counts: &[usize], allowed: &str) -> Result<Vec<f64>, InputError> {
         let numbers: Vec<f64> = statement.numbers().collect();
         let largest = LARGEST / self.unit.metres();
-        let are_usual = numbers.iter().all(|number| number.abs() <= largest);
-        ensure!(are_usual, statement.fail("not finite numbers of a usual size", allowed));
-        let is_count = counts.is_empty() || counts.contains(&numbers.len());
-        ensure!(is_count, statement.fail(format!("{} numbers that can be read", numbers.len()), allowed));
+        ensure!(numbers.iter().all(|number| number.abs() <= largest), statement.fail((NOT_USUAL, allowed)));
+        ensure!(counts.is_empty() || counts.contains(&numbers.len()), statement.fail((statement.counted(), allowed)));
         Ok(numbers)
     }
 }

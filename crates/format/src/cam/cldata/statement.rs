@@ -5,13 +5,11 @@ use std::path::Path;
 use std::str::Lines;
 use stead_disk::input::InputError;
 
-/// A word or number behind the slash.
+/// A word or number behind the slash: its text, and the number that it is; NaN where it is written so.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Minor<'a> {
-    /// A number as it is read, with its text; NaN where it is written so.
-    Number(f64, &'a str),
-    /// Anything else.
-    Word(&'a str),
+pub(super) struct Minor<'a> {
+    pub text: &'a str,
+    pub number: Option<f64>,
 }
 
 /// A statement with its line.
@@ -29,18 +27,12 @@ pub(super) struct Statement<'a> {
 impl<'a> Statement<'a> {
     /// Its numbers, in their order.
     pub fn numbers(&self) -> impl Iterator<Item = f64> + Clone {
-        self.minors.iter().filter_map(|minor| match minor {
-            Minor::Number(value, _) => Some(*value),
-            Minor::Word(_) => None,
-        })
+        self.minors.iter().filter_map(|minor| minor.number)
     }
 
     /// Its words, in their order.
     pub fn words(&self) -> impl Iterator<Item = &'a str> {
-        self.minors.iter().filter_map(|minor| match minor {
-            Minor::Word(word) => Some(*word),
-            Minor::Number(..) => None,
-        })
+        self.minors.iter().filter(|minor| minor.number.is_none()).map(|minor| minor.text)
     }
 
     /// Whether one of its words is this one.
@@ -55,10 +47,7 @@ impl<'a> Statement<'a> {
 
     /// What stands behind the slash, as written.
     pub fn text(&self) -> String {
-        let text = |minor: &Minor<'a>| match minor {
-            Minor::Number(_, text) | Minor::Word(text) => *text,
-        };
-        self.minors.iter().map(text).collect::<Vec<_>>().join(",")
+        self.minors.iter().map(|minor| minor.text).collect::<Vec<_>>().join(",")
     }
 
     /// Its word without the marks of a comment.
@@ -67,10 +56,15 @@ impl<'a> Statement<'a> {
     }
 
     /// That it is wrong.
-    pub fn fail(&self, problem: impl Into<String>, allowed: impl Into<String>) -> InputError {
+    pub fn fail(&self, (problem, allowed): (impl Into<String>, impl Into<String>)) -> InputError {
         let found = if self.minors.is_empty() { self.name().to_owned() } else { self.text() };
         let error = InputError::new(self.file, problem).at_line(self.line).in_field(self.name());
         error.found(format!("'{found}'")).allowed(allowed)
+    }
+
+    /// How many numbers it has, for messages.
+    pub fn counted(&self) -> String {
+        format!("{} numbers that can be read", self.numbers().count())
     }
 
     /// Adds what stands behind the slash.
@@ -185,8 +179,8 @@ impl<'a> Statements<'a> {
             let next = self.lines.clone().next().and_then(|line| line.trim().strip_prefix("$$"));
             let Some(row) = next.filter(|row| !row.starts_with('*')) else { return };
             self.next_line();
-            let minors: Vec<Minor<'a>> = row.split_whitespace().map(minor).collect();
-            if minors.len() == 4 && minors.iter().all(|minor| matches!(minor, Minor::Number(..))) {
+            let minors = row.split_whitespace().map(minor);
+            if minors.clone().count() == 4 && minors.clone().all(|minor| minor.number.is_some()) {
                 self.statement.minors.extend(minors);
             }
         }
@@ -204,7 +198,7 @@ fn is_of_word(c: char) -> bool {
 }
 
 /// A statement without the label before it, as in `A1) GOTO/1,2,3`.
-pub(super) fn without_label(text: &str) -> &str {
+pub(crate) fn without_label(text: &str) -> &str {
     let end = text.find(')').unwrap_or(0);
     let is_label = end > 0 && text.as_bytes()[..end].iter().all(u8::is_ascii_alphanumeric);
     if is_label { text[end + 1..].trim_start() } else { text }
@@ -215,7 +209,7 @@ fn without_comment(text: &str) -> &str {
 }
 
 fn minor(text: &str) -> Minor<'_> {
-    text.parse().map_or(Minor::Word(text), |value| Minor::Number(value, text))
+    Minor { text, number: text.parse().ok() }
 }
 
 #[cfg(test)]

@@ -77,8 +77,3 @@ pub(crate) fn is_statement(line: &str) -> bool {
         || (is_word && of(head).is_some_and(|effect| !matches!(effect, Effect::Refused(_))))
         || (is_word && of(first) == Some(Effect::Text))
 }
-
-/// Whether a line begins with a label.
-pub(crate) fn is_labelled(line: &str) -> bool {
-    without_label(line).len() < line.len()
-}

@@ -42,8 +42,13 @@ impl Block<'_> {
         self.words.iter().find(|(letter, _)| letters.contains(*letter)).copied().unwrap_or(('G', 2.0))
     }
 
+    /// That the first of its words with one of these letters is wrong.
+    pub fn fail_at(&self, letters: &str, refusal: (impl Into<String>, &str)) -> InputError {
+        self.fail(self.first(letters), refusal)
+    }
+
     /// That one of its words is wrong.
-    pub fn fail(&self, (letter, value): Word, problem: &str, allowed: &str) -> InputError {
+    pub fn fail(&self, (letter, value): Word, (problem, allowed): (impl Into<String>, &str)) -> InputError {
         let error = InputError::new(self.file, problem).at_line(self.line).in_field(letter.to_string());
         error.found(format!("'{letter}{value}'")).allowed(allowed)
     }

@@ -39,10 +39,10 @@ pub(super) enum Code {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tilt {
     Plane,
-    /// The tool stands normal to it from here on.
-    Tool,
-    /// So, about its tip.
-    ToolAboutTip,
+    /// The tool stands normal to it from here on, turned about its tip or about the axes of the machine.
+    Tool {
+        is_about_tip: bool,
+    },
     End,
 }
 
@@ -88,8 +88,8 @@ pub(super) const CODES: &[(i64, Code)] = &[
     (510, Refused("a scaling of positions", "positions as they are: post without scaling")),
     (520, SHIFT),
     (530, Machine),
-    (531, Mode(Tilt::Tool)),
-    (536, Mode(Tilt::ToolAboutTip)),
+    (531, Mode(Tilt::Tool { is_about_tip: false })),
+    (536, Mode(Tilt::Tool { is_about_tip: true })),
     (540, Offset),
     (541, Offset),
     (550, Offset),
@@ -133,10 +133,6 @@ pub(super) const CODES: &[(i64, Code)] = &[
     (980, ToPlane(false)),
     (990, ToPlane(true)),
 ];
-
-/// The codes that are taken, for messages.
-pub(super) const TAKEN: &str = "G0-G4, G17-G19, G20, G21, G28, G30, G40, G43, G43.4, G49, G53, G53.1, G54-G59, G61, G64, G68.2, G69, G80, G90, \
-                                G91, G93, G94, G97-G99";
 
 /// Programs that are something else, by how a line of theirs begins, what they are, and what to post.
 pub(super) const FOREIGN: &[(&[&str], &str, &str)] = &[

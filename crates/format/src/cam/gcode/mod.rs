@@ -3,7 +3,6 @@
 //! What each code does is data ([`codes`]). Positions are those of the work offset (G54 to G59) as the workpiece frame. Angles of rotary axes are those of a
 //! named [`Machine`], along a move in proportion to the way, so moves that turn the tool are taken in small parts.
 
-mod arc;
 mod block;
 mod codes;
 mod comment;
@@ -13,6 +12,7 @@ mod reader;
 pub(super) use block::foreign;
 pub use machine::Machine;
 
+use super::refusals::NOT_A_WORD;
 use super::{Program, ReadSettings};
 use block::Block;
 use reader::Reader;
@@ -34,13 +34,12 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
             return Err(error.allowed(post));
         }
     }
-    let mut reader = Reader::new(file, settings)?;
+    let mut reader = Reader::new(settings);
     let (mut words, mut last) = (Vec::new(), 1);
     for (line, number) in text.lines().zip(1..) {
         if let Err(text) = block::words(line, &mut words) {
-            let error = InputError::new(file, "not a letter with a number").at_line(number);
-            let allowed = "G-code words, as X-1.5, and comments in ( ) or behind ;";
-            return Err(error.found(format!("'{}'", text.trim())).allowed(allowed));
+            let error = InputError::new(file, NOT_A_WORD.0).at_line(number);
+            return Err(error.found(format!("'{}'", text.trim())).allowed(NOT_A_WORD.1));
         }
         last = number;
         reader.comment(line, number);

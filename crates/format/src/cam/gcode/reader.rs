@@ -4,15 +4,14 @@ mod tools;
 mod travel;
 
 use super::super::course::{Course, Frame};
+use super::super::refusals::*;
 use super::super::tool::ProgramTool;
 use super::super::{CamFormat, LARGEST, LengthUnit, Program, ReadSettings};
 use super::block::{Block, Motion, Word};
-use super::codes::{CODES, Code, TAKEN, Tilt};
+use super::codes::{CODES, Code, Tilt};
 use super::comment;
 use nalgebra::{Rotation3, Vector3};
-use std::path::Path;
 use stead_disk::input::InputError;
-use stead_disk::quote::shorten;
 
 /// The letters that a block may have.
 const LETTERS: &str = "GXYZABCIJKRFSTMNOHDP";
@@ -47,8 +46,6 @@ pub(super) struct Reader<'a> {
     /// Its feed is as programmed, without its unit.
     course: Course,
     modes: Modes,
-    /// Codes whose blocks are passed over.
-    ignored: Vec<Word>,
     /// Tools that comments describe, their lengths in the unit of the program.
     described: Vec<ProgramTool>,
     /// The tool that is called, in the spindle from the next change on.
@@ -76,25 +73,12 @@ fn code_of(value: f64) -> Option<Code> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(file: &Path, settings: &'a ReadSettings) -> Result<Self, InputError> {
-        let mut ignored = Vec::new();
-        for text in &settings.ignore {
-            let number = text.strip_prefix(['G', 'g']).and_then(|number| number.parse::<f64>().ok());
-            let is_path = |number: &f64| matches!(code_of(*number), Some(Code::Motion(_)));
-            ignored.push((
-                'G',
-                number.filter(|number| !is_path(number)).ok_or_else(|| {
-                    let error = InputError::new(file, "is no code that can be passed over").in_field("--ignore");
-                    let allowed = "codes of G-code as G5.1, whose blocks are left out; not G0 to G3";
-                    error.found(format!("'{}'", shorten(text))).allowed(allowed)
-                })?,
-            ));
-        }
+    pub fn new(settings: &'a ReadSettings) -> Self {
         let (unit, is_controlled) = (settings.units, settings.tool_centre_point);
         let modes = Modes { plane: 2, unit, is_controlled, ..Modes::default() };
         let mut course = Course::new(settings.resampling);
         course.program.format = CamFormat::Gcode;
-        Ok(Self { settings, course, modes, ignored, described: Vec::new(), called: None, has_turned: [false; 2] })
+        Self { settings, course, modes, described: Vec::new(), called: None, has_turned: [false; 2] }
     }
 
     /// Takes what comments of a line say, and that the operator can have it left out.
@@ -108,16 +92,20 @@ impl<'a> Reader<'a> {
 
     /// Takes a block; false after the one that ends the program.
     pub fn take(&mut self, block: &Block<'_>) -> Result<bool, InputError> {
-        if let Some((letter, value)) = block.words.iter().find(|word| self.ignored.contains(word)) {
-            let text = format!("blocks with {letter}{value} passed over, as asked (--ignore)");
-            self.course.program.note(text, block.line);
+        // By its number, so that G05.1 is G5.1.
+        let is = |text: &str, word: &Word| text.get(1..).and_then(|number| number.parse().ok()) == Some(word.1);
+        let is_ignored = |word: &&Word| self.settings.ignore.iter().any(|text| word.0 == 'G' && is(text, word));
+        if let Some(word) = block.words.iter().find(is_ignored) {
+            ensure!(!matches!(code_of(word.1), Some(Code::Motion(_))), block.fail(*word, IGNORED_PATH));
+            let note = format!("blocks with G{} passed over, as asked (--ignore)", word.1);
+            self.course.program.note(note, block.line);
             return Ok(true);
         }
         let codes = self.codes(block)?;
         self.check_letters(block)?;
         self.course.is_after_change |= block.words.contains(&('M', 6.0));
         if let Some(feed) = block.get('F') {
-            ensure!(feed > 0.0 && feed <= 1e7, block.fail(('F', feed), "not a feed", "a feed above 0"));
+            ensure!(feed > 0.0 && feed <= 1e7, block.fail(('F', feed), NOT_A_FEED));
             self.course.feed = Some(feed);
         }
         self.change_tool(block);
@@ -141,12 +129,10 @@ impl<'a> Reader<'a> {
         for (place, word) in block.words.iter().enumerate() {
             let letter = word.0;
             let is_known = LETTERS.contains(letter) || (in_cycle && "QL".contains(letter));
-            ensure!(is_known, block.fail(*word, "a letter that is not known here", LETTERS));
+            ensure!(is_known, block.fail(*word, ("a letter that is not known here", LETTERS)));
             let is_twice = !"GMN".contains(letter) && block.words[..place].iter().any(|(before, _)| *before == letter);
-            ensure!(!is_twice, block.fail(*word, "is there twice in a block", "each letter once"));
-            let is_call = letter == 'M' && SUBPROGRAMS.contains(&word.1);
-            let allowed = "one program with all cuts in it: post it without subprograms";
-            ensure!(!is_call, block.fail(*word, "a subprogram, whose cuts would be missing", allowed));
+            ensure!(!is_twice, block.fail(*word, TWICE));
+            ensure!(letter != 'M' || !SUBPROGRAMS.contains(&word.1), block.fail(*word, SUBPROGRAM));
         }
         Ok(())
     }
@@ -167,21 +153,18 @@ impl<'a> Reader<'a> {
         let mut codes = Codes::default();
         let mut motions = 0;
         for word in block.words.iter().filter(|(letter, _)| *letter == 'G') {
-            let code = code_of(word.1).ok_or_else(|| block.fail(*word, "a code that is not known here", TAKEN))?;
+            let code = code_of(word.1).ok_or_else(|| block.fail(*word, NOT_A_CODE))?;
             let modes = &mut self.modes;
             match code {
                 Code::Motion(motion) => {
                     motions += 1;
                     let is_one = motions == 1 || modes.motion == Some(motion);
-                    ensure!(is_one, block.fail(*word, "two ways to move in one block", "one of G0, G1, G2, G3"));
+                    ensure!(is_one, block.fail(*word, TWO_WAYS));
                     modes.motion = Some(motion);
                 }
                 Code::Plane(normal) => modes.plane = normal,
                 Code::Unit(unit) => {
-                    let is_one = modes.unit.is_none_or(|before| before == unit);
-                    let allowed = "one unit of length for the whole program, and what --units says";
-                    ensure!(is_one, block.fail(*word, "contradicts the unit before", allowed));
-                    modes.unit = Some(unit);
+                    ensure!(*modes.unit.get_or_insert(unit) == unit, block.fail(*word, OTHER_UNIT));
                 }
                 Code::Dwell => codes.is_dwell = true,
                 Code::Home(name) => (codes.is_home, codes.away) = (true, Some(name)),
@@ -191,19 +174,12 @@ impl<'a> Reader<'a> {
                 Code::Control(is_on) => modes.is_controlled = is_on || self.settings.tool_centre_point,
                 Code::Offset => {
                     let number = block.get('P');
-                    let is_numbered = number.is_some() || word.1.fract() == 0.0;
-                    let problem = "G54.1 without the number of its offset";
-                    ensure!(is_numbered, block.fail(*word, problem, "G54.1 with P"));
+                    ensure!(number.is_some() || word.1.fract() == 0.0, block.fail(*word, NO_NUMBER));
                     let offset = (word.1 as u32, number.map(|number| number as u32));
-                    let problem = "a second work offset, and how the two lie to each other is not in the file";
-                    let allowed = "one of G54 to G59, or one G54 P, for the whole program";
-                    let is_one = modes.offset.is_none_or(|before| before == offset);
-                    ensure!(is_one, block.fail(*word, problem, allowed));
-                    modes.offset = Some(offset);
+                    ensure!(*modes.offset.get_or_insert(offset) == offset, block.fail(*word, SECOND_G54));
                 }
                 Code::Cycle => {
-                    let allowed = "--skip-cycles, which leaves all holes out and lists them, or straight moves: post without canned cycles";
-                    ensure!(self.settings.skip_cycles, block.fail(*word, "a canned cycle", allowed));
+                    ensure!(self.settings.skip_cycles, block.fail(*word, CANNED_CYCLE));
                     if modes.motion != Some(Motion::Cycle) {
                         modes.heights = [self.course.place[modes.plane], None];
                     }
@@ -213,7 +189,7 @@ impl<'a> Reader<'a> {
                 Code::ToPlane(is_to_plane) => modes.is_to_plane = is_to_plane,
                 Code::Mode(tilt) => codes.tilt = Some(tilt),
                 Code::Nothing => {}
-                Code::Refused(is, allowed) => return Err(block.fail(*word, is, allowed)),
+                Code::Refused(is, allowed) => return Err(block.fail(*word, (is, allowed))),
             }
         }
         Ok(codes)
@@ -224,16 +200,13 @@ impl<'a> Reader<'a> {
         let (word, line) = (('G', 68.2), block.line);
         match tilt {
             Tilt::Plane => {
-                let allowed = "G68.2 X Y Z I J K, Euler angles about z, x and z: let the CAM system post it so";
-                let form = block.first("PQ");
-                ensure!(!block.has("PQ"), block.fail(form, "a tilted work plane of another form", allowed));
+                ensure!(!block.has("PQ"), block.fail_at("PQ", TILTED_OTHERWISE));
                 let metres = self.unit(block, word)?.metres();
                 let [origin, angles] = ["XYZ", "IJK"].map(|letters| {
                     Vector3::from_iterator(letters.chars().map(|letter| block.get(letter).unwrap_or(0.0)))
                 });
                 let is_usual = origin.amax() * metres <= LARGEST && angles.amax() <= travel::LARGEST_ANGLE;
-                let allowed = "a frame up to 100 m away, and angles up to 36000 deg";
-                ensure!(is_usual, block.fail(word, "not a frame of a usual size", allowed));
+                ensure!(is_usual, block.fail(word, FAR_FRAME));
                 let [z, x] = [Vector3::z_axis(), Vector3::x_axis()];
                 let turned = |about, angle: f64| Rotation3::from_axis_angle(&about, angle.to_radians());
                 let rotation = turned(z, angles.x) * turned(x, angles.y) * turned(z, angles.z);
@@ -242,16 +215,14 @@ impl<'a> Reader<'a> {
                 self.set_frame(Frame { rotation: rotation.into_inner(), origin: origin * metres }, "G68.2", line);
                 self.modes.is_tilted = true;
             }
-            Tilt::Tool => {
-                if (self.course.axis - Vector3::z()).norm() > 1e-9 {
-                    self.course.forget([true; 3], "G53.1", line);
-                }
+            Tilt::Tool { is_about_tip } => {
+                let turns = (self.course.axis - Vector3::z()).norm() > 1e-9 && !is_about_tip;
+                self.course.forget([turns; 3], "G53.1", line);
                 (self.course.axis, self.modes.angles) = (Vector3::z(), [0.0; 3]);
             }
-            Tilt::ToolAboutTip => (self.course.axis, self.modes.angles) = (Vector3::z(), [0.0; 3]),
             // Before any tilted plane it ends nothing.
             Tilt::End if self.modes.is_tilted => {
-                self.set_frame(Frame::identity(), "G69", line);
+                self.set_frame(Frame::default(), "G69", line);
                 (self.course.axis, self.modes.is_tilted) = (Vector3::z(), false);
             }
             Tilt::End => {}
@@ -267,7 +238,6 @@ impl<'a> Reader<'a> {
     }
 
     fn unit(&self, block: &Block<'_>, word: Word) -> Result<LengthUnit, InputError> {
-        let allowed = "G20 or G21 before, or --units mm or inch";
-        self.modes.unit.ok_or_else(|| block.fail(word, "a position before its unit of length is stated", allowed))
+        self.modes.unit.ok_or_else(|| block.fail(word, NO_UNIT_BEFORE))
     }
 }

@@ -192,21 +192,23 @@ fn moves_home_take_away_the_axes_that_they_name_and_what_is_not_known_is_counted
         let text = format!("{start}{home}\nG0 X50\nZ-1\nG1 X60\nM30\n");
         let read = ends(&text, &settings());
         assert_eq!(read.last().unwrap().1, [60.0, 0.0, -1.0], "{home}");
-        assert!(!read.last().unwrap().2 && program(&text, &settings()).unwrap().lost.is_empty());
+        assert!(
+            !read.last().unwrap().2
+                && !program(&text, &settings()).unwrap().notes.keys().any(|note| note.contains("not known"))
+        );
     }
     // A feed move from there is no cut, and neither is an arc.
     for (text, count, why) in [
         ("G28 Z0\nG1 X50\nZ-1\nX60", 2, "Z not known since G28, line 5"),
-        ("G28\nG1 X50 Y0 Z0\nX60", 1, "X not known since G28, line 5, Y not known since G28, line 5"),
+        ("G28\nG1 X50 Y0 Z0\nX60", 1, "X, Y, Z not known since G28, line 5"),
         ("G53 G0 Z0\nG2 X50 I5 F300\nG1 Z-1\nX60", 2, "Z not known since G53, line 5"),
     ] {
         let text = format!("{start}{text}\nM30\n");
         let read = program(&text, &settings()).unwrap();
-        let (found, times) = read.lost.iter().next().unwrap();
-        assert!(*times == count && found.starts_with(why), "{text} {:?}", read.lost);
+        let start = format!("moves at feed that are not scored, from or to where the tool is not known: {why}");
+        let found = read.notes.iter().find(|(note, _)| **note == start);
+        assert!(found.is_some_and(|(_, found)| found.times == count), "{text} {:?}", read.notes);
         assert!(!read.moves.last().unwrap().is_rapid);
-        let said = task(&text, &settings()).1.notes().join("\n");
-        assert!(said.contains(&format!("{count} moves at feed are not scored")), "{said}");
     }
 }
 
@@ -266,8 +268,11 @@ fn blocks_with_a_code_are_passed_over_as_asked() {
     let text = line("G52 X0 Y0 Z0");
     let (_, path) = task(&text, &ignoring(&["G52"]));
     assert!(path.to_string().contains("blocks with G52 passed over, as asked (--ignore) (line 4)"), "{path}");
-    for word in ["G1", "G00", "QUILLX", "G", ""] {
-        refused(&text, &ignoring(&[word]), ": --ignore", &["G5.1", &format!("'{word}'")]);
+    for (word, at) in [("G1", ":3: G"), ("G00", ":2: G")] {
+        refused(&text, &ignoring(&[word]), at, &["of the path itself", "codes other than G0 to G3"]);
+    }
+    for word in ["QUILLX", "G", ""] {
+        refused(&text, &ignoring(&[word]), ":4: G", &["a shift of positions"]);
     }
 }
 

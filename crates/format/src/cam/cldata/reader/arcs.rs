@@ -2,6 +2,7 @@
 
 use super::super::super::Move;
 use super::super::super::arc::{Arc, MISSED, millimetres};
+use super::super::super::refusals::*;
 use super::super::dialect::{ArcForm, ArcNumbers};
 use super::super::statement::Statement;
 use super::Reader;
@@ -40,12 +41,9 @@ impl Reader<'_> {
         self.no_cycle_is_open(statement)?;
         let given = self.numbers(statement, &[], form.allowed)?;
         let way = form.ways.iter().find(|(words, count, _)| *count == given.len() && statement.has_just(words));
-        let has_words = statement.words().next().is_some();
-        let problem = match has_words {
-            true => "an arc with words that are not known here".to_owned(),
-            false => format!("{} numbers that can be read", given.len()),
-        };
-        let (_, _, numbers) = *way.ok_or_else(|| statement.fail(problem, form.allowed))?;
+        let is_of_numbers = statement.words().next().is_none();
+        let problem = if is_of_numbers { statement.counted() } else { WORDS_OF_ARC.to_owned() };
+        let numbers = way.ok_or_else(|| statement.fail((problem, form.allowed)))?.2;
         let (unit, frame) = (self.unit.metres(), self.course.frame);
         let at = |place: usize| Vector3::new(given[place], given[place + 1], given[place + 2]);
         let centre = frame.place(at(0) * unit);
@@ -57,13 +55,12 @@ impl Reader<'_> {
             ArcNumbers::Left => -1.0,
             ArcNumbers::Turns(place) => {
                 let is_whole = given[place].fract() == 0.0 && (1.0..=MOST_TURNS).contains(&given[place]);
-                ensure!(is_whole, statement.fail("an arc with words that are not known here", form.allowed));
+                ensure!(is_whole, statement.fail((WORDS_OF_ARC, form.allowed)));
                 turns = Some(given[place] as u32);
                 -1.0
             }
             ArcNumbers::Angle(place, hand) => {
-                let is_usual = (0.0..=360.0 + 1.0).contains(&given[place]);
-                ensure!(is_usual, statement.fail("an angle that is not known here", form.allowed));
+                ensure!((0.0..=361.0).contains(&given[place]), statement.fail((WORDS_OF_ARC, form.allowed)));
                 // An arc of 11 numbers may state none.
                 angle = Some(given[place].to_radians()).filter(|angle| *angle > 0.0);
                 hand
@@ -75,10 +72,10 @@ impl Reader<'_> {
         let mut pending = Pending { line, centre, axis, radius, turns, angle, is_certain: is_of_tangent, rise: 0.0 };
         if is_of_tangent {
             let tangent = self.state.tangent.take();
-            let tangent = tangent.ok_or_else(|| statement.fail("an arc without its way out", form.allowed))?;
+            let tangent = tangent.ok_or_else(|| statement.fail((NO_WAY_OUT, form.allowed)))?;
             pending.axis = (self.start_of_arc(statement)?.position - centre).cross(&tangent);
             let is_along = pending.axis.norm() > 0.5 * radius.unwrap_or_default();
-            ensure!(is_along, statement.fail("the way out is not along the circle", form.allowed));
+            ensure!(is_along, statement.fail((NOT_ALONG, form.allowed)));
             let place = at(given.len() - 3) * unit;
             self.end_arc(statement, pending, self.end(statement, place))?;
             self.course.place = [place.x, place.y, place.z].map(Some);
@@ -91,7 +88,7 @@ impl Reader<'_> {
     fn start_of_arc(&self, statement: &Statement<'_>) -> Result<Move, InputError> {
         let is_known = !self.course.is_after_change && self.course.place.iter().all(Option::is_some);
         let start = self.course.program.moves.last().filter(|_| is_known);
-        start.copied().ok_or_else(|| statement.fail("an arc without a start", "a GOTO before the arc"))
+        start.copied().ok_or_else(|| statement.fail(NO_START))
     }
 
     /// Goes along an arc to its end.
@@ -102,8 +99,7 @@ impl Reader<'_> {
         end: Move,
     ) -> Result<(), InputError> {
         let start = self.start_of_arc(statement)?.position;
-        let problem = "RAPID and the end of an arc for the same move";
-        ensure!(!end.is_rapid, statement.fail(problem, "an arc as a cutting move"));
+        ensure!(!end.is_rapid, statement.fail(RAPID_ARC));
         let Pending { centre, axis, turns, angle, .. } = pending;
         let mut arc = Arc { start, end: end.position, centre, axis, more_turns: 0 };
         if let Some(found) = arc.radius() {
@@ -112,12 +108,11 @@ impl Reader<'_> {
                 let [found, stated] = [found, stated].map(millimetres);
                 format!("the arc misses its start: radius {found}, stated {stated}")
             };
-            ensure!((stated - found).abs() < MISSED, statement.fail(problem(), "the same radius within 0.05 mm"));
+            ensure!((stated - found).abs() < MISSED, statement.fail((problem(), SAME_RADIUS)));
             if let Some(turns) = turns {
                 let off = found * turn.min(TAU - turn);
                 let problem = || format!("a helix whose end is {} beside its start, along the turn", millimetres(off));
-                let allowed = "whole turns behind TIMES: let the CAM system write straight moves";
-                ensure!(off < MISSED, statement.fail(problem(), allowed));
+                ensure!(off < MISSED, statement.fail((problem(), WHOLE_TURNS)));
                 arc.more_turns = if turn < PI { turns } else { turns - 1 };
             }
             if let Some(angle) = angle {
@@ -133,14 +128,15 @@ impl Reader<'_> {
                     let [turn, angle] = [turn, angle].map(f64::to_degrees);
                     format!("the arc turns by {turn:.3} deg to its end, and {angle:.3} are stated")
                 };
-                ensure!(fits(arc.turn()), statement.fail(problem(), "the same angle within 1 deg"));
+                ensure!(fits(arc.turn()), statement.fail((problem(), SAME_ANGLE)));
             }
             let rise = arc.rise().abs();
             let may_rise = turns.is_some() || self.dialect.arcs_go_on || rise < MISSED;
             let problem = || format!("the arc misses its end, which is {} out of its plane", millimetres(rise));
-            ensure!(may_rise, statement.fail(problem(), "an end in the plane of the arc within 0.05 mm"));
+            ensure!(may_rise, statement.fail((problem(), IN_PLANE)));
         }
-        self.draw(statement, arc, end, pending.is_certain, pending.line)?;
+        let drawn = self.course.go_round(arc, end, pending.is_certain, pending.line);
+        drawn.map_err(|words| statement.fail(words))?;
         if self.dialect.arcs_go_on {
             pending.rise = arc.rise() / arc.turn();
             self.state.circle = Some(pending);
@@ -157,19 +153,5 @@ impl Reader<'_> {
         let off = (from - to).abs().max((arc.rise() - rise * arc.turn()).abs());
         let has_moved = (end.position - start - axis.normalize() * arc.rise()).norm() > ON_CIRCLE;
         (off < ON_CIRCLE && has_moved).then_some(arc)
-    }
-
-    pub(super) fn draw(
-        &mut self,
-        statement: &Statement<'_>,
-        arc: Arc,
-        end: Move,
-        is_certain: bool,
-        line: usize,
-    ) -> Result<(), InputError> {
-        self.course.go_round(arc, end, is_certain, line).map_err(|error| {
-            let (problem, allowed) = error.words();
-            statement.fail(problem, allowed)
-        })
     }
 }

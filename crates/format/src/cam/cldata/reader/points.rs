@@ -2,6 +2,7 @@
 
 use super::super::super::Move;
 use super::super::super::course::NO_LENGTH;
+use super::super::super::refusals::*;
 use super::super::dialect::{Ends, Three};
 use super::super::statement::Statement;
 use super::{FRAME_ROUNDING, Holes, Reader};
@@ -10,13 +11,12 @@ use stead_disk::input::InputError;
 
 impl Reader<'_> {
     pub(super) fn goto(&mut self, statement: &Statement<'_>, ends: Ends) -> Result<(), InputError> {
-        const ALLOWED: &str = "3 or 6 finite numbers";
         if ends == Ends::Home && statement.minors.is_empty() {
             self.course.forget([true; 3], "GOHOME", statement.line);
             self.course.is_after_change = true;
             return Ok(());
         }
-        let given = self.numbers(statement, &[], ALLOWED)?;
+        let given = self.numbers(statement, &[], NUMBERS_OF_POINT)?;
         let is_on_arc = self.state.pending.is_some() || self.state.circle.is_some();
         let are_points = self.dialect.arcs_go_on && is_on_arc && given.len() > 3 && given.len().is_multiple_of(3);
         let axis = match given[..] {
@@ -25,11 +25,11 @@ impl Reader<'_> {
         };
         let axis = axis.filter(|axis| !are_points || (axis.norm() - 1.0).abs() < FRAME_ROUNDING);
         let is_form = (axis.is_some() || given.len() == 3 || are_points) && statement.words().next().is_none();
-        ensure!(is_form, statement.fail(format!("{} numbers that can be read", given.len()), ALLOWED));
+        ensure!(is_form, statement.fail((statement.counted(), NUMBERS_OF_POINT)));
         match axis {
             Some(axis) => {
                 let length = axis.norm();
-                ensure!(length > NO_LENGTH, statement.fail("the tool axis has no length", "a direction, as 0,0,1"));
+                ensure!(length > NO_LENGTH, statement.fail(NO_TOOL_AXIS));
                 if (length - 1.0).abs() > FRAME_ROUNDING {
                     self.course.program.note("tool axes made of unit length", statement.line);
                 }
@@ -46,9 +46,7 @@ impl Reader<'_> {
     fn stand_by_three(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
         let is_tilted = (self.course.axis - Vector3::z()).norm() > NO_LENGTH;
         let is_asked = self.dialect.three == Three::Asked && self.state.is_three_axis && is_tilted;
-        let problem = "three numbers behind MULTAX/OFF while the tool is tilted: in some systems its axis holds, in others it is 0,0,1";
-        let allowed = "the system that wrote the file: --format catia, nx or solidworks (it holds), autodesk, camplete or creo (0,0,1)";
-        ensure!(!is_asked, statement.fail(problem, allowed));
+        ensure!(!is_asked, statement.fail(THREE_ASKED));
         if self.dialect.three == Three::Upright {
             self.course.axis = Vector3::z();
         }
@@ -71,7 +69,7 @@ impl Reader<'_> {
         if let Some(pending) = self.state.pending.take() {
             self.end_arc(statement, pending, end)?;
         } else if let Some(arc) = self.on_circle(&end) {
-            self.draw(statement, arc, end, true, statement.line)?;
+            self.course.go_round(arc, end, true, statement.line).map_err(|words| statement.fail(words))?;
         } else if self.state.holes.is_some() && ends == Ends::To {
             self.hole(statement, end)?;
         } else {

@@ -9,10 +9,7 @@ impl Reader<'_> {
     /// Takes what a block says of the tool in the spindle: `T`, `M6`, `S`, `M3` and `M4`.
     pub(super) fn change_tool(&mut self, block: &Block<'_>) {
         if let Some(tool) = block.get('T') {
-            let name = format!("T{tool}");
-            if !self.course.program.tools.contains(&name) {
-                self.course.program.tools.push(name);
-            }
+            self.course.program.name_tool(format!("T{tool}"));
             self.called = Some(tool.clamp(0.0, 1e9) as u32);
         }
         let has = |number: f64| block.words.contains(&('M', number));

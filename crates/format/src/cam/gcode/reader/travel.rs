@@ -1,7 +1,8 @@
 //! Moves of G-code: where a block leads to, arcs, turns of the tool, and holes that are left out.
 
+use super::super::super::arc::Arc;
+use super::super::super::refusals::*;
 use super::super::super::{LARGEST, Move};
-use super::super::arc::arc_of;
 use super::super::block::{Block, Motion, Word};
 use super::super::codes::Code;
 use super::{Reader, code_of};
@@ -12,6 +13,8 @@ use stead_disk::input::InputError;
 pub(super) const LARGEST_ANGLE: f64 = 3.6e4;
 /// Moves are taken in parts in which no rotary axis turns by more than this. rad
 const TURN_STEP: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// A radius may be so much less than half the way to the end: digits as printed. m
+const ROUNDING: f64 = 5e-5;
 /// A hole is repeated no more often than this.
 const MOST_REPEATS: f64 = 1000.0;
 
@@ -36,17 +39,14 @@ impl Reader<'_> {
     /// Moves to the position of a block.
     pub(super) fn travel(&mut self, block: &Block<'_>) -> Result<(), InputError> {
         let first = block.first("XYZABCIJKR");
-        let problem = "a position before any of G0 to G3";
-        let motion = self.modes.motion.ok_or_else(|| block.fail(first, problem, "G0, G1, G2 or G3 before"))?;
+        let motion = self.modes.motion.ok_or_else(|| block.fail(first, NO_MOTION))?;
         let metres = self.unit(block, first)?.metres();
         if motion == Motion::Cycle {
             return self.leave_out_hole(block, metres);
         }
         let is_arc = matches!(motion, Motion::Clockwise | Motion::CounterClockwise);
-        let problem = "an arc right after a tool change";
-        ensure!(!is_arc || !self.course.is_after_change, block.fail(first, problem, "G0 to its start before"));
-        let problem = "a centre or radius without an arc";
-        ensure!(is_arc || !block.has("IJKR"), block.fail(block.first("IJKR"), problem, "I, J, K and R with G2 and G3"));
+        ensure!(!is_arc || !self.course.is_after_change, block.fail(first, ARC_AT_CHANGE));
+        ensure!(is_arc || !block.has("IJKR"), block.fail_at("IJKR", CENTRE_OF_NONE));
         let end = self.target(block, metres)?;
         if end.angles != [0.0; 3] && !self.modes.is_controlled && self.settings.pivot.is_none() {
             return self.turn_without_control(block, motion, end);
@@ -92,8 +92,7 @@ impl Reader<'_> {
         let (rotation, tip) = self.pose(to.position(), to.angles);
         let frame = &self.course.frame;
         let (position, axis) = (frame.place(tip), frame.rotation * (rotation * self.course.axis));
-        let problem = "not a position of a usual size";
-        ensure!(position.amax() <= 2.0 * LARGEST, block.fail(('X', to.position().x), problem, "up to 100 m"));
+        ensure!(position.amax() <= 2.0 * LARGEST, block.fail(('X', to.position().x), FAR_PLACE));
         Ok(Move { position, axis, feed: None, is_rapid, is_arc: false, line: block.line })
     }
 
@@ -105,12 +104,9 @@ impl Reader<'_> {
         [from, end]: [&Target; 2],
         metres: f64,
     ) -> Result<(), InputError> {
-        let fail = |letters: &str, problem: &str, allowed: &str| block.fail(block.first(letters), problem, allowed);
-        let is_still = end.angles == from.angles;
-        ensure!(is_still, fail("ABC", "an arc that turns the tool", "arcs at a constant tool axis"));
+        ensure!(end.angles == from.angles, block.fail_at("ABC", TURNING_ARC));
         let is_plain = self.settings.machine.is_none() || end.angles == [0.0; 3];
-        let problem = "an arc with a tilted tool, whose plane is that of the machine";
-        ensure!(is_plain, fail("IJKR", problem, "straight moves there"));
+        ensure!(is_plain, block.fail_at("IJKR", TILTED_ARC));
         let mut axis = Vector3::zeros();
         axis[self.modes.plane] = if motion == Motion::Clockwise { -1.0 } else { 1.0 };
         let mut arc = arc_of(block, axis, [from.position(), end.position()], metres)?;
@@ -118,20 +114,16 @@ impl Reader<'_> {
         [arc.start, arc.end, arc.centre] = [arc.start, arc.end, arc.centre].map(|place| frame.place(place));
         arc.axis = frame.rotation * arc.axis;
         let end = self.end(block, end, false)?;
-        self.course.go_round(arc, end, true, block.line).map_err(|error| {
-            let (problem, allowed) = error.words();
-            fail("IJKR", &problem, allowed)
-        })
+        self.course.go_round(arc, end, true, block.line).map_err(|words| block.fail_at("IJKR", words))
     }
 
     /// The feed of the moves of a block, which are there from a place on; nothing where they have no length. m/s
     fn feed_of(&self, block: &Block<'_>, word: Word, from: usize, metres: f64) -> Result<Option<f64>, InputError> {
         if !self.modes.is_inverse_time {
-            let refused = || block.fail(word, "a cutting move before the first feed", "F before or with it");
-            return self.course.feed.map(|feed| Some(feed * metres / 60.0)).ok_or_else(refused);
+            let feed = self.course.feed.ok_or_else(|| block.fail(word, NO_FEED))?;
+            return Ok(Some(feed * metres / 60.0));
         }
-        let refused = || block.fail(word, "G93 without a feed in the block", "F with each move under G93");
-        let per_minute = block.get('F').ok_or_else(refused)?;
+        let per_minute = block.get('F').ok_or_else(|| block.fail(word, NO_INVERSE_TIME))?;
         let moves = &self.course.program.moves;
         let length: f64 = moves[from - 1..].windows(2).map(|pair| (pair[1].position - pair[0].position).norm()).sum();
         let before = moves[from - 1].feed.unwrap_or(1e-3);
@@ -174,9 +166,7 @@ impl Reader<'_> {
     /// known.
     fn turn_without_control(&mut self, block: &Block<'_>, motion: Motion, end: Target) -> Result<(), InputError> {
         let word = if block.has("ABC") { block.first("ABC") } else { block.first("XYZ") };
-        let allowed = "G43.4 before, --tcp where it is on all the same, or --pivot-mm X,Y,Z of the machine";
-        let problem = "a rotary axis without tool centre point control";
-        ensure!(motion == Motion::Rapid, block.fail(word, problem, allowed));
+        ensure!(motion == Motion::Rapid, block.fail(word, UNCONTROLLED));
         let note = "rapid moves of a turned tool without tool centre point control: where it is then is not known here";
         self.course.program.note(note, block.line);
         self.course.is_after_change = false;
@@ -191,30 +181,24 @@ impl Reader<'_> {
         for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
             let word = (letter, value);
-            let is_usual = value.abs() * metres <= LARGEST;
-            ensure!(is_usual, block.fail(word, "not a position of a usual size", "up to 100 m"));
+            ensure!(value.abs() * metres <= LARGEST, block.fail(word, FAR_PLACE));
             let from = if self.modes.is_incremental { self.course.place[axis] } else { Some(0.0) };
-            let problem = "G91 from where the tool is not known";
-            let from = from.ok_or_else(|| block.fail(word, problem, "a position with G90 before"))?;
+            let from = from.ok_or_else(|| block.fail(word, FROM_NOWHERE))?;
             end.place[axis] = Some(from + value * metres);
         }
         for (axis, letter) in ['A', 'B', 'C'].into_iter().enumerate() {
             let Some(value) = block.get(letter) else { continue };
             let word = (letter, value);
-            let is_usual = value.abs() <= LARGEST_ANGLE;
-            ensure!(is_usual, block.fail(word, "not an angle of a usual size", "up to 36000 deg"));
+            ensure!(value.abs() <= LARGEST_ANGLE, block.fail(word, FAR_ANGLE));
             let before = if self.modes.is_incremental { self.modes.angles[axis] } else { 0.0 };
             let angle = before + value.to_radians();
-            let allowed = "G53.1, which turns the tool normal to the plane, or angles without G68.2: post one of them";
-            let is_plain = !self.modes.is_tilted || angle == 0.0;
-            ensure!(is_plain, block.fail(word, "a rotary axis within a tilted work plane", allowed));
+            ensure!(!self.modes.is_tilted || angle == 0.0, block.fail(word, AXIS_IN_PLANE));
             end.angles[axis] = angle;
-            if let Some(machine) = self.settings.machine {
+            let machine = self.settings.machine;
+            ensure!(machine.is_some() || angle == 0.0, block.fail(word, NO_MACHINE));
+            if let Some(machine) = machine.filter(|machine| !machine.has(axis)) {
                 let problem = format!("not a rotary axis of {}", machine.word());
-                ensure!(machine.has(axis), block.fail(word, &problem, "another --machine"));
-            } else {
-                let allowed = "--machine table-ac, table-bc, head-ac or head-bc";
-                ensure!(angle == 0.0, block.fail(word, "a rotary axis of a machine that is not named", allowed));
+                return Err(block.fail(word, (problem, "another --machine")));
             }
         }
         Ok(end)
@@ -234,4 +218,37 @@ impl Target {
         };
         (1..parts).map(at).chain([*end]).collect()
     }
+}
+
+/// The arc of a block in the plane normal to an axis, about which it turns as a right-handed screw, from a place to
+/// another.
+fn arc_of(
+    block: &Block<'_>,
+    axis: Vector3<f64>,
+    [start, end]: [Vector3<f64>; 2],
+    metres: f64,
+) -> Result<Arc, InputError> {
+    ensure!(!block.has("P"), block.fail_at("P", SEVERAL_TURNS));
+    let offsets = ['I', 'J', 'K'].map(|letter| block.get(letter));
+    let centre = match (block.get('R'), offsets.iter().any(Option::is_some)) {
+        (Some(_), true) => return Err(block.fail_at("R", RADIUS_AND_CENTRE)),
+        (None, false) => return Err(block.fail_at("XYZ", NO_CENTRE)),
+        (None, true) => {
+            let out = axis.iamax();
+            let is_in_plane = offsets[out].is_none_or(|offset| offset == 0.0);
+            ensure!(is_in_plane, block.fail_at(["I", "J", "K"][out], OUT_OF_PLANE));
+            start + Vector3::from(offsets.map(|offset| offset.unwrap_or(0.0) * metres))
+        }
+        (Some(radius), false) => {
+            let way = end - start;
+            let way = way - axis * way.dot(&axis);
+            let (half, size) = (way.norm() / 2.0, (radius * metres).abs());
+            ensure!(half > 1e-9, block.fail_at("R", CIRCLE_BY_RADIUS));
+            ensure!(size > half - ROUNDING, block.fail_at("R", SMALL_RADIUS));
+            // With a negative radius the longer of the two arcs.
+            let aside = libm::sqrt((size * size - half * half).max(0.0)) * radius.signum();
+            start + way / 2.0 + axis.cross(&way).normalize() * aside
+        }
+    };
+    Ok(Arc { start, end, centre, axis, more_turns: 0 })
 }
