@@ -43,14 +43,14 @@ fn writes_a_task_and_says_what_was_changed() {
     let ended = bench.stead(&[&IMPORT[..], &["--report"]].concat());
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     for part in [
-        "read      6 cutting and 3 rapid moves",
+        "format    nx\nread      6 cutting and 3 rapid moves",
         "segments  2",
         "points    14, of which 10 are scored",
         "tilt      0.000 to 10.000 deg",
         "feed      5.000 to 30.000 mm/s",
         "- 2 points of plunges",
         "- 2 points of turns of the tool in place",
-        "- words passed over: COOLNT 1",
+        "- words passed over: COOLNT (line 21)",
         "written: new/task.csv, new/task-tool.toml: 2 segments, 14 points, 10 of them scored",
     ] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
@@ -95,7 +95,7 @@ fn each_bad_program_is_refused_in_one_line_and_nothing_is_written() {
         (CUT, "CIRCLE/5,0,0,0,0,1\nGOTO/5,6,0", [":5: GOTO: the arc misses its end", "found '5,6,0'", "0.05 mm"]),
         (CUT, "CIRCLE/5,0,0,0,0,0\nGOTO/5,5,0", [":5: GOTO: the axis of the arc", "found '5,5,0'", "a direction"]),
         (CUT, "GOTO/1,2,3,0,0,0", [":4: GOTO: the tool axis has no length", "found '1,2,3,0,0,0'", "a direction"]),
-        (CUT, "GODLTA/0,0,5", [":4: GODLTA: may move the tool", "found '0,0,5'", "GOTO, RAPID, CIRCLE, FROM"]),
+        (CUT, "GODLTA/0,0,5", [":4: GODLTA: is not read: a move that counts", "found '0,0,5'", "GOTO, RAPID, arcs"]),
         (CUT, "UNITS/INCHES", [":4: UNITS: is not what the file before says", "found 'INCHES'", "one unit"]),
         (CUT, "MSYS/0,0,0,1,0,0,1,0,0", [":4: MSYS: ", "found '0,0,0,1,0,0,1,0,0'", "right angles"]),
         (
@@ -112,7 +112,8 @@ fn each_bad_program_is_refused_in_one_line_and_nothing_is_written() {
         (CODES, "#100 = 3", [":4: a macro program (variables) is not read", "found '#100 = 3'", "numbers alone"]),
     ] {
         let bench = Bench::new();
-        bench.write("bad", &format!("{start}{text}\nGOTO/9,9,0\n"));
+        let end = if start == CODES { "G1 X9" } else { "GOTO/9,9,0" };
+        bench.write("bad", &format!("{start}{text}\n{end}\n"));
         let before = bench.tree("");
         let ended = bench.stead(&["import", "path", "bad", "--out", "new/task.csv", "--report"]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{text}");
@@ -179,8 +180,8 @@ fn holes_are_drilled_or_left_out_and_tool_axes_from_below_are_noted() {
 
     std::fs::remove_dir_all(bench.path("new")).unwrap();
     for (words, parts) in [
-        ("MODE/INCR", ["slot.cls:21: MODE: may move the tool", "straight moves"]),
-        ("CALSUB/5", ["slot.cls:21: CALSUB: may move the tool", "straight moves"]),
+        ("MODE/INCR", ["slot.cls:21: MODE: positions that count from the last one", "from the origin"]),
+        ("CALSUB/5", ["slot.cls:21: CALSUB: is not read: a program of its own", "straight moves"]),
         ("CYCLE/CSINK,5", ["slot.cls:21: CYCLE: a cycle whose moves are not known", "--skip-cycles"]),
     ] {
         bench.write("slot.cls", &PROGRAM.replace("COOLNT/OFF", words));

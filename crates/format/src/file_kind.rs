@@ -85,10 +85,13 @@ impl FileKind {
     }
 }
 
+/// Words of the path, of its tool and of its unit, in every dialect.
 fn is_cldata(line: &str) -> bool {
-    const BEGINNINGS: [&str; 7] = ["GOTO/", "GOTO /", "TOOL PATH/", "PARTNO", "LOADTL/", "FEDRAT/", "CUTTER/"];
-    let line = line.to_ascii_uppercase();
-    BEGINNINGS.iter().any(|beginning| line.starts_with(beginning))
+    const WORDS: [&str; 10] =
+        ["GOTO", "TOOL PATH", "PARTNO", "LOADTL", "FEDRAT", "CUTTER", "UNITS", "UNIT", "MULTAX", "TLDATA"];
+    let (word, is_slashed) = line.split_once('/').map_or((line, false), |(word, _)| (word, true));
+    let is = |own: &&str| own.eq_ignore_ascii_case(word.trim());
+    (is_slashed && WORDS.iter().any(is)) || line.to_ascii_uppercase().starts_with("PARTNO") || line.starts_with("$$->")
 }
 
 /// A block with a preparatory function, with or without its number.
@@ -116,6 +119,9 @@ mod tests {
             ("<robot xmlns:xacro='http://ros.org/wiki/xacro'>", Some(FileKind::Xacro)),
             ("$$ made by hand\nTOOL PATH/CONTOUR,TOOL,MILL\n", Some(FileKind::Cldata)),
             ("  goto/ 1, 2, 3\n", Some(FileKind::Cldata)),
+            ("$$ CATIA\nMULTAX/ON\nGOTO  / 1, 2, 3\n", Some(FileKind::Cldata)),
+            ("$$*          Pro/CLfile\n$$-> MFGNO / A\n", Some(FileKind::Cldata)),
+            ("UNITS/ MM\nRAPID\n", Some(FileKind::Cldata)),
             ("%\nO1000\nN10 G90 G54\n", Some(FileKind::GCode)),
             ("(PART)\nG0X0Y0\n", Some(FileKind::GCode)),
             ("ISO-10303-21;\nHEADER;\n", Some(FileKind::Step)),

@@ -1,13 +1,15 @@
 //! Tool paths from CAM systems: CLDATA and G-code into the points of a task file.
 //!
 //! A reader ([`cldata`], [`gcode`]) turns a program into straight [`Move`]s of the tool centre point, in the workpiece
-//! frame, SI inside: [`course`] is what both have in common. `segments` takes the runs of cutting moves between rapids and resamples them; [`ImportedPath`]
-//! holds the points, writes them as a task file, and says what was found and what was changed.
+//! frame, SI inside: `course` is what both have in common. `segments` takes the runs of cutting moves between rapids
+//! and resamples them; [`ImportedPath`] holds the points, writes them as a task file, and says what was found and what
+//! was changed.
 
 /// Refuses what does not hold.
 macro_rules! ensure {
     ($holds:expr, $refused:expr) => {
-        if !$holds {
+        let holds: bool = $holds;
+        if !holds {
             return Err($refused);
         }
     };

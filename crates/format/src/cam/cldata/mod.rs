@@ -1,6 +1,6 @@
 //! CLDATA: cutter locations in text, the words of APT (ISO 4343) in the dialects of CAM systems.
 //!
-//! What is particular to a dialect is data ([`dialect`]); the reader interprets it. Positions are in the frame of the
+//! What is particular to a dialect is data (`dialect`); the reader interprets it. Positions are in the frame of the
 //! file, `RAPID` is for the next `GOTO` alone, and an arc is a word and the move behind it.
 
 mod cutter;

@@ -1,6 +1,6 @@
 //! Blocks of G-code: letters with numbers, comments left out; and programs that are something else by their name.
 
-use super::codes::{FOREIGN, POST};
+use super::codes::{FOREIGN, Foreign};
 use std::path::Path;
 use stead_disk::input::InputError;
 
@@ -80,26 +80,23 @@ pub(super) fn words<'a>(line: &'a str, words: &mut Vec<Word>) -> Result<(), &'a 
     }
 }
 
-/// That a line is of a language that is not read: what it is, and what to post.
-pub(crate) fn foreign(line: &str) -> Option<(&'static str, &'static str)> {
+/// What a line is of, where that is a language which is not read.
+pub(crate) fn foreign(line: &str) -> Option<&'static Foreign> {
     let line = line.trim().trim_start_matches('/').to_ascii_uppercase();
     let body = line.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
     let code = line.split(['(', ';']).next().unwrap_or_default();
     let code = code.trim_start_matches('N').trim_start_matches(|c: char| c.is_ascii_digit()).trim_start();
-    let begins = |names: &[&str]| names.iter().any(|name| body.starts_with(name) || code.starts_with(name));
-    if let Some((_, is, post)) = FOREIGN.iter().find(|(names, ..)| begins(names)) {
-        return Some((is, post));
+    let begins = |of: &&Foreign| of.names.iter().any(|name| body.starts_with(name) || code.starts_with(name));
+    let [heidenhain, .., o_words, variables] = &FOREIGN;
+    let is_numbered = body.len() < line.len();
+    if is_numbered && ["L ", "CC ", "C ", "CR "].iter().any(|word| body.starts_with(word)) {
+        return Some(heidenhain);
     }
-    if body.len() < line.len() && ["L ", "CC ", "C ", "CR "].iter().any(|word| body.starts_with(word)) {
-        return Some((FOREIGN[0].1, POST));
+    let has = |words: &[&str]| words.iter().any(|word| code.contains(word));
+    if code.starts_with('O') && has(&["SUB", "IF", "WHILE", "DO", "CALL", "REPEAT", "ELSE", "END"]) {
+        return Some(o_words);
     }
-    let is_o_word = code.starts_with("O<")
-        || (code.starts_with('O')
-            && ["SUB", "IF", "WHILE", "DO", "CALL", "REPEAT", "ELSE", "END"].iter().any(|w| code.contains(w)));
-    if is_o_word {
-        return Some(("a macro program (O-words) is not read", POST));
-    }
-    code.contains(['#', '=']).then_some(("a macro program (variables) is not read", POST))
+    FOREIGN.iter().find(begins).or_else(|| has(&["#", "="]).then_some(variables))
 }
 
 #[cfg(test)]
@@ -133,7 +130,7 @@ mod tests {
             ("O1234 (PART)", None),
             ("N10 G1 X5 (IF = #)", None),
         ] {
-            let found = foreign(line).map(|(is, _)| is.rsplit_once(" not read").unwrap().0);
+            let found = foreign(line).map(|of| of.is.rsplit_once(" not read").unwrap().0);
             let found = found.map(|is| is.trim_end_matches(" is").trim_end_matches(" are"));
             assert_eq!(found, name, "{line}");
         }

@@ -134,32 +134,47 @@ pub(super) const CODES: &[(i64, Code)] = &[
     (990, ToPlane(true)),
 ];
 
-/// Programs that are something else, by how a line of theirs begins, what they are, and what to post.
-pub(super) const FOREIGN: &[(&[&str], &str, &str)] = &[
-    (
-        &["BEGIN PGM", "CYCL DEF", "CYCL CALL", "TOOL CALL", "BLK FORM", "FN ", "LBL ", "CALL LBL"],
-        "Heidenhain conversational is not read",
-        POST,
-    ),
-    (
-        &["PLANE ", "CYCLE800"],
-        "a tilted plane of a Siemens or Heidenhain control is not read",
-        "CLDATA, or G68.2 of a Fanuc control: let the CAM system post one of them",
-    ),
-    (
-        &["TRAORI"],
-        "five axes of a Siemens control are not read",
-        "CLDATA, which has the tool axis at every point: let the CAM system post it",
-    ),
-    (
-        &["IF", "WHILE", "GOTO", "REPEAT", "FOR", "CALL", "DEF ", "PROC ", "MCALL", "CYCLE", "TRANS", "ROT"],
-        "a macro program (control words) is not read",
-        POST,
-    ),
+/// A program that is something else, by how a line of it begins.
+#[derive(Debug)]
+pub(crate) struct Foreign {
+    pub names: &'static [&'static str],
+    pub is: &'static str,
+    pub allowed: &'static str,
+    /// Whether the whole program is for another control, whatever else is refused in it.
+    pub is_control: bool,
+}
+
+/// All of them, macros with variables and with O-words last: these are told by more than a name.
+pub(super) static FOREIGN: [Foreign; 6] = [
+    Foreign {
+        names: &["BEGIN PGM", "CYCL DEF", "CYCL CALL", "TOOL CALL", "BLK FORM", "FN ", "LBL ", "CALL LBL"],
+        is: "Heidenhain conversational is not read",
+        allowed: POST,
+        is_control: true,
+    },
+    Foreign {
+        names: &["PLANE ", "CYCLE800"],
+        is: "a tilted plane of a Siemens or Heidenhain control is not read",
+        allowed: "CLDATA, or G68.2 of a Fanuc control: let the CAM system post one of them",
+        is_control: true,
+    },
+    Foreign {
+        names: &["TRAORI"],
+        is: "five axes of a Siemens control are not read",
+        allowed: "CLDATA, which has the tool axis at every point: let the CAM system post it",
+        is_control: true,
+    },
+    Foreign {
+        names: &["IF", "WHILE", "GOTO", "REPEAT", "FOR", "CALL", "DEF ", "PROC ", "MCALL", "CYCLE", "TRANS", "ROT"],
+        is: "a macro program (control words) is not read",
+        allowed: POST,
+        is_control: false,
+    },
+    Foreign { names: &["O<"], is: "a macro program (O-words) is not read", allowed: POST, is_control: false },
+    Foreign { names: &["#"], is: "a macro program (variables) is not read", allowed: POST, is_control: false },
 ];
 
-/// What to do about a program of another language.
-pub(super) const POST: &str = "G-code with numbers alone, or CLDATA: let the CAM system post one of them";
+const POST: &str = "G-code with numbers alone, or CLDATA: let the CAM system post one of them";
 
 #[cfg(test)]
 mod tests {

@@ -83,7 +83,7 @@ fn each_broken_statement_names_line_word_value_and_what_is_allowed() {
         ("TLON,GOFWD/(CIRCLE/0,5,0,5),ON,(LINE/0,5,0,5,5,0)", "TLON", ["without its way out", "INDIRV/i,j,k"]),
         ("INDIRV/1,0,0\nTLON,GOFWD/(CYLNDR/0,5,0,0,0,1,5),ON,(LINE/0,5,0,5,5,0)", "TLON", ["with words", "INTOF"]),
         ("INDIRV/0,1,0\nTLON,GOFWD/(CIRCLE/0,5,0,5),ON,(LINE/0,5,0,5,5,0)", "TLON", ["not along the circle", "INTOF"]),
-        ("MOVARC/0,5,0,0,0,1,5,ANGLE,900", "MOVARC", ["words that are not known", "degrees up to 360"]),
+        ("MOVARC/0,5,0,0,0,1,5,ANGLE,900", "MOVARC", ["words or an angle", "degrees up to 360"]),
         ("MOVARC/0,5,0,0,0,1", "MOVARC", ["6 numbers", "centre, axis, radius"]),
         ("ZERO/1\nZERO/2", "ZERO", ["second work offset", "'2'"]),
         (
