@@ -22,7 +22,9 @@ pub(super) fn tool_in(line: &str) -> Option<ProgramTool> {
 
 /// Whether a line says in a comment that rapid moves are made at feed.
 pub(super) fn says_rapids_at_feed(line: &str) -> bool {
-    line.contains(['(', ';']) && line.to_ascii_uppercase().contains("FEEDRATE OF RAPID")
+    // Posts break the sentence behind another word.
+    let says = ["FEEDRATE OF RAPID", "PERSONAL USE, THE FEEDRATE OF"];
+    line.contains(['(', ';']) && says.iter().any(|words| line.to_ascii_uppercase().contains(words))
 }
 
 /// The first number above 0 behind one of the words, which is no part of a longer one, with no more than signs between

@@ -286,11 +286,13 @@ fn linked(height: f64, comment: &str, rapid: f64) -> String {
 #[test]
 fn links_at_feed_are_level_and_as_high_as_rapid_moves_end() {
     let personal = "(WHEN USING FUSION FOR PERSONAL USE, THE FEEDRATE OF RAPID)\n(MOVES IS REDUCED)";
+    let broken = "(When using Fusion 360 for Personal Use, the feedrate of)\n(rapid moves is reduced)";
     for (height, comment, has_link) in [
         (15.0, "", true),
         (16.0, "", true),
         (5.0, "", false),
         (5.0, personal, true),
+        (5.0, broken, true),
         (4.0, personal, false),
         (15.0, personal, true),
     ] {
