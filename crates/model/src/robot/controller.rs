@@ -39,9 +39,9 @@ pub struct Controller {
     pub sign: [f64; 6],
     /// The angle of each row where the controller's is zero. rad
     pub offset: [f64; 6],
-    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, as Fanuc's do, and
-    /// ABB's on arms with a linkage: its angle tells then the sum of the angles of joints 2 and 3.
-    pub is_j3_level: bool,
+    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm: its angle tells then
+    /// the sum of the angles of joints 2 and 3. Where it is not stated, Fanuc's do, and the others do not.
+    pub is_j3_level: Option<bool>,
     /// Pose of the base frame of the rows in the controller's robot root (`$ROBROOT`, base, world at rest), where
     /// known.
     pub root_from_base: Option<Pose<f64>>,
@@ -51,7 +51,7 @@ impl Controller {
     /// The controller's angles of the joint angles of an arm. rad
     pub fn angles(&self, arm: &Robot, joints: &[f64; 6]) -> [f64; 6] {
         let mut angles = std::array::from_fn(|j| (joints[j] - self.offset[j]) * self.sign[j]);
-        if self.is_j3_level {
+        if self.is_level() {
             angles[2] += self.level(arm) * angles[1];
         }
         angles
@@ -61,10 +61,15 @@ impl Controller {
     /// against the horizontal theta_3 = sign_3 A_3 + offset_3 - sign_2 A_2. rad
     pub fn joints(&self, arm: &Robot, angles: &[f64; 6]) -> [f64; 6] {
         let mut of_links = *angles;
-        if self.is_j3_level {
+        if self.is_level() {
             of_links[2] -= self.level(arm) * angles[1];
         }
         std::array::from_fn(|j| self.sign[j] * of_links[j] + self.offset[j])
+    }
+
+    /// Whether axis 3 is counted against the horizontal.
+    pub fn is_level(&self) -> bool {
+        self.is_j3_level.unwrap_or(self.kind == ControllerKind::Fanuc)
     }
 
     /// How A_2 counts in an A_3 against the horizontal, beside the angle between the links: 1 or -1.
@@ -97,13 +102,13 @@ mod tests {
     proptest! {
         #[test]
         fn there_and_back(
-            angles in prop::array::uniform6(-6.0..6.0_f64), signs in 0..64_u32, is_j3_level: bool, arm in 0..32_usize
+            angles in prop::array::uniform6(-6.0..6.0_f64), signs in 0..64_u32, is_level: bool, arm in 0..32_usize
         ) {
             let arm = &odd_arms()[arm];
             let sign = std::array::from_fn(|j| if signs >> j & 1 == 0 { 1.0 } else { -1.0 });
             let offset = [0.0, -FRAC_PI_2, FRAC_PI_2, 0.0, 0.0, 3.1];
             let controller =
-                Controller { kind: ControllerKind::Fanuc, sign, offset, is_j3_level, root_from_base: None };
+                Controller { kind: ControllerKind::Fanuc, sign, offset, is_j3_level: Some(is_level), root_from_base: None };
             let back = controller.angles(arm, &controller.joints(arm, &angles));
             prop_assert!(angles.iter().zip(back).all(|(a, b)| (a - b).abs() < 1e-14 * 64.0), "{:?}", back);
         }
@@ -115,7 +120,7 @@ mod tests {
         for (arm, signs) in odd_arms().into_iter().flat_map(|arm| (0..4).map(move |signs| (arm.clone(), signs))) {
             let mut sign = [1.0; 6];
             (sign[1], sign[2]) = (if signs & 1 == 0 { 1.0 } else { -1.0 }, if signs & 2 == 0 { 1.0 } else { -1.0 });
-            let controller = Controller { kind, sign, offset, is_j3_level: true, root_from_base: None };
+            let controller = Controller { kind, sign, offset, is_j3_level: Some(true), root_from_base: None };
             let forearm = |angles| Frames::new(&arm, &controller.joints(&arm, &angles)).axes[3];
             let [at_rest, leaning, other] = [[0.0, 0.0, 0.1], [0.0, 0.3, 0.1], [0.0, 0.0, 0.2]]
                 .map(|[a1, a2, a3]| forearm([a1, a2, a3, 0.4, -0.3, 0.2]));
@@ -129,7 +134,7 @@ mod tests {
     fn the_angle_between_the_links_is_a_difference_at_abb_and_a_sum_at_fanuc() {
         let arm = kr270();
         let (offset, root_from_base) = ([0.0, FRAC_PI_2, -PI, 0.0, 0.0, 0.0], None);
-        let of = |kind, sign: [f64; 6]| Controller { kind, sign, offset, is_j3_level: true, root_from_base };
+        let of = |kind, sign: [f64; 6]| Controller { kind, sign, offset, is_j3_level: Some(true), root_from_base };
         let abb = of(ControllerKind::Abb, [1.0, -1.0, -1.0, 1.0, -1.0, 1.0]);
         let fanuc = of(ControllerKind::Fanuc, [1.0, -1.0, 1.0, -1.0, 1.0, -1.0]);
         let third = |controller: &Controller, a2: f64, a3: f64| {

@@ -395,7 +395,7 @@ pub mod testing {
         let (kind, root_from_base) = (ControllerKind::Abb, Some(Pose::identity()));
         arm.with_axes_2_3(Some(Axes23 { linkage: true, sum }))
             .unwrap_or_else(|e| unreachable!("{e}"))
-            .with_controller(Controller { kind, sign, offset, is_j3_level: true, root_from_base })
+            .with_controller(Controller { kind, sign, offset, is_j3_level: Some(true), root_from_base })
     }
 
     /// The arms of [`odd_arms`] with a parallelogram beside axes 2 and 3, whose ranges are narrowed for it.
