@@ -62,6 +62,11 @@ impl<T: Scalar> Frames<T> {
         (velocity - back.map(|entry| entry.scale(held)), axis - around.map(|entry| entry.scale(held)))
     }
 
+    /// On an arm with a linkage, by how much joint 3 turns back where the spring of joint 2 turns.
+    pub fn held(&self) -> Option<f64> {
+        self.held
+    }
+
     /// Turns of the joints per unit turn of the springs that yield about their axes: the identity but on an arm with a
     /// linkage.
     pub fn joints_by_springs(&self) -> SMatrix<f64, 6, 6> {
