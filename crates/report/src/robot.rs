@@ -206,7 +206,8 @@ pub fn pose_json(pose: &ArmPose) -> Value {
 
 /// What `stead robots` prints.
 pub fn robots_text(arms: &[ShippedArm]) -> String {
-    let header = ["name", "arm", "payload kg", "wrist reach mm", "stiffness", "masses", "controller", "not verified"];
+    let header =
+        ["name", "arm", "payload kg", "wrist reach mm", "stiffness", "masses", "linkage", "controller", "not verified"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     let yes = |is: bool| if is { "yes" } else { "-" }.to_owned();
     for arm in arms {
@@ -218,11 +219,12 @@ pub fn robots_text(arms: &[ShippedArm]) -> String {
             fixed(arm.robot.geometry().reach() * 1e3, 0),
             yes(arm.has_stiffness),
             yes(arm.has_dynamics),
+            yes(arm.robot.has_linkage()),
             arm.robot.controller().map_or_else(|| "-".to_owned(), |controller| controller.kind.word().to_owned()),
             if unverified.is_empty() { "-".to_owned() } else { unverified.join("; ") },
         ]);
     }
-    aligned(&rows, &[0, 1, 4, 5, 6, 7])
+    aligned(&rows, &[0, 1, 4, 5, 6, 7, 8])
 }
 
 records! {
@@ -246,6 +248,8 @@ records! {
         has_stiffness: bool = arm.has_stiffness,
         /// Whether masses and damping are known.
         has_masses: bool = arm.has_dynamics,
+        /// Whether a parallelogram drives axis 3.
+        has_linkage: bool = arm.robot.has_linkage(),
         /// Its controller.
         controller: Option<&'static str> = arm.robot.controller().map(|controller| controller.kind.word()),
         /// Figures that nobody has verified.
