@@ -383,7 +383,8 @@ impl Maker<'_> {
     }
 }
 
-/// Which joint, or the sum of joints 2 and 3, is beyond its limit; the margin that plans keep from limits is for the cut, and not for the way to it.
+/// Which joint, or the sum of joints 2 and 3, is beyond its limit; the margin that plans keep from limits is for the
+/// cut, and not for the way to it.
 fn beyond_limit(problem: &Problem, joints: &[f64; 6]) -> Option<String> {
     let margin = problem.constraints.joint_margin;
     let joint = problem.robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {

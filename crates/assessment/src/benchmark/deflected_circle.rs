@@ -184,8 +184,8 @@ impl<'a> DeflectedCircle<'a> {
         Ok(())
     }
 
-    /// Whether the sum of joints 2 and 3 stays within its limits between two values, for the least angles of the joints:
-    /// all of them but for the whole turns that bring these within their ranges.
+    /// Whether the sum of joints 2 and 3 stays within its limits between two values, for the least angles of the
+    /// joints: all of them but for the whole turns that bring these within their ranges.
     fn sum_within(&self, min: &[f64; 6], [least, largest]: [f64; 2]) -> Result<(), Obstacle> {
         let Some(range) = self.robot.sum_range() else { return Ok(()) };
         let turns = |j: usize| self.ranges[j].lowest(min[j]) - min[j];

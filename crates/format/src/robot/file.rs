@@ -58,8 +58,8 @@ pub struct ControllerTable {
     pub sign: Array<Number, 6>,
     /// Angle of each row where the controller's angle is zero.
     pub offset_deg: Array<Deg, 6>,
-    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm: theta_3 = sign_3 A_3 +
-    /// offset_3 - sign_2 A_2. Where left out, true for "fanuc" and false for the others; programs for an arm with
+    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm: then theta_3 =
+    /// sign_3 A_3 + offset_3 - sign_2 A_2. Where left out, true for "fanuc" and false for the others; programs for an arm with
     /// `axes_2_3.linkage` need it stated.
     pub is_j3_level: Option<bool>,
 }
@@ -68,8 +68,8 @@ pub struct ControllerTable {
 /// theta_3 where `alpha_deg` of row 3 is 180).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Axes23Table {
-    /// Whether a parallelogram drives axis 3: speed, acceleration, jerk and stiffness of row 3 are then those of the sum.
-    /// False where left out.
+    /// Whether a parallelogram drives axis 3: speed, acceleration, jerk and stiffness of row 3 are then those of the
+    /// sum. False where left out.
     pub linkage: Option<bool>,
     /// Lower limit of the sum.
     pub sum_min_deg: Deg,

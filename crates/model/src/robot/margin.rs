@@ -6,8 +6,8 @@ use super::{Axes23, Compliance, Joint, Robot, RobotError};
 use nalgebra::DMatrix;
 
 impl Robot {
-    /// The same arm with every limit of the joints and of the sum of 2 and 3 `margin` (rad) further inside, and the same compliance at every angle that
-    /// is left; with the margin negated, the arm before that again.
+    /// The same arm with every limit of the joints and of the sum of 2 and 3 `margin` (rad) further inside, and the
+    /// same compliance at every angle that is left; with the margin negated, the arm before that again.
     ///
     /// # Errors
     /// [`RobotError::Limits`] for the first joint, [`RobotError::Sum`] for the sum, of which nothing is left.

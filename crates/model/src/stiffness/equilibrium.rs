@@ -91,8 +91,8 @@ pub(super) const WIDEST_STEP: f64 = 0.5;
 /// A Newton step below this is the last: the next would be below its square. rad
 pub(super) const LAST_STEP: f64 = 1e-9;
 
-/// Newton's method on `x - S^T J^T w = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where it leads
-/// through a configuration that does not hold.
+/// Newton's method on `x - S^T J^T w = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where it
+/// leads through a configuration that does not hold.
 fn settle(
     robot: &Robot,
     theta: &[f64; 6],

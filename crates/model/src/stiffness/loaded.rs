@@ -85,8 +85,8 @@ pub fn loaded_displacement(
 }
 
 /// Turns of the joints per scaled turn of the springs, which are those of the joints but for a linkage: square roots of
-/// the compliances. The scale S makes `S^T (K_theta - H) S = 1 - S^T H S` a matrix without units, which exists for rigid
-/// joints too.
+/// the compliances. The scale S makes `S^T (K_theta - H) S = 1 - S^T H S` a matrix without units, which exists for
+/// rigid joints too.
 pub(super) fn scale(frames: &Frames<f64>, compliances: &[f64; 6]) -> Matrix6<f64> {
     frames.joints_by_springs() * Matrix6::from_diagonal(&Vector6::from(compliances.map(libm::sqrt)))
 }

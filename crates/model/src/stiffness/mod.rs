@@ -1,11 +1,11 @@
 //! Deflection of the arm: joint compliances mapped to the tool centre point.
 //!
 //! With rigid links and compliant joints the Cartesian compliance is `J K_theta^-1 J^T` (Caro 2013, eq. 12 as
-//! corrected: no complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints,
-//! `K^-1 w = sum_j J_j (J_j . w) / k_j`, with J_2 - J_3 in the place of J_2 on an arm with a linkage. Loads so high that they change the configuration are for [`loaded`] (the
-//! tangent, Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where the arm comes to rest); what yields beside the
-//! joints about their axes is for [`whole`], with the weight and at rest under a load for [`elastic`]. Rotations are
-//! vectors here: [`stead_numerics::rotation`].
+//! corrected: no complementary stiffness). [`displacement`] inverts no matrix: it is a sum over the joints, `K^-1 w =
+//! sum_j J_j (J_j . w) / k_j`, with J_2 - J_3 in the place of J_2 on an arm with a linkage. Loads so high that they
+//! change the configuration are for [`loaded`] (the tangent, Klimchik et al. 2017, eq. 11) and [`equilibrium`] (where
+//! the arm comes to rest); what yields beside the joints about their axes is for [`whole`], with the weight and at rest
+//! under a load for [`elastic`]. Rotations are vectors here: [`stead_numerics::rotation`].
 
 pub mod elastic;
 pub mod equilibrium;
@@ -73,7 +73,8 @@ mod tests {
     }
 
     /// Where the flange of an IRB 4400 is at angles of its controller, and how far a force at it deflects the arm: made
-    /// by another program, with springs at `theta_2` and `theta_2 + theta_3`; by finite differences the same to 1e-6 mm.
+    /// by another program, with springs at `theta_2` and `theta_2 + theta_3`; by finite differences the same to 1e-6
+    /// mm.
     #[test]
     fn a_parallelogram_arm_deflects_as_another_program_has_it() {
         const ROWS: [([f64; 6], [f64; 3], [f64; 3], f64, f64); 3] = [

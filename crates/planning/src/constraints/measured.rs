@@ -69,8 +69,8 @@ pub enum Measured {
         /// What it must be at least. m
         required: f64,
     },
-    /// The step of a joint from one path point to the next; of joint 3 of an arm with a linkage that of the sum of joints
-    /// 2 and 3.
+    /// The step of a joint from one path point to the next; of joint 3 of an arm with a linkage that of the sum of
+    /// joints 2 and 3.
     JointStep {
         /// The joint, from 1.
         joint: u8,

@@ -159,8 +159,8 @@ pub(super) fn table(axes: &[ExternalAxis], root: &Frame) -> Option<Frame> {
     Some(Frame { turn, origin: <[f64; 3]>::from(axis.point).map(|m| m * 1e3) })
 }
 
-/// The angles of the rows (rad) for those of a controller (deg). Where axis 3 is counted against the horizontal, its row
-/// turns back by what that of axis 2 turns, the other way where it points against that.
+/// The angles of the rows (rad) for those of a controller (deg). Where axis 3 is counted against the horizontal, its
+/// row turns back by what that of axis 2 turns, the other way where it points against that.
 pub(super) fn of_rows(rows: &[Joint; 6], controller: &Controller, degrees: &[f64; 6]) -> [f64; 6] {
     let shown = |axis: usize| degrees[axis].to_radians() * controller.sign[axis];
     let back = if libm::cos(rows[2].alpha) < 0.0 { shown(1) } else { -shown(1) };

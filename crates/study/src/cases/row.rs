@@ -142,7 +142,8 @@ fn figures(problem: &Problem, best: &Case) -> Vec<TableCell> {
     ]
 }
 
-/// How far each joint, and the sum of joints 2 and 3, is from its nearer limit at each point of a plan, what the run file keeps free included. rad
+/// How far each joint, and the sum of joints 2 and 3, is from its nearer limit at each point of a plan, what the run
+/// file keeps free included. rad
 fn joint_margins<'p>(problem: &'p Problem, plan: &'p Plan) -> impl Iterator<Item = f64> + 'p {
     let (robot, kept) = (&problem.robot, problem.constraints.joint_margin);
     plan.points.iter().flat_map(move |point| {

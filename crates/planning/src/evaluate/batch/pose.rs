@@ -163,7 +163,8 @@ impl<S: Simd> Pose<S> {
         Lanes::splat(simd, 6.0) / (norm2 * inverse_norm2).sqrt()
     }
 
-    /// Torque of a unit force along a direction on the spring of each joint; `px` and `py` are the tool centre point from axis 1. m
+    /// Torque of a unit force along a direction on the spring of each joint; `px` and `py` are the tool centre point
+    /// from axis 1. m
     #[inline(always)]
     fn torques(&self, n: Vector<S>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
