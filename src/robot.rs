@@ -80,7 +80,7 @@ impl Arm {
                 "the robot file does not say how the controller counts: it has no table [controller]".to_owned(),
             )
         })?;
-        self.pose_at(controller.joints(&angles_deg.map(f64::to_radians)))
+        self.pose_at(controller.joints(&self.robot, &angles_deg.map(f64::to_radians)))
     }
 
     fn pose_at(&self, joints: [f64; 6]) -> Result<PoseOfArm, Error> {

@@ -38,7 +38,7 @@ fn robot() -> Robot {
         kind: ControllerKind::Kuka,
         sign: [-1.0; 6],
         offset: [0.0, 0.0, -90.0, 0.0, 0.0, 0.0].map(f64::to_radians),
-        is_j3_level: false,
+        is_j3_level: None,
         root_from_base: Some(Pose { rotation: Matrix3::identity(), translation: vector![0.0, 0.0, 0.75] }),
     };
     Robot::new("KUKA KR270-2", rows).unwrap().with_controller(controller).with_spring_model(Some(SpringModel::Axes))

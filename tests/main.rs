@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test may panic, in its helpers too")]
 
 mod assess;
+mod axes_2_3;
 mod bad_input;
 mod by_origin;
 mod calm;

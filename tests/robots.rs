@@ -18,7 +18,7 @@ fn the_catalogue_says_what_is_known_of_each_arm() {
     assert!(list.lines().count() > 40, "{list}");
     let row = |name: &str| list.lines().find(|line| line.starts_with(&format!("{name} "))).unwrap().to_owned();
     assert!(row("kuka-kr240-2").contains("geometry: series 2000 frame"), "{list}");
-    assert!(row("staubli-tx200").contains("yes        yes     staubli"), "{list}");
+    assert!(row("staubli-tx200").contains("yes        yes     -        staubli"), "{list}");
     // The file of one, to begin with.
     bench.write("own.toml", &bench.stead(&["robots", "abb-irb6640-235"]).stdout);
     assert_eq!(bench.stead(&["check", "own.toml"]).code, Some(0));

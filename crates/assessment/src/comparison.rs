@@ -181,6 +181,7 @@ pub fn obstacle_words(obstacles: &[(Obstacle, usize)], tried: usize) -> String {
         let what = match obstacle {
             Obstacle::Reach => "out of reach".to_owned(),
             Obstacle::JointLimit(joint) => format!("limit of joint {joint}"),
+            Obstacle::AxesSum => "limit of the sum of joints 2 and 3".to_owned(),
             Obstacle::Singularity(joint) => format!("singularity, joint {joint} would jump"),
             Obstacle::Buckling => "arm buckles under the load".to_owned(),
             Obstacle::TooSoft => format!("deflected by more than {MAX_DEFLECTION} of the radius"),

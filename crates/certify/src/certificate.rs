@@ -179,8 +179,8 @@ fn shortfalls(
 
 /// The kinds of constraint that a bound evaluates.
 fn evaluated(problem: &Problem, bound: &Bound) -> Vec<ConstraintKind> {
-    use ConstraintKind::{BetaRate, CellPosition, Conditioning, JointLimit, Reach, SpindleTurn};
-    let mut kinds = vec![Reach, JointLimit(2), JointLimit(3), Conditioning, CellPosition];
+    use ConstraintKind::{AxesSum, BetaRate, CellPosition, Conditioning, JointLimit, Reach, SpindleTurn};
+    let mut kinds = vec![Reach, JointLimit(2), JointLimit(3), AxesSum, Conditioning, CellPosition];
     // Both flips of the wrist are taken to reach as far as the better one; where the range holds zero, one of them
     // does.
     let fifth = &problem.robot.joints()[4];

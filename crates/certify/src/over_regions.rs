@@ -34,20 +34,26 @@ pub(super) fn is_sure<const V: usize, const P: usize>(
 }
 
 /// Which constraints are sure to hold in all states of a region: the elbow's, the wrist's and the general share of
-/// conditioning, and the limits of joints 2, 3 and 5.
+/// conditioning, and the limits of joints 2, 3 (with those of the sum of both) and 5.
 pub(super) fn sure_to_hold<const V: usize, const P: usize>(
     arm: &Arm,
     margins: &Margins<Enclosure<V, P>>,
     lane: usize,
 ) -> [bool; 6] {
     let holds = |margin: &Enclosure<V, P>| margin.value.low().0[lane] >= 0.0;
-    let within = |joint: usize| match (arm.limit_span(joint), &margins.joints[joint]) {
-        (LimitSpan::Full, _) => true,
-        (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
-        (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
+    let is_within = |span: LimitSpan, [min, max]: &[Enclosure<V, P>; 2]| match span {
+        LimitSpan::Full => true,
+        LimitSpan::Wide => holds(min) || holds(max),
+        LimitSpan::Narrow => holds(min) && holds(max),
+    };
+    let within = |joint: usize| is_within(arm.limit_span(joint), &margins.joints[joint]);
+    // A sum that is within its limits but for a whole turn is beyond them.
+    let of_sum = match (arm.sum_limits(), &margins.sum) {
+        (Some(limits), Some(sum)) => limits.is_exact && is_within(LimitSpan::of(limits.limits), sum),
+        _ => true,
     };
     let Margins { elbow, wrist, conditioning, joint5, .. } = margins;
-    [holds(elbow), holds(wrist), holds(conditioning), within(0), within(1), holds(joint5)]
+    [holds(elbow), holds(wrist), holds(conditioning), within(0), within(1) && of_sum, holds(joint5)]
 }
 
 /// What the second derivatives of each pair of variables are multiplied by.

@@ -61,10 +61,12 @@ pub(super) fn score(problem: &Problem, placement: &Placement, point: usize, clas
     let Ok(found) = problem.at(placement).state(point, beta, class.postures()[0]) else { return f64::INFINITY };
     let joints = problem.robot.joints();
     let within = |j: usize| Range::of(&joints[j]).nearest(found.joints[j]).1 == 0.0;
+    let real = std::array::from_fn(|j| Range::of(&joints[j]).nearest(found.joints[j]).0);
+    let is_sum_within = problem.robot.beyond_sum(&real) <= ANGLE_ROUNDING;
     let widest5 = joints[4].min.abs().max(joints[4].max.abs()) + ANGLE_ROUNDING;
     let fifth = widest5 >= PI || libm::cos(found.joints[4]) >= libm::cos(widest5);
     let conditioned = found.inverse_condition >= problem.constraints.min_inverse_condition;
-    if within(1) && within(2) && fifth && conditioned { found.score() } else { f64::INFINITY }
+    if within(1) && within(2) && is_sum_within && fifth && conditioned { found.score() } else { f64::INFINITY }
 }
 
 /// The least of a function over a turn.

@@ -87,6 +87,27 @@ mod tests {
         assert_eq!(silent, ["motoman-ms210"]);
     }
 
+    #[test]
+    fn arms_with_a_parallelogram_say_so() {
+        let arms = shipped_arms().unwrap();
+        let linked: Vec<&ShippedArm> = arms.iter().filter(|arm| arm.robot.has_linkage()).collect();
+        assert_eq!(linked.iter().map(|arm| arm.name).collect::<Vec<_>>(), ["abb-irb4400-60", "fanuc-m900ia-260l"]);
+        // The range of A3 at the controller, whatever A2.
+        let ranges: [(&str, [f64; 2]); 2] = [("abb-irb4400-60", [65.0, -60.0]), ("fanuc-m900ia-260l", [-196.3, 165.0])];
+        for (arm, (name, ends)) in linked.iter().zip(ranges) {
+            let (robot, controller) = (&arm.robot, arm.robot.controller().unwrap());
+            assert_eq!((arm.name, controller.is_j3_level), (name, Some(true)));
+            let sum = robot.sum_range().unwrap();
+            for (end, a3) in [sum.min, sum.max].into_iter().zip(ends) {
+                for a2 in [-20.0_f64, 0.0, 35.0] {
+                    let joints = controller.joints(robot, &[0.0, a2.to_radians(), a3.to_radians(), 0.0, 0.0, 0.0]);
+                    assert!((robot.sum_of(&joints) - end).abs() < 1e-12, "{name}");
+                }
+            }
+            assert!(!robot.unverified().is_empty());
+        }
+    }
+
     /// A point on an axis in m, and its direction.
     type Axis = ([f64; 3], [f64; 3]);
 
@@ -138,15 +159,17 @@ mod tests {
             for trial in 0..20 {
                 let angles: [f64; 6] = std::array::from_fn(|joint| libm::sin((trial * 7 + joint * 3 + 1) as f64) * 2.0);
                 let mut turned = angles;
-                if controller.kind == ControllerKind::Fanuc {
-                    turned[2] += angles[1];
+                match (controller.kind, arm.robot.has_linkage()) {
+                    (ControllerKind::Fanuc, _) => turned[2] += angles[1],
+                    (ControllerKind::Abb, true) => turned[2] -= angles[1],
+                    _ => {}
                 }
                 let expected = axes.iter().zip(turned).rev().fold(zero, |pose, ((point, axis), angle)| {
                     let rotation = rotation_from_vector(&(Vector3::from(*axis) * angle));
                     let point = Vector3::from(*point);
                     Pose { rotation, translation: point - rotation * point }.then(&pose)
                 });
-                let found = arm.robot.forward(&controller.joints(&angles));
+                let found = arm.robot.forward(&controller.joints(&arm.robot, &angles));
                 let off =
                     (found.translation - expected.translation).norm() + (found.rotation - expected.rotation).norm();
                 assert!(off < 1e-12, "{}: {off}", arm.name);

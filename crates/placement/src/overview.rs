@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use stead_cell::scene::FAR;
 use stead_cell::{Attachment, Shape};
 use stead_model::robot::Robot;
+use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::turns::Range;
 use stead_numerics::digits::figures;
 use stead_numerics::mean_max::MeanAndMax;
@@ -256,7 +257,11 @@ fn within(robot: &Robot, wrapped: &[f64; 6]) -> Option<([f64; 6], f64)> {
         *angle = Range::of(joint).real_angles(*angle).min_by(|a, b| off(a).total_cmp(&off(b)))?;
         margin = margin.min((*angle - joint.min).min(joint.max - *angle));
     }
-    Some((joints, margin))
+    if let Some(range) = robot.sum_range() {
+        let sum = robot.sum_of(&joints);
+        margin = margin.min((sum - range.min).min(range.max - sum));
+    }
+    (margin >= -ANGLE_ROUNDING).then_some((joints, margin))
 }
 
 #[cfg(test)]

@@ -24,6 +24,8 @@ pub enum ConstraintKind {
     Reach,
     /// The limits of a joint, from 1.
     JointLimit(u8),
+    /// The limits of the sum of joints 2 and 3.
+    AxesSum,
     /// The bound on 1/kappa_F.
     Conditioning,
     /// The rate of beta along the path.
@@ -51,6 +53,7 @@ impl ConstraintKind {
             Self::Posture => "posture".to_owned(),
             Self::Reach => "reach".to_owned(),
             Self::JointLimit(joint) => format!("joint_{joint}"),
+            Self::AxesSum => "axes_2_3".to_owned(),
             Self::Conditioning => "conditioning".to_owned(),
             Self::BetaRate => "beta_rate".to_owned(),
             Self::SpindleTurn => "spindle_turn".to_owned(),
@@ -69,6 +72,7 @@ impl Problem {
         use ConstraintKind::*;
         let mut kinds = vec![JointStep, JointTurn, Reach];
         kinds.extend((1..=6).map(JointLimit));
+        kinds.extend(self.robot.sum_range().map(|_| AxesSum));
         kinds.push(Conditioning);
         kinds.extend(self.redundancy.max_beta_rate.map(|_| BetaRate));
         let turns = [self.redundancy.max_spindle_turn, self.redundancy.max_spindle_speed];
@@ -113,6 +117,7 @@ pub fn describe(kinds: &[ConstraintKind]) -> Vec<String> {
             JointStep | JointTurn | JointLimit(_) => None,
             Posture => Some("allowed postures"),
             Reach => Some("reach"),
+            AxesSum => Some("limits of the sum of joints 2 and 3"),
             Conditioning => Some("conditioning"),
             BetaRate => Some("rate of beta"),
             SpindleTurn => Some("turn of the spindle"),

@@ -93,7 +93,7 @@ pub fn without_clearance(problem: &Problem, placement: &Placement, point: usize,
             for (angle, joint) in found.joints.iter_mut().zip(problem.robot.joints()) {
                 *angle = Range::of(joint).nearest(*angle).0;
             }
-            let measured = on_joints(problem, &found.joints).into_iter().chain(on_state(problem, &found));
+            let measured = on_joints(problem, &found.joints).chain(on_state(problem, &found));
             let violations = measured.filter(|measured| !measured.holds()).collect();
             Explanation { posture, state: Some(found), violations, by_origin: None }
         }

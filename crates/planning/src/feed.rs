@@ -180,7 +180,7 @@ struct Sample {
     way: f64,
     /// The nearest path point.
     point: usize,
-    /// rad
+    /// What the motors turn. rad
     joints: [f64; 6],
 }
 
@@ -235,7 +235,12 @@ impl Limits {
         let tip_length = motion.length();
         let length = tip_length / problem.task.path().tip_share(point);
         let spacing = if self.has_accelerations() { self.blend / POSES_PER_BLEND } else { f64::INFINITY };
-        let nodes = motion.nodes(ends, spacing / tip_length);
+        let mut nodes = motion.nodes(ends, spacing / tip_length);
+        // Limits are those of what the motors turn, which is linear in the joint angles.
+        for node in &mut nodes {
+            node.joints = problem.robot.drives(&node.joints);
+            node.rates = node.rates.map(|rates| problem.robot.drives(&rates));
+        }
         let is_in_place = problem.task.path().turns_in_place(point);
         let nearest = |part: f64| if part < 0.5 { point - 1 } else { point };
         let at_nodes = nodes.iter().filter_map(|node| Some((node.part, node.rates?)));
@@ -248,7 +253,7 @@ impl Limits {
         let limit = limit.reduce(FeedLimit::smaller);
         let samples = if self.has_accelerations() { &nodes[1..] } else { &[] };
         let sample = |node: &Node| Sample { way: node.part * length, point: nearest(node.part), joints: node.joints };
-        let start = Sample { way: 0.0, point: point - 1, joints: *ends[0] };
+        let start = Sample { way: 0.0, point: point - 1, joints: problem.robot.drives(ends[0]) };
         Step { limit, length, is_in_place, start, samples: samples.iter().map(sample).collect() }
     }
 

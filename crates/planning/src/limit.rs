@@ -16,7 +16,10 @@ pub enum Limit {
     CellYaw,
     /// A limit of a joint, from 1.
     Joint(u8),
-    /// The speed of a joint, from 1: what bounds its steps between path points.
+    /// A limit of the sum of joints 2 and 3.
+    AxesSum,
+    /// The speed of a joint, from 1: what bounds its steps between path points; of joint 3 of an arm with a linkage
+    /// those of the sum of joints 2 and 3.
     JointStep(u8),
     /// The bound on 1/kappa_F.
     Conditioning,

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use stead_model::robot::angles::nearest_turns;
-use stead_model::robot::{Pose, Posture};
+use stead_model::robot::{Pose, Posture, Robot};
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 /// Why the arm cannot go on along a straight line of the tool.
@@ -21,6 +21,8 @@ pub enum LineEnd {
     OutOfReach,
     /// A joint (from 1) is at its limit.
     JointLimit(usize),
+    /// The sum of joints 2 and 3 is at its limit.
+    AxesSum,
     /// A joint (from 1) would swing round a singularity.
     Swing(usize),
     /// A joint (from 1) would go the other way round than planned, and end a whole turn off.
@@ -34,6 +36,7 @@ impl std::fmt::Display for LineEnd {
         match self {
             Self::OutOfReach => write!(f, "the arm does not reach farther in its posture"),
             Self::JointLimit(joint) => write!(f, "joint {joint} is at its limit"),
+            Self::AxesSum => write!(f, "the sum of joints 2 and 3 is at its limit"),
             Self::Swing(joint) => write!(f, "joint {joint} would swing round a singularity"),
             Self::WholeTurn(joint) => {
                 write!(f, "joint {joint} would go the other way round than planned, and end a whole turn off")
@@ -62,6 +65,13 @@ const BULGE: f64 = 2e-3;
 const ARC: f64 = 1.05;
 /// The wrist centre may come so near to the end of its reach without a closer look. m
 const REACH_ROUNDING: f64 = 1e-5;
+
+/// Which limit of an arm joint angles (rad), real ones, are beyond by more than a margin (rad), a joint's first.
+pub(crate) fn limit_end(robot: &Robot, joints: &[f64; 6], margin: f64) -> Option<LineEnd> {
+    let joint = (0..6).find(|j| robot.joints()[*j].is_beyond(joints[*j], margin));
+    let sum = || (robot.beyond_sum(joints) > margin).then_some(LineEnd::AxesSum);
+    joint.map(|joint| LineEnd::JointLimit(joint + 1)).or_else(sum)
+}
 
 impl Problem {
     /// Follows a path of the flange in the base frame, given over a share from 0 to 1, from joint angles (rad) in a
@@ -191,9 +201,9 @@ impl<'a> StraightMove<'a> {
     /// # Errors
     /// What keeps the arm from following it.
     fn follow_within_limits(&self) -> Result<(), LineEnd> {
-        let (limits, margin) = (self.problem.robot.joints(), self.problem.constraints.joint_margin + BULGE);
-        let beyond = |_, joints: &[f64; 6]| (0..6).find(|j| limits[*j].is_beyond(joints[*j], margin));
-        self.follow(beyond)?.map_or(Ok(()), |joint| Err(LineEnd::JointLimit(joint + 1)))
+        let margin = self.problem.constraints.joint_margin + BULGE;
+        let beyond = |_, joints: &[f64; 6]| limit_end(&self.problem.robot, joints, margin);
+        self.follow(beyond)?.map_or(Ok(()), Err)
     }
 }
 

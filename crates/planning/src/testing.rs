@@ -9,8 +9,10 @@ use crate::setup::Setup;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 use std::f64::consts::PI;
 use stead_cell::tool_scene::SegmentMoves;
+use stead_model::robot::Axes23;
 use stead_model::robot::angles::wrap;
 use stead_model::robot::testing::{kr270, spindle};
+use stead_model::robot::turns::Range;
 use stead_model::robot::{BaseCompliance, NormalSprings, SpringModel};
 use stead_model::robot::{Compensator, Compliance, Joint, Parameter, Robot, Uncertainty};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
@@ -117,6 +119,13 @@ pub fn with_uncertainty(mut problem: Problem, share: f64) -> Problem {
     problem
 }
 
+/// The same problem with the sum of joints 2 and 3 in a range (deg), and a linkage that drives axis 3 or none.
+pub fn with_axes_2_3(mut problem: Problem, linkage: bool, [min, max]: [f64; 2]) -> Problem {
+    let sum = Range { min: min.to_radians(), max: max.to_radians() };
+    problem.robot = problem.robot.clone().with_axes_2_3(Some(Axes23 { linkage, sum })).unwrap();
+    problem
+}
+
 /// A joint beside a compensator of the size of a KR270's, strong enough to be seen; `alpha` in rad, `alone` in
 /// rad/(N m).
 pub fn compensated(alpha: f64, alone: f64) -> Compliance {
@@ -202,9 +211,18 @@ pub fn assert_sound(problem: &Problem, placement: &Placement, plans: &[SegmentPl
                 assert!(wrap(real - found.joints[j]).abs() < 1e-9);
                 if place > 0 {
                     let step = (real - plan.joints[place - 1][j]).abs();
-                    assert!(step <= problem.joint_steps(point)[j] + 1e-8, "joint {} steps {step}", j + 1);
+                    let is_alone = j != 2 || !problem.robot.has_linkage();
+                    assert!(!is_alone || step <= problem.joint_steps(point)[j] + 1e-8, "joint {} steps {step}", j + 1);
                     assert!(step < std::f64::consts::PI, "joint {} steps {step}", j + 1);
                 }
+            }
+            let sum = |place: usize| plan.joints[place][1] + plan.joints[place][2] * problem.robot.geometry().fold;
+            if let Some(range) = problem.robot.sum_range() {
+                assert!((range.min - 1e-8..=range.max + 1e-8).contains(&sum(place)), "the sum is {}", sum(place));
+            }
+            if place > 0 && problem.robot.has_linkage() {
+                let step = (sum(place) - sum(place - 1)).abs();
+                assert!(step <= problem.joint_steps(point)[2] + 1e-8, "the sum steps {step}");
             }
             if place > 0 {
                 assert_steps_of_beta(problem, point, plan.betas[place - 1], plan.betas[place]);

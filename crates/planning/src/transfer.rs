@@ -136,6 +136,7 @@ pub(crate) fn part_durations(
 /// speed limit, or when no profile was found. s
 pub fn duration(problem: &Problem, settings: &TransferSettings, from: &[f64; 6], to: &[f64; 6]) -> Option<f64> {
     let mut input = InputParameter::<6>::new(None);
+    let (from, to) = (problem.robot.drives(from), problem.robot.drives(to));
     let mut moves = false;
     for (j, joint) in problem.robot.joints().iter().enumerate() {
         let stands = (to[j] - from[j]).abs() < STANDSTILL;

@@ -7,7 +7,7 @@
 use crate::problem::{Placement, Problem};
 use crate::segment_plan::SegmentPlan;
 pub use crate::straight_move::LineEnd;
-use crate::straight_move::MAX_SWING;
+use crate::straight_move::{MAX_SWING, limit_end};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -284,10 +284,9 @@ impl<'a> Space<'a> {
             };
             let next = self.problem.follow(posture, &last, 1, flange_at, |_, _| None::<()>).and_then(|(next, _)| {
                 let swings = |j: &usize| (next[*j] - last[*j]).abs() > MAX_SWING;
-                let is_beyond = |j: &usize| self.problem.robot.joints()[*j].is_beyond(next[*j], margin);
-                match ((0..6).find(swings), (0..6).find(is_beyond)) {
+                match ((0..6).find(swings), limit_end(&self.problem.robot, &next, margin)) {
                     (Some(joint), _) => Err(LineEnd::Swing(joint + 1)),
-                    (None, Some(joint)) => Err(LineEnd::JointLimit(joint + 1)),
+                    (None, Some(end)) => Err(end),
                     (None, None) => match self.hit_in(self.scene, (&last, point), (&next, point)) {
                         Some(names) => Err(LineEnd::Hit(names)),
                         None => Ok(next),
@@ -349,7 +348,8 @@ impl<'a> Space<'a> {
         } else {
             std::array::from_fn(|j| start[j] + share * (towards[j] - start[j]))
         };
-        if distance == 0.0 || self.hit((&start, point), (&new, point)).is_some() {
+        let is_beyond = self.problem.robot.beyond_sum(&new) > self.problem.constraints.joint_margin + ANGLE_ROUNDING;
+        if distance == 0.0 || is_beyond || self.hit((&start, point), (&new, point)).is_some() {
             return None;
         }
         tree.push((new, nearest));

@@ -366,6 +366,9 @@ fn targets(run: &Run, plan: &Path, options: &ExportOptions<'_>, monitor: &Monito
     Ok(Planned { placement, problem, targets, transfer_paths, uncorrected, inputs, is_interrupted, notes })
 }
 
+/// The key by which an arm with a linkage says how its controller counts axis 3.
+const IS_J3_LEVEL: &str = "controller.is_j3_level";
+
 /// Whether the options are in their ranges, and the form is one for the robot.
 fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportError> {
     names::check(options.name, options.format, 1)?;
@@ -392,12 +395,18 @@ fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportErr
             return Err(ProgramError::OtherController { format: options.format.word(), allowed }.into());
         }
         Some(controller) if controller.root_from_base.is_none() => "root",
+        Some(controller) if run.problem.robot.has_linkage() && controller.is_j3_level.is_none() => IS_J3_LEVEL,
         Some(_) => return Ok(()),
     };
     let robot = run.inputs.iter().find(|input| input.role == "robot").map_or("", |input| input.name.as_str());
     let problem = format!("is missing, and a program in {} needs it", options.format.word());
-    Err(InputError::new(Path::new(robot), problem)
-        .in_field(missing)
+    let error = InputError::new(Path::new(robot), problem).in_field(missing);
+    if missing == IS_J3_LEVEL {
+        let allowed = "true where the controller counts axis 3 against the horizontal, as Fanuc's do, and ABB's on arms with \
+                       a parallelogram; false where it shows the angle between the links (stead pose tells)";
+        return Err(error.allowed(allowed).into());
+    }
+    Err(error
         .allowed(
             "[controller] with kind, sign and offset_deg, and [root] with xyz_mm and an orientation as abc_deg (`stead import robot` writes \
              both commented out; the page robot_file says how to check them); or --format csv, for poses in the workpiece frame alone",

@@ -250,7 +250,11 @@ impl Maker<'_> {
             workpiece_from_tool: self.problem.base_from_part(point, self.placement).inverse().then(&at.base_from_tool),
             posture: target.posture,
             joints: at.joints,
-            angles: self.problem.robot.controller().map(|controller| controller.angles(&at.joints)),
+            angles: self
+                .problem
+                .robot
+                .controller()
+                .map(|controller| controller.angles(&self.problem.robot, &at.joints)),
             external: target.external,
             feed: feed_at(self.problem, point),
             is_blended: false,
@@ -379,12 +383,20 @@ impl Maker<'_> {
     }
 }
 
-/// Which joint is beyond its limit; the margin that plans keep from limits is for the cut, and not for the way to it.
+/// Which joint, or the sum of joints 2 and 3, is beyond its limit; the margin that plans keep from limits is for the
+/// cut, and not for the way to it.
 fn beyond_limit(problem: &Problem, joints: &[f64; 6]) -> Option<String> {
     let margin = problem.constraints.joint_margin;
-    problem.robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {
+    let joint = problem.robot.joints().iter().zip(joints).zip(1..).find_map(|((joint, angle), number)| {
         let is_beyond = joint.is_beyond(*angle, margin + ANGLE_ROUNDING);
         let [angle, min, max] = [*angle, joint.min - margin, joint.max + margin].map(f64::to_degrees);
         is_beyond.then(|| format!("joint {number} would stand at {angle:.3} deg, and goes from {min:.3} to {max:.3}"))
-    })
+    });
+    let is_beyond = problem.robot.beyond_sum(joints) > margin + ANGLE_ROUNDING;
+    let sum = problem.robot.sum_range().filter(|_| is_beyond).map(|range| {
+        let sum = problem.robot.sum_of(joints);
+        let [sum, min, max] = [sum, range.min - margin, range.max + margin].map(f64::to_degrees);
+        format!("the sum of joints 2 and 3 would stand at {sum:.3} deg, and goes from {min:.3} to {max:.3}")
+    });
+    joint.or(sum)
 }

@@ -6,7 +6,7 @@ use crate::figure::{AngleDeg, PlaceMm, SpeedMmPerS, each};
 use crate::units::{Unit, fixed};
 use serde_json::Value;
 use stead_disk::input::InputFile;
-use stead_model::robot::Robot;
+use stead_model::robot::{Axes23, Robot};
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::rotation::zyx_from_rotation;
@@ -134,6 +134,11 @@ pub fn robot_lines(robot: &Robot, has_stiffness: Option<bool>) -> String {
     line(&mut text, &format!("          controller: {words}"));
     let limits: Vec<String> = robot.joints().iter().map(|joint| interval(DEG, [joint.min, joint.max])).collect();
     line(&mut text, &format!("          joint limits, deg: {}", limits.join("; ")));
+    if let Some(Axes23 { linkage, sum }) = robot.axes_2_3() {
+        let sum = interval(DEG, [sum.min, sum.max]);
+        let linkage = if *linkage { ", driven by a parallelogram: row 3 has its speed and stiffness" } else { "" };
+        line(&mut text, &format!("          sum of joints 2 and 3, deg: {sum}{linkage}"));
+    }
     let stiffness = match has_stiffness {
         Some(false) => "not given: measure the arm (stead identify plan), or take that of a shipped arm".to_owned(),
         _ => {

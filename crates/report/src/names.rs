@@ -19,6 +19,7 @@ pub(super) fn constraint_in_legend(kind: ConstraintKind) -> String {
     match kind {
         ConstraintKind::Reach => "out of reach".to_owned(),
         ConstraintKind::JointLimit(joint) => format!("limit of joint {joint}"),
+        ConstraintKind::AxesSum => "limit of axes 2+3".to_owned(),
         ConstraintKind::Conditioning => "near a singularity".to_owned(),
         ConstraintKind::MaxDeflection => "deflection above its limit".to_owned(),
         other => describe(&[other]).concat(),
@@ -55,6 +56,7 @@ fn limit(limit: Limit) -> String {
         Limit::CellZ => "cell.z_mm".to_owned(),
         Limit::CellYaw => "cell.yaw_deg".to_owned(),
         Limit::Joint(joint) => format!("limit of joint {joint}"),
+        Limit::AxesSum => "limit of axes 2+3".to_owned(),
         Limit::JointStep(joint) => format!("speed of joint {joint}"),
         Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),
         Limit::BetaRate => "redundancy.max_beta_rate_deg_per_mm".to_owned(),
@@ -95,7 +97,7 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
         | Limit::Scallop
         | Limit::StepOver
         | Limit::ContactTolerance => (bound.gain, "mm per mm"),
-        Limit::CellYaw | Limit::Joint(_) | Limit::Lead | Limit::Tilt | Limit::MaxLean => {
+        Limit::CellYaw | Limit::Joint(_) | Limit::AxesSum | Limit::Lead | Limit::Tilt | Limit::MaxLean => {
             (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg")
         }
         // One degree per millimetre is a thousand per metre.

@@ -37,7 +37,7 @@ type NamedFrame = (&'static str, &'static str, Pose<f64>);
 impl ArmPose {
     /// Joint angles as the controller shows them, where that is known.
     fn by_controller(&self, joints: &[f64; 6]) -> Option<[AngleDeg; 6]> {
-        self.robot.controller().map(|controller| each(controller.angles(joints)))
+        self.robot.controller().map(|controller| each(controller.angles(&self.robot, joints)))
     }
 
     /// Flange and tool in the base frame of the rows, and in the controller's root frame where that is known.
@@ -59,7 +59,8 @@ impl ArmPose {
             let wrapped = self.robot.inverse(&flange, posture).ok()?;
             let nearest = |joint: usize| Range::of(&self.robot.joints()[joint]).nearest(wrapped[joint]);
             let angles = std::array::from_fn(|joint| nearest(joint).0);
-            Some(Reached { angles, is_within: (0..6).all(|joint| nearest(joint).1 == 0.0) })
+            let is_within = (0..6).all(|joint| nearest(joint).1 == 0.0) && self.robot.beyond_sum(&angles) <= 1e-9;
+            Some(Reached { angles, is_within })
         };
         Posture::ALL.into_iter().map(|posture| (posture, of(posture))).collect()
     }
@@ -73,7 +74,11 @@ impl ArmPose {
                 format!("joint {} at {angle:.3} deg is beyond its limits, {min:.3} to {max:.3} deg", joint + 1)
             })
         };
-        self.joints.into_iter().enumerate().filter_map(beyond).collect()
+        let sum = self.robot.sum_range().filter(|_| self.robot.beyond_sum(&self.joints) > 1e-9).map(|range| {
+            let [sum, min, max] = [self.robot.sum_of(&self.joints), range.min, range.max].map(f64::to_degrees);
+            format!("the sum of joints 2 and 3 at {sum:.3} deg is beyond its limits, {min:.3} to {max:.3} deg")
+        });
+        self.joints.into_iter().enumerate().filter_map(beyond).chain(sum).collect()
     }
 }
 
@@ -94,7 +99,7 @@ pub fn pose_text(pose: &ArmPose) -> String {
     };
     let mut rows = vec![std::iter::once(String::new()).chain(names.clone()).collect()];
     rows.push(row("theta deg", pose.joints));
-    rows.extend(controller.map(|controller| row("controller deg", controller.angles(&pose.joints))));
+    rows.extend(controller.map(|controller| row("controller deg", controller.angles(&pose.robot, &pose.joints))));
     text.push_str(&aligned(&rows, &[0]));
     text.push('\n');
     text.push_str(&frames_text(&pose.frames()));
@@ -102,7 +107,8 @@ pub fn pose_text(pose: &ArmPose) -> String {
     let header = std::iter::once("posture".to_owned()).chain(names).chain(std::iter::once("within limits".to_owned()));
     let mut rows = vec![header.collect::<Vec<_>>()];
     for (posture, found) in pose.postures() {
-        let angles = found.map(|found| controller.map_or(found.angles, |controller| controller.angles(&found.angles)));
+        let angles = found
+            .map(|found| controller.map_or(found.angles, |controller| controller.angles(&pose.robot, &found.angles)));
         let cells = angles.map_or_else(|| vec!["-".to_owned(); 6], |of| of.map(|angle| ANGLE_DEG.text(angle)).into());
         let verdict = match found {
             Some(Reached { is_within: true, .. }) => "yes",
@@ -200,7 +206,8 @@ pub fn pose_json(pose: &ArmPose) -> Value {
 
 /// What `stead robots` prints.
 pub fn robots_text(arms: &[ShippedArm]) -> String {
-    let header = ["name", "arm", "payload kg", "wrist reach mm", "stiffness", "masses", "controller", "not verified"];
+    let header =
+        ["name", "arm", "payload kg", "wrist reach mm", "stiffness", "masses", "linkage", "controller", "not verified"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     let yes = |is: bool| if is { "yes" } else { "-" }.to_owned();
     for arm in arms {
@@ -212,11 +219,12 @@ pub fn robots_text(arms: &[ShippedArm]) -> String {
             fixed(arm.robot.geometry().reach() * 1e3, 0),
             yes(arm.has_stiffness),
             yes(arm.has_dynamics),
+            yes(arm.robot.has_linkage()),
             arm.robot.controller().map_or_else(|| "-".to_owned(), |controller| controller.kind.word().to_owned()),
             if unverified.is_empty() { "-".to_owned() } else { unverified.join("; ") },
         ]);
     }
-    aligned(&rows, &[0, 1, 4, 5, 6, 7])
+    aligned(&rows, &[0, 1, 4, 5, 6, 7, 8])
 }
 
 records! {
@@ -240,6 +248,8 @@ records! {
         has_stiffness: bool = arm.has_stiffness,
         /// Whether masses and damping are known.
         has_masses: bool = arm.has_dynamics,
+        /// Whether a parallelogram drives axis 3.
+        has_linkage: bool = arm.robot.has_linkage(),
         /// Its controller.
         controller: Option<&'static str> = arm.robot.controller().map(|controller| controller.kind.word()),
         /// Figures that nobody has verified.

@@ -278,8 +278,8 @@ fn allowed(point: usize, placement: &Placement, k: usize, posture: Posture) -> R
     for (angle, joint) in found.joints.iter_mut().zip(problem().robot.joints()) {
         *angle = Range::of(joint).nearest(*angle).0;
     }
-    let broken = on_joints(problem(), &found.joints).into_iter().chain(on_state(problem(), &found));
-    match broken.into_iter().find(|measured| !measured.holds()) {
+    let mut broken = on_joints(problem(), &found.joints).chain(on_state(problem(), &found));
+    match broken.find(|measured| !measured.holds()) {
         Some(measured) => Err(measured.kind()),
         None => Ok(found),
     }

@@ -133,6 +133,10 @@ fn configuration(row: &Row<'_>, columns: &Columns, robot: &Robot) -> Result<Conf
         }
         *slot = angle;
     }
+    if let Some(range) = robot.sum_range().filter(|_| robot.beyond_sum(&theta) > ANGLE_ROUNDING) {
+        let limits = format!("a sum from {:.4} to {:.4} deg", range.min.to_degrees(), range.max.to_degrees());
+        return Err(row.fail(columns.theta[2], "puts the sum of joints 2 and 3 outside its limits", &limits));
+    }
     let (force, moment) = (row.vector(columns.force)?, row.vector(columns.moment)?);
     if force.norm() == 0.0 && moment.norm() == 0.0 {
         return Err(row.fail(columns.force[0], "force and moment are all zero", "a load"));

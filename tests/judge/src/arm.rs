@@ -48,6 +48,10 @@ pub(crate) struct Arm {
     pub normal: Option<Vec<Normal>>,
     pub covariance: Option<(Vec<String>, DMatrix<f64>)>,
     pub counting: Option<Counting>,
+    /// From where to where the forearm may be turned against the base. rad
+    pub sum: Option<[f64; 2]>,
+    /// Whether a parallelogram drives axis 3.
+    pub linkage: bool,
 }
 
 fn six(values: Option<Vec<f64>>) -> Option<[f64; 6]> {
@@ -89,7 +93,13 @@ impl Arm {
                 Some(Counting { sign, offset: offset.map(f64::to_radians), is_j3_level, root_from_base })
             }
         };
-        Ok(Self { rows, normal, covariance, counting })
+        let joined = section(&table, "axes_2_3");
+        let sum = joined.map(|joined| {
+            let end = |key: &str| required(joined, key).map(f64::to_radians).map_err(told);
+            Ok::<_, String>([end("sum_min_deg")?, end("sum_max_deg")?])
+        });
+        let linkage = joined.and_then(|joined| joined.get("linkage")?.as_bool()).unwrap_or(false);
+        Ok(Self { rows, normal, covariance, counting, sum: sum.transpose()?, linkage })
     }
 
     /// The base and the frames of the six rows, where the base has this pose.
@@ -114,11 +124,31 @@ impl Arm {
     /// The angles of a controller as those of the rows.
     pub(crate) fn joints_of(&self, angles: &[f64; 6]) -> Option<[f64; 6]> {
         let counting = self.counting.as_ref()?;
-        let mut angles = *angles;
+        let mut joints: [f64; 6] = std::array::from_fn(|j| counting.sign[j] * angles[j] + counting.offset[j]);
         if counting.is_j3_level {
-            angles[2] += angles[1];
+            // What axis 2 turns, axis 3 turns back.
+            joints[2] -= self.third() * counting.sign[1] * angles[1];
         }
-        Some(std::array::from_fn(|j| counting.sign[j] * angles[j] + counting.offset[j]))
+        Some(joints)
+    }
+
+    /// 1 where axis 3 turns as axis 2 does, -1 where against it.
+    fn third(&self) -> f64 {
+        self.rows[2].alpha.cos().signum()
+    }
+
+    /// How far the forearm is turned against the base. rad
+    pub(crate) fn forearm(&self, joints: &[f64; 6]) -> f64 {
+        joints[1] + self.third() * joints[2]
+    }
+
+    /// What the motors have turned: that of axis 3 the forearm against the base, where a parallelogram drives it.
+    pub(crate) fn motors(&self, joints: &[f64; 6]) -> [f64; 6] {
+        let mut motors = *joints;
+        if self.linkage {
+            motors[2] = self.forearm(joints);
+        }
+        motors
     }
 
     /// rad/(N m)
@@ -135,7 +165,15 @@ impl Arm {
         force: &Vector3<f64>,
         moment: &Vector3<f64>,
     ) -> Vector3<f64> {
-        let jacobian = jacobian(frames, at);
+        let mut jacobian = jacobian(frames, at);
+        if self.linkage {
+            // The spring of joint 2 turns the upper arm alone: elbow and forearm are shifted, and not turned.
+            let [shoulder, elbow] = [2, 3].map(|k| frames[k].translation.vector);
+            let shift = (frames[2].rotation * Vector3::z()).cross(&(elbow - shoulder));
+            for k in 0..3 {
+                (jacobian[(k, 1)], jacobian[(k + 3, 1)]) = (shift[k], 0.0);
+            }
+        }
         let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
         let torques = jacobian.transpose() * wrench;
         let compliances = self.compliances(joints);

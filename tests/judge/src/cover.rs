@@ -20,6 +20,7 @@ pub const FACTORS: &[Factor] = &[
         "arm",
         &["kuka-kr270-2", "kuka-kr210-r2700", "abb-irb6640-185", "fanuc-m900ib-700", "staubli-tx200", "kuka-kr500"],
     ),
+    factor("axes 2 and 3", &["apart", "sum", "linkage"]),
     factor("compliance", &["constant", "stiffness", "range", "compensator"]),
     factor("springs", &["not stated", "axes", "axial part", "left out", "full", "full pairs"]),
     factor("base", &["none", "alike", "unlike"]),
@@ -94,6 +95,8 @@ const IMPOSSIBLE: &[([&str; 4], &str)] = &[
     (["lean", "bull plane", "load", "stock"], "refused: the cutter is tapered"),
     (["part yields", "columns", "load", "stock"], "refused: the stock adds points of which the columns say nothing"),
     (["search", "genetic", "postures", "never"], "refused: it searches for a posture of each segment"),
+    (["arm", "staubli-tx200", "axes 2 and 3", "sum"], "refused: its joint 3 turns by a whole turn"),
+    (["arm", "staubli-tx200", "axes 2 and 3", "linkage"], "refused: its joint 3 turns by a whole turn"),
     (["arm", "staubli-tx200", "program", "native"], "no programs are written for this controller"),
 ];
 

@@ -197,8 +197,9 @@ fn time(
     let moved_at = axes_from(transfer);
     for place in 1..way.len() {
         let mut longest = Some([0.0_f64; 2]);
+        let motors = [place - 1, place].map(|place| cell.arm.motors(&way[place]));
         for (j, row) in cell.arm.rows.iter().enumerate() {
-            let distance = (way[place][j] - way[place - 1][j]).abs();
+            let distance = (motors[1][j] - motors[0][j]).abs();
             // The product leaves out what is below its printed digits.
             if distance < 2e-7 {
                 continue;
@@ -259,6 +260,10 @@ fn free(
         for (j, row) in cell.arm.rows.iter().enumerate() {
             let beyond = (row.min - place[j]).max(place[j] - row.max);
             verdict.within("joint limit of a move (rad)", || at(&format!("joint {}", j + 1)), beyond, 1e-6);
+        }
+        if let Some([min, max]) = cell.arm.sum {
+            let sum = cell.arm.forearm(place);
+            verdict.within("sum of joints 2 and 3 of a move (rad)", || at("sum"), (min - sum).max(sum - max), 2e-6);
         }
     }
     let wanted = cell.setting("transfer", "retract_mm").unwrap_or(50.0) * 1e-3;

@@ -173,7 +173,13 @@ impl Writer<'_> {
         self.model(&mut table);
         if let Some(controller) = table.get_mut("controller").and_then(Value::as_table_mut) {
             let is_fanuc = controller.get("kind").and_then(Value::as_str) == Some("fanuc");
-            controller.insert("is_j3_level".to_owned(), Value::from(is_fanuc));
+            let is_abb = controller.get("kind").and_then(Value::as_str) == Some("abb");
+            // ABB counts axis 3 against the horizontal where a parallelogram drives it.
+            let is_level = is_fanuc || (is_abb && self.of("axes 2 and 3") == "linkage");
+            controller.insert("is_j3_level".to_owned(), Value::from(is_level));
+        }
+        if self.of("axes 2 and 3") != "apart" {
+            table.insert("axes_2_3".to_owned(), Value::Table(self.joined(arm)));
         }
         let softer = if set == 0 { 1.0 } else { 1.7 };
         let rows = arm.get("joints").and_then(Value::as_array).cloned().unwrap_or_default();
@@ -231,6 +237,22 @@ impl Writer<'_> {
             table.insert("covariance".to_owned(), Value::Table(covariance));
         }
         toml::to_string(&table).unwrap_or_default()
+    }
+
+    /// What joins axes 2 and 3: a range of the sum somewhat narrower than those of the joints allow.
+    fn joined(&self, arm: &Table) -> Table {
+        let rows = arm.get("joints").and_then(Value::as_array).cloned().unwrap_or_default();
+        let of = |row: usize, key: &str| {
+            rows.get(row).and_then(Value::as_table).and_then(|row| number(row, key)).unwrap_or_default()
+        };
+        let [least, largest] = ["min_deg", "max_deg"].map(|key| of(1, key) + of(2, key));
+        let mut table = Table::new();
+        if self.of("axes 2 and 3") == "linkage" {
+            table.insert("linkage".to_owned(), Value::from(true));
+        }
+        table.insert("sum_min_deg".to_owned(), Value::from(least + 0.15 * (largest - least)));
+        table.insert("sum_max_deg".to_owned(), Value::from(largest - 0.1 * (largest - least)));
+        table
     }
 
     /// Mount, spindle, external axes and the bounds of the cell.

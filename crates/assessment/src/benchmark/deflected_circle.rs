@@ -6,7 +6,9 @@ use nalgebra::{Matrix2, Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::{
-    Frames, NormalSprings, Pose, Posture, PostureClass, Robot, Spindle, angles::wrap, turns::Range,
+    Frames, NormalSprings, Pose, Posture, PostureClass, Robot, Spindle,
+    angles::{ANGLE_ROUNDING, wrap},
+    turns::Range,
 };
 use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
 use stead_model::stiffness::loaded::loaded_displacement;
@@ -138,12 +140,14 @@ impl<'a> DeflectedCircle<'a> {
             LimitsAt::Circle => (3, Flip::Plain),
             LimitsAt::Centre => {
                 let joints = self.joints(centre, class)?;
+                self.sum_within(&joints, [self.robot.sum_of(&joints); 2])?;
                 (0, self.within_limits(&joints, &joints)?)
             }
         };
         let mut min = [f64::INFINITY; 6];
         let mut max = [f64::NEG_INFINITY; 6];
         let mut unwrapped = [0.0; 6];
+        let mut sums = [f64::INFINITY, f64::NEG_INFINITY];
         // The first point is the last one too: the circle has to be closed.
         for (k, [cosine, sine]) in self.directions.iter().chain(self.directions.first()).enumerate() {
             let joints = match angles.first() {
@@ -162,11 +166,14 @@ impl<'a> DeflectedCircle<'a> {
                     return Err(Obstacle::JointLimit(j + 1));
                 }
             }
+            let sum = self.robot.sum_of(&unwrapped);
+            sums = [sums[0].min(sum), sums[1].max(sum)];
             if k < self.directions.len() {
                 angles.push(joints);
             }
         }
         if self.benchmark.limits_at == LimitsAt::Circle {
+            self.sum_within(&min, sums)?;
             flip = self.within_limits(&min, &max)?;
         }
         if flip == Flip::Flipped && !self.robot.flips_yield_alike() {
@@ -175,6 +182,16 @@ impl<'a> DeflectedCircle<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Whether the sum of joints 2 and 3 stays within its limits between two values, for the least angles of the
+    /// joints: all of them but for the whole turns that bring these within their ranges.
+    fn sum_within(&self, min: &[f64; 6], [least, largest]: [f64; 2]) -> Result<(), Obstacle> {
+        let Some(range) = self.robot.sum_range() else { return Ok(()) };
+        let turns = |j: usize| self.ranges[j].lowest(min[j]) - min[j];
+        let by = turns(1) + self.robot.geometry().fold * turns(2);
+        let is_within = least + by >= range.min - ANGLE_ROUNDING && largest + by <= range.max + ANGLE_ROUNDING;
+        if is_within { Ok(()) } else { Err(Obstacle::AxesSum) }
     }
 
     /// Which of the two wrist flips keeps all joints within their limits between the given angles of the unflipped one;
@@ -289,5 +306,5 @@ fn joints_of(robot: &Robot, yielding: [bool; 6]) -> Cow<'_, Robot> {
 /// Whether some number of turns brings an interval of angles into a range.
 fn fits(range: &Range, min: f64, max: f64) -> bool {
     let lowest = range.lowest(min);
-    lowest + (max - min) <= range.max + stead_model::robot::angles::ANGLE_ROUNDING
+    lowest + (max - min) <= range.max + ANGLE_ROUNDING
 }

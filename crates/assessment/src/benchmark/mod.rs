@@ -129,6 +129,8 @@ pub enum Obstacle {
     Reach,
     /// A joint, counted from 1, would leave its limits.
     JointLimit(usize),
+    /// The sum of joints 2 and 3 would leave its limits.
+    AxesSum,
     /// A joint, counted from 1, would have to jump: the circle leads through a singularity.
     Singularity(usize),
     /// The arm would buckle under the load (loaded stiffness only).

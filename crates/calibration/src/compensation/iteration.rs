@@ -159,5 +159,9 @@ fn within_limits(robot: &Robot, joints: &[f64; 6]) -> Result<(), PointError> {
             return Err(PointError::JointLimit { joint: j + 1, by });
         }
     }
+    let by = robot.beyond_sum(joints);
+    if by > ANGLE_ROUNDING {
+        return Err(PointError::AxesSum { by });
+    }
     Ok(())
 }

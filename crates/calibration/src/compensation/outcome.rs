@@ -146,6 +146,12 @@ pub enum PointError {
         /// By how much. rad
         by: f64,
     },
+    /// The sum of joints 2 and 3 of the corrected command is beyond a limit.
+    #[error("corrected, the sum of joints 2 and 3 would be {:.6} deg beyond its limit", by.to_degrees())]
+    AxesSum {
+        /// By how much. rad
+        by: f64,
+    },
     /// The arm of the model has no equilibrium under the load.
     #[error("the arm has no stable equilibrium beyond {share:.3} of the load")]
     Unstable {

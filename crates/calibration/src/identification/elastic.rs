@@ -19,6 +19,8 @@ use stead_numerics::rotation::rotation_from_vector;
 pub struct Elastic<const N: usize> {
     /// Direction of each line, and a point of it. m
     lines: [(Vector3<f64>, Vector3<f64>); N],
+    /// On an arm with a linkage, by how much joint 3 turns back where the spring of joint 2 turns about its line.
+    held: Option<f64>,
     /// The flange.
     pub base_from_flange: Pose<f64>,
 }
@@ -27,7 +29,7 @@ impl From<&Frames<f64>> for Elastic<AXES> {
     /// About the joint axes alone.
     fn from(frames: &Frames<f64>) -> Self {
         let lines = std::array::from_fn(|joint| (frames.axes[joint], frames.origins[joint]));
-        Self { lines, base_from_flange: frames.base_from_flange }
+        Self { lines, held: frames.held(), base_from_flange: frames.base_from_flange }
     }
 }
 
@@ -42,12 +44,14 @@ impl<const N: usize> Elastic<N> {
                 (frames.rotations[joint].column(usize::from(about == About::Y)).into_owned(), place)
             }
         };
-        Self { lines: std::array::from_fn(line), base_from_flange: frames.base_from_flange }
+        Self { lines: std::array::from_fn(line), held: frames.held(), base_from_flange: frames.base_from_flange }
     }
 
     /// With the springs turned so far (rad) behind the drives at joint angles in rad.
     fn turned(robot: &Robot, theta: &[f64; 6], turns: &SVector<f64, N>) -> Self {
         let bearings = bearings(robot);
+        let held = robot.has_linkage().then_some(robot.geometry().fold);
+        let turns = lines_by_springs(held) * turns;
         let mut lines = [(Vector3::zeros(), Vector3::zeros()); N];
         let mut pose = robot.cell_from_base();
         let along = |pose: &Pose<f64>, shift: f64| pose.translation + pose.rotation.column(2) * shift;
@@ -63,13 +67,21 @@ impl<const N: usize> Elastic<N> {
             }
             pose.translation = along(&pose, -bearings[joint]);
         }
-        Self { lines, base_from_flange: pose }
+        Self { lines, held, base_from_flange: pose }
+    }
+
+    /// The velocities of a turn about the line of a spring alone.
+    fn line(&self, column: usize, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+        let (axis, place) = &self.lines[column];
+        (axis.cross(&(point - place)), *axis)
     }
 
     /// Linear and angular velocity of a point of the flange (m, base frame) per unit speed of a spring.
     pub fn twist(&self, column: usize, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-        let (axis, place) = &self.lines[column];
-        (axis.cross(&(point - place)), *axis)
+        let (velocity, axis) = self.line(column, point);
+        let Some(held) = self.held.filter(|_| column == SECOND) else { return (velocity, axis) };
+        let (back, around) = self.line(THIRD, point);
+        (velocity - back * held, axis - around * held)
     }
 
     /// The torque of a force (N) and a moment (N m) at a place (m, base frame) about a spring. N m
@@ -90,13 +102,13 @@ impl<const N: usize> Elastic<N> {
         jacobian
     }
 
-    /// The derivative of the torques by the turns, row by row: [`stead_model::stiffness::loaded::load_hessian`] with a
-    /// line for each spring. N m/rad
+    /// The derivative of the torques by the turns of the springs, row by row:
+    /// [`stead_model::stiffness::loaded::load_hessian`] with a line for each spring. N m/rad
     fn load_hessian(&self, place: &Vector3<f64>, force: &Vector3<f64>, moment: &Vector3<f64>) -> SMatrix<f64, N, N> {
         let mut hessian = SMatrix::zeros();
         let order = chain_order::<N>();
         for (rank, j) in order.iter().enumerate() {
-            let velocity = self.twist(*j, place).0;
+            let velocity = self.line(*j, place).0;
             for i in &order[..=rank] {
                 let of_force = self.lines[*i].0.cross(&velocity).dot(force);
                 hessian[(*i, *j)] = of_force;
@@ -106,8 +118,25 @@ impl<const N: usize> Elastic<N> {
                 }
             }
         }
-        hessian
+        if self.held.is_none() {
+            return hessian;
+        }
+        let lines: SMatrix<f64, N, N> = lines_by_springs(self.held);
+        lines.transpose() * hessian * lines
     }
+}
+
+/// The columns of joints 2 and 3 about their axes.
+const SECOND: usize = 1;
+const THIRD: usize = 2;
+
+/// Turns about the lines per turn of the springs: the identity, but on an arm with a linkage.
+fn lines_by_springs<const N: usize>(held: Option<f64>) -> SMatrix<f64, N, N> {
+    let mut lines = SMatrix::identity();
+    if let Some(held) = held {
+        lines[(THIRD, SECOND)] = -held;
+    }
+    lines
 }
 
 /// The columns as their turns follow each other from the base on.

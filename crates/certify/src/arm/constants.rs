@@ -6,7 +6,7 @@ use super::beside::Beside;
 use super::law::Law;
 use super::singularity::{Limits, Needs, tool_lever};
 use nalgebra::{Matrix3, Vector3};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use stead_model::robot::{Geometry, Robot, angles::ANGLE_ROUNDING};
 use stead_planning::problem::Problem;
 
@@ -27,6 +27,10 @@ pub(in super::super) struct Arm {
     pub(super) compliances: [f64; 3],
     /// Limits of joints 2 and 3, rounding included. rad
     limits: [(f64, f64); 2],
+    /// The limits of the sum of joints 2 and 3, where they say more than those of the joints.
+    pub(super) sum: Option<SumLimits>,
+    /// Whether joint 2 yields with the forearm keeping its direction: v_2 - v_3 in the place of v_2.
+    pub(super) linkage: bool,
     /// Smallest cosine of theta_5.
     pub(super) min_cosine5: f64,
     pub(super) min_inverse_condition: f64,
@@ -43,6 +47,28 @@ pub(in super::super) struct Arm {
     pub(in super::super) has_moments: bool,
 }
 
+/// The limits of the sum of joints 2 and 3.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct SumLimits {
+    /// Rounding included. rad
+    pub limits: (f64, f64),
+    /// 1 or -1: how joint 3 counts.
+    pub fold: f64,
+    /// Whether no sum beyond them is within them but for a whole turn, by the limits of the joints.
+    pub is_exact: bool,
+}
+
+impl SumLimits {
+    fn of(robot: &Robot) -> Option<Self> {
+        let range = robot.sum_range()?;
+        let [least, largest] = robot.sums();
+        let limits = (range.min - ANGLE_ROUNDING, range.max + ANGLE_ROUNDING);
+        let says_more = least < limits.0 || largest > limits.1;
+        let is_exact = largest - TAU < limits.0 && least + TAU > limits.1;
+        says_more.then_some(Self { limits, fold: robot.geometry().fold, is_exact })
+    }
+}
+
 /// How the limits of a joint cut its turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in super::super) enum LimitSpan {
@@ -52,6 +78,19 @@ pub(in super::super) enum LimitSpan {
     Wide,
     /// A turn or more: nothing is cut off.
     Full,
+}
+
+impl LimitSpan {
+    /// Of limits in rad.
+    pub fn of((min, max): (f64, f64)) -> Self {
+        if max - min >= 2.0 * PI {
+            Self::Full
+        } else if max - min > PI {
+            Self::Wide
+        } else {
+            Self::Narrow
+        }
+    }
 }
 
 impl Arm {
@@ -110,6 +149,8 @@ impl Arm {
             typical: compliances[1].max(compliances[2]) / 3.0,
             compliances: std::array::from_fn(|k| compliances[k + 3]),
             limits: [1, 2].map(|j| (joint(j).min - ANGLE_ROUNDING, joint(j).max + ANGLE_ROUNDING)),
+            sum: SumLimits::of(robot),
+            linkage: robot.has_linkage(),
             min_cosine5: if widest5 >= PI { -1.0 } else { libm::cos(widest5) },
             min_inverse_condition: problem.constraints.min_inverse_condition,
             characteristic_length: problem.constraints.characteristic_length,
@@ -126,15 +167,13 @@ impl Arm {
         self.limits[joint]
     }
 
+    /// The limits of the sum of joints 2 and 3, where they say more than those of the joints.
+    pub fn sum_limits(&self) -> Option<&SumLimits> {
+        self.sum.as_ref()
+    }
+
     /// How the limits of joint 2 (0) or 3 (1) cut its turn.
     pub fn limit_span(&self, joint: usize) -> LimitSpan {
-        let (min, max) = self.limits[joint];
-        if max - min >= 2.0 * PI {
-            LimitSpan::Full
-        } else if max - min > PI {
-            LimitSpan::Wide
-        } else {
-            LimitSpan::Narrow
-        }
+        LimitSpan::of(self.limits[joint])
     }
 }

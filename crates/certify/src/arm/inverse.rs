@@ -129,6 +129,8 @@ pub(super) struct Elbow<T> {
     pub margin: T,
     /// sin(theta - min), sin(max - theta) of joints 2 and 3.
     pub joint_margins: [[T; 2]; 2],
+    /// The same of their sum, where it has limits.
+    pub sum_margins: Option<[T; 2]>,
     /// Where one of these is sure to be violated.
     pub violated: Mask,
 }
@@ -211,30 +213,31 @@ impl Arm {
         let (sin_bar, cos_bar) = libm::sincos(g.forearm_angle);
         let sin3 = sin_delta.scale(signs.elbow * cos_bar) - cos_delta.scale(sin_bar);
         let cos3 = cos_delta.scale(cos_bar) + sin_delta.scale(signs.elbow * sin_bar);
-        let joint_margins = [self.limit_margins(0, sin2, cos2), self.limit_margins(1, sin3, cos3)];
-        let outside = self.is_outside(0, joint_margins[0]) | self.is_outside(1, joint_margins[1]);
+        let joint_margins = [limit_margins(self.limits(0), sin2, cos2), limit_margins(self.limits(1), sin3, cos3)];
+        let [span2, span3] = [0, 1].map(|joint| self.limit_span(joint));
+        let mut outside = is_outside(span2, joint_margins[0]) | is_outside(span3, joint_margins[1]);
+        let mut sum_margins = None;
+        if let Some(sum) = &self.sum {
+            let sin3 = sin3.scale(sum.fold);
+            let margins = limit_margins(sum.limits, sin2 * cos3 + cos2 * sin3, cos2 * cos3 - sin2 * sin3);
+            outside = outside | is_outside(LimitSpan::of(sum.limits), margins);
+            sum_margins = Some(margins);
+        }
         let is_folded = self.is_too_near(distance2.high(), needed.low());
         let violated = (margin.is_negative() | is_folded) & defined | outside & *regular;
         let angles = [[sin2, cos2], [sin3, cos3]];
         let from_shoulder = InPlane { along: u, up };
-        Elbow { from_shoulder, elbow, sin_delta, sin_delta_squared, distance2, angles, margin, joint_margins, violated }
-    }
-
-    /// sin(theta - min) and sin(max - theta) of joint 2 (0) or 3 (1).
-    #[inline(always)]
-    fn limit_margins<T: Number>(&self, joint: usize, sine: T, cosine: T) -> [T; 2] {
-        let (min, max) = self.limits(joint);
-        let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
-        [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
-    }
-
-    /// Where joint 2 (0) or 3 (1) is sure to be outside its limits.
-    #[inline(always)]
-    fn is_outside<T: Number>(&self, joint: usize, [min, max]: [T; 2]) -> Mask {
-        match self.limit_span(joint) {
-            LimitSpan::Full => Mask::splat(false),
-            LimitSpan::Wide => min.is_negative() & max.is_negative(),
-            LimitSpan::Narrow => min.is_negative() | max.is_negative(),
+        Elbow {
+            from_shoulder,
+            elbow,
+            sin_delta,
+            sin_delta_squared,
+            distance2,
+            angles,
+            margin,
+            joint_margins,
+            sum_margins,
+            violated,
         }
     }
 
@@ -267,5 +270,22 @@ impl Arm {
         let joint5_margin = dot46.scale(-g.twist[1] * g.twist[2]).plus(-self.min_cosine5);
         let from_elbow = InPlane { along, up };
         Wrist { from_elbow, axis4, axis4_along, dot46, sine5_squared, inverse5, margin, joint5_margin }
+    }
+}
+
+/// sin(theta - min) and sin(max - theta) of an angle with limits (rad).
+#[inline(always)]
+fn limit_margins<T: Number>((min, max): (f64, f64), sine: T, cosine: T) -> [T; 2] {
+    let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
+    [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
+}
+
+/// Where an angle is sure to be outside its limits.
+#[inline(always)]
+fn is_outside<T: Number>(span: LimitSpan, [min, max]: [T; 2]) -> Mask {
+    match span {
+        LimitSpan::Full => Mask::splat(false),
+        LimitSpan::Wide => min.is_negative() & max.is_negative(),
+        LimitSpan::Narrow => min.is_negative() | max.is_negative(),
     }
 }

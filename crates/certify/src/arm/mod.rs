@@ -6,7 +6,7 @@
 //!
 //! A joint j moves the tool centre point at v_j per joint velocity, so joints 2 to 6 yield by `C = sum k_j v_j v_j^T`.
 //! With phi the angle theta_1 of the arm's plane, h_2 and h_3 the heights of the tool centre point above axes 2 and 3,
-//! and t the lever:
+//! and t the lever, where a linkage puts v_2 - v_3 in the place of v_2:
 //!
 //! ```text
 //! v_2, v_3: h_j (cos phi, sin phi) in plan        v_4 = z_4 x t,  v_5 = (z_4 x z_6) x t / s,  v_6 = z_6 x t
@@ -65,6 +65,8 @@ pub(super) struct Margins<T> {
     pub elbow: T,
     /// Of joints 2 and 3, above the lower and below the upper limit: see [`Arm::limit_span`].
     pub joints: [[T; 2]; 2],
+    /// The same of the sum of joints 2 and 3, where it has limits.
+    pub sum: Option<[T; 2]>,
     /// Joint 5, in the better of the two flips.
     pub joint5: T,
     /// What the bound on conditioning asks of the wrist.
@@ -171,6 +173,7 @@ impl Arm {
         let margins = Margins {
             elbow: elbow.margin,
             joints: elbow.joint_margins,
+            sum: elbow.sum_margins,
             joint5: wrist.joint5_margin,
             wrist: wrist.margin,
             conditioning,
@@ -193,7 +196,10 @@ impl Arm {
         let k5 = posed.wrist.inverse5.scale(k5);
         // The sum over joints 4 to 6 of k_j f(v_j).
         let wrist = |f: &dyn Fn(&Vector<T>) -> T| f(&v4).scale(k4) + f(&v5) * k5 + f(&v6).scale(k6);
-        let [p2, p3] = posed.tips;
+        let [mut p2, p3] = *posed.tips;
+        if self.linkage {
+            p2 = InPlane { along: p2.along - p3.along, up: p2.up - p3.up };
+        }
         let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
         let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
         // Of joints 2 and 3 the sum of k_j f(v_j).
@@ -231,7 +237,12 @@ impl Arm {
         let ([second, third], [angles2, angles3]) = (&self.laws, posed.elbow.angles);
         let mut upper = |of2: T, of3: T| second.times(of2, angles2, regular) + third.times(of3, angles3, regular);
         let [p2, p3] = posed.tips;
-        let (bending, lifting) = (upper(p2.up, p3.up).scale(0.5), upper(p2.along, p3.along));
+        let [mut up2, mut along2] = [p2.up, p2.along];
+        if self.linkage {
+            // The forearm keeps its direction: no moment turns the spring of joint 2.
+            (up2, along2) = (T::constant(0.0), T::constant(0.0));
+        }
+        let (bending, lifting) = (upper(up2, p3.up).scale(0.5), upper(along2, p3.along));
         let (cos1, sin1) = (posed.first.cosine, posed.first.sine);
         let (cos_twice, sin_twice) = (sin1.square().scale(-2.0).plus(1.0), (cos1 * sin1).scale(2.0));
         [

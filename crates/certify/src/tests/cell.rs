@@ -18,7 +18,7 @@ fn closed_form(setting: &Setting, r: f64, z: f64, heading: f64, class: PostureCl
     let (r, z) = (<Slope>::variable(Lanes::splat(r), 0), <Slope>::variable(Lanes::splat(z), 1));
     let y = setting.model.arm.evaluate(r, z, sine, cosine, class)?;
     let values = [y.m, y.d1, y.d2, y.vertical[0], y.vertical[1], y.axial].map(|f| f.value.0[0]);
-    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = y.margins;
+    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning, .. } = y.margins;
     let margins = [elbow, second[0], second[1], third[0], third[1], joint5, wrist, conditioning];
     let moments = y.moments.map_or([0.0; MOMENTS], |all| all.map(|f| f.value.0[0]));
     (!y.violated.lane(0)).then_some(((values, moments), margins.map(|margin| margin.value.0[0])))

@@ -17,7 +17,7 @@ const NAMES: [&str; 6] = ["elbow", "joint 2", "joint 3", "joint 5", "wrist", "co
 /// Which constraints are not decided over a node, and whether its middle violates them.
 fn undecided(setting: &Setting, place: [f64; 3], half: [f64; 3], class: PostureClass) -> Option<[[bool; 2]; 6]> {
     let y = enclosed(&setting.model.arm, &[place; WIDTH], half, class)?;
-    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning } = &y.margins;
+    let Margins { elbow, joints: [second, third], joint5, wrist, conditioning, .. } = &y.margins;
     let of = |margin: &super::super::enclosure::Enclosure| {
         let (low, middle) = (margin.value.low().0[0], margin.middle().value.0[0]);
         [low < 0.0, middle < 0.0]

@@ -30,7 +30,9 @@ use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
 use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::testing::{Beside, compensated, five_segments, hanging, slanted, with_beside, with_laws};
+use stead_planning::testing::{
+    Beside, compensated, five_segments, hanging, slanted, with_axes_2_3, with_beside, with_laws,
+};
 
 /// What is broken on purpose, and how.
 type Breaking<T> = (&'static str, fn(&mut T));
@@ -76,6 +78,9 @@ impl Setting {
             ("odd arm", odd_arm()),
             ("compliances that change", changing()),
             ("compensator", with_laws(slanted(), &[(1, compensated(0.2, 1e-6 / 3.32))])),
+            ("linkage", with_axes_2_3(slanted(), true, [-150.0, -20.0])),
+            // Of some sums beyond the range another turn is within it.
+            ("sum of the odd arm", with_axes_2_3(odd_arm(), false, [-100.0, 220.0])),
         ]
         .map(|(name, problem)| (name, Self::new(problem)))
         .into()
@@ -113,6 +118,11 @@ impl Setting {
         };
         let linear = [
             ("wall, moments", with_moments()),
+            ("moments on a linkage", with_axes_2_3(with_moments(), true, [-150.0, 0.0])),
+            (
+                "whole arm with a linkage",
+                whole_arm(with_axes_2_3(odd_arm(), true, [-200.0, 150.0]), Beside::Everything),
+            ),
             ("normal springs", whole_arm(slanted(), Beside::Alike)),
             ("normal springs in pairs, hanging arm", whole_arm(hanging_arm(), Beside::Pairs)),
             ("whole arm", whole_arm(odd_arm(), Beside::Everything)),

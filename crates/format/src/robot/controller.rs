@@ -43,6 +43,6 @@ fn controller_from(
         return Err(at.key("sign").element(joint + 1).error("is no sign", "1 or -1"));
     }
     let kind = table.kind.0;
-    let is_j3_level = table.is_j3_level.unwrap_or(kind == ControllerKind::Fanuc);
+    let is_j3_level = table.is_j3_level;
     Ok(Controller { kind, sign, offset: table.offset_deg.si(), is_j3_level, root_from_base })
 }

@@ -75,6 +75,11 @@ pub fn moving_robot_from(source: &TomlFile, orthogonal: bool) -> Result<Robot, I
 /// [`InputError`] at the first joint whose row says too little, naming what is missing.
 pub fn checked_to_move(robot: Robot, source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
     let document = source.parse()?;
+    if robot.has_linkage() {
+        let problem = "is an arm whose motion is not computed: the masses of its rods are in no row, and springs are taken joint by joint";
+        let allowed = "an arm without a linkage for simulate, stability and [stability]";
+        return Err(document.root().key("axes_2_3").key("linkage").error(problem, allowed));
+    }
     let lacking = |index: usize, keys: &[&str], what: &str| {
         let row = document.root().key("joints").element(index + 1);
         let key = keys.iter().find(|key| !row.key(key).is_given()).unwrap_or(&MASS);

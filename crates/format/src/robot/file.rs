@@ -41,6 +41,8 @@ pub struct RobotFile {
     pub controller: Option<ControllerTable>,
     /// Where the base frame of the rows is in the controller's robot root; needed for programs.
     pub root: Option<RootTable>,
+    /// What joins axes 2 and 3, beside the ranges of their joints.
+    pub axes_2_3: Option<Axes23Table>,
     /// The six joints, base first.
     pub joints: Vec<JointRow>,
     /// How well the compliances are known: what `stead identify fit` writes.
@@ -56,9 +58,23 @@ pub struct ControllerTable {
     pub sign: Array<Number, 6>,
     /// Angle of each row where the controller's angle is zero.
     pub offset_deg: Array<Deg, 6>,
-    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm, so that A_2 + A_3
-    /// stands in the place of A_3; where left out, true for "fanuc" and false for the others.
+    /// Whether the controller counts axis 3 against the horizontal and not against the upper arm: then theta_3 =
+    /// sign_3 A_3 + offset_3 - sign_2 A_2. Where left out, true for "fanuc" and false for the others; programs for an arm with
+    /// `axes_2_3.linkage` need it stated.
     pub is_j3_level: Option<bool>,
+}
+
+/// What joins axes 2 and 3. The sum theta_2 + theta_3 is how far the forearm is turned against the base (theta_2 -
+/// theta_3 where `alpha_deg` of row 3 is 180).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Axes23Table {
+    /// Whether a parallelogram drives axis 3: speed, acceleration, jerk and stiffness of row 3 are then those of the
+    /// sum. False where left out.
+    pub linkage: Option<bool>,
+    /// Lower limit of the sum.
+    pub sum_min_deg: Deg,
+    /// Upper limit of the sum.
+    pub sum_max_deg: Deg,
 }
 
 /// The base frame of the rows in the controller's robot root (`$ROBROOT` of a KUKA).

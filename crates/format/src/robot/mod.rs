@@ -10,7 +10,7 @@ mod one_or_pair;
 mod one_or_range;
 mod springs;
 
-pub use file::{CompensatorTable, ControllerTable, CovarianceTable, JointRow, RobotFile, RootTable};
+pub use file::{Axes23Table, CompensatorTable, ControllerTable, CovarianceTable, JointRow, RobotFile, RootTable};
 pub(crate) use lender::{NoLender, lender, lent_urad_per_nm};
 pub use one_or_pair::OneOrPair;
 pub use one_or_range::OneOrRange;
@@ -28,7 +28,8 @@ use springs::with_springs;
 use std::path::Path;
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::quote::garbles;
-use stead_model::robot::{Compliance, DataSheet, Joint, Robot, RobotError, SpringModel};
+use stead_model::robot::turns::Range;
+use stead_model::robot::{Axes23, Compliance, DataSheet, Joint, Robot, RobotError, SpringModel};
 
 /// Reads a robot file: the keys of [`RobotFile`].
 ///
@@ -153,7 +154,12 @@ fn made(
         arm.push(joint_from(row, compliance(row, &at)?));
     }
     let robot = Robot::new(&file.name, arm.try_into().map_err(|_| not_six())?);
-    let robot = robot.and_then(|robot| robot.with_data_sheet(data_sheet)).map_err(|error| locate(at, &error))?;
+    let axes_2_3 = file.axes_2_3.map(|table| Axes23 {
+        linkage: table.linkage.unwrap_or(false),
+        sum: Range { min: table.sum_min_deg.si(), max: table.sum_max_deg.si() },
+    });
+    let robot = robot.and_then(|robot| robot.with_data_sheet(data_sheet)?.with_axes_2_3(axes_2_3));
+    let robot = robot.map_err(|error| locate(at, &error))?;
     let robot = with_stiffness_like(robot, file.stiffness_like.as_deref(), at)?;
     let robot = robot.with_unverified(file.unverified.as_ref().map_or_else(Vec::new, |list| list.0.clone()));
     let robot = with_controller(robot, file, at)?;
@@ -208,6 +214,11 @@ fn locate(root: &Place<'_>, error: &RobotError) -> InputError {
         RobotError::DataSheet { field, value } => {
             return root.key(key(field)).error(format!("is {value} in SI units"), POSITIVE);
         }
+        RobotError::Sum { field, reason } => {
+            const ALLOWED: &str = "sum_min_deg below sum_max_deg, both within what min_deg and max_deg of joints 2 and 3 \
+                                   allow, each less than 360 deg apart; with linkage one compliance of joint 3";
+            return root.key("axes_2_3").key(key(field)).error(reason.clone(), ALLOWED);
+        }
         RobotError::NotFinite { joint, field, value } => {
             (*joint, *field, format!("is {value} in SI units"), "a number that is finite in SI units")
         }
@@ -255,6 +266,8 @@ fn key(name: &str) -> &str {
         "d" => "d_mm",
         "l" => "l_mm",
         "min" => "min_deg",
+        "sum_min" => "sum_min_deg",
+        "sum_max" => "sum_max_deg",
         "max" => "max_deg",
         "max_speed" => "max_speed_deg_per_s",
         "max_acceleration" => "max_acceleration_deg_per_s2",

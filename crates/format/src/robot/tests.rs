@@ -109,6 +109,50 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
     }
 }
 
+/// The file with this table in lines 51 on.
+fn with_table(table: &str) -> String {
+    text() + table
+}
+
+#[test]
+fn what_joins_axes_2_and_3_is_read_and_what_joins_none_is_refused() {
+    let robot = read(&with_table("[axes_2_3]\nsum_min_deg = -200\nsum_max_deg = -30\n")).unwrap();
+    let sum = robot.sum_range().unwrap();
+    assert_eq!((sum.min, sum.max), (-200_f64.to_radians(), -30_f64.to_radians()));
+    assert!(!robot.has_linkage() && read(&text()).unwrap().axes_2_3().is_none());
+    let linked = "[axes_2_3]\nlinkage = true\nsum_min_deg = -245\nsum_max_deg = 175\n";
+    assert!(read(&with_table(linked)).unwrap().has_linkage());
+    for (table, parts) in [
+        ("linkage = true", ["arm.toml:51: axes_2_3.sum_min_deg: ", "missing", "", "a finite number"]),
+        ("linkage = true\nsum_min_deg = 1", [":51: axes_2_3.sum_max_deg: ", "missing", "", "a finite number"]),
+        ("sum_min_deg = 9\nsum_max_deg = 8", [":52: axes_2_3.sum_min_deg: ", "not below sum_max", "found 9", "below"]),
+        ("sum_min_deg = 9\nsum_max_deg = nan", [":53: axes_2_3.sum_max_deg: ", "", "found nan", "a finite number"]),
+        ("sum_min_deg = -inf\nsum_max_deg = 8", [":52: axes_2_3.sum_min_deg: ", "", "found -inf", "a finite number"]),
+        (
+            "sum_min_deg = -246\nsum_max_deg = 8",
+            [":52: axes_2_3.sum_min_deg: ", "-245.0000 to 175.0000 deg", "found -246", "of joints 2 and 3"],
+        ),
+        (
+            "sum_min_deg = 0\nsum_max_deg = 176",
+            [":53: axes_2_3.sum_max_deg: ", "-245.0000 to 175.0000 deg", "found 176", "of joints 2 and 3"],
+        ),
+        ("linkage = 1\nsum_min_deg = 0\nsum_max_deg = 8", [":52: axes_2_3.linkage: ", "", "found 1", "true or false"]),
+        ("link = true\nsum_min_deg = 0\nsum_max_deg = 8", [":52: axes_2_3.link: ", "linkage", "true", "sum_max_deg"]),
+    ] {
+        let message = read(&with_table(&format!("[axes_2_3]\n{table}\n"))).unwrap_err().to_string();
+        for part in parts.iter().chain(&["; allowed: "]) {
+            assert!(message.contains(part), "{part} in {message}");
+        }
+        assert_eq!(message.lines().count(), 1);
+    }
+    let varying = with_line(26, "compliance_urad_per_nm = [0.4, 0.5]") + "\n" + linked;
+    let message = read(&varying).unwrap_err().to_string();
+    assert!(message.contains("axes_2_3.linkage: drives joint 3, whose compliance changes"), "{message}");
+    let turning = with_line(24, "max_deg = 200") + "\n" + linked;
+    let message = read(&turning).unwrap_err().to_string();
+    assert!(message.contains("needs a range of less than 360 deg of joint 3"), "{message}");
+}
+
 /// A compensator at joint 2, its header in line 19.
 const COMPENSATED: &str = "stiffness_mnm_per_rad = 3.32
 [joints.compensator]

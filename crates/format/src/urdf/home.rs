@@ -88,7 +88,9 @@ pub(super) fn controller_at(
         let angle = home.angles_deg[joint];
         return Err(refused(format!("leaves the sign of axis {} open: A{} is {angle} deg", joint + 1, joint + 1)));
     }
-    let levels = if home.kind == ControllerKind::Fanuc { vec![true, false] } else { vec![false] };
+    // Both ways of counting axis 3, the maker's own first.
+    let is_fanuc = home.kind == ControllerKind::Fanuc;
+    let levels = [is_fanuc, !is_fanuc];
     let angles = home.angles_deg.map(f64::to_radians);
     let wanted = flange(home);
     let above = Vector3::z() * robot.rows()[0].translation.z;
@@ -96,9 +98,10 @@ pub(super) fn controller_at(
         .root_from_base
         .map_or_else(Vec::new, |root| vec![root, Pose { translation: root.translation - above, ..root }]);
     let mut nearest = f64::INFINITY;
-    for is_j3_level in &levels {
+    for is_j3_level in levels {
         for root in &roots {
-            let with = Controller { kind: home.kind, is_j3_level: *is_j3_level, root_from_base: Some(*root), ..*own };
+            let is_j3_level = Some(is_j3_level);
+            let with = Controller { kind: home.kind, is_j3_level, root_from_base: Some(*root), ..*own };
             let (position, direction) = off(robot, &with, &angles, &wanted);
             if position < POSITION && direction < DIRECTION {
                 return Ok((with, true));
@@ -108,13 +111,11 @@ pub(super) fn controller_at(
     }
     let mut found: Vec<Controller> = Vec::new();
     for is_j3_level in levels {
-        let mut turned = angles;
-        if is_j3_level {
-            turned[2] += angles[1];
-        }
+        let is_j3_level = Some(is_j3_level);
         for root in &roots {
+            let with = Controller { kind: home.kind, is_j3_level, ..*own };
             let start = Tried { sign: [1.0; 6], offset: [0.0; 6], pose: *root };
-            search(robot, &turned, &wanted, start, 0, &mut |tried| {
+            search((robot, &with), &angles, &wanted, start, 0, &mut |tried| {
                 let (kind, root) = (home.kind, Some(*root));
                 let Tried { sign, offset, .. } = *tried;
                 found.push(Controller { kind, sign, offset, is_j3_level, root_from_base: root });
@@ -160,7 +161,7 @@ fn flange(home: &HomePose) -> Pose<f64> {
 /// How far a way of counting is from a pose: position in m, direction in rad.
 fn off(robot: &Robot, controller: &Controller, angles: &[f64; 6], wanted: &Pose<f64>) -> (f64, f64) {
     let root = controller.root_from_base.unwrap_or_else(Pose::identity);
-    distance(&root.then(&robot.forward(&controller.joints(angles))), wanted)
+    distance(&root.then(&robot.forward(&controller.joints(robot, angles))), wanted)
 }
 
 fn distance(pose: &Pose<f64>, wanted: &Pose<f64>) -> (f64, f64) {
@@ -180,7 +181,7 @@ struct Tried {
 
 /// Tries all signs and offsets of a joint and of those behind it.
 fn search(
-    robot: &Robot,
+    (robot, counting): (&Robot, &Controller),
     angles: &[f64; 6],
     wanted: &Pose<f64>,
     tried: Tried,
@@ -197,9 +198,11 @@ fn search(
     let before = tried.pose.then(&robot.rows()[joint]);
     for sign in [1.0, -1.0] {
         for offset in OFFSETS_DEG.map(f64::to_radians) {
-            let mut next = Tried { pose: before.then(&about_z(sign * angles[joint] + offset)), ..tried };
+            let mut next = tried;
             (next.sign[joint], next.offset[joint]) = (sign, offset);
-            search(robot, angles, wanted, next, joint + 1, found);
+            let with = Controller { sign: next.sign, offset: next.offset, ..*counting };
+            next.pose = before.then(&about_z(with.joints(robot, angles)[joint]));
+            search((robot, counting), angles, wanted, next, joint + 1, found);
         }
     }
 }
@@ -216,7 +219,7 @@ mod tests {
     fn shown(name: &str) -> (Robot, Controller, HomePose) {
         let robot = read_geometry(Path::new(name)).unwrap();
         let controller = *robot.controller().unwrap();
-        let flange = robot.forward(&controller.joints(&ANGLES.map(f64::to_radians)));
+        let flange = robot.forward(&controller.joints(&robot, &ANGLES.map(f64::to_radians)));
         let flange = controller.root_from_base.unwrap().then(&flange);
         let [x, y, z] = [0, 1, 2].map(|axis| (flange.translation[axis] * 1e5).round() / 1e2);
         let [a, b, c] = zyx_from_rotation(&flange.rotation).map(|angle| (angle.to_degrees() * 1e2).round() / 1e2);
@@ -226,8 +229,9 @@ mod tests {
     /// Whatever zero and signs the URDF has, those of the controller are found.
     #[test]
     fn the_way_of_counting_of_every_maker_is_found() {
-        for name in ["name:kuka-kr210-r2700", "name:abb-irb6640-235", "name:fanuc-m20ia", "name:staubli-rx160l"] {
-            let (robot, expected, home) = shown(name);
+        for name in ["kuka-kr210-r2700", "abb-irb6640-235", "abb-irb4400-60", "fanuc-m20ia", "staubli-rx160l"] {
+            let (robot, mut expected, home) = shown(&format!("name:{name}"));
+            expected.is_j3_level = Some(expected.is_level());
             let (kept, is_own) = controller_at(&robot, &expected, &home).unwrap();
             assert!(is_own && kept == expected, "{name}");
             // A URDF with other zeros and signs of axes 1 to 3 and 6, and its root on the floor.
@@ -240,7 +244,7 @@ mod tests {
             let (found, is_own) = controller_at(&robot, &other, &home).unwrap();
             assert!(!is_own);
             // Half a turn may be written with either sign.
-            let joints = |controller: &Controller| controller.joints(&[0.3, 0.1, -0.4, 1.0, 0.7, 2.0]);
+            let joints = |controller: &Controller| controller.joints(&robot, &[0.3, 0.1, -0.4, 1.0, 0.7, 2.0]);
             for (a, b) in joints(&found).into_iter().zip(joints(&expected)) {
                 assert!(libm::sin((a - b) / 2.0).abs() < 1e-12, "{name}: {found:?}");
             }

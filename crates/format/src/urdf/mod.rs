@@ -45,7 +45,8 @@ use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::{InputError, sha256};
 use stead_model::plausibility;
-use stead_model::robot::{Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
+use stead_model::robot::turns::Range;
+use stead_model::robot::{Axes23, Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
 use stiffness::Borrowed;
 use tree::{Chain, Tree};
 use xml::{one_line, quoted};
@@ -84,6 +85,8 @@ pub struct ImportedRobot {
     pub limits_deg: [[f64; 2]; 6],
     /// Speed of each joint, where the URDF states it. deg/s
     pub max_speed_deg_per_s: [Option<f64>; 6],
+    /// What the sum of joints 2 and 3 may be by their ranges, where a parallelogram drives axis 3. deg
+    pub linkage_sums_deg: Option<[f64; 2]>,
     /// The base frame of the rows in the base link. m
     pub link_from_base: Pose<f64>,
     /// The tip link in the frame of the last row. m
@@ -141,6 +144,7 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
     let deviation = deviation(urdf, &chain, &rows, &robot, &limits);
     refuse_far(urdf, &chain, deviation)?;
     let bodies = bodies::bodies(urdf, &chain, &rows, &robot);
+    let linkage_sums_deg = linkage_sums(urdf, &chain, &robot);
     let mut imported = ImportedRobot {
         name: one_line(&urdf.name),
         base_link: urdf.links[chain.base].name.clone(),
@@ -149,10 +153,11 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         rows: rows.rows,
         limits_deg,
         max_speed_deg_per_s: speeds,
+        linkage_sums_deg,
         link_from_base: rows.link_from_base,
         flange_from_tip: rows.flange_from_tip,
         deviation,
-        notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref())
+        notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref(), linkage_sums_deg.is_some())
             .into_iter()
             .chain(plausibility::joint_ranges(&robot))
             .collect(),
@@ -198,7 +203,7 @@ impl ImportedRobot {
     /// A controller that counts as the URDF does, its root at the base link.
     fn controller_of_urdf(&self, kind: ControllerKind) -> Controller {
         let (sign, offset) = (self.rows.map(|row| row.sign), self.rows.map(|row| row.offset_deg.to_radians()));
-        Controller { kind, sign, offset, is_j3_level: false, root_from_base: Some(self.link_from_base) }
+        Controller { kind, sign, offset, is_j3_level: Some(false), root_from_base: Some(self.link_from_base) }
     }
 
     /// The files of the robot with their texts: the robot file, and beside it, where the shapes of the links were
@@ -223,6 +228,15 @@ impl ImportedRobot {
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
         write_all_new(&texts, existing)
     }
+}
+
+/// What the sum of joints 2 and 3 may be by their ranges, where a parallelogram drives axis 3 and neither of them turns
+/// by a whole turn. deg
+fn linkage_sums(urdf: &Urdf, chain: &Chain, robot: &Robot) -> Option<[f64; 2]> {
+    let [min, max] = robot.sums();
+    let axes_2_3 = Axes23 { linkage: true, sum: Range { min, max } };
+    let is_linkage = !chain.linkage(urdf).is_empty() && robot.clone().with_axes_2_3(Some(axes_2_3)).is_ok();
+    is_linkage.then(|| [min, max].map(|sum| rounded(sum.to_degrees())))
 }
 
 /// The limits of the six joints as the URDF states them. rad

@@ -18,6 +18,7 @@ pub(super) fn notes(
     rows: &Rows,
     deviation: Deviation,
     borrowed: Option<&Borrowed>,
+    is_linkage: bool,
 ) -> Vec<String> {
     let mut notes = vec![match borrowed {
         Some(borrowed) => format!(
@@ -38,11 +39,23 @@ pub(super) fn notes(
     if lateral.abs() > 0.01 {
         notes.push(format!("lateral offset: the wrist is {:.3} mm beside the plane of axes 1 and 2", lateral.abs()));
     }
-    let side: Vec<String> = chain.side(urdf).iter().take(12).map(|joint| quoted(&urdf.joints[*joint].name)).collect();
+    let linkage = if is_linkage { chain.linkage(urdf) } else { Vec::new() };
+    let names = |joints: &[usize]| -> Vec<String> {
+        joints.iter().take(12).map(|joint| quoted(&urdf.joints[*joint].name)).collect()
+    };
+    if !linkage.is_empty() {
+        notes.push(format!(
+            "joints {} follow joint {}: a parallelogram drives axis 3, and linkage = true is written; how far the sum of joints 2 and 3 \
+             goes is not in a URDF: sum_min_deg and sum_max_deg are what their ranges allow, put in those of the data sheet",
+            names(&linkage).join(", "),
+            quoted(&urdf.joints[chain.moving[2]].name)
+        ));
+    }
+    let side = names(&chain.side(urdf).into_iter().filter(|joint| !linkage.contains(joint)).collect::<Vec<_>>());
     if !side.is_empty() {
         notes.push(format!(
             "joints that are not in the chain are left out: {}; where they are a parallelogram or a spring beside the arm, limits and \
-             stiffness of joints 2 and 3 depend on each other, which the rows do not say",
+             stiffness of joints 2 and 3 depend on each other, which [axes_2_3] of the robot file says",
             side.join(", ")
         ));
     }

@@ -37,6 +37,7 @@ pub(super) fn text(robot: &ImportedRobot, urdf: &Urdf, digest: &str, borrowed: O
     for k in 0..6 {
         joint(&mut lines, robot, k, borrowed);
     }
+    linkage(&mut lines, robot);
     controller(&mut lines, robot);
     lines.0
 }
@@ -142,6 +143,17 @@ fn body(lines: &mut Lines, body: &Inertial) {
     lines.line("# damping_nms_per_rad = ?");
 }
 
+fn linkage(lines: &mut Lines, robot: &ImportedRobot) {
+    let Some([min, max]) = robot.linkage_sums_deg else { return };
+    lines.line("\n# A parallelogram drives axis 3: passive joints of the URDF follow joint 3. How far theta_2 + theta_3 goes is not in a");
+    lines.line("# URDF: these are what the ranges of joints 2 and 3 allow. The data sheet says more: the range of axis 3 there is one of");
+    lines.line("# the sum where the controller counts axis 3 against the horizontal.");
+    lines.line("[axes_2_3]");
+    lines.line("linkage = true");
+    lines.line(format_args!("sum_min_deg = {min:?}"));
+    lines.line(format_args!("sum_max_deg = {max:?}"));
+}
+
 fn controller(lines: &mut Lines, robot: &ImportedRobot) {
     let kind = robot.controller.map_or(ControllerKind::Kuka, |controller| controller.kind);
     let shown = robot.controller.unwrap_or_else(|| robot.controller_of_urdf(kind));
@@ -166,8 +178,14 @@ fn controller(lines: &mut Lines, robot: &ImportedRobot) {
     lines.line(format_args!("{key}sign = [{}]", shown.sign.map(|sign| format!("{sign}")).join(", ")));
     let offset = shown.offset.map(|offset| format!("{:?}", rounded(offset.to_degrees(), 1e9)));
     lines.line(format_args!("{key}offset_deg = [{}]", offset.join(", ")));
-    if kind == ControllerKind::Fanuc {
-        lines.line(format_args!("{key}is_j3_level = {}", shown.is_j3_level));
+    if robot.controller.is_some()
+        && (shown.is_level() || kind == ControllerKind::Fanuc || robot.linkage_sums_deg.is_some())
+    {
+        lines.line(format_args!("{key}is_j3_level = {}", shown.is_level()));
+    } else if robot.linkage_sums_deg.is_some() {
+        lines.line(format_args!(
+            "{key}is_j3_level = true                 # or false: whether A3 is counted against the horizontal"
+        ));
     }
     let root = shown.root_from_base.unwrap_or_else(Pose::identity).translation;
     lines.line(format_args!("{key}[root]"));

@@ -132,6 +132,17 @@ impl Chain {
         let is_side = |joint: &usize| urdf.joints[*joint].kind != Kind::Fixed && !self.moving.contains(joint);
         (0..urdf.joints.len()).filter(is_side).collect()
     }
+
+    /// The passive joints of a parallelogram that drives axis 3, those that follow joint 3: its crank, on the links
+    /// beside axis 2, and its rod, on the forearm. None where they do not close one.
+    pub fn linkage(&self, urdf: &Urdf) -> Vec<usize> {
+        let [_, second, third, ..] = self.moving.map(|joint| &urdf.joints[joint]);
+        let side = self.side(urdf).into_iter();
+        let all: Vec<usize> = side.filter(|joint| urdf.joints[*joint].mimic.as_ref() == Some(&third.name)).collect();
+        let hangs_on = |links: &[usize]| all.iter().any(|joint| links.contains(&urdf.joints[*joint].parent));
+        let is_closed = hangs_on(&[second.parent, second.child, third.parent]) && hangs_on(&[third.child]);
+        if is_closed { all } else { Vec::new() }
+    }
 }
 
 fn link_named(urdf: &Urdf, option: &str, name: &str) -> Result<usize, InputError> {

@@ -17,6 +17,8 @@ pub struct Frames<T: Scalar> {
     pub rotations: [Matrix3<T>; 6],
     /// Frame 6 in the base frame.
     pub base_from_flange: Pose<T>,
+    /// On an arm with a linkage, by how much axis 3 turns back where axis 2 yields and the forearm keeps its direction.
+    held: Option<f64>,
 }
 
 impl<T: Scalar> Frames<T> {
@@ -36,7 +38,8 @@ impl<T: Scalar> Frames<T> {
             origins[j] = pose.translation;
             rotations[j] = pose.rotation;
         }
-        Self { axes, origins, rotations, base_from_flange: pose }
+        let held = robot.has_linkage().then_some(robot.geometry().fold);
+        Self { axes, origins, rotations, base_from_flange: pose, held }
     }
 
     /// Where axes 4, 5 and 6 meet. m
@@ -47,6 +50,31 @@ impl<T: Scalar> Frames<T> {
     /// Linear and angular velocity of a body point at `point` (m, base frame) per unit speed of joint `j` (from 0).
     pub fn twist(&self, j: usize, point: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
         (self.axes[j].cross(&(point - self.origins[j])), self.axes[j])
+    }
+
+    /// The same per unit turn of the spring that yields with joint `j` about its axis: on an arm with a linkage that of
+    /// joint 2 turns the upper arm and leaves the forearm its direction.
+    #[inline]
+    pub fn twist_yielding(&self, j: usize, point: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+        let (velocity, axis) = self.twist(j, point);
+        let Some(held) = self.held.filter(|_| j == 1) else { return (velocity, axis) };
+        let (back, around) = self.twist(2, point);
+        (velocity - back.map(|entry| entry.scale(held)), axis - around.map(|entry| entry.scale(held)))
+    }
+
+    /// On an arm with a linkage, by how much joint 3 turns back where the spring of joint 2 turns.
+    pub fn held(&self) -> Option<f64> {
+        self.held
+    }
+
+    /// Turns of the joints per unit turn of the springs that yield about their axes: the identity but on an arm with a
+    /// linkage.
+    pub fn joints_by_springs(&self) -> SMatrix<f64, 6, 6> {
+        let mut turns = SMatrix::identity();
+        if let Some(held) = self.held {
+            turns[(2, 1)] = -held;
+        }
+        turns
     }
 
     /// The same of a turn about a direction normal to the axis of joint `j`, x (0) or y (1) of the frame of its row, at

@@ -1,15 +1,16 @@
 //! Joint limits with a margin kept from them.
 
+use super::turns::Range;
 use super::uncertainty::{Parameter, Uncertainty};
-use super::{Compliance, Joint, Robot, RobotError};
+use super::{Axes23, Compliance, Joint, Robot, RobotError};
 use nalgebra::DMatrix;
 
 impl Robot {
-    /// The same arm with every joint limit `margin` (rad) further inside, and the same compliance at every angle that
-    /// is left; with the margin negated, the arm before that again.
+    /// The same arm with every limit of the joints and of the sum of 2 and 3 `margin` (rad) further inside, and the
+    /// same compliance at every angle that is left; with the margin negated, the arm before that again.
     ///
     /// # Errors
-    /// [`RobotError::Limits`] for the first joint of which nothing is left.
+    /// [`RobotError::Limits`] for the first joint, [`RobotError::Sum`] for the sum, of which nothing is left.
     pub fn with_joint_margin(&self, margin: f64) -> Result<Self, RobotError> {
         let joints = self.joints().clone().map(|joint| {
             let share = margin / (joint.max - joint.min);
@@ -23,7 +24,18 @@ impl Robot {
             Joint { min: joint.min + margin, max: joint.max - margin, compliance, ..joint }
         });
         let narrowed = Self::new(self.name(), joints)?;
-        let robot = Self { joints: narrowed.joints, uncertainty: None, ..self.clone() };
+        let axes_2_3 = match self.axes_2_3 {
+            Some(Axes23 { linkage, sum }) => {
+                let sum = Range { min: sum.min + margin, max: sum.max - margin };
+                if sum.min >= sum.max {
+                    let reason = format!("is not below sum_max = {} deg", sum.max.to_degrees());
+                    return Err(RobotError::Sum { field: "sum_min", reason });
+                }
+                Some(Axes23 { linkage, sum })
+            }
+            None => None,
+        };
+        let robot = Self { joints: narrowed.joints, uncertainty: None, axes_2_3, ..self.clone() };
         // Covariances stay positive semidefinite, and parameters those of the laws: nothing to refuse.
         match self.uncertainty().and_then(|known| moved(known, self.joints(), margin)) {
             Some(uncertainty) => Ok(robot.clone().with_uncertainty(uncertainty).unwrap_or(robot)),

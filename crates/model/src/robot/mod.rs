@@ -26,6 +26,7 @@
 //! ```
 
 pub mod angles;
+mod axes_2_3;
 pub mod chain;
 mod compliance;
 pub mod conditioning;
@@ -46,6 +47,7 @@ mod springs;
 pub mod turns;
 mod uncertainty;
 
+pub use axes_2_3::Axes23;
 pub use compliance::{Compensator, Compliance};
 pub use controller::{Controller, ControllerKind};
 pub use data_sheet::DataSheet;
@@ -110,6 +112,8 @@ pub struct Robot {
     /// Springs beside those about the axes.
     springs: Box<springs::Springs>,
     dynamics: Option<Box<[JointDynamics; 6]>>,
+    /// What joins axes 2 and 3.
+    axes_2_3: Option<Axes23>,
     controller: Option<Box<Controller>>,
     unverified: Vec<String>,
 }
@@ -187,6 +191,14 @@ pub enum RobotError {
         /// The sum of the stiffnesses of joint and spring there. N m/rad
         stiffness: f64,
     },
+    /// What is said to join axes 2 and 3 does not.
+    #[error("axes 2 and 3: {field} {reason}")]
+    Sum {
+        /// Which of it.
+        field: &'static str,
+        /// The rule, with the value found.
+        reason: String,
+    },
     /// A figure of the data sheet that is not a finite number above zero.
     #[error("data sheet: {field} is {value}, but must be a finite number above zero")]
     DataSheet {
@@ -230,6 +242,7 @@ impl Robot {
             uncertainty: None,
             springs: Box::default(),
             dynamics: None,
+            axes_2_3: None,
             controller: None,
             unverified: Vec::new(),
         })
@@ -363,6 +376,39 @@ pub mod testing {
             (90.0, 0.0, 0.0, -125.0, 125.0, 0.521),
             (-90.0, 0.0, 0.0, -350.0, 350.0, 0.38),
         ])
+    }
+
+    /// The ABB IRB 4400-60 (rows of its robot file), whose axis 3 a parallelogram drives, with springs of
+    /// 2.5, 2.5, 2, 0.4, 0.4 and 0.3 MN m/rad and ABB's angles, A3 counted against the horizontal.
+    pub fn irb4400() -> Robot {
+        let arm = robot_from([
+            (0.0, 0.0, 0.68, -165.0, 165.0, 2.5),
+            (90.0, 0.2, 0.0, -5.0, 160.0, 2.5),
+            (0.0, 0.89, 0.0, -230.0, -130.0, 2.0),
+            (-90.0, -0.15, 0.88, -200.0, 200.0, 0.4),
+            (90.0, 0.0, 0.0, -120.0, 120.0, 0.4),
+            (-90.0, 0.0, 0.14, -400.0, 400.0, 0.3),
+        ]);
+        let sum = turns::Range { min: -155_f64.to_radians(), max: -30_f64.to_radians() };
+        let offset = [0.0, 90.0, -180.0, 0.0, 0.0, 0.0].map(f64::to_radians);
+        let sign = [1.0, -1.0, -1.0, 1.0, -1.0, 1.0];
+        let (kind, root_from_base) = (ControllerKind::Abb, Some(Pose::identity()));
+        arm.with_axes_2_3(Some(Axes23 { linkage: true, sum }))
+            .unwrap_or_else(|e| unreachable!("{e}"))
+            .with_controller(Controller { kind, sign, offset, is_j3_level: Some(true), root_from_base })
+    }
+
+    /// The arms of [`odd_arms`] with a parallelogram beside axes 2 and 3, whose ranges are narrowed for it.
+    pub fn linked_arms() -> Vec<Robot> {
+        let linked = |arm: Robot| {
+            let mut joints = arm.joints().clone();
+            for joint in [1, 2] {
+                (joints[joint].min, joints[joint].max) = (-3.0, 3.0);
+            }
+            let sum = turns::Range { min: -2.0, max: 2.0 };
+            Robot::new("linked", joints).and_then(|arm| arm.with_axes_2_3(Some(Axes23 { linkage: true, sum })))
+        };
+        odd_arms().into_iter().map(|arm| linked(arm).unwrap_or_else(|e| unreachable!("{e}"))).collect()
     }
 
     /// Arms with every sign of twist, offsets at shoulder and wrist, and a tilted base.

@@ -3,7 +3,7 @@
 //! A joint whose range is a full turn or more can stand at several real angles that look the same. The inverse
 //! kinematics gives one wrapped angle; here are the real ones.
 
-use super::{Joint, angles::ANGLE_ROUNDING};
+use super::{Joint, Robot, angles::ANGLE_ROUNDING};
 use std::f64::consts::TAU;
 
 /// The range of real angles of one joint.
@@ -51,11 +51,11 @@ impl Range {
     }
 }
 
-/// All real joint angles inside some ranges that are given angles (rad) but for whole turns: ascending, those of joint
-/// 6 change first.
-pub fn real_configurations(ranges: &[Range; 6], angles: &[f64; 6]) -> Vec<[f64; 6]> {
+/// All real joint angles inside the limits of an arm, and of the sum of angles 2 and 3, that are given angles (rad) but
+/// for whole turns: ascending, those of joint 6 change first.
+pub fn real_configurations(robot: &Robot, angles: &[f64; 6]) -> Vec<[f64; 6]> {
     let mut configurations = vec![*angles];
-    for (j, range) in ranges.iter().enumerate() {
+    for (j, range) in robot.joints().iter().map(Range::of).enumerate() {
         let turned = configurations.iter().flat_map(|known| {
             range.real_angles(angles[j]).map(|real| {
                 let mut next = *known;
@@ -65,6 +65,7 @@ pub fn real_configurations(ranges: &[Range; 6], angles: &[f64; 6]) -> Vec<[f64; 
         });
         configurations = turned.collect();
     }
+    configurations.retain(|real| robot.beyond_sum(real) <= ANGLE_ROUNDING);
     configurations
 }
 

@@ -27,6 +27,10 @@ use posed::{Applied, Posed};
 const COUNT: usize = 33;
 /// The first coordinate of joint 1.
 const JOINTS: usize = 6;
+/// The turns of joints 2 and 3 about their axes. On an arm with a linkage the spring of joint 2 turns both, so that the
+/// forearm keeps its direction.
+const SECOND: usize = JOINTS + 3;
+const THIRD: usize = JOINTS + 6;
 /// The first coordinate of the mount.
 const MOUNT: usize = 24;
 /// The first coordinate of the tip.
@@ -161,6 +165,9 @@ impl<'a> ElasticArm<'a> {
             let k = JOINTS + 3 * j;
             scale[(k, k)] = libm::sqrt(*compliance);
         }
+        if self.robot.has_linkage() {
+            scale[(THIRD, SECOND)] = -self.robot.geometry().fold * scale[(SECOND, SECOND)];
+        }
         scale
     }
 
@@ -196,7 +203,7 @@ impl<'a> ElasticArm<'a> {
     }
 
     /// Torques with which compensators of the joints oppose the weight, about the axes that have one: what the weight
-    /// does about them at the commanded angles, joints 4 and 6 at zero. N m
+    /// does to their springs at the commanded angles, joints 4 and 6 at zero. N m
     fn taken(&self, theta: &[f64; 6]) -> Coordinates {
         let mut taken = Coordinates::zeros();
         let Some(dynamics) = self.robot.dynamics() else { return taken };
@@ -209,6 +216,14 @@ impl<'a> ElasticArm<'a> {
         for (j, _) in dynamics.iter().enumerate().filter(|(_, joint)| joint.gravity_compensated) {
             let k = JOINTS + 3 * j;
             taken[k] = -torques[k];
+        }
+        if self.robot.has_linkage() {
+            // Motor 2 carries tau_2 - tau_3, and motor 3 the forearm, about both joints.
+            let fold = self.robot.geometry().fold;
+            let is_taken = |joint: usize| dynamics[joint].gravity_compensated;
+            let third = if is_taken(2) { torques[THIRD] } else { 0.0 };
+            let second = if is_taken(1) { torques[SECOND] - fold * torques[THIRD] } else { 0.0 };
+            (taken[SECOND], taken[THIRD]) = (-second - fold * third, -third);
         }
         taken
     }

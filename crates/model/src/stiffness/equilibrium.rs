@@ -6,9 +6,9 @@
 //! on the deflection). Of several equilibria the one is found that the arm comes to as the load grows from zero.
 
 use super::Displacement;
-use super::loaded::{inverse_tangent, load_hessian, roots};
+use super::loaded::{inverse_tangent, load_hessian, scale};
 use crate::robot::{Frames, Robot};
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix6, Vector3, Vector6};
 use stead_numerics::rotation::rotation_vector;
 
 /// A load acting at a point of the tool.
@@ -49,13 +49,13 @@ pub fn equilibrium_with(
     theta: &[f64; 6],
     load: &Load,
 ) -> Result<[f64; 6], NoEquilibrium> {
-    let roots = roots(compliances);
-    // Deflections are in units of the roots: theta - theta_0 = S x.
+    let scale = scale(&Frames::new(robot, theta), compliances);
+    // Deflections are scaled: theta - theta_0 = S x.
     let mut deflection = Vector6::zeros();
     let (mut share, mut step) = (0.0_f64, 1.0);
     while share < 1.0 {
         let next = (share + step).min(1.0);
-        match settle(robot, theta, &roots, load, next, deflection) {
+        match settle(robot, theta, &scale, load, next, deflection) {
             Some(settled) => {
                 deflection = settled;
                 share = next;
@@ -65,7 +65,7 @@ pub fn equilibrium_with(
             None => return Err(NoEquilibrium { share }),
         }
     }
-    Ok(turned(theta, &roots, &deflection))
+    Ok(turned(theta, &scale, &deflection))
 }
 
 /// Displacement of the point of a load and rotation of the tool, from the commanded configuration `theta` (rad) to the
@@ -91,12 +91,12 @@ pub(super) const WIDEST_STEP: f64 = 0.5;
 /// A Newton step below this is the last: the next would be below its square. rad
 pub(super) const LAST_STEP: f64 = 1e-9;
 
-/// Newton's method on `x - S J^T w = 0` for a share of the load, with the tangent `1 - S H S`; `None` where it leads
-/// through a configuration that does not hold.
+/// Newton's method on `x - S^T J^T w = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where it
+/// leads through a configuration that does not hold.
 fn settle(
     robot: &Robot,
     theta: &[f64; 6],
-    roots: &Vector6<f64>,
+    scale: &Matrix6<f64>,
     load: &Load,
     share: f64,
     mut deflection: Vector6<f64>,
@@ -105,15 +105,15 @@ fn settle(
     let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
     let mut is_last = false;
     for _ in 0..MAX_STEPS {
-        let frames = Frames::new(robot, &turned(theta, roots, &deflection));
+        let frames = Frames::new(robot, &turned(theta, scale, &deflection));
         let point = frames.base_from_flange.point(&load.point);
-        let inverse = inverse_tangent(&load_hessian(&frames, &point, &force, &moment), roots).ok()?;
+        let inverse = inverse_tangent(&load_hessian(&frames, &point, &force, &moment), scale).ok()?;
         if is_last {
             return Some(deflection);
         }
         let torques = frames.jacobian(&point).transpose() * wrench;
-        let step = inverse * (roots.component_mul(&torques) - deflection);
-        let widest = roots.component_mul(&step).amax();
+        let step = inverse * (scale.tr_mul(&torques) - deflection);
+        let widest = (scale * step).amax();
         if !widest.is_finite() || widest > WIDEST_STEP {
             return None;
         }
@@ -123,15 +123,16 @@ fn settle(
     None
 }
 
-fn turned(theta: &[f64; 6], roots: &Vector6<f64>, deflection: &Vector6<f64>) -> [f64; 6] {
-    std::array::from_fn(|j| theta[j] + roots[j] * deflection[j])
+fn turned(theta: &[f64; 6], scale: &Matrix6<f64>, deflection: &Vector6<f64>) -> [f64; 6] {
+    let turns = scale * deflection;
+    std::array::from_fn(|j| theta[j] + turns[j])
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{displacement, loaded::loaded_compliance, loaded::loaded_displacement};
     use super::*;
-    use crate::robot::testing::{kr270, odd_arms};
+    use crate::robot::testing::{kr270, linked_arms, odd_arms};
     use nalgebra::vector;
     use proptest::prelude::*;
 
@@ -172,6 +173,36 @@ mod tests {
                 let angular = rotation_vector(&(up.rotation * down.rotation.transpose())) / (2.0 * h);
                 prop_assert!((found.fixed_view::<3, 1>(0, k) - linear).norm() < 1e-6 * found.norm());
                 prop_assert!((found.fixed_view::<3, 1>(3, k) - angular).norm() < 1e-6 * found.norm());
+            }
+        }
+
+        #[test]
+        fn torques_balance_at_the_springs_of_a_linkage(
+            theta in prop::array::uniform6(-3.0..3.0_f64), wrench in prop::array::uniform6(-2e4..2e4_f64), arm in 0..32_usize
+        ) {
+            let robot = &linked_arms()[arm];
+            let fold = robot.geometry().fold;
+            let compliances = robot.compliances_at(&theta);
+            let full = load(wrench);
+            let rest = equilibrium(robot, &theta, &full).unwrap();
+            let frames = Frames::new(robot, &rest);
+            let point = frames.base_from_flange.point(&full.point);
+            let mut torques = frames.jacobian(&point).transpose() * Vector6::from(wrench);
+            torques[1] -= fold * torques[2];
+            let turned: [f64; 6] = std::array::from_fn(|j| rest[j] - theta[j]);
+            let springs = [turned[0], turned[1], turned[2] + fold * turned[1], turned[3], turned[4], turned[5]];
+            for j in 0..6 {
+                prop_assert!((springs[j] - compliances[j] * torques[j]).abs() < 1e-13);
+            }
+            // At small loads it is the linear displacement, and that of equation 11.
+            let small = scaled(&full, 1e-5);
+            let truth = displaced(robot, &theta, &small).unwrap();
+            let frames = Frames::new(robot, &theta);
+            let point = frames.base_from_flange.point(&small.point);
+            let plain = displacement(&frames, &point, &compliances, &small.force, &small.moment);
+            let loaded = loaded_displacement(&frames, &point, &compliances, &small.force, &small.moment).unwrap();
+            for other in [plain, loaded] {
+                prop_assert!((truth.linear - other.linear).norm() < 1e-4 * plain.linear.norm() + 1e-14);
             }
         }
 

@@ -57,9 +57,9 @@ pub fn loaded_compliance(
     force: &Vector3<f64>,
     moment: &Vector3<f64>,
 ) -> Result<Matrix6<f64>, Buckled> {
-    let roots = roots(compliances);
-    let inverse = inverse_tangent(&load_hessian(frames, point, force, moment), &roots)?;
-    let scaled = frames.jacobian(point) * Matrix6::from_diagonal(&roots);
+    let scale = scale(frames, compliances);
+    let inverse = inverse_tangent(&load_hessian(frames, point, force, moment), &scale)?;
+    let scaled = frames.jacobian(point) * scale;
     Ok(scaled * inverse * scaled.transpose())
 }
 
@@ -84,16 +84,16 @@ pub fn loaded_displacement(
     Ok(Displacement { linear: moved.fixed_rows::<3>(0).into_owned(), angular: moved.fixed_rows::<3>(3).into_owned() })
 }
 
-/// Square roots of the compliances: the scale S that makes `S (K_theta - H) S = 1 - S H S` a matrix without units,
-/// which exists for rigid joints too.
-pub(super) fn roots(compliances: &[f64; 6]) -> Vector6<f64> {
-    Vector6::from(compliances.map(libm::sqrt))
+/// Turns of the joints per scaled turn of the springs, which are those of the joints but for a linkage: square roots of
+/// the compliances. The scale S makes `S^T (K_theta - H) S = 1 - S^T H S` a matrix without units, which exists for
+/// rigid joints too.
+pub(super) fn scale(frames: &Frames<f64>, compliances: &[f64; 6]) -> Matrix6<f64> {
+    frames.joints_by_springs() * Matrix6::from_diagonal(&Vector6::from(compliances.map(libm::sqrt)))
 }
 
-/// `(1 - S H S)^-1`.
-pub(super) fn inverse_tangent(hessian: &Matrix6<f64>, roots: &Vector6<f64>) -> Result<Matrix6<f64>, Buckled> {
-    let scale = Matrix6::from_diagonal(roots);
-    let softening = scale * hessian * scale;
+/// `(1 - S^T H S)^-1`.
+pub(super) fn inverse_tangent(hessian: &Matrix6<f64>, scale: &Matrix6<f64>) -> Result<Matrix6<f64>, Buckled> {
+    let softening = scale.transpose() * hessian * scale;
     let tangent = Matrix6::identity() - softening;
     let symmetric = (tangent + tangent.transpose()) * 0.5;
     let inverse = symmetric.cholesky().and_then(|_| tangent.try_inverse());

@@ -191,10 +191,10 @@ impl<'a> LookupTable<'a> {
     /// The constraints that an objective by the table leaves out: only the planner evaluates them.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
         use ConstraintKind::{
-            BaseDistance, BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Posture, Reach,
-            SpindleTurn,
+            AxesSum, BaseDistance, BetaRate, CellPosition, CellYaw, Conditioning, JointLimit, MaxDeflection, Posture,
+            Reach, SpindleTurn,
         };
-        let mut evaluated = vec![Reach, BaseDistance, Conditioning, BetaRate, SpindleTurn, Posture];
+        let mut evaluated = vec![Reach, AxesSum, BaseDistance, Conditioning, BetaRate, SpindleTurn, Posture];
         evaluated.extend([MaxDeflection, CellPosition, CellYaw]);
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)

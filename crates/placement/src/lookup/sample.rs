@@ -134,7 +134,7 @@ fn state(
     }
     let axial_alone = if problem.yields_beside() { 6..6 } else { 1..6 };
     for j in axial_alone {
-        let (velocity, axis) = frames.twist(j, &tip);
+        let (velocity, axis) = frames.twist_yielding(j, &tip);
         let v = root_from_base * velocity;
         let k = compliances[j];
         rr += k * v.x * v.x;
@@ -172,7 +172,8 @@ fn state(
     values
 }
 
-/// Distance of joints 2 to 6 from their limits, in the better of the two flips; below zero outside. rad
+/// Distance of joints 2 to 6, and of the sum of 2 and 3, from their limits, in the better of the two flips; below zero
+/// outside. rad
 fn joint_room(robot: &Robot, theta: &[f64; 6]) -> f64 {
     let room = |j: usize, angle: f64| {
         let range = Range::of(&robot.joints()[j]);
@@ -184,7 +185,15 @@ fn joint_room(robot: &Robot, theta: &[f64; 6]) -> f64 {
     };
     let plain = room(3, theta[3]).min(room(4, theta[4])).min(room(5, theta[5]));
     let flipped = room(3, theta[3] + PI).min(room(4, -theta[4])).min(room(5, theta[5] + PI));
-    room(1, theta[1]).min(room(2, theta[2])).min(plain.max(flipped))
+    let of_sum = robot.sum_range().map_or(f64::INFINITY, |range| {
+        let mut real = *theta;
+        for j in [1, 2] {
+            real[j] = Range::of(&robot.joints()[j]).nearest(theta[j]).0;
+        }
+        let sum = robot.sum_of(&real);
+        (sum - range.min).min(range.max - sum)
+    });
+    room(1, theta[1]).min(room(2, theta[2])).min(of_sum).min(plain.max(flipped))
 }
 
 /// Gives states out of reach what the nearest radius within reach has, so that the interpolation beside them stays

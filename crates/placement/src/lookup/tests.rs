@@ -21,8 +21,8 @@ use stead_planning::problem::{Interval, Placement, Redundancy};
 use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
 use stead_planning::testing::{
-    Beside, compensated, corners, five_segments, hanging, slanted, with_beside, with_laws, with_turn_limits,
-    with_uncertainty,
+    Beside, compensated, corners, five_segments, hanging, slanted, with_axes_2_3, with_beside, with_laws,
+    with_turn_limits, with_uncertainty,
 };
 
 /// Errors in all directions counted.
@@ -106,6 +106,7 @@ fn errs_no_more_than_it_says() {
         ("slanted", slanted()),
         ("robust", robust()),
         ("limited", limited()),
+        ("linkage", with_axes_2_3(slanted(), true, [-150.0, -20.0])),
         ("hanging", hanging()),
         ("twisted", twisted(five_segments())),
         ("twisted and slanted", twisted(slanted())),
@@ -154,6 +155,7 @@ fn whatever_yields_is_in_the_table_or_added() {
         ("alike", with_beside(five_segments(), Beside::Alike)),
         ("matrices", with_beside(five_segments(), Beside::Matrices)),
         ("whole", whole()),
+        ("linkage", with_axes_2_3(whole(), true, [-150.0, 0.0])),
         ("twisted", twisted_whole()),
         ("robust", with_errors(twisted_whole())),
     ] {

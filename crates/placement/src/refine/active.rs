@@ -84,6 +84,7 @@ fn loosened(problem: &Problem, solution: &Solution, side: Side, point: usize) ->
         | Limit::Tilt
         | Limit::MaxLean
         | Limit::Joint(_)
+        | Limit::AxesSum
         | Limit::Conditioning
         | Limit::BaseDistance
         | Limit::Clearance(_)

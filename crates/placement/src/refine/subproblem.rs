@@ -126,6 +126,14 @@ impl Build<'_> {
             let terms = self.terms(i, &local.state.joints[j].gradient, |lean| lean.joints[j]);
             self.add_between(Limit::Joint(j as u8 + 1), i, &terms, joint.min - q, joint.max - q);
         }
+        let robot = &self.problem.robot;
+        if let Some(range) = robot.sum_range() {
+            let (q, fold) = (robot.sum_of(&local.joints), robot.geometry().fold);
+            let gradients = [1, 2].map(|j| &local.state.joints[j].gradient);
+            let gradient = std::array::from_fn(|k| gradients[0][k] + fold * gradients[1][k]);
+            let terms = self.terms(i, &gradient, |lean| [0, 1].map(|k| lean.joints[1][k] + fold * lean.joints[2][k]));
+            self.add_between(Limit::AxesSum, i, &terms, range.min - q, range.max - q);
+        }
     }
 
     /// The score of point `i` under one set of compliances.
@@ -168,6 +176,7 @@ impl Build<'_> {
             }
             let limits = self.problem.joint_steps(i);
             let (at, before) = (&self.locals[i], &self.locals[i - 1]);
+            let mut second = (0.0, Vec::new());
             for j in 0..6 {
                 let (here, there) = (&at.state.joints[j].gradient, &before.state.joints[j].gradient);
                 let mut row: Vec<(usize, f64)> = (0..4).map(|k| (k, here[k] - there[k])).collect();
@@ -179,7 +188,16 @@ impl Build<'_> {
                 row.extend(self.lean_terms(i - 1, -1.0, |lean| lean.joints[j]));
                 let step = at.joints[j] - before.joints[j];
                 self.step_size(step, &row);
-                self.add_between(Limit::JointStep(j as u8 + 1), i, &row, -limits[j] - step, limits[j] - step);
+                let (mut driven, mut by) = (step, row);
+                // What motor 3 turns on an arm with a linkage.
+                if self.problem.robot.has_linkage() && j == 1 {
+                    second = (driven, by.clone());
+                } else if self.problem.robot.has_linkage() && j == 2 {
+                    let fold = self.problem.robot.geometry().fold;
+                    driven = second.0 + fold * step;
+                    by = by.iter().map(|(column, slope)| (*column, fold * slope)).chain(second.1.drain(..)).collect();
+                }
+                self.add_between(Limit::JointStep(j as u8 + 1), i, &by, -limits[j] - driven, limits[j] - driven);
             }
         }
     }

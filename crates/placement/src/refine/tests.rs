@@ -8,7 +8,9 @@ use nalgebra::DMatrix;
 use stead_model::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{BetaPlan, Interval};
-use stead_planning::testing::{assert_sound, corners, five_segments, five_segments_compensated, with_turn_limits};
+use stead_planning::testing::{
+    assert_sound, corners, five_segments, five_segments_compensated, with_axes_2_3, with_turn_limits,
+};
 
 fn published_optimum() -> Placement {
     [2.2e-3, -1.6435, -0.5564, yaw_from_q4(0.9258)].into()
@@ -128,6 +130,46 @@ fn joint_speeds_bind_and_hold() {
     let used: Vec<f64> = used.collect();
     assert!(used.iter().all(|share| *share <= 1.0 + 1e-6));
     assert!(used.iter().any(|share| *share > 0.99), "no joint step is at its limit");
+}
+
+#[test]
+fn the_sum_of_joints_2_and_3_and_its_speed_bind_and_hold() {
+    let start = Placement::from([0.0, -1.7, -0.4, 0.7]);
+    let found = |problem: &Problem| {
+        let planner = Planner::finer(problem);
+        let (solution, report) = refined(&planner, &start, Sense::Min).unwrap();
+        assert_allowed(problem, &solution);
+        assert_sound(problem, &solution.placement, &solution.plans);
+        assert!(report.end_mean <= report.start_mean);
+        solution
+    };
+    let free = with_axes_2_3(five_segments(), true, [-245.0, 175.0]);
+    let solution = found(&free);
+    let sums = |solution: &Solution| -> Vec<f64> {
+        solution.plans.iter().flat_map(|plan| &plan.joints).map(|joints| free.robot.sum_of(joints)).collect()
+    };
+    let largest = sums(&solution).into_iter().fold(f64::MIN, f64::max).to_degrees();
+    // The optimum is held by a range of the sum that cuts it off.
+    let held = with_axes_2_3(five_segments(), true, [-245.0, largest - 1.0]);
+    let solution = found(&held);
+    let nearest = sums(&solution).into_iter().fold(f64::MIN, f64::max).to_degrees();
+    assert!((largest - 1.0 - nearest).abs() < 0.05, "{nearest} {largest}");
+    // Motor 3 at its speed: the sum steps as far as it allows, and joint 3 by itself farther.
+    let mut slow = five_segments();
+    let mut joints = slow.robot.joints().clone();
+    joints[2].max_speed = Some(0.05);
+    slow.robot = stead_model::robot::Robot::new("slow", joints).unwrap();
+    let slow = with_axes_2_3(slow, true, [-245.0, 175.0]);
+    let solution = found(&slow);
+    let (mut most, mut beyond) = (0.0_f64, 0.0_f64);
+    for plan in &solution.plans {
+        for (pair, point) in plan.joints.windows(2).zip(plan.points.clone().skip(1)) {
+            let limit = slow.joint_steps(point)[2];
+            most = most.max((slow.robot.sum_of(&pair[1]) - slow.robot.sum_of(&pair[0])).abs() / limit);
+            beyond = beyond.max((pair[1][2] - pair[0][2]).abs() / limit);
+        }
+    }
+    assert!(most > 0.99 && most <= 1.0 + 1e-6 && beyond > 1.0, "{most} {beyond}");
 }
 
 #[test]

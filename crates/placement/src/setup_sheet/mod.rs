@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use stead_cell::{Attachment, Solid};
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried};
 use stead_model::robot::Pose;
+use stead_model::robot::turns::Range;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem};
@@ -65,8 +66,8 @@ pub struct CheckPoint {
 /// How near a plan comes to a limit of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestLimit {
-    /// The joint, from 0.
-    pub joint: usize,
+    /// The joint, from 0; none for the sum of joints 2 and 3.
+    pub joint: Option<usize>,
     /// Whether it is the upper one.
     pub is_upper: bool,
     /// The path point, from 0.
@@ -154,7 +155,7 @@ impl SetupSheet {
                 place: sheet_from_cell.point(&in_cell),
                 in_root: in_root.map(|root| root.point(&of.position)),
                 joints: of.joints,
-                controller: robot.controller().map(|controller| controller.angles(&of.joints)),
+                controller: robot.controller().map(|controller| controller.angles(robot, &of.joints)),
                 axes: problem.axis_positions(of.point).to_vec(),
             })
         };
@@ -246,8 +247,10 @@ fn nearest_limit(problem: &Problem, plan: &Plan) -> Option<NearestLimit> {
     let robot = problem.robot_to_its_limits();
     let all = plan.points.iter().flat_map(|of| {
         let joints = robot.joints().iter().zip(of.joints).enumerate();
-        joints.flat_map(move |(joint, (row, angle))| {
-            [(angle - row.min, false), (row.max - angle, true)].map(|(distance, is_upper)| NearestLimit {
+        let joints = joints.map(|(joint, (row, angle))| (Some(joint), Range::of(row), angle));
+        let sum = robot.sum_range().map(|range| (None, range, robot.sum_of(&of.joints)));
+        joints.chain(sum).flat_map(move |(joint, range, angle)| {
+            [(angle - range.min, false), (range.max - angle, true)].map(|(distance, is_upper)| NearestLimit {
                 joint,
                 is_upper,
                 point: of.point,

@@ -109,8 +109,8 @@ fn the_nearest_limit_is_that_of_the_arm_and_not_of_the_margin() {
     let problem = five_segments();
     let near = sheet(&problem, &Monitor::silent()).nearest_limit.unwrap();
     let plan = score(&problem, &near_the_best(), &TransferSettings::default(), &Monitor::silent()).unwrap().plans.best;
-    let row = &problem.robot.joints()[near.joint];
-    let angle = plan.points[near.point].joints[near.joint];
+    let row = &problem.robot.joints()[near.joint.unwrap()];
+    let angle = plan.points[near.point].joints[near.joint.unwrap()];
     let distance = if near.is_upper { row.max - angle } else { angle - row.min };
     assert!((distance - near.distance).abs() < 1e-12 && near.distance > 0.0, "{near:?}");
 }

@@ -5,7 +5,7 @@ use crate::evaluate::reference::State;
 use crate::problem::Problem;
 use std::fmt;
 use std::sync::Arc;
-use stead_model::robot::{Unreachable, angles::ANGLE_ROUNDING};
+use stead_model::robot::{Robot, Unreachable, angles::ANGLE_ROUNDING, turns::Range};
 
 /// Joint steps are compared with their limits up to this (rad), steps of beta up to this share of the grid's step:
 /// rounding.
@@ -24,6 +24,15 @@ pub enum Measured {
         /// The joint, from 1.
         joint: u8,
         /// The joint angle. rad
+        angle: f64,
+        /// The nearer limit. rad
+        limit: f64,
+        /// The signed distance to it, positive inside. rad
+        margin: f64,
+    },
+    /// The sum of joint angles 2 and 3, held against the nearer of its limits.
+    AxesSum {
+        /// The sum. rad
         angle: f64,
         /// The nearer limit. rad
         limit: f64,
@@ -60,7 +69,8 @@ pub enum Measured {
         /// What it must be at least. m
         required: f64,
     },
-    /// The step of a joint from one path point to the next.
+    /// The step of a joint from one path point to the next; of joint 3 of an arm with a linkage that of the sum of
+    /// joints 2 and 3.
     JointStep {
         /// The joint, from 1.
         joint: u8,
@@ -91,6 +101,7 @@ impl Measured {
         match *self {
             Self::Reach(_) => ConstraintKind::Reach,
             Self::JointLimit { joint, .. } => ConstraintKind::JointLimit(joint),
+            Self::AxesSum { .. } => ConstraintKind::AxesSum,
             Self::Conditioning { .. } => ConstraintKind::Conditioning,
             Self::BaseDistance { .. } => ConstraintKind::BaseDistance,
             Self::MaxDeflection { .. } => ConstraintKind::MaxDeflection,
@@ -105,7 +116,7 @@ impl Measured {
     pub fn margin(&self) -> f64 {
         match *self {
             Self::Reach(unreachable) => -unreachable.by(),
-            Self::JointLimit { margin, .. } => margin,
+            Self::JointLimit { margin, .. } | Self::AxesSum { margin, .. } => margin,
             Self::Conditioning { value, limit } | Self::BaseDistance { value, limit } => value - limit,
             Self::MaxDeflection { value, limit } => limit - value,
             // Shapes that touch break the constraint also where no clearance is requested.
@@ -121,7 +132,7 @@ impl Measured {
     /// Whether the constraint holds, up to the rounding of angles and steps.
     pub fn holds(&self) -> bool {
         let rounding = match self {
-            Self::JointLimit { .. } => ANGLE_ROUNDING,
+            Self::JointLimit { .. } | Self::AxesSum { .. } => ANGLE_ROUNDING,
             Self::JointStep { .. } | Self::BetaRate { .. } | Self::SpindleTurn { .. } => STEP_ROUNDING,
             Self::Reach(_)
             | Self::Conditioning { .. }
@@ -141,6 +152,7 @@ impl Measured {
             // How far shapes are into each other is not known.
             Self::Clearance { distance, .. } if distance <= 0.0 => TOUCHING - self.margin() * 10.0,
             Self::JointLimit { .. }
+            | Self::AxesSum { .. }
             | Self::JointStep { .. }
             | Self::BetaRate { .. }
             | Self::SpindleTurn { .. }
@@ -164,10 +176,14 @@ impl fmt::Display for Measured {
             Self::Reach(Unreachable::TooNear { by }) => {
                 write!(f, "wrist centre {:.1} mm nearer to the shoulder than the folded arm", by * 1e3)
             }
-            Self::JointLimit { joint, angle, limit, .. } => {
+            Self::JointLimit { angle, limit, .. } | Self::AxesSum { angle, limit, .. } => {
                 let (side, by) = if angle > limit { ("above", angle - limit) } else { ("below", limit - angle) };
                 let (angle, limit, by) = (angle.to_degrees(), limit.to_degrees(), by.to_degrees());
-                write!(f, "joint {joint} at {angle:.2} deg is {by:.2} deg {side} its limit {limit:.2} deg")
+                match *self {
+                    Self::JointLimit { joint, .. } => write!(f, "joint {joint}")?,
+                    _ => f.write_str("the sum of joints 2 and 3")?,
+                }
+                write!(f, " at {angle:.2} deg is {by:.2} deg {side} its limit {limit:.2} deg")
             }
             Self::Conditioning { value, limit } => {
                 write!(f, "1/kappa {value:.4} is {:.4} below {limit}", limit - value)
@@ -204,14 +220,23 @@ impl fmt::Display for Measured {
     }
 }
 
-/// The constraints on real joint angles (rad): the limits of each.
-pub fn on_joints(problem: &Problem, joints: &[f64; 6]) -> [Measured; 6] {
-    std::array::from_fn(|j| {
+/// The constraints on real joint angles (rad): the limits of each, and those of the sum of 2 and 3.
+pub fn on_joints(problem: &Problem, joints: &[f64; 6]) -> impl Iterator<Item = Measured> + use<> {
+    let nearer = |angle: f64, range: Range| {
+        let (below, above) = (angle - range.min, range.max - angle);
+        if above < below { (range.max, above) } else { (range.min, below) }
+    };
+    let each: [Measured; 6] = std::array::from_fn(|j| {
         let (angle, joint) = (joints[j], &problem.robot.joints()[j]);
-        let (below, above) = (angle - joint.min, joint.max - angle);
-        let (limit, margin) = if above < below { (joint.max, above) } else { (joint.min, below) };
+        let (limit, margin) = nearer(angle, Range::of(joint));
         Measured::JointLimit { joint: j as u8 + 1, angle, limit, margin }
-    })
+    });
+    let sum = problem.robot.sum_range().map(|range| {
+        let angle = problem.robot.sum_of(joints);
+        let (limit, margin) = nearer(angle, range);
+        Measured::AxesSum { angle, limit, margin }
+    });
+    each.into_iter().chain(sum)
 }
 
 /// The constraints on a single state beside joint limits: conditioning, the distance from axis 1 and the largest score.
@@ -226,14 +251,17 @@ pub fn on_state(problem: &Problem, state: &State<f64>) -> impl Iterator<Item = M
 }
 
 /// Whether the steps of all real joint angles (rad) between neighbouring path points are within their limits: the same
-/// as that every constraint of [`on_joint_steps`] holds, for loops over many pairs.
+/// as that every constraint of [`on_joint_steps`] holds, for loops over many pairs. What steps is what the motors turn
+/// ([`Robot::drives`]).
 #[inline]
-pub fn joint_steps_hold(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
+pub fn joint_steps_hold(robot: &Robot, from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> bool {
+    let (from, to) = (robot.drives(from), robot.drives(to));
     (0..6).all(|j| (to[j] - from[j]).abs() <= limits[j] + STEP_ROUNDING)
 }
 
 /// The constraints on the steps of the real joint angles (rad) between neighbouring path points.
-pub fn on_joint_steps(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> [Measured; 6] {
+pub fn on_joint_steps(robot: &Robot, from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> [Measured; 6] {
+    let (from, to) = (robot.drives(from), robot.drives(to));
     std::array::from_fn(|j| Measured::JointStep { joint: j as u8 + 1, step: (to[j] - from[j]).abs(), limit: limits[j] })
 }
 
@@ -242,18 +270,19 @@ mod tests {
     use super::*;
     use crate::testing::five_segments;
     use std::f64::consts::PI;
+    use stead_model::robot::testing::{irb4400, kr270};
 
     #[test]
     fn margins_are_positive_inside_and_negative_outside() {
         let problem = five_segments();
         let joints = problem.robot.joints();
         let middle = joints.each_ref().map(|joint| (joint.min + joint.max) / 2.0);
-        assert!(on_joints(&problem, &middle).iter().all(|measured| measured.holds() && measured.margin() > 0.0));
+        assert!(on_joints(&problem, &middle).all(|measured| measured.holds() && measured.margin() > 0.0));
         for j in 0..6 {
             for (limit, side) in [(joints[j].min, -1.0), (joints[j].max, 1.0)] {
                 let mut angles = middle;
                 angles[j] = limit + side * 0.01;
-                let broken: Vec<_> = on_joints(&problem, &angles).into_iter().filter(|m| !m.holds()).collect();
+                let broken: Vec<_> = on_joints(&problem, &angles).filter(|m| !m.holds()).collect();
                 assert_eq!(
                     broken.iter().map(Measured::kind).collect::<Vec<_>>(),
                     [ConstraintKind::JointLimit(j as u8 + 1)]
@@ -271,10 +300,42 @@ mod tests {
                 for side in [-1.0, 1.0] {
                     let mut to = from;
                     to[j] += side * (limits[j] + excess);
-                    assert_eq!(joint_steps_hold(&from, &to, &limits), holds);
-                    assert_eq!(on_joint_steps(&from, &to, &limits).iter().all(Measured::holds), holds);
+                    assert_eq!(joint_steps_hold(&kr270(), &from, &to, &limits), holds);
+                    assert_eq!(on_joint_steps(&kr270(), &from, &to, &limits).iter().all(Measured::holds), holds);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_sum_of_joints_2_and_3_has_limits_and_motor_3_steps_by_it() {
+        let mut parts = five_segments().into_parts();
+        parts.robot = irb4400();
+        let problem = parts.build().unwrap();
+        let degrees = |second: f64, third: f64| [0.0, second, third, 0.0, 10.0, 0.0].map(f64::to_radians);
+        let broken = |joints: [f64; 6]| {
+            on_joints(&problem, &joints).filter(|m| !m.holds()).map(|m| (m.kind(), m.to_string())).collect::<Vec<_>>()
+        };
+        // Joint 2 from -5 to 160 deg, joint 3 from -230 to -130, their sum from -155 to -30.
+        assert_eq!(broken(degrees(90.0, -180.0)), []);
+        let [(kind, text)] = &broken(degrees(120.0, -140.0))[..] else { panic!() };
+        assert_eq!(*kind, ConstraintKind::AxesSum);
+        assert_eq!(text, "the sum of joints 2 and 3 at -20.00 deg is 10.00 deg above its limit -30.00 deg");
+        let [(_, text)] = &broken(degrees(20.0, -190.0))[..] else { panic!() };
+        assert!(text.contains("at -170.00 deg is 15.00 deg below its limit -155.00 deg"), "{text}");
+        assert!(problem.constraint_kinds().contains(&ConstraintKind::AxesSum));
+        // Both together by 3 deg leave the forearm where it is; one alone is a step of motor 3.
+        let from = degrees(90.0, -180.0);
+        let limits = [4.0, 4.0, 2.0, 4.0, 4.0, 4.0].map(f64::to_radians);
+        for (to, holds) in [
+            (degrees(93.0, -183.0), true),
+            (degrees(90.0, -183.0), false),
+            (degrees(93.0, -180.0), false),
+            (degrees(95.0, -185.0), false),
+        ] {
+            assert_eq!(joint_steps_hold(&problem.robot, &from, &to, &limits), holds);
+            let measured = on_joint_steps(&problem.robot, &from, &to, &limits);
+            assert_eq!(measured.iter().all(Measured::holds), holds);
         }
     }
 }

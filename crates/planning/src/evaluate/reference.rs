@@ -136,7 +136,7 @@ impl<'a, T: Scalar> PlacedArm<'a, T> {
     fn parts_per_compliance(&self, direction: &Vector3<T>) -> [T; 6] {
         let PlacedPoint { tip, force, moment, .. } = &self.at.placed;
         std::array::from_fn(|j| {
-            let (velocity, axis) = self.frames.twist(j, tip);
+            let (velocity, axis) = self.frames.twist_yielding(j, tip);
             velocity.dot(direction) * (velocity.dot(force) + axis.dot(moment))
         })
     }

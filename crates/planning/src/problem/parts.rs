@@ -260,7 +260,8 @@ impl ProblemParts {
             return Err(ProblemError::SegmentWeights { found: weights, expected: segments });
         }
         if let Some(sets) = &self.criterion.stiffness {
-            let differs = |set: &Robot| set.geometry() != self.robot.geometry();
+            let differs =
+                |set: &Robot| set.geometry() != self.robot.geometry() || set.axes_2_3() != self.robot.axes_2_3();
             if let Some(place) = sets.robots.iter().position(differs) {
                 return Err(ProblemError::StiffnessSet { number: place + 1 });
             }

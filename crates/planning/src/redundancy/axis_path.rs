@@ -21,7 +21,7 @@ use crate::setup::{AxisPositions, Setup};
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
-use stead_model::robot::turns::{Range, real_configurations};
+use stead_model::robot::turns::real_configurations;
 
 /// How far beyond its speed an axis may be, relative: rounding.
 const SPEED_ROUNDING: f64 = 1e-9;
@@ -224,7 +224,7 @@ impl Steps for AxisSteps<'_, '_> {
 
     fn step(&self, from: &Configuration, to: &Configuration) -> Option<f64> {
         let travel = self.planner.travel_cost(Sense::Min);
-        joint_steps_hold(&from.joints, &to.joints, &self.limits)
+        joint_steps_hold(&self.planner.problem.robot, &from.joints, &to.joints, &self.limits)
             .then(|| travel * joint_distance(&from.joints, &to.joints))
     }
 
@@ -243,10 +243,9 @@ pub(super) fn configurations(problem: &Problem, point: usize, state: &State<f64>
     if !is_allowed(problem, state) {
         return Vec::new();
     }
-    let ranges = problem.robot.joints().each_ref().map(Range::of);
     let score = problem.point_cost(point, state.score());
     let configuration = |joints| Configuration { position: 0, beta: 0, joints, score };
-    real_configurations(&ranges, &state.joints).into_iter().map(configuration).collect()
+    real_configurations(&problem.robot, &state.joints).into_iter().map(configuration).collect()
 }
 
 #[cfg(test)]

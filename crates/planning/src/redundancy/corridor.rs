@@ -211,7 +211,9 @@ impl Steps for CorridorSteps<'_> {
     }
 
     fn step(&self, from: &State, to: &State) -> Option<f64> {
-        let is_near = |j: usize| wrap(to.joints[j] - from.joints[j]).abs() <= self.joint_steps[j];
+        let mut turned: [f64; 6] = std::array::from_fn(|j| wrap(to.joints[j] - from.joints[j]));
+        turned = self.planner.problem.robot.drives(&turned);
+        let is_near = |j: usize| turned[j].abs() <= self.joint_steps[j];
         (self.limits.allows(to.beta - from.beta) && (0..6).all(is_near)).then_some(0.0)
     }
 

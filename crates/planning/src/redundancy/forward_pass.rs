@@ -143,6 +143,7 @@ impl SegmentPlanner<'_> {
             joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
             sense,
             aggregate: self.problem.criterion.aggregate,
+            fold: self.problem.robot.has_linkage().then_some(self.problem.robot.geometry().fold),
             travel: self.travel_cost(sense),
             instructions: self.instructions,
         }

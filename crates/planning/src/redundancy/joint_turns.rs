@@ -1,9 +1,9 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
 use super::SegmentPlan;
-use crate::constraints::{Measured, STEP_ROUNDING, on_joints, on_state};
+use crate::constraints::{STEP_ROUNDING, joint_steps_hold, on_joints, on_state};
 use crate::evaluate::reference::State;
-use crate::problem::{Placement, Problem};
+use crate::problem::{MAX_JOINT_STEP, Placement, Problem};
 use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{
@@ -57,13 +57,25 @@ pub(super) fn unwind(
         };
         let Some(wrapped) = span.clone().zip(betas).map(solve).collect::<Option<Vec<[f64; 6]>>>() else { continue };
         let steps = &steps[span.clone()];
+        // On an arm with a linkage a motor turns the sum of joints 2 and 3, and none joint 3 by itself.
+        let is_alone = |j: usize| j != 2 || !problem.robot.has_linkage();
         let tracks: [Vec<Vec<f64>>; 6] = std::array::from_fn(|j| {
             let range = Range::of(&problem.robot.joints()[j]);
             let angles: Vec<f64> = wrapped.iter().map(|theta| theta[j]).collect();
-            let limits: Vec<f64> = steps.iter().map(|step| step[j]).collect();
+            let limits: Vec<f64> =
+                steps.iter().map(|step| if is_alone(j) { step[j] } else { MAX_JOINT_STEP }).collect();
             tracks(range, &angles, &limits)
         });
+        let first = joint_paths.len();
         combine(*posture, &tracks, wrapped.len(), &mut joint_paths);
+        if problem.robot.has_linkage() {
+            let holds = |way: &JointPath| {
+                let pairs = way.joints.windows(2).zip(&steps[1..]);
+                pairs.into_iter().all(|(pair, limits)| joint_steps_hold(&problem.robot, &pair[0], &pair[1], limits))
+            };
+            let kept = joint_paths.split_off(first).into_iter().filter(holds);
+            joint_paths.extend(kept.collect::<Vec<_>>());
+        }
     }
     if joint_paths.is_empty() {
         None
@@ -244,6 +256,7 @@ fn length(problem: &Problem, from: Option<&[f64; 6]>, to: Option<&[f64; 6]>) -> 
     let (Some(from), Some(to)) = (from, to) else { return 0 };
     let joints = problem.robot.joints();
     let timed = joints.iter().all(|joint| joint.max_speed.is_some());
+    let (from, to) = (problem.robot.drives(from), problem.robot.drives(to));
     let share = |j: usize| {
         let travel = (from[j] - to[j]).abs();
         if timed { travel / joints[j].max_speed.unwrap_or(1.0) } else { travel }
@@ -265,7 +278,7 @@ fn unwrapped(angles: &[f64]) -> Vec<f64> {
 
 /// Whether real joint angles are inside the limits. rad
 pub(super) fn inside_limits(problem: &Problem, joints: &[f64; 6]) -> bool {
-    on_joints(problem, joints).iter().all(Measured::holds)
+    on_joints(problem, joints).all(|measured| measured.holds())
 }
 
 /// Whether a state satisfies everything but joint limits and steps.

@@ -182,8 +182,8 @@ impl Steps for LevelSteps<'_> {
 
     fn step(&self, from: &Value, to: &Value) -> Option<f64> {
         let (old, new) = (from.node.as_ref()?, to.node.as_ref()?);
-        let is_allowed =
-            self.limits.allows(to.beta - from.beta) && joint_steps_hold(&old.joints, &new.joints, &self.joint_steps);
+        let is_allowed = self.limits.allows(to.beta - from.beta)
+            && joint_steps_hold(&self.problem.robot, &old.joints, &new.joints, &self.joint_steps);
         is_allowed.then(|| self.travel * joint_distance(&old.joints, &new.joints))
     }
 
@@ -208,7 +208,12 @@ pub fn replay(problem: &Problem, placement: &Placement, sense: Sense, plan: &Seg
         replayed.joints[place] = node.joints;
         replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
         if place > 0 {
-            let steps = joint_steps_hold(&replayed.joints[place - 1], &node.joints, &problem.joint_steps(point));
+            let steps = joint_steps_hold(
+                &problem.robot,
+                &replayed.joints[place - 1],
+                &node.joints,
+                &problem.joint_steps(point),
+            );
             if !problem.beta_step(point).allows(plan.betas[place] - plan.betas[place - 1]) || !steps {
                 return None;
             }

@@ -5,12 +5,12 @@
 //! angle within its step.
 
 use super::joint_turns::{JointPath, SegmentChoice, is_allowed};
-use super::{BetaChange, SegmentPlanner, Sense, Workspace};
+use super::{SegmentPlanner, Sense, Workspace};
 use crate::constraints::joint_steps_hold;
 use crate::joint_travel::joint_distance;
 use crate::problem::Placement;
 use std::ops::Range as Span;
-use stead_model::robot::turns::{Range, real_configurations};
+use stead_model::robot::turns::real_configurations;
 use stead_model::robot::{Posture, PostureClass};
 
 /// One real configuration at one grid value of beta.
@@ -128,8 +128,7 @@ impl Search<'_> {
         let point = self.span.start + place;
         let planner = self.planner;
         let mut layer = nodes(planner, point, self.placement, self.posture, workspace);
-        let step = (planner.changes[point], planner.grid.beta_count, &planner.steps[point]);
-        connect(before, &mut layer, step, planner.travel_cost(self.sense));
+        connect(planner, before, &mut layer, point, planner.travel_cost(self.sense));
         layer.retain(|node| node.cost.is_finite());
         let join = |node: &Node| {
             let own = node.score * self.sense.sign();
@@ -166,9 +165,8 @@ fn nodes(
         if !is_allowed(problem, &state) {
             continue;
         }
-        let ranges = problem.robot.joints().each_ref().map(Range::of);
         let score = problem.point_cost(point, state.score());
-        nodes.extend(real_configurations(&ranges, &state.joints).into_iter().map(|joints| Node {
+        nodes.extend(real_configurations(&problem.robot, &state.joints).into_iter().map(|joints| Node {
             beta,
             joints,
             score,
@@ -180,7 +178,8 @@ fn nodes(
 }
 
 /// Gives each node its cheapest predecessor.
-fn connect(before: &[Node], layer: &mut [Node], (change, count, limits): (BetaChange, usize, &[f64; 6]), travel: f64) {
+fn connect(planner: &SegmentPlanner<'_>, before: &[Node], layer: &mut [Node], point: usize, travel: f64) {
+    let (change, count, limits) = (planner.changes[point], planner.grid.beta_count, &planner.steps[point]);
     let mut starts = vec![before.len(); count + 1];
     for (index, node) in before.iter().enumerate().rev() {
         starts[node.beta] = index;
@@ -193,7 +192,7 @@ fn connect(before: &[Node], layer: &mut [Node], (change, count, limits): (BetaCh
             let beta = (node.beta as isize + shift).rem_euclid(count as isize) as usize;
             for (index, old) in before.iter().enumerate().take(starts[beta + 1]).skip(starts[beta]) {
                 let cost = old.cost + travel * joint_distance(&old.joints, &node.joints);
-                if cost < node.cost && joint_steps_hold(&old.joints, &node.joints, limits) {
+                if cost < node.cost && joint_steps_hold(&planner.problem.robot, &old.joints, &node.joints, limits) {
                     node.cost = cost;
                     node.from = index;
                 }

@@ -100,7 +100,7 @@ impl<'a> SegmentPlanner<'a> {
     ) -> Self {
         let starts: Vec<usize> = problem.task.segments().iter().map(|s| s.start).collect();
         let is_start = |point: &usize| starts.binary_search(point).is_ok();
-        let ranges: [Range; 6] = std::array::from_fn(|j| Range::of(&problem.robot.joints()[j]));
+        let ranges = problem.robot.drive_ranges();
         let changes = direct_changes(problem, &grid);
         let step = |p: usize| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) };
         let steps: Vec<_> = (0..problem.task.points().len()).map(step).collect();

@@ -3,7 +3,9 @@
 use super::forward_pass::Pass;
 use super::*;
 use crate::criterion::{Aggregate, Weights};
-use crate::testing::{assert_sound, compensated, five_segments, with_beta_rate, with_laws, with_prototype_steps};
+use crate::testing::{
+    assert_sound, compensated, five_segments, with_axes_2_3, with_beta_rate, with_laws, with_prototype_steps,
+};
 use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
@@ -63,6 +65,10 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         // With points that are not scored, forbidden states beside others.
         [(-150.0, 150.0), (-30.0, 125.0), (-170.0, 120.0)],
         [(-60.0, 90.0), (-125.0, 125.0), (-200.0, 180.0)],
+        // With a range of the sum of joints 2 and 3, and with a linkage.
+        [(-185.0, 185.0), (-125.0, 125.0), (-350.0, 350.0)],
+        [(-350.0, 350.0), (-125.0, 125.0), (-350.0, 350.0)],
+        [(-150.0, 150.0), (-30.0, 125.0), (-170.0, 120.0)],
     ]
     .into_iter()
     .enumerate()
@@ -70,7 +76,9 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
         // With and without joint speeds that bind.
         let arm = if index % 2 == 0 { five_segments() } else { with_prototype_steps(five_segments()) };
         let mut problem = with_wrist(arm, ranges);
-        if index >= 11 {
+        if index >= 13 {
+            problem = with_axes_2_3(problem, index > 13, [-150.0, 0.0]);
+        } else if index >= 11 {
             let path = problem.task.path();
             let is_scored = |point: usize| !point.is_multiple_of(index - 9);
             let points: Vec<_> = (0..105)
@@ -132,7 +140,7 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
             }
         }
     }
-    assert!(compared == 416 && feasible > 60, "{compared} {feasible}");
+    assert!(compared == 512 && feasible > 60, "{compared} {feasible}");
 }
 
 #[test]

@@ -24,6 +24,8 @@ pub struct Step {
     pub change: BetaChange,
     /// Whether each joint can make the step.
     pub joints: [JointStep; 6],
+    /// On an arm with a linkage, where motor 3 turns the sum of joints 2 and 3, how joint 3 counts in it: 1 or -1.
+    pub fold: Option<f64>,
     /// Whether costs are minimised or maximised.
     pub sense: Sense,
     /// How the costs of points make up that of a path.
@@ -201,7 +203,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
         };
         let stride = band.costs.len();
         let (scores, directions) = now.scores_and_directions(class);
-        let joints = Joints::<R>::new(before.all_directions(class), directions, stride, &step.joints);
+        let joints = Joints::<R>::new(before.all_directions(class), directions, stride, step);
         let mut reached = false;
         for (start, way) in (0..count).step_by(lanes).zip(way.chunks_mut(lanes)) {
             let here = pad + start;
@@ -342,6 +344,7 @@ struct Joints<'s, R> {
     new: &'s [f64],
     stride: usize,
     limits: [JointStep; 6],
+    fold: Option<f64>,
     /// Largest chords, squared, where they say all.
     chords: Option<[f64; 6]>,
     rules: PhantomData<R>,
@@ -349,7 +352,8 @@ struct Joints<'s, R> {
 
 impl<'s, R: Rules> Joints<'s, R> {
     #[inline(always)]
-    fn new(old: &'s [f64], new: &'s [f64], stride: usize, joints: &[JointStep; 6]) -> Self {
+    fn new(old: &'s [f64], new: &'s [f64], stride: usize, step: &Step) -> Self {
+        let joints = &step.joints;
         let (mut limits, mut chords, mut are_all) = (*joints, [0.0; 6], true);
         for j in 0..6 {
             limits[j] = joints[(j + R::OTHER_JOINT) % 6];
@@ -359,7 +363,7 @@ impl<'s, R: Rules> Joints<'s, R> {
                 JointStep::Around { .. } => are_all = false,
             }
         }
-        Self { old, new, stride, limits, chords: Some(chords).filter(|_| are_all), rules: PhantomData }
+        Self { old, new, stride, limits, fold: step.fold, chords: Some(chords).filter(|_| are_all), rules: PhantomData }
     }
 
     /// Which of the `requested` states from `here` are too far for some joint from the predecessors `from` beside them.
@@ -399,10 +403,19 @@ impl<'s, R: Rules> Joints<'s, R> {
         let stride = self.stride;
         let rows = self.old.chunks_exact(2 * stride).zip(self.new.chunks_exact(2 * stride));
         let mut within = Mask::splat(simd, true);
+        let zero = Lanes::splat(simd, 0.0);
+        let mut second = [[zero; 2]; 2];
         for (j, (old, new)) in rows.enumerate().take(6) {
             let ((old_sines, old_cosines), (sines, cosines)) = (old.split_at(stride), new.split_at(stride));
-            let old = [Lanes::load(simd, old_sines, there), Lanes::load(simd, old_cosines, there)];
-            let new = [Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here)];
+            let mut old = [Lanes::load(simd, old_sines, there), Lanes::load(simd, old_cosines, there)];
+            let mut new = [Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here)];
+            if let Some(fold) = self.fold {
+                match j {
+                    1 => second = [old, new],
+                    2 => (old, new) = (sum(second[0], old, fold), sum(second[1], new, fold)),
+                    _ => {}
+                }
+            }
             within = within
                 & match &self.chords {
                     Some(chords) => {
@@ -414,6 +427,13 @@ impl<'s, R: Rules> Joints<'s, R> {
         }
         within
     }
+}
+
+/// Sine and cosine of an angle and another, which counts by 1 or -1.
+#[inline(always)]
+fn sum<S: Simd>([s, c]: [Lanes<S>; 2], [other_s, other_c]: [Lanes<S>; 2], fold: f64) -> [Lanes<S>; 2] {
+    let other_s = other_s * fold;
+    [s * other_c + c * other_s, c * other_c - s * other_s]
 }
 
 #[cfg(test)]

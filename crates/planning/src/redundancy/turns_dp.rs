@@ -340,7 +340,9 @@ impl Search<'_> {
                 if reached.is_some_and(|reached| self.join(reached[beta], join(cheapest[later])) > self.most) {
                     continue;
                 }
-                let Some((turns, distance)) = crossings(&layer.angles[beta], &after.angles[later], &limits) else {
+                let Some((turns, distance)) =
+                    crossings(&planner.problem.robot, &layer.angles[beta], &after.angles[later], &limits)
+                else {
                     continue;
                 };
                 let joined = |rest: f64| join(rest) + travel * distance;
@@ -376,16 +378,19 @@ impl Search<'_> {
 
 /// By how many turns each joint advances in a step from some angles to others (rad, from -pi to pi), and the joint
 /// travel (rad); none where one steps by more than its limit.
-fn crossings(from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> Option<([i32; 6], f64)> {
-    let (mut turns, mut distance) = ([0; 6], 0.0);
+fn crossings(robot: &Robot, from: &[f64; 6], to: &[f64; 6], limits: &[f64; 6]) -> Option<([i32; 6], f64)> {
+    let (mut turns, mut distance, mut before) = ([0; 6], 0.0, 0.0);
     for j in 0..6 {
         let apart = to[j] - from[j];
         turns[j] = i32::from(apart < -PI) - i32::from(apart > PI);
-        let step = (apart + TAU * f64::from(turns[j])).abs();
-        if step > limits[j] {
+        let step = apart + TAU * f64::from(turns[j]);
+        // What motor 3 turns on an arm with a linkage.
+        let driven = if j == 2 && robot.has_linkage() { before + robot.geometry().fold * step } else { step };
+        if driven.abs() > limits[j] {
             return None;
         }
-        distance += step;
+        before = step;
+        distance += step.abs();
     }
     Some((turns, distance))
 }

@@ -5,7 +5,7 @@ use super::geometry::of_rows;
 use super::written::{Goal, Written};
 use super::{MoveHit, MovePlace};
 use crate::transfer_paths::TransferPaths;
-use stead_model::robot::Controller;
+use stead_model::robot::Robot;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::Space;
 
@@ -18,8 +18,7 @@ pub(super) fn hits(
     expected: &[Expected],
 ) -> Vec<MoveHit> {
     let Some(space) = Space::new(problem, placement) else { return Vec::new() };
-    let controller = problem.robot.controller();
-    let joints = |place: usize| joints_of(controller, &written[place], &expected[place]);
+    let joints = |place: usize| joints_of(&problem.robot, &written[place], &expected[place]);
     let count = written.len().min(expected.len());
     let pair_at = |place: usize| {
         let wanted = &expected[place];
@@ -45,10 +44,10 @@ pub(super) fn hits(
 }
 
 /// The angles of the rows after a move: those of the program where it has any. rad
-fn joints_of(controller: Option<&Controller>, written: &Written, expected: &Expected) -> [f64; 6] {
-    match (&written.goal, controller) {
+fn joints_of(robot: &Robot, written: &Written, expected: &Expected) -> [f64; 6] {
+    match (&written.goal, robot.controller()) {
         (Goal::Angles(angles) | Goal::Row { angles: Some(angles), is_joint: true, .. }, Some(controller)) => {
-            of_rows(controller, angles)
+            of_rows(robot.joints(), controller, angles)
         }
         _ => expected.near,
     }

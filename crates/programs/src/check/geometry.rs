@@ -159,12 +159,14 @@ pub(super) fn table(axes: &[ExternalAxis], root: &Frame) -> Option<Frame> {
     Some(Frame { turn, origin: <[f64; 3]>::from(axis.point).map(|m| m * 1e3) })
 }
 
-/// The angles of the rows (rad) for those of a controller (deg).
-pub(super) fn of_rows(controller: &Controller, degrees: &[f64; 6]) -> [f64; 6] {
-    let [_, a2, a3, ..] = *degrees;
+/// The angles of the rows (rad) for those of a controller (deg). Where axis 3 is counted against the horizontal, its
+/// row turns back by what that of axis 2 turns, the other way where it points against that.
+pub(super) fn of_rows(rows: &[Joint; 6], controller: &Controller, degrees: &[f64; 6]) -> [f64; 6] {
+    let shown = |axis: usize| degrees[axis].to_radians() * controller.sign[axis];
+    let back = if libm::cos(rows[2].alpha) < 0.0 { shown(1) } else { -shown(1) };
     std::array::from_fn(|axis| {
-        let shown = if axis == 2 && controller.is_j3_level { a2 + a3 } else { degrees[axis] };
-        shown.to_radians() * controller.sign[axis] + controller.offset[axis]
+        let level = if axis == 2 && controller.is_level() { back } else { 0.0 };
+        shown(axis) + level + controller.offset[axis]
     })
 }
 

@@ -304,7 +304,7 @@ impl Arm<'_> {
             ));
         }
         let (Goal::Angles(angles) | Goal::Row { angles: Some(angles), .. }) = one.goal else { return None };
-        let rows = of_rows(self.controller?, &angles);
+        let rows = of_rows(self.robot.joints(), self.controller?, &angles);
         let far = (0..6).find(|axis| (rows[*axis] - wanted.near[*axis]).abs() > std::f64::consts::PI)?;
         Some(format!("{place}: axis {} is a turn away from the plan at point {}", far + 1, wanted.point))
     }
@@ -347,7 +347,10 @@ impl Arm<'_> {
         };
         let by_angles = |angles: &[f64; 6]| {
             let controller = self.controller.ok_or_else(|| unknown("[controller]"))?;
-            Ok(self.stand.of(&flange(self.robot.joints(), &of_rows(controller, angles))).of(&self.mounted))
+            Ok(self
+                .stand
+                .of(&flange(self.robot.joints(), &of_rows(self.robot.joints(), controller, angles)))
+                .of(&self.mounted))
         };
         match &one.goal {
             Goal::Angles(angles) => Ok(vec![by_angles(angles)?]),

@@ -22,7 +22,7 @@ fn stretched(robot: &Robot, controller: &Controller, angles: &[f64; 6]) -> f64 {
     let at = |a3: f64| {
         let mut angles = *angles;
         angles[2] = a3;
-        stretch(robot, &controller.joints(&angles))
+        stretch(robot, &controller.joints(robot, &angles))
     };
     let (mut best, mut step) = (0.0, 0.2);
     let start = (-16..16).map(|k| f64::from(k) * 0.2).max_by(|a, b| at(*a).total_cmp(&at(*b)));
@@ -49,7 +49,7 @@ fn arms() -> Vec<(Robot, Controller)> {
                 (sign[2], sign[4]) = (-sign[2], -sign[4]);
                 offset[2] = given.offset[2];
             }
-            let controller = Controller { kind: ControllerKind::Kuka, sign, offset, is_j3_level: false, ..given };
+            let controller = Controller { kind: ControllerKind::Kuka, sign, offset, is_j3_level: Some(false), ..given };
             (robot, controller)
         })
         .to_vec()
@@ -62,7 +62,7 @@ fn s_and_t_are_those_of_the_geometry() {
         let mut seen = [0; 8];
         for _ in 0..4000 {
             let angles: [f64; 6] = std::array::from_fn(|_| random.random_range(-3.1..3.1));
-            let joints = controller.joints(&angles);
+            let joints = controller.joints(&robot, &angles);
             let posture = Posture::of(&robot, &joints);
             let s = status(posture, controller.sign[2], angles[4]);
             // Bit 0: the wrist centre in the frame that turns with axis 1.
@@ -119,7 +119,7 @@ fn s_and_t_are_those_of_the_published_definition() {
         ([91.0, -45.0, 37.0, 1.0, -1.0, 0.0], 2 + 4, 18),
     ] {
         let angles = angles.map(f64::to_radians);
-        let posture = Posture::of(&robot, &controller.joints(&angles));
+        let posture = Posture::of(&robot, &controller.joints(&robot, &angles));
         assert_eq!((status(posture, controller.sign[2], angles[4]), turn(&angles)), (s, t), "{angles:?}");
     }
 }
@@ -133,7 +133,7 @@ fn the_elbow_of_a_fanuc_is_up_where_it_is_above_the_line_from_shoulder_to_wrist(
     for _ in 0..4000 {
         let mut angles: [f64; 6] = std::array::from_fn(|_| random.random_range(-1.5..1.5));
         angles[0] = random.random_range(-6.0..6.0);
-        let joints = controller.joints(&angles);
+        let joints = controller.joints(&robot, &angles);
         let posture = Posture::of(&robot, &joints);
         let frames = Frames::new(&robot, &joints);
         let [shoulder, elbow, wrist] = [frames.origins[1], frames.origins[2], frames.wrist_centre()];
@@ -184,7 +184,7 @@ fn a_published_pose_of_a_fanuc_has_the_angles_and_the_configurations_that_are_pr
         ("F U T, 0, 0, 0", [7.962, -5.284, -36.250, -102.339, 51.975, 100.727]),
     ] {
         let angles = angles.map(f64::to_radians);
-        let joints = controller.joints(&angles);
+        let joints = controller.joints(&robot, &angles);
         let flange = controller.root_from_base.unwrap().then(&robot.forward(&joints));
         let off = (flange.translation - printed.translation).norm() * 1e3;
         let turn = rotation_vector(&(flange.rotation * printed.rotation.transpose())).norm().to_degrees();

@@ -14,7 +14,7 @@ use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, each, some};
 use crate::placement::CaseOfStudy;
 use nalgebra::Vector3;
 use serde_json::Value;
-use stead_model::robot::{Compliance, Joint};
+use stead_model::robot::{Axes23, Compliance, Joint};
 use stead_placement::outcome::Case;
 use stead_planning::criterion::Direction;
 use stead_planning::feasibility::DeflectionMap;
@@ -99,8 +99,21 @@ records! {
         name: String = robot.name().to_owned(),
         /// The rows.
         rows: Vec<RowData> = robot.joints().iter().map(RowData::of).collect(),
+        /// What joins axes 2 and 3, where anything does.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        axes_2_3: Option<AxesData> = robot.axes_2_3().map(AxesData::of),
         /// Its base in the cell, where it is mounted.
         mount: Option<PoseData> = robot.is_mounted().then(|| (&robot.cell_from_base()).into()),
+    }
+
+    /// What joins axes 2 and 3.
+    pub struct AxesData of (axes: &Axes23) {
+        /// Whether a parallelogram drives axis 3.
+        linkage: bool = axes.linkage,
+        /// Lower limit of the sum of joints 2 and 3.
+        sum_min_deg: AngleDeg = axes.sum.min.into(),
+        /// Upper limit of the sum of joints 2 and 3.
+        sum_max_deg: AngleDeg = axes.sum.max.into(),
     }
 
     /// A Denavit-Hartenberg row with the limits of its joint.

@@ -112,6 +112,7 @@ pub(super) fn ground(blocked: ConstraintKind) -> Colour {
         ConstraintKind::JointLimit(3) => Colour(246, 224, 222),
         ConstraintKind::JointLimit(4) => Colour(232, 224, 244),
         ConstraintKind::JointLimit(5) => Colour(222, 222, 222),
+        ConstraintKind::AxesSum => Colour(244, 232, 214),
         ConstraintKind::JointLimit(_) => Colour(222, 240, 228),
         _ => Colour(248, 248, 248),
     }

@@ -106,8 +106,8 @@ records! {
 
     /// How near a plan comes to a limit of a joint.
     pub struct NearestLimitFigures from limit: &NearestLimit {
-        /// The joint, from 1.
-        joint: usize = limit.joint + 1,
+        /// The joint, from 1; null for the sum of joints 2 and 3.
+        joint: Option<usize> = limit.joint.map(|joint| joint + 1),
         /// `lower` or `upper`.
         side: &'static str = if limit.is_upper { "upper" } else { "lower" },
         /// The path point, from 0.

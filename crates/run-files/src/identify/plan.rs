@@ -243,6 +243,14 @@ fn limits_from(
             return Err(at.element(number).error("is outside the limits of the joint", allowed));
         }
     }
+    let [_, second, third, ..] = limits;
+    let third = if robot.geometry().fold < 0.0 { third.map(|end| -end) } else { third };
+    let sums = [second[0] + third[0].min(third[1]), second[1] + third[0].max(third[1])];
+    if let Some(range) = robot.sum_range().filter(|range| sums[0] > range.max || sums[1] < range.min) {
+        let (min, max) = (range.min.to_degrees(), range.max.to_degrees());
+        let allowed = format!("angles of joints 2 and 3 whose sum can be from {min:.4} to {max:.4}");
+        return Err(at.error("leaves no angles with the sum of joints 2 and 3 within its limits", allowed));
+    }
     Ok(limits)
 }
 
@@ -326,6 +334,11 @@ impl TestTable {
                 let allowed = format!("{min:.4} to {max:.4} for joint {}", index + 1);
                 return Err(at.key("joints_deg").error(problem, allowed));
             }
+        }
+        if let Some(range) = robot.sum_range().filter(|_| robot.beyond_sum(&theta) > 1e-9) {
+            let (min, max) = (range.min.to_degrees(), range.max.to_degrees());
+            let allowed = format!("{min:.4} to {max:.4} for the sum of joints 2 and 3");
+            return Err(at.key("joints_deg").error("puts the sum of joints 2 and 3 outside its limits", allowed));
         }
         let force = self.force_n.vector();
         let moment = self.moment_nm.map_or_else(Vector3::zeros, |moment| moment.vector());

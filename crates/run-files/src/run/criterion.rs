@@ -268,7 +268,8 @@ const SAME_ROW: f64 = 1e-9;
 fn differs(a: &Robot, b: &Robot) -> Option<usize> {
     let row = |joint: &Joint| [joint.alpha, joint.a, joint.d, joint.min, joint.max];
     let is_other = |(a, b): (&Joint, &Joint)| row(a).iter().zip(row(b)).any(|(a, b)| (a - b).abs() > SAME_ROW);
-    a.joints().iter().zip(b.joints()).position(is_other).map(|joint| joint + 1)
+    let joint = a.joints().iter().zip(b.joints()).position(is_other).map(|joint| joint + 1);
+    joint.or((a.axes_2_3() != b.axes_2_3()).then_some(3))
 }
 
 impl WeightsTable {

@@ -17,7 +17,7 @@ use stead_format::shapes::{Array, Interval, Matrix, Vector};
 use stead_format::tool::ToolTable;
 use stead_format::units::{Deg, Gb, Mm, NotNegative, Number, Positive, S, ranges};
 use stead_model::published::Published;
-use stead_model::robot::{Robot, Spindle, angles::yaw_from_q4};
+use stead_model::robot::{Robot, Spindle, angles::yaw_from_q4, turns::Range};
 use stead_model::task::ToolPath;
 use stead_numerics::digits::figures;
 use stead_placement::lookup::LookupTable;
@@ -134,9 +134,11 @@ impl ConstraintsTable {
     pub(super) fn narrowed(&self, robot: Robot, at: &Place<'_>) -> Result<Robot, InputError> {
         let Some(margin) = self.joint_margin_deg.filter(|margin| margin.si() > 0.0) else { return Ok(robot) };
         robot.with_joint_margin(margin.si()).map_err(|e| {
-            let ranges = robot.joints().iter().map(|joint| joint.max - joint.min);
+            let ranges =
+                robot.joints().iter().map(Range::of).chain(robot.sum_range()).map(|range| range.max - range.min);
             let half = (ranges.fold(f64::INFINITY, f64::min) / 2.0).to_degrees();
-            let allowed = format!("less than {half} deg, half the smallest range of a joint");
+            let allowed =
+                format!("less than {half} deg, half the smallest range of a joint or of the sum of joints 2 and 3");
             at.key("joint_margin_deg").error(format!("leaves no range: {e}"), allowed)
         })
     }

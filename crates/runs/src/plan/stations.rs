@@ -119,6 +119,13 @@ fn check_limits(problem: &Problem, row: &PlanRow) -> Result<(), Misfit> {
             return Err((column.to_owned(), sentence));
         }
     }
+    if let Some(range) = problem.robot.sum_range().filter(|_| problem.robot.beyond_sum(&row.joints) > LIMIT_TOLERANCE) {
+        let [sum, min, max] = [problem.robot.sum_of(&row.joints), range.min, range.max].map(f64::to_degrees);
+        let sentence = format!(
+            "makes a sum of joints 2 and 3 of {sum:.4}, but that of the run's robot goes from {min:.4} to {max:.4}"
+        );
+        return Err((JOINTS[2].to_owned(), sentence));
+    }
     Ok(())
 }
 

@@ -5,6 +5,7 @@ use crate::run::{Placed, RunError};
 use std::collections::BTreeSet;
 use stead_certify::{Certificate, Proof, Status};
 use stead_model::robot::Posture;
+use stead_model::robot::turns::Range;
 use stead_numerics::unit::Unit;
 use stead_placement::outcome::{Case, DeflectionFigures, Plan};
 use stead_planning::limit::{ActiveBound, Limit, Side};
@@ -141,11 +142,14 @@ fn figures(problem: &Problem, best: &Case) -> Vec<TableCell> {
     ]
 }
 
-/// How far each joint is from its nearer limit at each point of a plan, what the run file keeps free included. rad
+/// How far each joint, and the sum of joints 2 and 3, is from its nearer limit at each point of a plan, what the run
+/// file keeps free included. rad
 fn joint_margins<'p>(problem: &'p Problem, plan: &'p Plan) -> impl Iterator<Item = f64> + 'p {
-    let (limits, kept) = (problem.robot.joints(), problem.constraints.joint_margin);
+    let (robot, kept) = (&problem.robot, problem.constraints.joint_margin);
     plan.points.iter().flat_map(move |point| {
-        point.joints.iter().zip(limits).map(move |(angle, joint)| kept + (angle - joint.min).min(joint.max - angle))
+        let joints = point.joints.into_iter().zip(robot.joints().iter().map(Range::of));
+        let sum = robot.sum_range().map(|range| (robot.sum_of(&point.joints), range));
+        joints.chain(sum).map(move |(angle, range)| kept + (angle - range.min).min(range.max - angle))
     })
 }
 
@@ -187,6 +191,7 @@ fn name_of(Side { limit, is_upper }: Side) -> String {
         Limit::CellZ => "z".to_owned(),
         Limit::CellYaw => "yaw".to_owned(),
         Limit::Joint(joint) => format!("joint_{joint}"),
+        Limit::AxesSum => "axes_2_3".to_owned(),
         Limit::JointStep(joint) => format!("joint_{joint}_step"),
         Limit::Conditioning => "inverse_condition".to_owned(),
         Limit::BetaRate => "beta_rate".to_owned(),

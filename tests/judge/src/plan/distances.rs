@@ -84,8 +84,11 @@ impl Plan<'_> {
                 verdict.holds("reach between points", || format!("{} at {share}", self.at(i)), is_told);
                 return feed;
             };
-            for (row, (a, b)) in cell.arm.rows.iter().zip(joints.iter().zip(found)) {
-                feed = feed.min(allowed(row.speed, a - b));
+            let motors = [&joints, &found].map(|joints| cell.arm.motors(joints));
+            for (j, row) in cell.arm.rows.iter().enumerate() {
+                // The digits of two angles are in the turn of a forearm.
+                let rounded = if j == 2 && cell.arm.linkage { ROUNDED } else { 0.0 };
+                feed = feed.min(allowed(row.speed, ((motors[1][j] - motors[0][j]).abs() - rounded).max(0.0)));
             }
             joints = found;
             let stand = cell.at(&self.placement, &joints, &positions);
@@ -93,6 +96,11 @@ impl Plan<'_> {
             for (row, angle) in cell.arm.rows.iter().zip(joints).filter(|_| !is_told) {
                 let beyond = (row.min - angle).max(angle - row.max);
                 verdict.within("joint limit between points (rad)", || told("joints"), beyond, MOST_BEYOND);
+            }
+            if let Some([min, max]) = cell.arm.sum.filter(|_| !is_told) {
+                let sum = cell.arm.forearm(&joints);
+                let beyond = (min - sum).max(sum - max);
+                verdict.within("sum of joints 2 and 3 between points (rad)", || told("sum"), beyond, MOST_BEYOND);
             }
             if let Some((depth, which)) = cell.zone_depth(&stand) {
                 verdict.within("zone between points (m)", || told(&which), depth, 1e-4);

@@ -11,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::robot::Frames;
+use stead_model::robot::angles::ANGLE_ROUNDING;
 
 /// What has been drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +27,7 @@ pub struct Candidates {
 /// Counts of configurations that are not allowed, by the first reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Rejected {
-    /// Something would be outside the volume.
+    /// Something would be outside the volume; or no angles were found with the sum of joints 2 and 3 within its limits.
     pub volume: usize,
     /// Something would be too near to the z axis of the base.
     pub radius: usize,
@@ -63,10 +64,7 @@ pub fn draw_candidates(request: &Request) -> Candidates {
     while drawn.load_cases.len() < request.candidates && drawn.draws < MAX_DRAWS_PER_CANDIDATE * request.candidates {
         let mut random = stream(request.seed, Purpose::Candidates, drawn.draws);
         drawn.draws += 1;
-        let mut theta = angles(request, &mut random);
-        if !request.levels.is_empty() {
-            theta[request.level_joint] = request.levels[random.random_range(0..request.levels.len())];
-        }
+        let theta = angles(request, &mut random, true);
         let force = (direction(&request.loads, &mut random) * request.load).map(|value| (value * 10.0).round() / 10.0);
         let load_case = LoadCase { theta, force, moment: Vector3::zeros() };
         match rejection(request, &load_case) {
@@ -85,7 +83,7 @@ pub fn test_cases(request: &Request, count: usize) -> Vec<LoadCase> {
             break;
         }
         let mut random = stream(request.seed, Purpose::Tests, draw);
-        let theta = angles(request, &mut random);
+        let theta = angles(request, &mut random, false);
         let force = direction(&LoadDirections::Any, &mut random) * request.load;
         let test = LoadCase { theta, force, moment: Vector3::zeros() };
         if rejection(request, &test).is_none() {
@@ -95,7 +93,26 @@ pub fn test_cases(request: &Request, count: usize) -> Vec<LoadCase> {
     tests
 }
 
-fn angles(request: &Request, random: &mut ChaCha8Rng) -> [f64; 6] {
+/// Angles are drawn again, so often at the most, where the sum of those of joints 2 and 3 is beyond its limits.
+const SUM_TRIES: usize = 1000;
+
+/// Angles within their limits, at its levels that of the joint that has such where this is asked for.
+fn angles(request: &Request, random: &mut ChaCha8Rng, at_levels: bool) -> [f64; 6] {
+    let mut theta = one_of_each(request, random);
+    for _ in 0..SUM_TRIES {
+        if at_levels && !request.levels.is_empty() {
+            theta[request.level_joint] = request.levels[random.random_range(0..request.levels.len())];
+        }
+        if request.robot.beyond_sum(&theta) <= ANGLE_ROUNDING {
+            break;
+        }
+        theta = one_of_each(request, random);
+    }
+    theta
+}
+
+/// An angle of each joint within its limits.
+fn one_of_each(request: &Request, random: &mut ChaCha8Rng) -> [f64; 6] {
     request.limits.map(|[min, max]| {
         // The bounds are a little wider than the hundredths within them where those are meant exactly.
         let (low, high) = ((min.to_degrees() * 100.0 - 1e-6).ceil(), (max.to_degrees() * 100.0 + 1e-6).floor());
@@ -130,7 +147,7 @@ fn rejection(
     let on_flange = request.points.iter().chain([&request.load_point, &request.tip]).map(at);
     let places = || on_flange.clone().chain([frames.wrist_centre(), flange.translation]);
     let boxed = Volume { min_radius: 0.0, ..request.volume };
-    if places().any(|place| !boxed.contains(&place)) {
+    if request.robot.beyond_sum(theta) > ANGLE_ROUNDING || places().any(|place| !boxed.contains(&place)) {
         return Some(|rejected| &mut rejected.volume);
     }
     if places().any(|place| !request.volume.contains(&place)) {

@@ -4,6 +4,8 @@ use super::model::{Layout, Noise, ObservationModel};
 use super::normal_equations::NormalEquations;
 use super::setup::Setup;
 use super::*;
+use stead_model::robot::Axes23;
+use stead_model::robot::turns::Range;
 
 /// The standard problem under this share of its load, which deflects the arm by 7.1 mm at most.
 fn under(share: f64, seed: u64, noise: f64) -> Problem {
@@ -64,6 +66,32 @@ fn compliances_are_exact_however_far_the_arm_deflects() {
         let off = off_by_linear_equations(&problem);
         assert!((off / linear - 1.0).abs() < 0.05, "{deflection} m: linear equations are off by {off}");
     }
+}
+
+/// The springs of an arm whose axis 3 a parallelogram drives are found again, with a compensator at joint 2 and all
+/// springs normal to the axes too; those of an arm in series are others.
+#[test]
+fn the_springs_of_a_linkage_are_found_again() {
+    let linked = |robot: Robot| {
+        let sum = Range { min: -245_f64.to_radians(), max: 175_f64.to_radians() };
+        robot.with_axes_2_3(Some(Axes23 { linkage: true, sum })).unwrap()
+    };
+    let cell = cell(3);
+    let load_cases = load_cases(&mut ChaCha8Rng::seed_from_u64(3), 20, 5);
+    let readings = sheet(&linked(arm()), &cell, &load_cases, || 0.0, || 0.0);
+    let start = Some(cell.tracker_from_base.rotation);
+    let of = |robot: Robot| identify(&Problem { robot, start, ..problem(readings.clone(), &cell) });
+    let found = of(linked(kr270())).unwrap();
+    for estimate in &found.compliances {
+        let off = estimate.value / truth(estimate.parameter, estimate.angle) - 1.0;
+        assert!(off.abs() < 1e-9, "{estimate:?} is off by {off}");
+    }
+    for estimate in &found.arm {
+        assert!((estimate.value / arm_truth(estimate.parameter) - 1.0).abs() < 1e-9, "{estimate:?}");
+    }
+    assert!(found.robot.has_linkage() && found.warnings.is_empty(), "{:?}", found.warnings);
+    let in_series = of(kr270()).map(|found| found.residual_rms);
+    assert!(in_series.as_ref().map_or(true, |rms| *rms > 1e-5), "{in_series:?}");
 }
 
 /// At 10 mm estimates are no more off than the standard deviations that are reported say.

@@ -144,6 +144,45 @@ fn side_chains_are_named_and_left_out() {
     assert!(note.contains("\"joint_cylinder\", \"joint_piston\"") && note.contains("parallelogram"), "{note}");
 }
 
+/// A closed linkage beside axes 2 and 3, as ros-industrial's description of the M-900iA has it: passive joints on the
+/// upper arm and on the forearm that follow joint 3.
+#[test]
+fn passive_joints_that_follow_joint_3_are_a_parallelogram() {
+    let passive = |name: &str, parent: &str, follows: &str| {
+        format!(
+            "<link name='{name}'/><joint name='p{name}' type='continuous'><origin xyz='0 0.1 0'/><parent link='{parent}'/>\
+             <child link='{name}'/><axis xyz='0 1 0'/><mimic joint='{follows}' multiplier='-1'/></joint>\n"
+        )
+    };
+    let with = |joints: &[String]| {
+        let text = fixture("fanuc").replace("</robot>", &format!("{}</robot>", joints.concat()));
+        import(&text).unwrap()
+    };
+    let crank = passive("crank", "link_2", "joint_3");
+    let rod = passive("rod", "link_3", "joint_3");
+    let linked = with(&[crank.clone(), rod.clone()]);
+    let note = linked.notes.iter().find(|note| note.contains("linkage = true")).unwrap();
+    assert!(
+        note.contains("joints \"pcrank\", \"prod\" follow joint \"joint_3\"") && note.contains("data sheet"),
+        "{note}"
+    );
+    assert!(!linked.notes.iter().any(|note| note.contains("not in the chain")));
+    let robot = filled(&linked);
+    assert!(robot.has_linkage() && robot.geometry().fold == -1.0);
+    let [min, max] = robot.sums();
+    let sum = robot.sum_range().unwrap();
+    assert!((sum.min - min).abs() < 1e-9 && (sum.max - max).abs() < 1e-9);
+    // One of them alone is none, and neither is what follows another joint.
+    for joints in
+        [vec![crank], vec![rod.clone()], vec![passive("a", "link_1", "joint_2"), passive("b", "link_2", "joint_2")]]
+    {
+        let other = with(&joints);
+        assert!(!other.text.contains("axes_2_3") && other.notes.iter().any(|note| note.contains("not in the chain")));
+    }
+    // The crank may hang on the link before axis 2.
+    assert!(filled(&with(&[passive("crank", "link_1", "joint_3"), rod])).has_linkage());
+}
+
 #[test]
 fn masses_are_those_of_the_urdf_in_the_frames_of_the_rows() {
     let staubli = import(&fixture("staubli")).unwrap();

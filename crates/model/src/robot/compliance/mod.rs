@@ -225,6 +225,7 @@ impl Robot {
             joint.compliance = compliance.into();
         }
         let robot = Self::new(&self.name, joints)?.with_data_sheet(*self.data_sheet())?;
+        let robot = robot.with_axes_2_3(self.axes_2_3)?;
         let robot = Self { springs: self.springs.clone(), ..robot.mounted(&self.cell_from_base()) };
         Ok(match self.dynamics() {
             Some(dynamics) => robot.with_dynamics(*dynamics),

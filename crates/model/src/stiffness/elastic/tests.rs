@@ -6,7 +6,7 @@ use super::super::whole::WholeArm;
 use super::super::whole::tests::oracle::{Row, micro, rows};
 use super::super::whole::tests::{everything, matrix, normal_springs};
 use super::*;
-use crate::robot::testing::{kr270, odd_arms, spindle};
+use crate::robot::testing::{irb4400, kr270, linked_arms, odd_arms, spindle};
 use crate::robot::{BaseCompliance, Frames, Inertial, JointDynamics, SpringModel};
 use nalgebra::{Vector6, vector};
 use proptest::prelude::*;
@@ -182,6 +182,71 @@ proptest! {
         let sum = whole.displacement(&pressed.force, &pressed.moment);
         prop_assert!((small.linear - sum.linear).norm() < 1e-6 * sum.linear.norm());
     }
+}
+
+proptest! {
+    #[test]
+    fn an_arm_with_a_linkage_rests_where_its_six_springs_say(
+        theta in prop::array::uniform6(-3.0..3.0_f64), wrench in prop::array::uniform6(-5e3..5e3_f64), arm in 0..32_usize
+    ) {
+        let robot = &linked_arms()[arm];
+        let spindle = spindle();
+        let pressed = load(wrench);
+        let elastic = ElasticArm::new(robot, &spindle);
+        let found = elastic.at_rest(&theta, &pressed).unwrap();
+        let load = Load { point: spindle.flange_from_tool.translation, force: pressed.force, moment: pressed.moment };
+        let expected = robot.forward(&equilibrium(robot, &theta, &load).unwrap()).then(&spindle.flange_from_tool);
+        prop_assert!((found.translation - expected.translation).norm() < 1e-12);
+        let frames = Frames::new(robot, &theta);
+        let point = frames.base_from_flange.point(&load.point);
+        let compliances = robot.compliances_at(&theta);
+        let plain = loaded_displacement(&frames, &point, &compliances, &load.force, &load.moment).unwrap();
+        let moved = elastic.loaded_displacement(&compliances, &theta, &pressed).unwrap();
+        prop_assert!((moved.linear - plain.linear).norm() < 1e-12 && (moved.angular - plain.angular).norm() < 1e-12);
+    }
+}
+
+/// Weight turns the spring of joint 2 by the torque about it less that about joint 3, and that of axis 3 by the latter.
+#[test]
+fn weight_on_a_linkage_is_carried_by_both_motors_and_a_compensator_stays_with_the_upper_arm() {
+    let mass = PointMass { mass: 61.0, centre: vector![0.02, -0.05, 0.25] };
+    let spindle = Spindle { point_mass: Some(mass), ..spindle() };
+    let theta = [0.3, 0.9, -2.9, 0.0, 0.4, 0.0];
+    let frames = Frames::new(&irb4400(), &theta);
+    let [centre, tip] =
+        [mass.centre, spindle.flange_from_tool.translation].map(|place| frames.base_from_flange.point(&place));
+    let torque = |j: usize| frames.twist(j, &centre).0.z * -9.81 * 61.0;
+    let moves = |j: usize| frames.twist(j, &tip).0;
+    let sag = |compliances: [f64; 6], taken: Option<[usize; 2]>| {
+        let arm = irb4400().with_compliances(compliances).unwrap();
+        let arm = match taken {
+            None => arm,
+            Some(taken) => {
+                let (heavy, _) = heavy(arm, spindle);
+                let links = heavy.dynamics().unwrap().each_ref().map(|joint| JointDynamics {
+                    link: Inertial::new(1e-9, Vector3::zeros(), Matrix3::identity()).unwrap(),
+                    ..*joint
+                });
+                let mut links = links;
+                for (j, joint) in links.iter_mut().enumerate() {
+                    joint.gravity_compensated = taken.contains(&j);
+                }
+                heavy.with_dynamics(links)
+            }
+        };
+        ElasticArm::new(&arm, &spindle).in_gravity(FREE_FALL).sag(&theta).linear
+    };
+    let only = |j: usize| std::array::from_fn(|k| if k == j { 5e-7 } else { 1e-30 });
+    let second = (moves(1) - moves(2)) * ((torque(1) - torque(2)) * 5e-7);
+    let third = moves(2) * (torque(2) * 5e-7);
+    assert!((sag(only(1), None) - second).norm() < 1e-12 * second.norm() && second.norm() > 1e-5);
+    assert!((sag(only(2), None) - third).norm() < 1e-12 * third.norm() && third.norm() > 1e-5);
+    // One of joint 2 leaves motor 3 its load, and the other way round.
+    assert!(sag(only(1), Some([1; 2])).norm() < 1e-12);
+    assert!((sag(only(2), Some([1; 2])) - third).norm() < 1e-8 * third.norm());
+    assert!((sag(only(1), Some([2; 2])) - second).norm() < 1e-8 * second.norm());
+    assert!(sag(only(2), Some([2; 2])).norm() < 1e-12);
+    assert!(sag(only(1), Some([1, 2])).norm() < 1e-12 && sag(only(2), Some([1, 2])).norm() < 1e-12);
 }
 
 #[test]

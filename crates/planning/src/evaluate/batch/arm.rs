@@ -96,12 +96,12 @@ impl BatchEvaluator<'_> {
             let sine2 = v_along - u_across * e;
             let cosine2 = u_along + v_across * e;
             let third = [sine * (e * cos_bar) - cosine * sin_bar, cosine * cos_bar + sine * (e * sin_bar)];
-            *elbow = Elbow {
-                sin2: sine2 * inverse,
-                cos2: cosine2 * inverse,
-                third,
-                allowed: exists & self.limits[1].allows(simd, [sine2, cosine2]) & self.limits[2].allows(simd, third),
-            };
+            let mut allowed =
+                exists & self.limits[1].allows(simd, [sine2, cosine2]) & self.limits[2].allows(simd, third);
+            if let Some(sum) = &self.sum {
+                allowed = allowed & sum.allows([sine2, cosine2], third);
+            }
+            *elbow = Elbow { sin2: sine2 * inverse, cos2: cosine2 * inverse, third, allowed };
         }
         Arm { sin1, cos1, forward, height, elbows }
     }

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 use std::f64::consts::{PI, TAU};
-use stead_model::robot::{angles::ANGLE_ROUNDING, turns::Range};
+use stead_model::robot::{Robot, angles::ANGLE_ROUNDING, turns::Range};
 use stead_numerics::simd::{Lanes, Mask};
 
 /// One joint's limits, ready for lanes.
@@ -42,5 +42,34 @@ impl Limit {
             return angle;
         }
         angle + ((angle.all(self.min) - angle) * (1.0 / TAU)).ceil() * TAU
+    }
+}
+
+/// The range of the sum of joint angles 2 and 3, ready for lanes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SumLimit {
+    min: f64,
+    max: f64,
+    fold: f64,
+    joints: [Limit; 2],
+}
+
+impl SumLimit {
+    /// Nothing where the ranges of the joints allow no more.
+    pub fn new(robot: &Robot) -> Option<Self> {
+        let Range { min, max } = robot.sum_range()?;
+        let [least, largest] = robot.sums();
+        let joints = [1, 2].map(|j| Limit::new(Range::of(&robot.joints()[j])));
+        let fold = robot.geometry().fold;
+        let says_more = least < min - ANGLE_ROUNDING || largest > max + ANGLE_ROUNDING;
+        says_more.then_some(Self { min: min - ANGLE_ROUNDING, max: max + ANGLE_ROUNDING, fold, joints })
+    }
+
+    /// Where the sum is allowed, of vectors (sine, cosine) of any length that the limits of their joints allow: those
+    /// have one real angle each.
+    #[inline(always)]
+    pub fn allows<S: Simd>(self, second: [Lanes<S>; 2], third: [Lanes<S>; 2]) -> Mask<S> {
+        let sum = self.joints[0].angle(second) + self.joints[1].angle(third) * self.fold;
+        sum.all(self.min).at_most(sum) & sum.at_most(sum.all(self.max))
     }
 }

@@ -27,7 +27,7 @@ use crate::criterion::Aggregate;
 use crate::problem::{Placement, Problem, Redundancy};
 use deviation::Deviation;
 use laws::Laws;
-use limit::Limit;
+use limit::{Limit, SumLimit};
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
@@ -52,6 +52,8 @@ pub struct BatchEvaluator<'a> {
     cosine: Vec<f64>,
     sine: Vec<f64>,
     limits: [Limit; 6],
+    /// The range of the sum of joints 2 and 3, where it says more than theirs.
+    sum: Option<SumLimit>,
     /// For each set of compliances its laws, what is known of them, and its springs normal to the axes.
     sets: Vec<Set>,
     /// What yields beside the joints, where it does.
@@ -156,6 +158,7 @@ impl<'a> BatchEvaluator<'a> {
             cosine: (0..padded).map(|k| angle(k).1).collect(),
             sine: (0..padded).map(|k| angle(k).0).collect(),
             limits,
+            sum: SumLimit::new(&problem.robot),
             sets: problem
                 .scored_robots()
                 .iter()
@@ -177,10 +180,10 @@ impl<'a> BatchEvaluator<'a> {
     }
 
     /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint
-    /// limits are seen joint by joint, in either flip of the wrist.
+    /// limits are seen joint by joint, in either flip of the wrist; that of the sum of joints 2 and 3 as it is.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
-        use ConstraintKind::{BaseDistance, Conditioning, JointLimit, MaxDeflection, Reach};
-        let mut evaluated = vec![Reach, BaseDistance, Conditioning, MaxDeflection];
+        use ConstraintKind::{AxesSum, BaseDistance, Conditioning, JointLimit, MaxDeflection, Reach};
+        let mut evaluated = vec![Reach, AxesSum, BaseDistance, Conditioning, MaxDeflection];
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
     }

@@ -99,6 +99,8 @@ pub(super) struct Pose<S: Simd> {
     pub dot46: Lanes<S>,
     /// |z4 x z6|^2
     pub sine5_squared: Lanes<S>,
+    /// Whether the spring of joint 2 leaves the forearm its direction: J_2 - J_3 in the place of J_2.
+    pub linkage: bool,
 }
 
 impl<S: Simd> Pose<S> {
@@ -161,50 +163,63 @@ impl<S: Simd> Pose<S> {
         Lanes::splat(simd, 6.0) / (norm2 * inverse_norm2).sqrt()
     }
 
-    /// Torque of a unit force along a direction on each joint; `px` and `py` are the tool centre point from axis 1. m
+    /// Torque of a unit force along a direction on the spring of each joint; `px` and `py` are the tool centre point
+    /// from axis 1. m
     #[inline(always)]
     fn torques(&self, n: Vector<S>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let turn = self.lever.cross(n);
-        [
+        let mut torques = [
             px * n.y - py * n.x,
             r2x * n.z - r2z * n.x,
             r3x * n.z - r3z * n.x,
             self.z4.dot(turn),
             self.z5.dot(turn),
             self.z6.dot(turn),
-        ]
+        ];
+        if self.linkage {
+            torques[1] = torques[1] - torques[2];
+        }
+        torques
     }
 
-    /// Velocity of the tool centre point per speed of each joint. m
+    /// Velocity of the tool centre point per speed of the spring of each joint. m
     #[inline(always)]
     pub fn velocities(&self, simd: S, [px, py]: [Lanes<S>; 2]) -> [Vector<S>; 6] {
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let (zero, t) = (Lanes::splat(simd, 0.0), self.lever);
-        [
+        let mut velocities = [
             Vector { x: -py, y: px, z: zero },
             Vector { x: -r2z, y: zero, z: r2x },
             Vector { x: -r3z, y: zero, z: r3x },
             self.z4.cross(t),
             self.z5.cross(t),
             self.z6.cross(t),
-        ]
+        ];
+        if self.linkage {
+            velocities[1] = Vector { x: r3z - r2z, y: zero, z: r2x - r3x };
+        }
+        velocities
     }
 
-    /// Torque of the load on each joint.
+    /// Torque of the load on the spring of each joint.
     #[inline(always)]
     pub fn axial_torques<const N: usize>(&self, load: &Load<S, N>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
         let Load { force, moment, .. } = *load;
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let turn = self.lever.cross(force).plus(moment);
-        [
+        let mut torques = [
             px * force.y - py * force.x + moment.z,
             r2x * force.z - r2z * force.x - moment.y,
             r3x * force.z - r3z * force.x - moment.y,
             self.z4.dot(turn),
             self.z5.dot(turn),
             self.z6.dot(turn),
-        ]
+        ];
+        if self.linkage {
+            torques[1] = torques[1] - torques[2];
+        }
+        torques
     }
 
     /// The score, the norm of the parts of K^-1 w along the scored directions, with the share of force errors; and what

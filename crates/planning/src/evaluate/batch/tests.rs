@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::criterion::{Aggregate, Criterion, Over, StiffnessSets, Weights};
-use crate::testing::{compensated, five_segments, with_laws, with_uncertainty};
+use crate::testing::{compensated, five_segments, with_axes_2_3, with_laws, with_uncertainty};
 use stead_model::robot::angles::{wrap, yaw_from_q4};
-use stead_model::robot::testing::odd_arms;
+use stead_model::robot::testing::{linked_arms, odd_arms};
 use stead_model::robot::{Compensator, Compliance, Posture, Robot};
 use stead_model::task::{Task, Wrench};
 
@@ -69,6 +69,11 @@ fn reference(problem: &Problem, placement: &Placement, point: usize, k: usize, p
             margin = margin.min((real - range.min).min(range.max - real));
         }
     }
+    if let Some(range) = problem.robot.sum_range() {
+        let [second, third] = [1, 2].map(|j| Range::of(&problem.robot.joints()[j]).nearest(s.joints[j]).0);
+        let sum = second + third * problem.robot.geometry().fold;
+        margin = margin.min((sum - range.min).min(range.max - sum));
+    }
     if problem.constraints.min_base_distance > 0.0 {
         margin = margin.min(s.base_distance - problem.constraints.min_base_distance);
     }
@@ -117,6 +122,46 @@ fn agrees_whatever_is_scored() {
                 assert!(allowed > 300, "{allowed} {weights:?} {force_uncertainty} {confidence}");
             }
         }
+    }
+}
+
+#[test]
+fn agrees_with_a_linkage_and_a_range_of_the_sum_whatever_is_scored() {
+    let plain = with_surface();
+    let mixed = Weights { wall: 1.0, axis: 0.5, feed: 0.0, surface: 2.0 };
+    for weights in [Weights::WALL, Weights::TOTAL, mixed] {
+        for (force_uncertainty, confidence) in [(0.0, 0.0), (0.1, 0.0), (0.0, 2.0), (0.1, 2.0)] {
+            let free = with_axes_2_3(with_uncertainty(plain.clone(), 0.1), true, [-245.0, 175.0]);
+            let criterion = Criterion { weights, force_uncertainty, confidence, ..Criterion::default() };
+            let mut counts = Vec::new();
+            for (linkage, range) in [(true, [-245.0, 175.0]), (true, [-150.0, -20.0]), (false, [-150.0, -20.0])] {
+                let mut problem = with_axes_2_3(free.clone(), linkage, range);
+                problem.criterion = criterion.clone();
+                let placements = [[2.2e-3, -1.6435, -0.5564, 2.1], [0.2, -1.9, -0.3, -1.0]].map(Placement::from);
+                let points = (0..105).step_by(9);
+                counts.push(placements.iter().map(|at| compare(&problem, at, points.clone())).sum::<usize>());
+            }
+            // The range of the sum takes away some states, and not all.
+            assert!(counts[0] > counts[1] && counts[1] == counts[2] && counts[1] > 100, "{counts:?}");
+        }
+    }
+}
+
+#[test]
+fn agrees_for_linkages_of_every_build() {
+    for (number, arm) in linked_arms().into_iter().enumerate() {
+        let mut problem = five_segments();
+        problem.robot = arm;
+        problem.redundancy.beta_count = 30;
+        problem.constraints.min_inverse_condition = 0.05;
+        if number % 2 == 0 {
+            problem.criterion.weights = Weights::TOTAL;
+        }
+        let mut allowed = 0;
+        for placement in [[0.9, 0.5, 0.4, 0.3], [0.3, -1.3, 0.1, 2.0], [-0.5, 0.9, -0.3, -1.0]].map(Placement::from) {
+            allowed += compare(&problem, &placement, (0..105).step_by(15));
+        }
+        assert!(allowed > 50, "{allowed}");
     }
 }
 

@@ -174,7 +174,8 @@ impl<S: Simd, const N: usize> WholeState<'_, S, N> {
             moved = moved.plus(Vector { x: dy * pz, y: -(dx * pz), z: dx * py - dy * px });
         }
 
-        // Joints 2 and 3.
+        // Joints 2 and 3. With a linkage the spring of joint 2 turns the upper arm, and joint 3 back by as much.
+        let mut held = first;
         for (k, (rx, rz)) in [(r2x, r2z), (r3x, r3z)].into_iter().enumerate() {
             let ry = py - normal.across[k];
             let (tx, ty, tz) = (m.x + ry * f.z - rz * f.y, m.y + rz * f.x - rx * f.z, m.z + rx * f.y - ry * f.x);
@@ -187,7 +188,15 @@ impl<S: Simd, const N: usize> WholeState<'_, S, N> {
                 let (even, odd) = ((gx * gx - gz * gz) * half, gx * gz * (2.0 * half));
                 ((even + mean) * tx + odd * tz, odd * tx - (even - mean) * tz)
             };
-            let dy = ty * compliances[1 + k];
+            let mut dy = ty * compliances[1 + k];
+            if pose.linkage {
+                if k == 0 {
+                    held = ((r2z - r3z) * f.x - (r2x - r3x) * f.z) * compliances[1];
+                    dy = held;
+                } else {
+                    dy = dy - held;
+                }
+            }
             moved = moved.plus(Vector { x: dy * rz - dz * ry, y: dz * rx - dx * rz, z: dx * ry - dy * rx });
         }
 

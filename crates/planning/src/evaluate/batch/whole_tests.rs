@@ -3,7 +3,9 @@
 use super::tests::{bits, compare};
 use super::*;
 use crate::criterion::{Criterion, Over, StiffnessSets, Weights};
-use crate::testing::{Beside, compensated, five_segments, slanted, with_beside, with_laws, with_normal_springs};
+use crate::testing::{
+    Beside, compensated, five_segments, slanted, with_axes_2_3, with_beside, with_laws, with_normal_springs,
+};
 use nalgebra::DMatrix;
 use stead_model::robot::testing::odd_arms;
 use stead_model::robot::{Compliance, NormalSprings, Parameter, Uncertainty};
@@ -35,6 +37,9 @@ fn agrees_whatever_yields_and_whatever_is_scored() {
             let points = (0..105).step_by(9);
             let allowed: usize = placements().iter().map(|at| compare(&problem, at, points.clone())).sum();
             assert!(allowed > 300, "{allowed} {beside:?} {weights:?}");
+            let linked = with_axes_2_3(problem, true, [-150.0, 0.0]);
+            let allowed: usize = placements().iter().map(|at| compare(&linked, at, points.clone())).sum();
+            assert!(allowed > 100, "{allowed} {beside:?} {weights:?}");
         }
     }
 }
@@ -76,6 +81,9 @@ fn agrees_with_errors_of_the_force_and_of_the_springs() {
                 problem.criterion = Criterion { weights, force_uncertainty, confidence, ..Criterion::default() };
                 let points = (0..105).step_by(9);
                 let allowed: usize = placements().iter().map(|at| compare(&problem, at, points.clone())).sum();
+                assert!(allowed > 300, "{allowed} {beside:?}");
+                let linked = with_axes_2_3(problem, true, [-245.0, 175.0]);
+                let allowed: usize = placements().iter().map(|at| compare(&linked, at, points.clone())).sum();
                 assert!(allowed > 300, "{allowed} {beside:?}");
             }
         }

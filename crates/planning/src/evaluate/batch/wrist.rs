@@ -113,7 +113,8 @@ impl BatchEvaluator<'_> {
         let sine5 = sine5_squared.sqrt();
         let per_sine = one / sine5;
         let z5 = z4.cross(z6).scale(per_sine);
-        let pose = Pose { u, height, u3, height3, forward, lever, z4, z5, z6, dot46, sine5_squared };
+        let linkage = self.problem.robot.has_linkage();
+        let pose = Pose { u, height, u3, height3, forward, lever, z4, z5, z6, dot46, sine5_squared, linkage };
 
         let inverse_condition = pose.inverse_condition(simd, g.lateral, self.problem.constraints.characteristic_length);
         let conditioned = Lanes::splat(simd, self.problem.constraints.min_inverse_condition).at_most(inverse_condition);

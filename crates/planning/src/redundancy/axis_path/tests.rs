@@ -59,7 +59,12 @@ fn plain(grid: &AxisGrid<'_>, placement: &Placement, span: &Span<usize>) -> Opti
                     let speed = (at(point, node) - at(point - 1, old)).abs() / time;
                     is_allowed
                         && speed <= axis.max_speed.unwrap() * (1.0 + 1e-9)
-                        && joint_steps_hold(&old.joints, &node.joints, &grid.problem.joint_steps(point))
+                        && joint_steps_hold(
+                            &grid.problem.robot,
+                            &old.joints,
+                            &node.joints,
+                            &grid.problem.joint_steps(point),
+                        )
                 };
                 let least = before.iter().filter(is_edge).map(|old| old.1).fold(f64::INFINITY, f64::min);
                 *cost = least + node.score;

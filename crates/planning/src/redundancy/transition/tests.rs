@@ -19,6 +19,8 @@ struct Case {
     /// Of joints not treated modulo a turn.
     ranges: [Option<Range>; 6],
     limits: [f64; 6],
+    /// How joint 3 counts in a sum with joint 2 that is limited in its place, in some cases.
+    fold: Option<f64>,
     /// Before and now, over beta: what is not there is not allowed.
     points: [Vec<Option<State>>; 2],
 }
@@ -57,7 +59,10 @@ impl Case {
         } else {
             BetaChange { min: middle - reach, max: middle + reach + random.random_range(0..2) }
         };
-        let ranges = std::array::from_fn(|j| Some(ranges[j]).filter(|_| !is_modulo[j]));
+        // Sums are told modulo a turn here.
+        let fold = [None, Some(1.0), Some(-1.0)][(seed % 3) as usize];
+        let is_modulo = |j: usize| is_modulo[j] || (j == 2 && fold.is_some());
+        let ranges = std::array::from_fn(|j| Some(ranges[j]).filter(|_| !is_modulo(j)));
         Self {
             count,
             change,
@@ -65,6 +70,7 @@ impl Case {
             aggregate: if random.random_range(0..3) == 0 { Aggregate::Max } else { Aggregate::Mean },
             ranges,
             limits,
+            fold,
             points,
         }
     }
@@ -83,6 +89,10 @@ impl Case {
     fn is_within(&self, old: &[f64; 6], new: &[f64; 6]) -> bool {
         (0..6).all(|j| {
             let turned = new[j] - old[j];
+            let turned = match self.fold {
+                Some(fold) if j == 2 => new[1] - old[1] + fold * turned,
+                _ => turned,
+            };
             let turned = if self.ranges[j].is_none() { wrap(turned) } else { turned };
             turned.abs() <= self.limits[j]
         })
@@ -108,6 +118,7 @@ impl Case {
         let step = Step {
             change: self.change,
             joints,
+            fold: self.fold,
             sense: self.sense,
             aggregate: self.aggregate,
             travel: 0.0,
@@ -160,7 +171,8 @@ fn joint_travel_counts_in_a_step() {
         for instructions in Instructions::all() {
             let joints = std::array::from_fn(|j| JointStep::new(case.limits[j], case.ranges[j]));
             let (change, sense, aggregate) = (case.change, case.sense, case.aggregate);
-            let step = Step { change, joints, sense, aggregate, travel, instructions };
+            let fold = case.fold;
+            let step = Step { change, joints, fold, sense, aggregate, travel, instructions };
             let before = case.states(0, wrap_around);
             let mut now = case.states(1, wrap_around);
             let mut way = vec![0; case.count];

@@ -167,8 +167,8 @@ pub(super) fn limits(table: &mut Table<'_>, case: &Case, sheet: &SetupSheet) {
     let joint = sheet.nearest_limit.map(|near| {
         let side = if near.is_upper { "upper" } else { "lower" };
         format!(
-            "Nearest joint limit: joint {} stays {} deg from its {side} limit (point {}).",
-            near.joint + 1,
+            "Nearest joint limit: {} stays {} deg from its {side} limit (point {}).",
+            near.joint.map_or_else(|| "the sum of 2 and 3".to_owned(), |joint| format!("joint {}", joint + 1)),
             deg(near.distance),
             near.point
         )

@@ -140,6 +140,14 @@ export const ROWS = RAW.robot.rows.map((/** @type {any} */ row) => ({
   compliance: row.compliance_urad_per_nm,
 }));
 
+/** How joint 3 counts in the sum of joints 2 and 3: how far the forearm is turned against the base. */
+export const FOLD = Math.cos((ROWS[2].alpha * Math.PI) / 180) < 0 ? -1 : 1;
+
+/** The range of that sum and whether a parallelogram drives axis 3, where anything joins the two. @type {{ linkage: boolean, min: number, max: number } | null} */
+export const JOINED = RAW.robot.axes_2_3
+  ? { linkage: RAW.robot.axes_2_3.linkage, min: RAW.robot.axes_2_3.sum_min_deg, max: RAW.robot.axes_2_3.sum_max_deg }
+  : null;
+
 /** Numbers in rows of so many. @param {string} text @param {number} rows @returns {number[][]} */
 function rowsOf(text, rows) {
   const all = singlesOf(text);

@@ -4,11 +4,14 @@ import { card, el } from '../draw/dom.js';
 import { giving } from '../draw/downloads.js';
 import { clamp, fixed } from '../draw/scale.js';
 import { JOINT_COLOURS } from './colour.js';
-import { LIMITS, ROWS } from './data.js';
+import { FOLD, JOINED, LIMITS, ROWS } from './data.js';
 import { AXES, axesAt } from './external-axes.js';
 import { reasonText } from './map.js';
 import { SCORED } from './path-mesh.js';
 import { chosenState, current, currentJoints, currentPoint, onChange, state } from './state.js';
+
+/** How far the forearm is turned against the base. deg @param {number[]} joints */
+const sumOf = (joints) => joints[1] + FOLD * joints[2];
 
 export function tiles() {
   const make = (/** @type {string} */ id, /** @type {string} */ name) => {
@@ -44,8 +47,9 @@ export function tiles() {
     if (chosen && !chosen.isAllowed) return limit.show('–', '', 'state not allowed');
     const joints = currentJoints();
     const gaps = ROWS.map((row, j) => Math.min(joints[j] - row.min, row.max - joints[j]));
+    if (JOINED) gaps.push(Math.min(sumOf(joints) - JOINED.min, JOINED.max - sumOf(joints)));
     const nearest = gaps.indexOf(Math.min(...gaps));
-    limit.show(fixed(gaps[nearest], 1), '°', `joint ${nearest + 1}`);
+    limit.show(fixed(gaps[nearest], 1), '°', nearest < ROWS.length ? `joint ${nearest + 1}` : 'joints 2+3');
   });
   return el('div.tiles', {}, here.tile, mean.tile, kappa.tile, limit.tile);
 }
@@ -79,7 +83,17 @@ function gaugesOf() {
     now: () => axesAt(current(), state.t)[k],
     used: () => Array.from(current().columns[axis.column]),
   }));
-  return [...joints, ...axes];
+  const sums = (JOINED ? [JOINED] : []).map((range) => ({
+    name: 'A2+A3',
+    low: range.min,
+    high: range.max,
+    unit: '°',
+    colour: JOINT_COLOURS[2],
+    id: 'joints-2-3',
+    now: () => sumOf(currentJoints()),
+    used: () => current().joints.map(sumOf),
+  }));
+  return [...joints, ...sums, ...axes];
 }
 
 export function gauges() {

@@ -1,7 +1,7 @@
 // What each joint adds to the scored deflection by yielding about its axis.
 
 import { forceAt } from './arrows.js';
-import { CASES, ROWS, TASK } from './data.js';
+import { CASES, FOLD, JOINED, ROWS, TASK } from './data.js';
 import { axesAt, baseFrame, carriedBy, workpieceFrame } from './external-axes.js';
 import { framesOf } from './kinematics.js';
 import { add, cross, dot, less, times, turned } from './linear.js';
@@ -23,10 +23,17 @@ function movedByJoint(of, i, joints) {
   const part = workpieceFrame(of, i);
   const [force, moment] = [turned(part, forceAt(of, i)), turned(part, TASK.moment?.[i] ?? [0, 0, 0])];
   const tip = frames[7].slice(12, 15);
-  return ROWS.map((_, j) => {
+  const twists = ROWS.map((_, j) => {
     const frame = frames[j + 1];
     const axis = frame.slice(8, 11);
-    const lever = cross(axis, less(tip, frame.slice(12, 15)));
+    return { axis, lever: cross(axis, less(tip, frame.slice(12, 15))) };
+  });
+  if (JOINED?.linkage) {
+    // The spring of joint 2 leaves the forearm its direction.
+    const [second, third] = [twists[1], twists[2]];
+    twists[1] = { axis: [0, 0, 0], lever: less(second.lever, times(third.lever, FOLD)) };
+  }
+  return twists.map(({ axis, lever }, j) => {
     const torque = dot(lever, force) / 1000 + dot(axis, moment);
     return times(lever, torque * complianceAt(j, joints[j]) * 1e-6);
   });
