@@ -108,7 +108,7 @@ impl Reader {
             keep_links: kind % 5 == 2,
             ignore: if gcode { Vec::new() } else { vec!["QUILLX".to_owned()] },
             format: Some(format),
-            units: (gcode && kind.is_multiple_of(3)).then_some(LengthUnit::Millimetre),
+            units: kind.is_multiple_of(3).then_some(LengthUnit::Millimetre),
             machine: Machine::ALL.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),
             pivot: (gcode && kind % 7 < 2).then(|| nalgebra::Vector3::z() * 0.3),
             tool_centre_point: kind % 7 == 6,
@@ -244,22 +244,37 @@ mod tests {
         }
     }
 
+    /// The small CAM files of the tests of the command line, of some extensions.
+    fn cam_files(extensions: &[&str]) -> Vec<Vec<u8>> {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/cam");
+        let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.retain(|file| extensions.iter().any(|own| file.extension().is_some_and(|extension| extension == *own)));
+        files.sort();
+        files.iter().map(|file| std::fs::read(file).unwrap()).collect()
+    }
+
     /// All readers, or the one requested, on so many fixtures with mutations each.
     fn run_all(runs: usize, requested: Option<&str>) {
+        let [cldata, gcode] = [&["apt", "ncl", "cls", "aptsource"][..], &["nc"]].map(cam_files);
+        let with = |own: &[&'static [u8]], more: &[Vec<u8>]| {
+            own.iter().map(|file| file.to_vec()).chain(more.to_vec()).collect::<Vec<_>>()
+        };
+        let (cldata, gcode) = (with(&CLDATA, &cldata), with(&GCODE, &gcode));
+        let [cldata, gcode] = [&cldata, &gcode].map(|files| files.iter().map(Vec::as_slice).collect::<Vec<_>>());
         for (reader, fixtures) in [
-            (Reader::Urdf, URDF),
-            (Reader::Cldata, CLDATA),
-            (Reader::Gcode, GCODE),
-            (Reader::Task, TASK),
-            (Reader::Stl, STL),
-            (Reader::Obj, OBJ),
-            (Reader::Dae, DAE),
-            (Reader::Robot, ROBOT),
-            (Reader::Run, RUN),
-            (Reader::Forces, FORCES),
+            (Reader::Urdf, &URDF[..]),
+            (Reader::Cldata, &cldata),
+            (Reader::Gcode, &gcode),
+            (Reader::Task, &TASK),
+            (Reader::Stl, &STL),
+            (Reader::Obj, &OBJ),
+            (Reader::Dae, &DAE),
+            (Reader::Robot, &ROBOT),
+            (Reader::Run, &RUN),
+            (Reader::Forces, &FORCES),
         ] {
             if requested.is_none_or(|name| name == format!("{reader:?}").to_lowercase()) {
-                run(reader, &fixtures, runs);
+                run(reader, fixtures, runs);
             }
         }
     }

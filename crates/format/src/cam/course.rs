@@ -53,8 +53,8 @@ pub(super) struct Course {
     pub axis: Vector3<f64>,
     /// Position in the frame, axis by axis as far as it is known. m
     pub place: [Option<f64>; 3],
-    /// Why an axis is not known, and since which line.
-    unknown: [Option<(&'static str, usize)>; 3],
+    /// Since which line an axis is not known, and why.
+    unknown: [Option<(usize, &'static str)>; 3],
     pub feed: Option<f64>,
     /// Whether the next move is the first of a tool or path.
     pub is_after_change: bool,
@@ -71,7 +71,7 @@ impl Course {
     /// The place is not known any more in some axes, by a code of a line.
     pub fn forget(&mut self, axes: [bool; 3], code: &'static str, line: usize) {
         for axis in (0..3).filter(|axis| axes[*axis]) {
-            (self.place[axis], self.unknown[axis]) = (None, Some((code, line)));
+            (self.place[axis], self.unknown[axis]) = (None, Some((line, code)));
         }
     }
 
@@ -83,24 +83,13 @@ impl Course {
             }
             return false;
         }
-        // Axes that are not known, and since when.
-        let mut why: Vec<(Option<(&str, usize)>, String)> = Vec::new();
-        for axis in (0..3).filter(|axis| self.place[*axis].is_none() || to[*axis].is_none()) {
-            match why.last_mut().filter(|(since, _)| *since == self.unknown[axis]) {
-                Some((_, axes)) => *axes += [", X", ", Y", ", Z"][axis],
-                None => why.push((self.unknown[axis], ["X", "Y", "Z"][axis].to_owned())),
-            }
-        }
-        let words = |(since, axes): &(Option<(&str, usize)>, String)| match since {
-            Some((code, line)) => format!("{axes} not known since {code}, line {line}"),
-            None => format!("{axes} not known before"),
-        };
-        if !why.is_empty() {
-            let words = why.iter().map(words).collect::<Vec<_>>().join("; ");
-            let text = "moves at feed that are not scored, from or to where the tool is not known";
-            self.program.note(format!("{text}: {words}"), line);
-        }
-        why.is_empty()
+        let missing = |axis: &usize| self.place[*axis].is_none() || to[*axis].is_none();
+        let Some(last) = (0..3).filter(missing).max_by_key(|axis| self.unknown[*axis]) else { return true };
+        let axes = (0..3).filter(missing).map(|axis| ["X", "Y", "Z"][axis]).collect::<Vec<_>>().join(", ");
+        let since = self.unknown[last].map_or("before".to_owned(), |(line, code)| format!("since {code}, line {line}"));
+        let text = "moves at feed that are not scored, from or to where the tool is not known";
+        self.program.note(format!("{text}: {axes} not known {since}"), line);
+        false
     }
 
     /// Goes straight to the end of a move.

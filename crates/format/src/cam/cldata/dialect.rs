@@ -99,28 +99,26 @@ pub(super) enum Ending {
     Program,
 }
 
-/// How an arc is written: words and how many numbers, of which the first are centre and axis, or by its way out; the
-/// move behind it is its end, but for that of a way out.
+/// How an arc is written; the move behind it is its end, but for that of a way out, whose last three numbers are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ArcForm {
-    /// For each way to write it its words, how many numbers, and what they are.
-    pub ways: &'static [(&'static [&'static str], usize, ArcNumbers)],
+    pub ways: &'static [ArcWay],
     pub allowed: &'static str,
 }
 
-/// What the numbers of an arc are.
+/// One way to write an arc: its words, how many numbers, and the places of these. The centre is first.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ArcNumbers {
-    /// Centre and axis, then the radius, where they are so many: right-handed.
-    Right,
-    /// The same, left-handed.
-    Left,
-    /// The same, left-handed, and the eighth is a number of whole turns.
-    Turns(usize),
-    /// Which of them is the angle of the turn in degrees, and the sign of the hand.
-    Angle(usize, f64),
-    /// Centre, radius; at the end the place where it ends.
-    OfTangent,
+pub(super) struct ArcWay {
+    pub words: &'static [&'static str],
+    pub count: usize,
+    /// 1.0 where the arc is right-handed about the axis behind the centre, -1.0 where it is left-handed; nothing where
+    /// the way out tells the axis.
+    pub hand: Option<f64>,
+    pub radius: Option<usize>,
+    /// Whole turns.
+    pub turns: Option<usize>,
+    /// Angle of the turn in degrees; 0 where it is not stated.
+    pub angle: Option<usize>,
 }
 
 /// How a frame is written: the places of its numbers, where they are so many.
@@ -277,33 +275,34 @@ pub(super) static DIALECTS: &[Dialect] = &[
     PLAIN,
 ];
 
+/// Centre and axis, right-handed.
+const CENTRE_AXIS: ArcWay = ArcWay { words: &[], count: 6, hand: Some(1.0), radius: None, turns: None, angle: None };
+const CENTRE_AXIS_RADIUS: ArcWay = ArcWay { count: 7, radius: Some(6), ..CENTRE_AXIS };
+const ELEVEN: ArcWay = ArcWay { count: 11, hand: Some(-1.0), ..CENTRE_AXIS_RADIUS };
+const TURNS: ArcWay = ArcWay { words: &["TIMES"], count: 12, turns: Some(11), ..ELEVEN };
+const ANGLE: ArcWay = ArcWay { words: &["ANGLE"], count: 8, angle: Some(7), ..CENTRE_AXIS_RADIUS };
+const WAY_OUT: ArcWay =
+    ArcWay { words: &["GOFWD", "CIRCLE", "ON", "LINE"], count: 10, hand: None, radius: Some(3), ..CENTRE_AXIS };
+
 const CIRCLE: ArcForm = ArcForm {
-    ways: &[
-        (&[], 6, ArcNumbers::Right),
-        (&[], 7, ArcNumbers::Right),
-        (&[], 11, ArcNumbers::Left),
-        (&["TIMES"], 12, ArcNumbers::Turns(11)),
-    ],
+    ways: &[CENTRE_AXIS, CENTRE_AXIS_RADIUS, ELEVEN, TURNS],
     allowed: "6 or 11 finite numbers, or 7 with the radius; behind 11 TIMES and a number of turns up to 1000",
 };
 const CIRCLE_WITH_ANGLE: ArcForm = ArcForm {
-    ways: &[(&[], 6, ArcNumbers::Right), (&[], 7, ArcNumbers::Right), (&[], 11, ArcNumbers::Angle(7, -1.0))],
+    ways: &[CENTRE_AXIS, CENTRE_AXIS_RADIUS, ArcWay { angle: Some(7), ..ELEVEN }],
     allowed: "6 finite numbers, 7 with the radius, or 11, of which the eighth is the angle of the turn up to 360",
 };
 const MOVARC: ArcForm = ArcForm {
     ways: &[
-        (&[], 7, ArcNumbers::Right),
-        (&["CENTER", "AXIS", "RADIUS"], 7, ArcNumbers::Right),
-        (&["ANGLE"], 8, ArcNumbers::Angle(7, 1.0)),
-        (&["CENTER", "AXIS", "RADIUS", "ANGLE"], 8, ArcNumbers::Angle(7, 1.0)),
+        CENTRE_AXIS_RADIUS,
+        ArcWay { words: &["CENTER", "AXIS", "RADIUS"], ..CENTRE_AXIS_RADIUS },
+        ANGLE,
+        ArcWay { words: &["CENTER", "AXIS", "RADIUS", "ANGLE"], ..ANGLE },
     ],
     allowed: "centre, axis, radius, or these behind CENTER, AXIS and RADIUS; ANGLE and degrees up to 360",
 };
 const TLON: ArcForm = ArcForm {
-    ways: &[
-        (&["GOFWD", "CIRCLE", "ON", "LINE"], 10, ArcNumbers::OfTangent),
-        (&["GOFWD", "CIRCLE", "ON", "INTOF", "LINE"], 11, ArcNumbers::OfTangent),
-    ],
+    ways: &[WAY_OUT, ArcWay { words: &["GOFWD", "CIRCLE", "ON", "INTOF", "LINE"], count: 11, ..WAY_OUT }],
     allowed: "INDIRV/i,j,k, then TLON,GOFWD/(CIRCLE/centre,radius),ON[,2,INTOF],(LINE/centre,end)",
 };
 

@@ -3,7 +3,7 @@
 use super::super::super::Move;
 use super::super::super::arc::{Arc, MISSED, millimetres};
 use super::super::super::refusals::*;
-use super::super::dialect::{ArcForm, ArcNumbers};
+use super::super::dialect::ArcForm;
 use super::super::statement::Statement;
 use super::Reader;
 use nalgebra::Vector3;
@@ -40,37 +40,25 @@ impl Reader<'_> {
     pub(super) fn arc(&mut self, statement: &Statement<'_>, form: ArcForm) -> Result<(), InputError> {
         self.no_cycle_is_open(statement)?;
         let given = self.numbers(statement, &[], form.allowed)?;
-        let way = form.ways.iter().find(|(words, count, _)| *count == given.len() && statement.has_just(words));
+        let way = form.ways.iter().find(|way| way.count == given.len() && statement.has_just(way.words));
         let is_of_numbers = statement.words().next().is_none();
         let problem = if is_of_numbers { statement.counted() } else { WORDS_OF_ARC.to_owned() };
-        let numbers = way.ok_or_else(|| statement.fail((problem, form.allowed)))?.2;
-        let (unit, frame) = (self.unit.metres(), self.course.frame);
+        let way = way.ok_or_else(|| statement.fail((problem, form.allowed)))?;
+        let (unit, frame, line) = (self.unit.metres(), self.course.frame, statement.line);
+        let number = |place: Option<usize>| place.map(|place| given[place]);
         let at = |place: usize| Vector3::new(given[place], given[place + 1], given[place + 2]);
+        let (turns, angle, radius) =
+            (number(way.turns), number(way.angle), number(way.radius).map(|radius| radius * unit));
+        let is_usual = turns.is_none_or(|turns| turns.fract() == 0.0 && (1.0..=MOST_TURNS).contains(&turns))
+            && angle.is_none_or(|angle| (0.0..=361.0).contains(&angle));
+        ensure!(is_usual, statement.fail((WORDS_OF_ARC, form.allowed)));
         let centre = frame.place(at(0) * unit);
-        let is_of_tangent = numbers == ArcNumbers::OfTangent;
-        let radius = if is_of_tangent { Some(given[3]) } else { given.get(6).copied() };
-        let (axis, mut turns, mut angle) = (at(3), None, None);
-        let hand = match numbers {
-            ArcNumbers::Right | ArcNumbers::OfTangent => 1.0,
-            ArcNumbers::Left => -1.0,
-            ArcNumbers::Turns(place) => {
-                let is_whole = given[place].fract() == 0.0 && (1.0..=MOST_TURNS).contains(&given[place]);
-                ensure!(is_whole, statement.fail((WORDS_OF_ARC, form.allowed)));
-                turns = Some(given[place] as u32);
-                -1.0
-            }
-            ArcNumbers::Angle(place, hand) => {
-                ensure!((0.0..=361.0).contains(&given[place]), statement.fail((WORDS_OF_ARC, form.allowed)));
-                // An arc of 11 numbers may state none.
-                angle = Some(given[place].to_radians()).filter(|angle| *angle > 0.0);
-                hand
-            }
-        };
-        let radius = radius.map(|radius| radius * unit);
-        let axis = frame.rotation * axis * hand;
-        let line = statement.line;
-        let mut pending = Pending { line, centre, axis, radius, turns, angle, is_certain: is_of_tangent, rise: 0.0 };
-        if is_of_tangent {
+        let axis = frame.rotation * at(3) * way.hand.unwrap_or_default();
+        let angle = angle.map(f64::to_radians).filter(|angle| *angle > 0.0);
+        let turns = turns.map(|turns| turns as u32);
+        let is_certain = way.hand.is_none();
+        let mut pending = Pending { line, centre, axis, radius, turns, angle, is_certain, rise: 0.0 };
+        if is_certain {
             let tangent = self.state.tangent.take();
             let tangent = tangent.ok_or_else(|| statement.fail((NO_WAY_OUT, form.allowed)))?;
             pending.axis = (self.start_of_arc(statement)?.position - centre).cross(&tangent);
