@@ -77,7 +77,9 @@ mod tests {
     /// mm.
     #[test]
     fn a_parallelogram_arm_deflects_as_another_program_has_it() {
-        const ROWS: [([f64; 6], [f64; 3], [f64; 3], f64, f64); 3] = [
+        // Angles in deg, flange and displacement in mm, its size, and that over the size of an arm in series.
+        type Row = ([f64; 6], [f64; 3], [f64; 3], f64, f64);
+        const ROWS: [Row; 3] = [
             (
                 [0.0, 30.0, 0.0, 0.0, 0.0, 0.0],
                 [1665.000, 0.0, 1600.763],
