@@ -6,6 +6,7 @@ mod collision;
 mod mutations;
 mod refusals;
 mod rows;
+mod stand;
 mod visual;
 
 use super::*;
