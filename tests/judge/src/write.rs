@@ -416,6 +416,7 @@ impl Writer<'_> {
         text.push_str("\n[postures]\n");
         match self.of("postures") {
             "some" => text.push_str("allowed = [1, 2, 3, 4]\n"),
+            "words" => text.push_str("allowed = [\"front\", \"elbow up\", 8]\n"),
             "never" => text.push_str("changes = \"never\"\n"),
             "weighed moves" => text.push_str("move_weight_mm_per_s = 0.001\n"),
             _ => {}

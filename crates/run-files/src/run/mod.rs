@@ -24,7 +24,7 @@ pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
 pub use external_axes::ExternalAxisTable;
 pub use forces::ForcesTable;
 pub use output::OutputTable;
-pub use postures::{Changes, PosturesTable};
+pub use postures::{AllowedPosture, Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, SearchTable, TransferTable};
@@ -286,7 +286,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let criterion = criterion.criterion(&segments, &robot, &task, force_uncertainty, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
-    let rules = postures.rules(&at.key("postures"))?;
+    let rules = postures.rules(&robot, &at.key("postures"))?;
     let (shape, keep_out, collision) = (run.shape, run.keep_out, run.collision);
     let around = SurroundingsFile { shape, keep_out, collision, ..SurroundingsFile::default() };
     let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;

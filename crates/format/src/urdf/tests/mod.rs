@@ -4,6 +4,7 @@
 mod arms;
 mod collision;
 mod mutations;
+mod postures;
 mod refusals;
 mod rows;
 mod stand;
