@@ -154,3 +154,69 @@ fn links_become_shapes_of_a_cell_file_where_they_are_asked_for() {
         assert!(cell.contains(part), "{part} in {cell}");
     }
 }
+
+/// A tool path at the door for robots, and a robot at that for tool paths.
+#[test]
+fn a_file_at_the_wrong_door_is_named_with_its_command() {
+    let bench = bench();
+    let refused = |arguments: &[&str], part: &str| {
+        let ended = bench.stead(arguments);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+        assert!(ended.stderr.trim_end().lines().count() == 1 && ended.stderr.contains(part), "{}", ended.stderr);
+    };
+    let path = ["import", "path", "kuka.urdf", "--units", "mm", "--out", "part.csv"];
+    refused(&path, "kuka.urdf: is a URDF: `stead import robot` makes a robot file of it; allowed: a tool path");
+    refused(&[&path[..], &["--format", "gcode"]].concat(), "is a URDF: `stead import robot`");
+    bench.write("arm.xacro", "<robot name='arm' xmlns:xacro='http://ros.org/wiki/xacro'><xacro:arm/></robot>");
+    refused(&["import", "path", "arm.xacro", "--out", "part.csv"], "is a xacro file, for `stead import robot`");
+    refused(&["import", "robot", "arm.xacro", "--out", "arm.toml"], "is an element of xacro, which is not expanded");
+    bench.copy("crates/format/src/cam/fixtures/pocket.cls", "pocket.cls");
+    refused(&["import", "robot", "pocket.cls", "--out", "arm.toml"], "is CLDATA of a CAM system: `stead import path`");
+    bench.write("arm.sdf", "<sdf version='1.6'></sdf>");
+    refused(&["import", "path", "arm.sdf", "--out", "part.csv"], "is XML, and no URDF");
+    // A remark of the program that made it is no macro.
+    let text = bench.read("kuka.urdf").replacen("<link", "<!-- made by xacro --><link", 1);
+    bench.write("made.urdf", &text);
+    refused(&["import", "path", "made.urdf", "--out", "part.csv"], "made.urdf: is a URDF");
+    assert_eq!(bench.stead(&["import", "robot", "made.urdf", "--out", "made.toml"]).code, Some(0));
+}
+
+/// A robot on a pedestal: its run has it there.
+#[test]
+fn an_arm_on_a_pedestal_is_mounted_where_its_urdf_has_it() {
+    let bench = bench();
+    let boxed = "<collision><geometry><box size=\"0.2 0.2 0.2\"/></geometry></collision>";
+    let text =
+        bench.read("kuka.urdf").replacen("<link name=\"base_link\">", &format!("<link name=\"base_link\">{boxed}"), 1);
+    let stand = "<link name=\"world\"/><joint name=\"stand\" type=\"fixed\"><parent link=\"world\"/>\
+                 <child link=\"base_link\"/><origin xyz=\"0 0 0.5\" rpy=\"0 0 1.5707963267948966\"/></joint>";
+    let (head, rest) = text.split_at(text.find("<link").unwrap());
+    bench.write("floor.urdf", &text);
+    bench.write("stand.urdf", &format!("{head}{stand}{rest}"));
+    let like = ["--stiffness-like", "kuka-kr270-2", "--collision"];
+    for name in ["floor", "stand"] {
+        let (urdf, out) = (format!("{name}.urdf"), format!("{name}.toml"));
+        let ended = bench.stead(&[&["import", "robot", urdf.as_str(), "--out", out.as_str()], &like[..]].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        if name == "stand" {
+            ended.assert_says(&[
+                "stands in link \"world\" at xyz_mm = [0.0, 0.0, 500.0], rpy_deg = [0.0, 0.0, 90.0]: [mount] of the surroundings",
+            ]);
+        }
+    }
+    assert!(!bench.read("floor-cell.toml").contains("[mount]"));
+    let stated = "[mount]\nxyz_mm = [0.0, 0.0, 500.0]\nrpy_deg = [0.0, 0.0, 90.0]\n";
+    assert!(bench.read("stand-cell.toml").contains(stated), "{}", bench.read("stand-cell.toml"));
+    // The run that is written for it has its cell there, in front of the robot.
+    let task = ["--task", "tasks/five-segments.csv"];
+    let init = ["init", "place", "--robot", "stand.toml", "--out", "run.toml"];
+    let ended = bench.stead(&[&init[..], &task[..]].concat());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let run: toml::Table = bench.read("run.toml").parse().unwrap();
+    let range =
+        |key: &str| run["cell"][key].as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect::<Vec<_>>();
+    assert!(range("y_mm")[0] > 500.0 && range("x_mm")[0] < 0.0 && range("z_mm")[0] > 500.0, "{run}");
+    let checked = bench.stead(&["check", "run.toml"]);
+    assert_eq!(checked.code, Some(0), "{}", checked.stderr);
+    assert!(checked.stdout.contains("base frame in the cell frame at x 0.0, y 0.0, z 500.0 mm"), "{}", checked.stdout);
+}

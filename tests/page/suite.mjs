@@ -169,6 +169,8 @@ export function tests(folder, others) {
       await page.keyboard.press('1');
       await page.evaluate(() => scrollTo(0, 0));
       const states = table(join(folder, 'deflection-map-best.csv'));
+      const { posture_words: words } = JSON.parse(readFileSync(join(folder, 'summary.json'), 'utf8'));
+      const postureText = (posture) => `posture ${posture} (${words[posture - 1]})`;
       const count = states.filter((row) => row.point === '0').length;
       const points = states.length / count;
       const surface = page.locator('#map canvas').nth(1);
@@ -181,13 +183,13 @@ export function tests(folder, others) {
       const check = async (point, k) => {
         const row = states[point * count + k];
         const beta = `β ${(+row.beta_deg).toFixed(1)}°`;
-        const what = row.reason ? reasonText(row.reason) : `${(+row.score_mm).toFixed(4)} mm, posture ${row.posture}`;
+        const what = row.reason ? reasonText(row.reason) : `${(+row.score_mm).toFixed(4)} mm, ${postureText(row.posture)}`;
         await frame(page);
         assert.equal(await text(page, 'map-reading'), `point ${point}, ${beta}: ${what}`);
         // Bar, tiles and charts tell the same state.
         const words = row.reason
           ? [`point ${point} of 104`, beta, `not allowed: ${reasonText(row.reason)}`, 'the robot stays on the plan']
-          : [`point ${point} of 104`, `segment ${plans[0][point].segment}`, `posture ${row.posture}`, beta, `${(+row.score_mm).toFixed(3)} mm, chosen in the map`];
+          : [`point ${point} of 104`, `segment ${plans[0][point].segment}`, postureText(row.posture), beta, `${(+row.score_mm).toFixed(3)} mm, chosen in the map`];
         assert.equal(await text(page, 'now'), words.join(' · '));
         const cards = (await page.locator('.charts .sub').allTextContents()).slice(0, 3);
         assert.ok(cards.every((one) => /chosen state|along plans only/.test(one)), cards.join('; '));

@@ -3,7 +3,7 @@
 use super::benchmark::{Benchmark, DeflectedCircle, Obstacle, Profile};
 use rayon::prelude::*;
 use serde::Serialize;
-use stead_model::robot::{PostureClass, Robot};
+use stead_model::robot::{PostureClass, PostureWord, Robot};
 use stead_numerics::monitor::Monitor;
 
 /// Centres of circles: the nodes of a square grid, in the coordinates of the benchmark's plane.
@@ -70,11 +70,11 @@ impl Elbow {
 
     /// The posture class that reaches forwards with this elbow.
     pub fn forward_class(self, robot: &Robot) -> PostureClass {
-        let geometry = robot.geometry();
-        // With axis 2 lifting and axis 3 turning alike, delta <= 0 bends the forearm down, which puts the elbow up.
-        let negative_is_up = geometry.lift * geometry.fold > 0.0;
-        let negative = (self == Elbow::Up) == negative_is_up;
-        PostureClass::ALL[usize::from(negative)]
+        let elbow = if self == Elbow::Up { PostureWord::ElbowUp } else { PostureWord::ElbowDown };
+        // The two postures of a class differ in the flip alone.
+        let words = |class: &PostureClass| robot.posture_words(class.postures()[0]);
+        let is_it = |class: &PostureClass| words(class).has(PostureWord::Front) && words(class).has(elbow);
+        PostureClass::ALL.into_iter().find(is_it).unwrap_or(PostureClass::ALL[0])
     }
 }
 

@@ -8,7 +8,7 @@ use crate::setup_sheet::SetupSheet;
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_cell::Clearance;
-use stead_model::robot::Posture;
+use stead_model::robot::{Posture, PostureWords};
 use stead_model::task::lean::Lean;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
@@ -39,6 +39,8 @@ pub struct PlanPoint {
     pub beta: f64,
     /// Posture, the same all along a segment.
     pub posture: Posture,
+    /// The same in words.
+    pub posture_words: PostureWords,
     /// Real joint angles, inside the limits, turns included. rad
     pub joints: [f64; 6],
     /// 1/kappa_F.
@@ -119,6 +121,8 @@ pub struct Plan {
     pub axes: Vec<AxisPath>,
     /// Posture of each segment.
     pub postures: Vec<Posture>,
+    /// The same in words.
+    pub posture_words: Vec<PostureWords>,
     /// The figure that is minimised ([`Problem::objective`](stead_planning::problem::Problem::objective)), with what
     /// joint travel counts in it; by default the mean. m
     pub objective: f64,

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::fmt;
 use stead_cell::{PairKind, Proximity};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
-use stead_model::robot::{Posture, turns::Range};
+use stead_model::robot::{Posture, PostureWords, turns::Range};
 use stead_numerics::monitor::Monitor;
 
 /// What one posture gives at one point and beta.
@@ -17,6 +17,8 @@ use stead_numerics::monitor::Monitor;
 pub struct Explanation {
     /// The posture.
     pub posture: Posture,
+    /// The same in words.
+    pub words: PostureWords,
     /// The state with its joint angles in the turn nearest to their ranges; `None` when out of reach.
     pub state: Option<State<f64>>,
     /// The constraints broken; none means allowed.
@@ -85,18 +87,21 @@ pub fn unscored(problem: &Problem, point: usize) -> Option<String> {
 
 /// The same without the shapes of the scene.
 pub fn without_clearance(problem: &Problem, placement: &Placement, point: usize, beta: f64) -> [Explanation; 8] {
-    Posture::ALL.map(|posture| match problem.at(placement).state(point, beta, posture) {
-        Err(unreachable) => {
-            Explanation { posture, state: None, violations: vec![Measured::Reach(unreachable)], by_origin: None }
-        }
-        Ok(mut found) => {
-            for (angle, joint) in found.joints.iter_mut().zip(problem.robot.joints()) {
-                *angle = Range::of(joint).nearest(*angle).0;
+    Posture::ALL.map(|posture| {
+        let words = problem.robot.posture_words(posture);
+        let mut found = match problem.at(placement).state(point, beta, posture) {
+            Err(unreachable) => {
+                let violations = vec![Measured::Reach(unreachable)];
+                return Explanation { posture, words, state: None, violations, by_origin: None };
             }
-            let measured = on_joints(problem, &found.joints).chain(on_state(problem, &found));
-            let violations = measured.filter(|measured| !measured.holds()).collect();
-            Explanation { posture, state: Some(found), violations, by_origin: None }
+            Ok(found) => found,
+        };
+        for (angle, joint) in found.joints.iter_mut().zip(problem.robot.joints()) {
+            *angle = Range::of(joint).nearest(*angle).0;
         }
+        let measured = on_joints(problem, &found.joints).chain(on_state(problem, &found));
+        let violations = measured.filter(|measured| !measured.holds()).collect();
+        Explanation { posture, words, state: Some(found), violations, by_origin: None }
     })
 }
 
@@ -210,6 +215,8 @@ pub struct Nearest {
     pub beta: f64,
     /// Its posture.
     pub posture: Posture,
+    /// The same in words.
+    pub words: PostureWords,
     /// What it breaks.
     pub violations: Vec<Measured>,
 }
@@ -245,10 +252,11 @@ impl fmt::Display for Finding {
                 }
                 write!(
                     f,
-                    ": no allowed state; nearest at point {}, beta {:.1} deg, posture {}: ",
+                    ": no allowed state; nearest at point {}, beta {:.1} deg, posture {} ({}): ",
                     nearest.point,
                     nearest.beta.to_degrees(),
-                    nearest.posture
+                    nearest.posture,
+                    nearest.words
                 )?;
                 for (k, violation) in nearest.violations.iter().enumerate() {
                     write!(f, "{}{violation}", if k > 0 { ", and " } else { "" })?;
@@ -285,7 +293,8 @@ pub fn diagnose(
         let segment = problem.task.path().segment_of(point) + 1;
         let kinds: Vec<ConstraintKind> = explanation.violations.iter().map(Measured::kind).collect();
         let severity = explanation.severity();
-        let nearest = Nearest { point, beta, posture: explanation.posture, violations: explanation.violations };
+        let Explanation { posture, words, violations, .. } = explanation;
+        let nearest = Nearest { point, beta, posture, words, violations };
         if let Some((lowest, last)) = findings.last_mut()
             && last.segment == segment
             && last.points.1 + 1 == point

@@ -117,7 +117,7 @@ pub(super) fn speed(feed: f64) -> u32 {
 }
 
 fn position_of(lines: &mut Lines, number_of: usize, step: &Move, layout: &Layout<'_>) {
-    let (sign_3, layout_units) = (layout.sign_3, layout.external_units);
+    let layout_units = layout.external_units;
     let angles = step.angles.unwrap_or(step.joints);
     lines.line(format_args!("P[{number_of}]{{"));
     lines.line("   GP1:");
@@ -134,7 +134,8 @@ fn position_of(lines: &mut Lines, number_of: usize, step: &Move, layout: &Layout
             lines.line(format_args!("{}{}", axes[3..].join(","), external(step, layout_units)));
         }
         MoveKind::Linear => {
-            lines.line(format_args!("{of_frames}\t\tCONFIG : '{}',", fanuc_config(step.posture, sign_3, &angles)));
+            let words = layout.posture_words[usize::from(step.posture.number()) - 1];
+            lines.line(format_args!("{of_frames}\t\tCONFIG : '{}',", fanuc_config(words, &angles)));
             let numbers = xyzwpr(&step.workpiece_from_tool);
             let entry = |(key, value): (&str, f64), decimals, unit: &str| {
                 format!("\t{key} = {:>10} {unit}", number(value, decimals))

@@ -5,6 +5,7 @@ use super::motion::{Frames, Heading, Move, MoveKind};
 use super::names;
 use std::fmt::Write;
 use std::ops::Range;
+use stead_model::robot::PostureWords;
 
 /// One file of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,6 +35,8 @@ pub(super) struct Layout<'a> {
     pub spindle_off: Option<&'a str>,
     /// 1 where the controller's third axis counts in the direction of the row, else -1.
     pub sign_3: f64,
+    /// The postures in words, in the order of their numbers.
+    pub posture_words: [PostureWords; 8],
     /// The units of the external axes, mm or deg.
     pub external_units: [&'static str; 6],
     /// Mass and centre (m, flange frame) of what the flange carries, where known.

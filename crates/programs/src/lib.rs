@@ -55,7 +55,7 @@ use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::manifest::interruption_note;
-use stead_model::robot::ControllerKind;
+use stead_model::robot::{ControllerKind, Posture};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem, UNCHECKED};
@@ -311,6 +311,7 @@ fn files(
         spindle_on: on.as_deref(),
         spindle_off: off.as_deref(),
         external_units: motion::external_units(problem),
+        posture_words: Posture::ALL.map(|posture| problem.robot.posture_words(posture)),
         sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
         load: problem.spindle.carried_mass().map(|body| (body.mass, [0, 1, 2].map(|axis| body.centre[axis]))),
     };

@@ -3,7 +3,7 @@
 //! S and T are those that Beckhoff describes for its CNC (TF5200, "Status & Turn"), CONFIG that of poses published by
 //! ONE Robotics (2013): the guide's page `export` has both sources.
 
-use stead_model::robot::Posture;
+use stead_model::robot::{Posture, PostureWord, PostureWords};
 
 /// S of a KUKA pose: bit 0 the wrist centre behind axis 1 ("overhead"), bit 1 the forearm beyond the stretched arm (A3
 /// above the A3 at which wrist centre, axis 3 and axis 2 are in line), bit 2 A5 below zero. By the geometry of the arm,
@@ -25,13 +25,12 @@ pub(super) fn turn(angles: &[f64; 6]) -> u8 {
 }
 
 /// The CONFIG text of a Fanuc position: wrist (N no flip, F flip), forearm (U up, D down), arm (T toward, B backward),
-/// and the turns of axes 1, 4 and 6. J5 counts upwards, and with the tool down from the level forearm (J5 below zero)
-/// the wrist is not flipped.
-pub(super) fn fanuc_config(posture: Posture, sign_3: f64, angles: &[f64; 6]) -> String {
+/// and the turns of axes 1, 4 and 6. Forearm and arm are the words of the posture; the wrist is not: J5 counts upwards,
+/// and with the tool down from the level forearm (J5 below zero) CONFIG has no flip.
+pub(super) fn fanuc_config(words: PostureWords, angles: &[f64; 6]) -> String {
     let wrist = if angles[4] > 0.0 { 'F' } else { 'N' };
-    // J3 counts upwards, too: below the straight arm the elbow is up.
-    let is_up = is_beyond(posture, sign_3) == posture.is_back();
-    let (forearm, arm) = (if is_up { 'U' } else { 'D' }, if posture.is_back() { 'B' } else { 'T' });
+    let forearm = if words.has(PostureWord::ElbowUp) { 'U' } else { 'D' };
+    let arm = if words.has(PostureWord::Back) { 'B' } else { 'T' };
     let turns = [0, 3, 5].map(|j| ((angles[j].to_degrees() + 180.0) / 360.0).floor() as i32);
     format!("{wrist} {forearm} {arm}, {}, {}, {}", turns[0], turns[1], turns[2])
 }

@@ -1,7 +1,8 @@
 //! Names of things as files and pictures state them.
 
-use stead_model::robot::Posture;
-use stead_placement::outcome::RefinementStatus;
+use std::collections::BTreeMap;
+use stead_model::robot::{Posture, PostureWords};
+use stead_placement::outcome::{Plan, RefinementStatus};
 use stead_planning::constraints::{ConstraintKind, describe};
 use stead_planning::limit::{ActiveBound, Limit};
 use stead_planning::sense::Sense;
@@ -34,6 +35,21 @@ pub(super) fn statuses(rounds: &[RefinementStatus]) -> String {
 /// A posture scheme: the numbers with blanks between.
 pub(super) fn postures(scheme: &[Posture]) -> String {
     scheme.iter().map(Posture::to_string).collect::<Vec<_>>().join(" ")
+}
+
+/// The words of a posture in a cell of a table: without commas, so that no cell needs quotes.
+pub(super) fn posture_cell(words: PostureWords) -> String {
+    words.to_string().replace(", ", "; ")
+}
+
+/// Each posture of some plans once, by its number, with its words.
+pub(super) fn posture_words<'a>(plans: impl Iterator<Item = &'a Plan>) -> BTreeMap<Posture, PostureWords> {
+    plans.flat_map(|plan| plan.postures.iter().copied().zip(plan.posture_words.iter().copied())).collect()
+}
+
+/// The same in lines under a table.
+pub(super) fn posture_lines<'a>(plans: impl Iterator<Item = &'a Plan>) -> Vec<String> {
+    posture_words(plans).iter().map(|(posture, words)| format!("posture {posture}: {words}")).collect()
 }
 
 /// A posture scheme in at most `width` characters: in full, else repeated postures counted as `3x12`, else how many

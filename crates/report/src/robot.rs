@@ -90,7 +90,8 @@ const ANGLE_DEG: Unit = Unit { factor: 180.0 / std::f64::consts::PI, decimals: 4
 /// What `stead pose` prints.
 pub fn pose_text(pose: &ArmPose) -> String {
     let mut text = String::new();
-    line(&mut text, &format!("{}, posture {}", pose.robot.name(), Posture::of(&pose.robot, &pose.joints)));
+    let named = pose.robot.named_posture(Posture::of(&pose.robot, &pose.joints));
+    line(&mut text, &format!("{}, posture {}", pose.robot.name(), named));
     text.push('\n');
     let controller = pose.robot.controller();
     let names: Vec<String> = (1..=6).map(|joint| format!("joint {joint}")).collect();
@@ -104,7 +105,7 @@ pub fn pose_text(pose: &ArmPose) -> String {
     text.push('\n');
     text.push_str(&frames_text(&pose.frames()));
     text.push_str(&format!("\nAll postures of this flange pose, in {}\n\n", angles_of(controller)));
-    let header = std::iter::once("posture".to_owned()).chain(names).chain(std::iter::once("within limits".to_owned()));
+    let header = std::iter::once("posture".to_owned()).chain(names).chain(["within limits", ""].map(str::to_owned));
     let mut rows = vec![header.collect::<Vec<_>>()];
     for (posture, found) in pose.postures() {
         let angles = found
@@ -115,9 +116,14 @@ pub fn pose_text(pose: &ArmPose) -> String {
             Some(Reached { is_within: false, .. }) => "no",
             None => "out of reach",
         };
-        rows.push(std::iter::once(posture.to_string()).chain(cells).chain([verdict.to_owned()]).collect());
+        rows.push(
+            std::iter::once(posture.to_string())
+                .chain(cells)
+                .chain([verdict.to_owned(), pose.robot.posture_words(posture).to_string()])
+                .collect(),
+        );
     }
-    text.push_str(&aligned(&rows, &[7]));
+    text.push_str(&aligned(&rows, &[7, 8]));
     text
 }
 
@@ -156,6 +162,8 @@ records! {
         robot: String = pose.robot.name().to_owned(),
         /// The posture, 1 to 8.
         #[schemars(with = "u8")] posture: Posture = Posture::of(&pose.robot, &pose.joints),
+        /// The same in words.
+        posture_words: String = pose.robot.posture_words(Posture::of(&pose.robot, &pose.joints)).to_string(),
         /// Joint angles of the rows.
         joints_deg: [AngleDeg; 6] = each(pose.joints),
         /// Joint angles of the controller; null where none is known.
@@ -190,6 +198,8 @@ records! {
     pub struct PostureFigures of (pose: &ArmPose, posture: Posture, found: Option<Reached>) {
         /// The posture, 1 to 8.
         #[schemars(with = "u8")] posture: Posture = posture,
+        /// The same in words.
+        posture_words: String = pose.robot.posture_words(posture).to_string(),
         /// Joint angles of the rows.
         joints_deg: Option<[AngleDeg; 6]> = found.map(|found| each(found.angles)),
         /// Joint angles of the controller.

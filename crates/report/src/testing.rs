@@ -167,6 +167,7 @@ impl Grid {
         let scores = || points.iter().map(|point: &PlanPoint| point.score);
         let (mean, max) = (scores().sum::<f64>() / points.len() as f64, scores().fold(0.0, f64::max));
         let plan = Plan {
+            posture_words: postures.iter().map(|posture| problem().robot.posture_words(*posture)).collect(),
             postures,
             objective: mean,
             mean,
@@ -253,6 +254,7 @@ impl Grid {
             position: base_from_workpiece.point(&problem().task.points()[point].position),
             beta: stead_model::robot::angles::wrap(problem().redundancy.beta(k)),
             posture,
+            posture_words: problem().robot.posture_words(posture),
             joints: std::array::from_fn(|j| Range::of(&joints[j]).nearest(state.joints[j]).0),
             inverse_condition: state.inverse_condition,
             force: base_from_workpiece.rotation * problem().task.wrenches()[point].force,

@@ -139,6 +139,7 @@ class PlanEntries(Record):
     objective_mm: float
     p50_mm: float
     p95_mm: float
+    posture_words: list[str]
     postures: list[int]
     sag_mm: Record | None
     unfollowed_moves: list[UnfollowedMove]
@@ -228,6 +229,7 @@ class CaseEntries(Record):
     p95_mm: float
     placement: Placement
     placement_exact: Placement
+    posture_words: list[str]
     postures: list[int]
     sag_mm: Record | None
     transfers: list[Transfer]
@@ -301,6 +303,7 @@ class Explanation(Record):
     joints_deg: list[float] | None
     normal_deflection_mm: float | None
     posture: int
+    posture_words: str
     score_mm: float | None
     std_mm: float | None
     total_deflection_mm: float | None

@@ -133,7 +133,12 @@ impl Cell {
         let set_files = criterion.and_then(|table| texts(table, "robots")).unwrap_or_default();
         let sets = set_files.iter().map(|name| Arm::read(&folder.join(name))).collect::<Answer<Vec<_>>>()?;
         let tool = pose(section(&run, "spindle").ok_or("no spindle")?)?;
-        let mount = section(&run, "mount").map_or(Ok(Isometry3::identity()), pose)?;
+        let around = text(&run, "surroundings").map(|name| folder.join(name));
+        let around = around.map(|file| Ok::<_, String>((parse(&file)?, file))).transpose()?;
+        // In the run, or in its surroundings.
+        let mounts = [Some(&run), around.as_ref().map(|(table, _)| table)];
+        let mount = mounts.into_iter().flatten().find_map(|table| section(table, "mount"));
+        let mount = mount.map_or(Ok(Isometry3::identity()), pose)?;
         let axes = sections(&run, "external_axis").into_iter().map(axis).collect::<Answer<Vec<_>>>()?;
         let cell = section(&run, "cell").ok_or("no cell")?;
         let mut orientations = Vec::new();
@@ -163,10 +168,8 @@ impl Cell {
             run,
         };
         let mut ignored = Vec::new();
-        if let Some(name) = text(&all.run, "surroundings").map(str::to_owned) {
-            let file = folder.join(name);
-            let table = parse(&file)?;
-            all.stand(&table, file.parent().unwrap_or(&folder), &mut ignored)?;
+        if let Some((table, file)) = &around {
+            all.stand(table, file.parent().unwrap_or(&folder), &mut ignored)?;
         }
         let own = all.run.clone();
         all.stand(&own, &folder, &mut ignored)?;

@@ -63,7 +63,7 @@ pub const FACTORS: &[Factor] = &[
     factor("turns", &["beta", "per mm", "per s", "all"]),
     factor("beta", &["free", "constant_per_segment", "constant"]),
     factor("travel weight", &["0", "0.05"]),
-    factor("postures", &["free", "some", "never", "weighed moves"]),
+    factor("postures", &["free", "some", "words", "never", "weighed moves"]),
     factor("tie", &["0", "default", "2"]),
     factor("bounds", &["none", "deflection", "base distance"]),
     factor("margin", &["0", "3"]),

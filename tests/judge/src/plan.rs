@@ -21,6 +21,7 @@ pub(crate) struct Row {
     pub place: Vector3<f64>,
     pub beta: f64,
     pub posture: usize,
+    pub posture_words: String,
     pub turns: [f64; 3],
     pub joints: [f64; 6],
     pub inverse_condition: f64,
@@ -80,6 +81,7 @@ pub(crate) fn read(file: &Path, cell: &Cell) -> Answer<Vec<Row>> {
             place: three("", "_mm", 1e-3)?,
             beta: value("beta_deg")?.to_radians(),
             posture: value("posture")? as usize,
+            posture_words: cell_of("posture_words").unwrap_or_default().to_owned(),
             turns: [value("turn_1")?, value("turn_4")?, value("turn_6")?],
             joints,
             inverse_condition: value("inverse_condition")?,
@@ -274,9 +276,22 @@ impl Plan<'_> {
             || format!("{}: stated {}, computed {number}", self.at(i), row.posture),
             number == row.posture,
         );
+        let words = self.posture_words(row, &wrist, stand);
+        // Where the arm is stretched, or the wrist straight, it is between two.
+        if let Some(words) = &words {
+            verdict.holds(
+                "posture words",
+                || format!("{}: stated {}, computed {words:?}", self.at(i), row.posture_words),
+                words.join("; ") == row.posture_words,
+            );
+        }
         let table = section(&self.cell.run, "postures");
-        if let Some(allowed) = table.and_then(|table| crate::values::list(table, "allowed")) {
-            verdict.holds("allowed posture", || self.at(i), allowed.contains(&(row.posture as f64)));
+        if let Some(allowed) = table.and_then(|table| table.get("allowed")).and_then(toml::Value::as_array) {
+            let is_number = |entry: &toml::Value| entry.as_integer() == Some(row.posture as i64);
+            let mut requested = allowed.iter().filter_map(toml::Value::as_str).peekable();
+            let stated: Vec<&str> = row.posture_words.split("; ").collect();
+            let has_words = requested.peek().is_some() && requested.all(|word| stated.contains(&word));
+            verdict.holds("allowed posture", || self.at(i), has_words || allowed.iter().any(is_number));
         }
         let is_one = table.and_then(|table| crate::values::text(table, "changes")) == Some("never");
         if i > 0 && (is_one || self.follows(i)) {
@@ -288,6 +303,30 @@ impl Plan<'_> {
             let found = (row.joints[j] / std::f64::consts::TAU).round();
             verdict.holds("turns", || format!("{} joint {}", self.at(i), j + 1), is_edge || found == row.turns[k]);
         }
+    }
+
+    /// The posture in words, from where axes 2 and 3 and the wrist are in the base of the rows.
+    fn posture_words(&self, row: &Row, wrist: &Point3<f64>, stand: &Stand) -> Option<[&'static str; 3]> {
+        let base = stand.frames[0].inverse();
+        let at = |frame: usize| base * Point3::from(stand.frames[frame].translation.vector);
+        let (first, second, third, wrist) = (at(1), at(2), at(3), base * wrist);
+        let out = (base * stand.frames[1]).rotation * nalgebra::Vector3::x();
+        let out = if self.cell.arm.rows[1].a < 0.0 { -out } else { out };
+        let ahead = (wrist - first).dot(&out);
+        let flat = |point: Point3<f64>| ((point - second).dot(&out), (point - second).z);
+        let ((far, high), (reach, rise)) = (flat(wrist), flat(third));
+        // To the left of the line from axis 2 to the wrist is above it where the wrist is in front.
+        let left = far * rise - high * reach;
+        let counting = self.cell.arm.counting.as_ref();
+        let fifth = counting.map_or(row.joints[4], |of| of.sign[4] * (row.joints[4] - of.offset[4]));
+        let is_told = ahead.abs() > 1e-6 && left.abs() > 1e-6 && fifth.sin().abs() > 1e-6;
+        is_told.then(|| {
+            [
+                if ahead > 0.0 { "front" } else { "back" },
+                if (left > 0.0) == (ahead > 0.0) { "elbow up" } else { "elbow down" },
+                if fifth.sin() < 0.0 { "flip" } else { "no flip" },
+            ]
+        })
     }
 
     /// The load, what it does, and what the criterion makes of it, with what the printed digits of the angles change of

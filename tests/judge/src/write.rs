@@ -65,6 +65,8 @@ struct Writer<'a> {
     run: String,
     /// Base of the rows in the cell.
     mount: Isometry3<f64>,
+    /// The table `[mount]`, for the run or its surroundings.
+    mount_table: String,
     /// Where the part may be: the middle of the cell. m
     part: Vector3<f64>,
     /// Height of axis 2, distance of axis 2 from axis 1, upper arm and forearm. m
@@ -89,6 +91,7 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
         key: of("angles"),
         run: "robot = \"robot.toml\"\ntask = \"task.csv\"\nstiffness_like = \"made up\"\n".to_owned(),
         mount: Isometry3::identity(),
+        mount_table: String::new(),
         part: Vector3::zeros(),
         sizes: sizes(&arm)?,
         tool: Isometry3::identity(),
@@ -101,7 +104,10 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
         toml.push(("robot", folder.join(name)));
     }
     writer.place();
-    let (shapes, mesh) = writer.shapes();
+    let (mut shapes, mesh) = writer.shapes();
+    let mount = std::mem::take(&mut writer.mount_table);
+    let is_beside = !shapes.is_empty() && seed % 2 == 1;
+    if is_beside { &mut shapes } else { &mut writer.run }.push_str(&mount);
     if !shapes.is_empty() {
         writer.run.insert_str(0, "surroundings = \"cell.toml\"\n");
         std::fs::write(folder.join("cell.toml"), shapes).map_err(told)?;
@@ -288,7 +294,7 @@ impl Writer<'_> {
         self.part = (self.mount * Point3::from(local)).coords;
         if self.of("mount") != "none" {
             let (xyz, turned) = (vector(&(self.mount.translation.vector * 1e3)), angles(self.key, &turned));
-            self.line(format_args!("\n[mount]\nxyz_mm = {xyz}\n{turned}"));
+            self.mount_table = format!("\n[mount]\nxyz_mm = {xyz}\n{turned}\n");
         }
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let (tcp, matrix) = match self.of("spindle") {
@@ -432,6 +438,7 @@ impl Writer<'_> {
         text.push_str("\n[postures]\n");
         match self.of("postures") {
             "some" => text.push_str("allowed = [1, 2, 3, 4]\n"),
+            "words" => text.push_str("allowed = [\"front\", \"elbow up\", 8]\n"),
             "never" => text.push_str("changes = \"never\"\n"),
             "weighed moves" => text.push_str("move_weight_mm_per_s = 0.001\n"),
             _ => {}

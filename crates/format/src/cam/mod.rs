@@ -33,6 +33,7 @@ pub use segments::Resampling;
 pub use tool::ProgramTool;
 pub use tool::file_beside;
 
+use crate::file_kind::FileKind;
 use gcode::Machine;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -188,6 +189,12 @@ pub fn import_path(file: &Path, settings: &ReadSettings) -> Result<ImportedPath,
 /// # Errors
 /// As [`import_path`].
 pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Result<ImportedPath, InputError> {
+    FileKind::expect(
+        &[FileKind::Cldata, FileKind::GCode],
+        file,
+        bytes,
+        "a tool path of a CAM system, CLDATA or G-code",
+    )?;
     // CAM systems write comments in the code page of their machine.
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}');

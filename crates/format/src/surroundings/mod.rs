@@ -12,6 +12,7 @@ pub use tables::{
     VisualTable,
 };
 
+use crate::mount::MountTable;
 use crate::place::Place;
 use crate::toml_file::TomlFile;
 use std::path::Path;
@@ -19,7 +20,7 @@ use std::sync::Arc;
 use stead_cell::{Scene, SceneError, Shape, Surroundings, SurroundingsError};
 use stead_disk::input::{InputError, InputFile};
 use stead_model::external_axis::ExternalAxis;
-use stead_model::robot::{Robot, Spindle};
+use stead_model::robot::{Pose, Robot, Spindle};
 use tables::axis_of;
 pub(crate) use tables::{CLEARANCE, attachment};
 
@@ -70,6 +71,39 @@ pub fn read_scene(
     read.notes = notes::notes(&scene, robot, spindle);
     read.scene = Some(Arc::new(scene));
     Ok(read)
+}
+
+/// Where the robot of a run stands: the table `[mount]` of the run file itself, or of the surroundings that it names.
+///
+/// # Errors
+/// [`InputError`] for a table that is in both files, for one that is wrong, and for surroundings that cannot be read.
+pub fn read_mount(own: Option<&MountTable>, at: &Place<'_>) -> Result<Option<Pose<f64>>, InputError> {
+    let own = own.map(|table| table.cell_from_base(&at.key("mount"))).transpose()?;
+    let named = at.key("surroundings");
+    let theirs = match named.is_given() {
+        true => mount_in(&named.named_toml("surroundings")?.0, own.is_some())?,
+        false => None,
+    };
+    Ok(own.or(theirs))
+}
+
+/// Where the robot stands by a file of surroundings.
+///
+/// # Errors
+/// [`InputError`] for what is wrong in the file.
+pub fn mount_of(file: &Path) -> Result<Option<Pose<f64>>, InputError> {
+    mount_in(&TomlFile::read(file)?, false)
+}
+
+fn mount_in(source: &TomlFile, is_stated: bool) -> Result<Option<Pose<f64>>, InputError> {
+    let document = source.parse()?;
+    let tables: SurroundingsFile = document.read()?;
+    let at = document.root().key("mount");
+    if tables.mount.is_some() && is_stated {
+        let allowed = "[mount] in the run file or in its surroundings";
+        return Err(at.error("is stated in the run file too", allowed).found_if(None));
+    }
+    tables.mount.map(|table| table.cell_from_base(&at)).transpose()
 }
 
 /// The shapes and zones of a file of its own, without external axes.

@@ -1,6 +1,7 @@
 //! The tables `[[shape]]`, `[[keep_out]]` and `[collision]`, in a file of their own or in a run file.
 
 use crate::mesh::MeshUnit;
+use crate::mount::MountTable;
 use crate::orientation::{OrientationKeys, Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::quantity::Quantity;
@@ -23,6 +24,8 @@ words!(TrackedPoint: "tool" => TrackedPoint::Tool, "wrist" => TrackedPoint::Wris
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurroundingsFile {
+    /// Where the robot stands among them, in place of `[mount]` in the run file.
+    pub mount: Option<MountTable>,
     /// Shapes that keep apart: fence, table, fixture, part, links, spindle.
     pub shape: Option<Vec<ShapeTable>>,
     /// Zones that points of the arm are kept out of.

@@ -3,24 +3,37 @@
 use super::collision::{LinkShape, LinkShapes};
 use super::visual::LinkVisual;
 use super::xml::one_line;
+use super::{ImportedRobot, rounded};
 use crate::mesh::MeshUnit;
 use nalgebra::Vector3;
 use std::fmt::Write;
 use std::path::{Component, Path, PathBuf};
 use stead_cell::Solid;
 use stead_model::robot::Pose;
-use stead_numerics::rotation::quaternion_from_rotation;
+use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 use toml::Value;
 
-/// The text of a file of surroundings at a path, from whose folder mesh files are named; `urdf` is the file that they
-/// come from.
-pub(super) fn text(links: &LinkShapes, visuals: &[LinkVisual], file: &Path, urdf: &str) -> String {
+/// The text of a file of surroundings at a path, from whose folder mesh files are named.
+pub(super) fn text(robot: &ImportedRobot, links: &LinkShapes, file: &Path) -> String {
+    let visuals = &robot.link_visuals;
     let mut text = format!(
         "# The links of an arm, by `stead import robot --collision` from {}: its <collision> shapes in the frames of the rows.\n\
          # A run file takes it by surroundings = \"{}\"; fence, table and spindle are added beside it.\n",
-        one_line(urdf),
+        robot.name,
         one_line(&file.file_name().unwrap_or_default().to_string_lossy()),
     );
+    if let Some(mount) = &robot.mount {
+        let [yaw, pitch, roll] = zyx_from_rotation(&mount.rotation).map(|angle| rounded(angle.to_degrees()));
+        let _ = writeln!(
+            text,
+            "\n# Where the robot stands by the fixed joints before link {}: the base frame of its rows in the cell frame, which is that\n\
+             # of the root link, its z axis up. Of a robot that stands elsewhere, the shapes on \"base\" below move too.\n\
+             [mount]\nxyz_mm = {}\nrpy_deg = {:?}",
+            one_line(&robot.base_link),
+            vector(&mount.translation),
+            [roll, pitch, yaw]
+        );
+    }
     links.shapes.iter().for_each(|link| shape(&mut text, link, file));
     if !links.ignored.is_empty() {
         text.push_str(

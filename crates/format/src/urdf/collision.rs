@@ -4,6 +4,7 @@ use super::bodies::{attached_to, row_from_links};
 use super::meshes::{found, is_read};
 use super::read::{Geometry, Urdf};
 use super::rows::Rows;
+use super::stand::Stand;
 use super::tree::Chain;
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
@@ -41,19 +42,27 @@ pub struct LinkShapes {
 /// A mesh sticks out of its hull nowhere, and the hull out of the mesh by no more than this: it is taken for convex. m
 const CONVEX: f64 = 1e-3;
 
-/// The shapes of the base link and of the six links behind the moving joints, each with all that is fixed to it.
+/// The shapes of what stands with the base and of the six links behind the moving joints, each with all that is fixed
+/// to it.
 ///
 /// # Errors
 /// [`InputError`] for a `<collision>` that says nothing that can be, and for a mesh file that cannot be read.
-pub(super) fn link_shapes(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> Result<LinkShapes, InputError> {
+pub(super) fn link_shapes(
+    urdf: &Urdf,
+    chain: &Chain,
+    rows: &Rows,
+    robot: &Robot,
+    stand: &Stand,
+) -> Result<LinkShapes, InputError> {
     let mut read = Reading { urdf, shapes: Vec::new(), notes: Vec::new() };
-    read.links(chain.base, &rows.link_from_base.inverse(), Attachment::Base)?;
+    read.links(stand.link, &stand.cell_from_link(), Attachment::Base)?;
     for ((link, row_from_link), number) in row_from_links(urdf, chain, rows, robot).into_iter().zip(1..) {
         read.links(link, &row_from_link, Attachment::Link(number))?;
     }
     let Reading { shapes, mut notes, .. } = read;
     let zero = std::array::from_fn(|k| rows.rows[k].offset_deg.to_radians());
-    let ignored = touching(robot, &zero, &shapes, &mut notes);
+    let mounted = robot.clone().mounted(&stand.mount.unwrap_or_else(Pose::identity));
+    let ignored = touching(&mounted, &zero, &shapes, &mut notes);
     Ok(LinkShapes { shapes, ignored, notes })
 }
 

@@ -22,6 +22,12 @@ pub(super) fn tip_at(urdf: &Urdf, chain: &Chain, values: &[f64; 6]) -> Pose<f64>
     link_at(urdf, chain, values, chain.path.len())
 }
 
+/// The base link in the root link, where fixed joints alone are between.
+pub(super) fn base_at(urdf: &Urdf, chain: &Chain) -> Option<Pose<f64>> {
+    let fixed = |pose: Pose<f64>, joint: &usize| pose.then(&urdf.joints[*joint].origin);
+    chain.carrier(urdf).is_none().then(|| chain.stand.iter().fold(Pose::identity(), fixed))
+}
+
 /// The child of a joint in its parent.
 fn step(joint: &Joint, value: f64) -> Pose<f64> {
     joint.origin.then(&Pose { rotation: turn(&joint.axis, value), translation: Vector3::zeros() })

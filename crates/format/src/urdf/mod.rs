@@ -24,6 +24,7 @@ mod meshes;
 mod notes;
 mod read;
 mod rows;
+mod stand;
 mod stiffness;
 mod summary;
 mod toml_text;
@@ -41,6 +42,7 @@ use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};
 use rows::Rows;
+use stand::Stand;
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::{InputError, sha256};
@@ -89,6 +91,9 @@ pub struct ImportedRobot {
     pub linkage_sums_deg: Option<[f64; 2]>,
     /// The base frame of the rows in the base link. m
     pub link_from_base: Pose<f64>,
+    /// Where the robot stands by the fixed joints before its base link: the base frame of the rows in the root link,
+    /// as `[mount]` has it. Nothing where these joints move it nowhere. m
+    pub mount: Option<Pose<f64>>,
     /// The tip link in the frame of the last row. m
     pub flange_from_tip: Pose<f64>,
     /// How far the rows are from the URDF.
@@ -145,6 +150,7 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
     refuse_far(urdf, &chain, deviation)?;
     let bodies = bodies::bodies(urdf, &chain, &rows, &robot);
     let linkage_sums_deg = linkage_sums(urdf, &chain, &robot);
+    let stand = Stand::of(urdf, &chain, &rows);
     let mut imported = ImportedRobot {
         name: one_line(&urdf.name),
         base_link: urdf.links[chain.base].name.clone(),
@@ -155,10 +161,12 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         max_speed_deg_per_s: speeds,
         linkage_sums_deg,
         link_from_base: rows.link_from_base,
+        mount: stand.mount,
         flange_from_tip: rows.flange_from_tip,
         deviation,
         notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref(), linkage_sums_deg.is_some())
             .into_iter()
+            .chain(notes::stand(urdf, &chain, &stand, options.collision))
             .chain(plausibility::joint_ranges(&robot))
             .collect(),
         controller: None,
@@ -183,14 +191,14 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         imported.notes.extend(meshes::missing(urdf).iter().map(|name| format!("mesh {} is not found", quoted(name))));
     }
     if options.collision {
-        let shapes = collision::link_shapes(urdf, &chain, &rows, &robot)?;
+        let shapes = collision::link_shapes(urdf, &chain, &rows, &robot, &stand)?;
         if shapes.shapes.is_empty() {
             let allowed = "a URDF with <collision> shapes whose files are there, or an import without --collision";
             let error = InputError::new(&urdf.file, "has no <collision> shape that can be read");
             return Err(error.allowed(allowed));
         }
         imported.notes.extend(shapes.notes.iter().cloned());
-        let (visuals, notes) = visual::link_visuals(urdf, &chain, &rows, &robot, &shapes);
+        let (visuals, notes) = visual::link_visuals(urdf, &chain, &rows, &robot, &stand, &shapes);
         imported.notes.extend(notes);
         imported.link_visuals = visuals;
         imported.link_shapes = Some(shapes);
@@ -207,13 +215,14 @@ impl ImportedRobot {
     }
 
     /// The files of the robot with their texts: the robot file, and beside it, where the shapes of the links were
-    /// requested, that of the surroundings with these shapes and with what the links look like, `NAME-cell.toml`.
+    /// requested, that of the surroundings with where the robot stands, these shapes and what the links look like,
+    /// `NAME-cell.toml`.
     pub fn files(&self, file: &Path) -> Vec<(PathBuf, String)> {
         let mut files = vec![(file.to_owned(), self.text.clone())];
         if let Some(shapes) = &self.link_shapes {
             let stem = file.file_stem().unwrap_or_default().to_string_lossy();
             let cell = file.with_file_name(format!("{stem}-cell.toml"));
-            let text = cell_text::text(shapes, &self.link_visuals, &cell, &self.name);
+            let text = cell_text::text(self, shapes, &cell);
             files.push((cell, text));
         }
         files

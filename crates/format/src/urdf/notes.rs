@@ -2,11 +2,37 @@
 
 use super::deviation::Deviation;
 use super::read::{Kind, Urdf};
+use super::rounded;
 use super::rows::{Rows, written};
+use super::stand::Stand;
 use super::stiffness::Borrowed;
 use super::tree::Chain;
 use super::xml::quoted;
 use nalgebra::Matrix3;
+use stead_numerics::rotation::zyx_from_rotation;
+
+/// Where the robot stands, as far as the URDF says it.
+pub(super) fn stand(urdf: &Urdf, chain: &Chain, stand: &Stand, is_written: bool) -> Option<String> {
+    let [base, root] = [chain.base, chain.root].map(|link| quoted(&urdf.links[link].name));
+    if let Some(joint) = chain.carrier(urdf) {
+        let joint = quoted(&urdf.joints[joint].name);
+        return Some(format!(
+            "link {base} is carried by joint {joint}, which moves: where the robot stands in link {root} is not taken; \
+             [mount] and [[external_axis]] of a run say it"
+        ));
+    }
+    let mount = stand.mount?;
+    let xyz = <[f64; 3]>::from(mount.translation).map(|length| written(length * 1e3));
+    let [yaw, pitch, roll] = zyx_from_rotation(&mount.rotation).map(|angle| rounded(angle.to_degrees()));
+    let table = match is_written {
+        true => "[mount] of the surroundings",
+        false => "for [mount] of a run",
+    };
+    Some(format!(
+        "the robot stands in link {root} at xyz_mm = {xyz:?}, rpy_deg = {:?}: {table}, whose z axis points up",
+        [roll, pitch, yaw]
+    ))
+}
 
 /// Rows farther from their URDF than this are noted. mm
 const NOTED_MM: f64 = 0.1;

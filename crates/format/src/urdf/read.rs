@@ -1,6 +1,7 @@
 //! The elements of a URDF: links and joints, with what stead uses of them.
 
 use super::xml::{Element, one_line, quoted};
+use crate::file_kind::FileKind;
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::{Document, Error as XmlError, Node};
 use std::collections::BTreeMap;
@@ -110,6 +111,8 @@ impl Urdf {
         let bytes = files::read(file).map_err(|error| {
             InputError::new(file, format!("cannot be read: {error}")).allowed("the name of a readable URDF file")
         })?;
+        // CAM systems write comments in the code page of their machine.
+        FileKind::expect(&KINDS, file, &bytes, WANTED)?;
         let text = String::from_utf8(bytes)
             .map_err(|_| InputError::new(file, "is not UTF-8 text").allowed("a URDF in UTF-8"))?;
         Self::parse(file, text)
@@ -117,6 +120,7 @@ impl Urdf {
 
     /// Takes the text of a file already read; `file` is its name in messages.
     pub fn parse(file: &Path, text: String) -> Result<Self, InputError> {
+        FileKind::expect(&KINDS, file, text.as_bytes(), WANTED)?;
         let (name, links, joints) = {
             let document = Document::parse(&text).map_err(|error| not_xml(file, &text, &error))?;
             let root = Element { file, node: document.root_element() };
@@ -152,6 +156,9 @@ impl Urdf {
     }
 }
 
+/// What the reader tells apart itself, with the line.
+const KINDS: [FileKind; 3] = [FileKind::Urdf, FileKind::Xacro, FileKind::Xml];
+const WANTED: &str = "a URDF, the robot description of ROS";
 const EXPAND: &str = "a URDF: expand a xacro file first, `pip install xacro`, `xacro robot.xacro > robot.urdf`";
 
 /// Text that is no XML, at its line.

@@ -7,6 +7,10 @@ use stead_disk::input::InputError;
 /// The joints from the base link to the tip link.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
+    /// Index of the root link.
+    pub root: usize,
+    /// All joints from the root link to the base link: where the robot stands.
+    pub stand: Vec<usize>,
     /// Index of the base link.
     pub base: usize,
     /// Index of the tip link.
@@ -124,7 +128,14 @@ impl Chain {
             }
         }
         let moving: Vec<usize> = path.iter().copied().filter(|joint| urdf.joints[*joint].kind != Kind::Fixed).collect();
-        Ok(Self { base: from, tip, moving: six(urdf, &moving, tip)?, path })
+        let root = tree.root();
+        let stand = tree.path(urdf, root, from).unwrap_or_default();
+        Ok(Self { root, stand, base: from, tip, moving: six(urdf, &moving, tip)?, path })
+    }
+
+    /// The joint nearest to the base link among those that move and carry it: a rail, another arm.
+    pub fn carrier(&self, urdf: &Urdf) -> Option<usize> {
+        self.stand.iter().rev().copied().find(|joint| urdf.joints[*joint].kind != Kind::Fixed)
     }
 
     /// Joints that move and are not in the chain, but no more than hang on the arm: springs, parallel links, grippers.

@@ -6,6 +6,7 @@ use super::collision::LinkShapes;
 use super::meshes::{found, is_read};
 use super::read::{Geometry, Urdf};
 use super::rows::Rows;
+use super::stand::Stand;
 use super::tree::Chain;
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
@@ -27,17 +28,19 @@ pub struct LinkVisual {
     pub unit: MeshUnit,
 }
 
-/// What the base link and the six links behind the moving joints look like, each with all that is fixed to it, and
+/// What stands with the base and the six links behind the moving joints look like, each with all that is fixed to it, and
 /// notes on what is not drawn.
 pub(super) fn link_visuals(
     urdf: &Urdf,
     chain: &Chain,
     rows: &Rows,
     robot: &Robot,
+    stand: &Stand,
     shapes: &LinkShapes,
 ) -> (Vec<LinkVisual>, Vec<String>) {
-    let mut read = Reading { urdf, visuals: Vec::new(), notes: Vec::new() };
-    read.links(chain.base, &rows.link_from_base.inverse(), Attachment::Base, shapes);
+    let base_from_cell = stand.mount.map_or_else(Pose::identity, |mount| mount.inverse());
+    let mut read = Reading { urdf, base_from_cell, visuals: Vec::new(), notes: Vec::new() };
+    read.links(stand.link, &stand.base_from_link, Attachment::Base, shapes);
     for ((link, row_from_link), number) in row_from_links(urdf, chain, rows, robot).into_iter().zip(1..) {
         read.links(link, &row_from_link, Attachment::Link(number), shapes);
     }
@@ -46,6 +49,8 @@ pub(super) fn link_visuals(
 
 struct Reading<'a> {
     urdf: &'a Urdf,
+    /// Shapes on the base are stated in the cell.
+    base_from_cell: Pose<f64>,
     visuals: Vec<LinkVisual>,
     notes: Vec<String>,
 }
@@ -78,8 +83,11 @@ impl Reading<'_> {
             let (Solid::Hull(mesh) | Solid::Mesh(mesh), Some((file, unit))) = (&of.shape.solid, &of.file) else {
                 continue;
             };
-            let visual =
-                Visual { name: self.name(link), attached, mesh: Arc::clone(mesh), pose: of.shape.pose, color: None };
+            let pose = match attached {
+                Attachment::Base => self.base_from_cell.then(&of.shape.pose),
+                _ => of.shape.pose,
+            };
+            let visual = Visual { name: self.name(link), attached, mesh: Arc::clone(mesh), pose, color: None };
             self.notes.push(format!("link {} is drawn by its collision mesh", quoted(&self.urdf.links[link].name)));
             self.visuals.push(LinkVisual { visual, file: file.clone(), unit: *unit });
         }

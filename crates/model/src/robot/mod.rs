@@ -57,7 +57,7 @@ pub use geometry::Geometry;
 pub use inertial::{Inertial, InertialError, PointMass};
 pub use inverse::Unreachable;
 pub use pose::{Pose, cast};
-pub use posture::{Posture, PostureClass};
+pub use posture::{Posture, PostureClass, PostureWord, PostureWords};
 pub use shipped::ShippedArm;
 pub use spindle::{Spindle, point_from_tool};
 pub use springs::{About, BaseCompliance, MeasuredFrom, NormalSprings, Spring, SpringModel};

@@ -3,6 +3,7 @@
 use super::calmer::{calmer, swing};
 use crate::outcome::{Cycle, Plan};
 use stead_model::plausibility;
+use stead_model::robot::PostureWord;
 use stead_model::task::lean::{Lean, LeanForce};
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
@@ -33,7 +34,32 @@ pub(super) fn of(
     let large = plausibility::deflection(plan.deflection.total.max);
     let of_travel = [swing(plan), calmer(problem, placement, plan, monitor)].into_iter().flatten();
     let of_weight = weight(problem, plan);
-    small_part(problem, plan).into_iter().chain(large).chain(of_weight).chain(slowed(feed)).chain(of_travel).collect()
+    let over_head = over_head(plan);
+    small_part(problem, plan)
+        .into_iter()
+        .chain(over_head)
+        .chain(large)
+        .chain(of_weight)
+        .chain(slowed(feed))
+        .chain(of_travel)
+        .collect()
+}
+
+/// A note on segments along which the arm reaches over its head.
+fn over_head(plan: &Plan) -> Option<String> {
+    let numbered = plan.posture_words.iter().zip(1..);
+    let back: Vec<usize> =
+        numbered.filter(|(words, _)| words.has(PostureWord::Back)).map(|(_, number)| number).collect();
+    let (first, count) = (*back.first()?, back.len());
+    let which = match count {
+        1 => format!("segment {first}"),
+        _ if count == plan.posture_words.len() => "every segment".to_owned(),
+        _ => format!("{count} segments, the first of them {first}"),
+    };
+    Some(format!(
+        "the best plan goes over the back of the robot along {which}: the wrist is behind axis 1, and the arm reaches over its head \
+         (postures \"back\"); dress packs and cables may not allow it; allowed = [\"front\"] in [postures] leaves such plans out"
+    ))
 }
 
 /// A note on the weight, which moves the tool and is in no score, where the mass of what the flange carries is known.

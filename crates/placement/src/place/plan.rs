@@ -108,6 +108,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
                 position: placed.tip,
                 beta: wrap(plan.betas[place]),
                 posture: plan.posture,
+                posture_words: problem.robot.posture_words(plan.posture),
                 joints: plan.joints[place],
                 inverse_condition: s.inverse_condition,
                 force: placed.force,
@@ -132,6 +133,7 @@ pub(super) fn detailed(problem: &Problem, placement: &Placement, plans: &[Segmen
     let scores = problem.objective(points.iter().map(|p| problem.point_cost(p.point, p.score)));
     Plan {
         postures: plans.iter().map(|plan| plan.posture).collect(),
+        posture_words: plans.iter().map(|plan| problem.robot.posture_words(plan.posture)).collect(),
         objective: scores + problem.travel_weight() * travel.total,
         mean: scored.clone().map(|p| p.score).sum::<f64>() / count,
         max: scored.clone().map(|p| p.score).fold(0.0, f64::max),

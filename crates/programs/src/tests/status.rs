@@ -145,7 +145,7 @@ fn the_elbow_of_a_fanuc_is_up_where_it_is_above_the_line_from_shoulder_to_wrist(
         if posture.is_back() || above.abs() < 1e-6 {
             continue;
         }
-        let config = fanuc_config(posture, controller.sign[2], &angles);
+        let config = fanuc_config(robot.posture_words(posture), &angles);
         assert_eq!(config.contains('U'), above > 0.0, "{angles:?} {config}");
         ups += usize::from(above > 0.0);
         let turns = |angle: f64| ((angle.to_degrees() + 180.0).div_euclid(360.0)) as i32;
@@ -189,6 +189,6 @@ fn a_published_pose_of_a_fanuc_has_the_angles_and_the_configurations_that_are_pr
         let off = (flange.translation - printed.translation).norm() * 1e3;
         let turn = rotation_vector(&(flange.rotation * printed.rotation.transpose())).norm().to_degrees();
         assert!(off < 0.02 && turn < 0.002, "{off} mm, {turn} deg");
-        assert_eq!(fanuc_config(Posture::of(&robot, &joints), controller.sign[2], &angles), config);
+        assert_eq!(fanuc_config(robot.posture_words(Posture::of(&robot, &joints)), &angles), config);
     }
 }

@@ -168,6 +168,8 @@ impl<'a> LivePage<'a> {
         if let Some(turn) = turn {
             data["part_turns"] = value(&[turn; 4]);
         }
+        data["posture_words"] =
+            value(&Posture::ALL.map(|posture| self.problem.robot.posture_words(posture).to_string()));
         data["live"] = live.clone();
         Ok(html::html(title, html::LIVE, &data.to_string()).into_bytes())
     }
@@ -201,6 +203,7 @@ impl<'a> LivePage<'a> {
             position: Vector3::zeros(),
             beta: 0.0,
             posture: Posture::ALL[0],
+            posture_words: self.problem.robot.posture_words(Posture::ALL[0]),
             joints,
             inverse_condition: 0.0,
             force: Vector3::zeros(),
@@ -220,6 +223,7 @@ impl<'a> LivePage<'a> {
             points: (0..count).map(point).collect(),
             axes: self.problem.axis_paths(),
             postures: vec![Posture::ALL[0]; task.segments().len()],
+            posture_words: vec![self.problem.robot.posture_words(Posture::ALL[0]); task.segments().len()],
             objective: 0.0,
             mean: 0.0,
             max: 0.0,

@@ -14,6 +14,9 @@ pub(super) struct Table<'a> {
     len: usize,
 }
 
+/// The column of the words of postures, which the document has once for all.
+const NAMED_IN_THE_DOCUMENT: &str = "posture_words";
+
 impl<'a> Table<'a> {
     /// Reads the bytes of a file of this name.
     pub(super) fn read(name: &str, bytes: &'a [u8]) -> Result<Self, PageError> {
@@ -61,9 +64,11 @@ impl<'a> Table<'a> {
     }
 
     /// The columns named, of the rows chosen, in ascending order (all, where none are): numbers as singles, words as
-    /// they are.
+    /// they are. The words of postures are left out.
     pub(super) fn content(&self, words: &[&str], chosen: Option<&[usize]>) -> Result<Value, PageError> {
-        let is_words: Vec<bool> = self.header.iter().map(|name| words.contains(&name.as_str())).collect();
+        let is_left_out = |name: &str| name == NAMED_IN_THE_DOCUMENT;
+        let is_words: Vec<bool> =
+            self.header.iter().map(|name| is_left_out(name) || words.contains(&name.as_str())).collect();
         let mut texts = vec![Vec::new(); self.header.len()];
         let mut numbers = vec![Vec::new(); self.header.len()];
         self.each(chosen, |row| {
@@ -78,6 +83,9 @@ impl<'a> Table<'a> {
         let mut columns = Map::new();
         let values = texts.into_iter().zip(numbers);
         for ((name, is_word), (texts, numbers)) in self.header.iter().zip(is_words).zip(values) {
+            if is_left_out(name) {
+                continue;
+            }
             columns.insert(name.clone(), if is_word { texts.into() } else { singles(numbers).into() });
         }
         Ok(Value::Object(columns))

@@ -180,6 +180,16 @@ impl<'a> Picture<'a> {
             canvas.text(&label, (x + 40, 632), style);
             x += 40 + style.width(&label) + 24;
         }
+        let postures = names::posture_lines([&self.best.plan, &self.worst.plan].into_iter());
+        let small = TextStyle::new(11.0);
+        let mut words = postures.join("; ");
+        for count in (0..postures.len()).rev() {
+            if LEFT + small.width(&words) <= SIZE.0 {
+                break;
+            }
+            words = format!("{}; ..", postures[..count].join("; "));
+        }
+        canvas.text(&words, (LEFT, 648), small);
         let reasons = self.reasons();
         if reasons.is_empty() {
             return;

@@ -80,6 +80,8 @@ records! {
         at_held_feed: Option<HeldFeedFigures> = plan.held.as_ref().map(Into::into),
         /// The posture of each segment, 1 to 8.
         #[schemars(with = "Vec<u8>")] postures: Vec<Posture> = plan.postures.clone(),
+        /// The same in words.
+        posture_words: Vec<String> = plan.posture_words.iter().map(ToString::to_string).collect(),
         /// How much the joints turn.
         joint_travel: JointTravelFigures = (&plan.travel).into(),
         /// Feeds that the plan holds.
@@ -200,6 +202,8 @@ records! {
         beta_deg: AngleDeg = point.beta.into(),
         /// The posture, 1 to 8.
         #[schemars(with = "u8")] posture: Posture = point.posture,
+        /// The same in words.
+        posture_words: String = point.posture_words.to_string(),
         /// Joint angles.
         joints_deg: [AngleDeg; 6] = each(point.joints),
         /// Inverse of the condition number of the Jacobian.

@@ -141,6 +141,10 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .stability
         .as_ref()
         .map(|found| format!("\n{}", crate::stability::path::text(found, ["best plan", "worst plan"])));
+    let postures: String = names::posture_lines([&score.plans.best, &score.plans.worst].into_iter())
+        .iter()
+        .map(|row| format!("{row}\n"))
+        .collect();
     let mut feed = String::new();
     origins::of_plan(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
     super::text::sag(&score.plans.best).iter().for_each(|row| line(&mut feed, &format!("best plan: {row}")));
@@ -157,7 +161,7 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .map(|row| format!("{row}\n"))
         .collect();
     let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
-    format!("{}\n{setup}\n{}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
+    format!("{}\n{setup}\n{}{postures}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
 }
 
 records! {
@@ -179,6 +183,8 @@ records! {
     } with {
         /// The posture, 1 to 8.
         #[schemars(with = "u8")] posture: Posture = explanation.posture,
+        /// The same in words.
+        posture_words: String = explanation.words.to_string(),
         /// Joint angles.
         joints_deg: Option<[FineAngleDeg; 6]> = state.map(|s| each(s.joints)),
         /// Inverse of the condition number of the Jacobian.
@@ -233,7 +239,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
             }
             None => row.extend((1..last).map(|_| "-".to_owned())),
         }
-        row.push(if e.is_allowed() { "allowed" } else { "refused" }.to_owned());
+        row.push(format!("{}  {}", if e.is_allowed() { "allowed" } else { "refused" }, e.words));
         rows.push(row);
         for violation in &e.violations {
             broken.push_str(&format!("  posture {}: {violation}\n", e.posture));

@@ -3,6 +3,7 @@
 use super::origins::OriginColumns;
 use super::setup::{AxisColumns, at_point};
 use crate::figure::{AngleDeg, DeflectionMm, ForceN, PlaceMm, Plain, each, some};
+use crate::names;
 use schemars::JsonSchema;
 use serde::Serialize;
 use stead_cell::Scene;
@@ -32,6 +33,8 @@ records! {
         beta_deg: AngleDeg = point.beta.into(),
         /// Posture, 1 to 8.
         #[schemars(with = "u8")] posture: Posture = point.posture,
+        /// The same in words: front or back; elbow up or down; flip or no flip.
+        posture_words: String = names::posture_cell(point.posture_words),
         /// Full turns of joint 1 beyond (-180, 180] deg.
         turn_1: i32 = turn_1,
         /// Full turns of joint 4.

@@ -7,6 +7,7 @@ use crate::figure::{
 };
 use serde_json::Value;
 use stead_model::robot::Pose;
+use stead_model::robot::Posture;
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::settings::{LookupUse, PostureSearch};
 use stead_planning::criterion::{Criterion, Direction};
@@ -18,6 +19,8 @@ records! {
     pub struct SettingsFigures of (problem: &Problem, context: &Context) {
         /// Name of the robot.
         robot: String = problem.robot.name().to_owned(),
+        /// The postures 1 to 8 of the robot in words, in this order.
+        posture_words: [String; 8] = Posture::ALL.map(|posture| problem.robot.posture_words(posture).to_string()),
         /// Seed of all random numbers.
         seed: u64 = context.search.seed,
         /// How hard the search is.
@@ -43,7 +46,7 @@ records! {
         /// Rules for postures, where there are some.
         #[serde(skip_serializing_if = "Option::is_none")]
         postures: Option<PostureFigures> =
-            (problem.postures != PostureRules::NONE).then(|| PostureFigures::of(&problem.postures)),
+            (problem.postures != PostureRules::NONE).then(|| PostureFigures::of(problem)),
     }
 
     /// How hard a search is.
@@ -167,9 +170,14 @@ records! {
 
 records! {
     /// Rules for postures.
-    pub struct PostureFigures of (rules: &PostureRules) {
+    pub struct PostureFigures of (problem: &Problem) {
+        let rules = &problem.postures;
+    } with {
         /// The postures allowed, 1 to 8.
         allowed: Vec<u8> = rules.allowed().map(|posture| posture.number()).collect(),
+        /// The same in words.
+        allowed_words: Vec<String> =
+            rules.allowed().map(|posture| problem.robot.posture_words(posture).to_string()).collect(),
         /// Whether it may change between segments: `free` or `never`.
         changes: &'static str = if rules.may_change { "free" } else { "never" },
         /// What a second of the moves between segments counts in the choice of postures.

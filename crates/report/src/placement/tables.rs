@@ -10,7 +10,7 @@ use crate::names;
 use crate::output::ReportError;
 use stead_cell::Scene;
 use stead_model::published::Published;
-use stead_model::robot::Posture;
+use stead_model::robot::{Posture, PostureWords};
 use stead_model::task::lean::Lean;
 use stead_placement::lean_map::{LeanMap, LeanReason, LeanState};
 use stead_placement::outcome::{Case, Cases, Generation, Plan, Refinement};
@@ -32,12 +32,17 @@ records! {
     pub struct CaseRow of (case: &Case, cases: &Cases, reference: Option<f64>) {
         let (plan, cycle) = (&case.plan, &case.cycle);
         let (figures, total) = (&plan.deflection, cycle.total());
+        let words = names::posture_words(std::iter::once(plan));
+        let named = |(posture, words): (&Posture, &PostureWords)| format!("{posture} {}", names::posture_cell(*words));
+        let posture_words: Vec<String> = words.iter().map(named).collect();
     } with {
         /// 1 to 4: best or worst placement under its best or worst plan.
         case: u8 = case.number(),
         #[serde(flatten)] placement: PlacementFigures = (&case.placement).into(),
         /// Posture of each segment.
         postures: String = names::postures(&plan.postures),
+        /// The words of each of them: front or back; elbow up or down; flip or no flip.
+        posture_words: String = posture_words.join(" | "),
         /// Mean of the scores.
         mean_mm: DeflectionMm = plan.mean.into(),
         /// Largest score.
@@ -144,7 +149,7 @@ records! {
         beta_deg: GridDeg = GridDeg(-180.0 + 360.0 * k as f64 / map.beta_count as f64),
         /// The smallest score over the allowed postures; empty where none is allowed.
         score_mm: Option<DeflectionMm> = cell.as_ref().ok().map(|cell| cell.score.into()),
-        /// The posture of that score, 1 to 8.
+        /// The posture of that score, 1 to 8, whose words are in `posture_words` of `summary.json`.
         #[schemars(with = "Option<u8>")] posture: Option<Posture> = posture,
         /// Why none is allowed.
         reason: Option<String> = blocked.map(|blocked| blocked.kind.code()),
@@ -186,7 +191,7 @@ records! {
         beta_deg: Option<AngleDeg> = state.ok().map(|(beta, _)| beta.into()),
         /// The smallest score over all angles about the tool axis and allowed postures; empty where none is allowed.
         score_mm: Option<DeflectionMm> = state.ok().map(|(_, cell)| cell.score.into()),
-        /// The posture of that score, 1 to 8.
+        /// The posture of that score, 1 to 8, whose words are in `posture_words` of `summary.json`.
         #[schemars(with = "Option<u8>")] posture: Option<Posture> = state.ok().map(|(_, cell)| cell.posture),
         /// Why none is allowed: `lean` for `max_lean_deg`, `scallop_mm` or `step_over_mm`, or what most angles break.
         reason: Option<String> = reason.map(LeanReason::code),

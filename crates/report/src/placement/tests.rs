@@ -23,7 +23,7 @@ fn a_plan_has_one_row_per_path_point() {
     assert_eq!(rows.len(), 1 + 105);
     assert_eq!(
         rows[0].join(","),
-        "point,segment,x_mm,y_mm,z_mm,beta_deg,posture,turn_1,turn_4,turn_6,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,theta6_deg,inverse_condition,force_x_n,force_y_n,force_z_n,deflection_x_mm,deflection_y_mm,deflection_z_mm,normal_mm,feed_mm,axial_mm,score_mm,total_mm"
+        "point,segment,x_mm,y_mm,z_mm,beta_deg,posture,posture_words,turn_1,turn_4,turn_6,theta1_deg,theta2_deg,theta3_deg,theta4_deg,theta5_deg,theta6_deg,inverse_condition,force_x_n,force_y_n,force_z_n,deflection_x_mm,deflection_y_mm,deflection_z_mm,normal_mm,feed_mm,axial_mm,score_mm,total_mm"
     );
     assert_eq!(column(&rows, "segment")[104], "5");
 }
@@ -49,7 +49,7 @@ fn placements_state_ratios_references_and_times() {
     let table = rows(&tables::placements(&outcome().cases, context().reference.as_ref()).unwrap());
     assert_eq!(
         table[0].join(","),
-        "case,x_mm,y_mm,z_mm,yaw_deg,q4,postures,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm,max_feed_mm_per_s,joint_travel_deg,max_joint_step_deg"
+        "case,x_mm,y_mm,z_mm,yaw_deg,q4,postures,posture_words,mean_mm,max_mm,ratio_to_case_1,reference_mm,cutting_s,transfer_s,cycle_s,objective_mm,mean_wall_mm,max_wall_mm,mean_axis_mm,max_axis_mm,mean_total_mm,max_total_mm,max_feed_mm_per_s,joint_travel_deg,max_joint_step_deg"
     );
     assert_eq!(column(&table, "reference_mm"), ["0.083", "0.35", "0.82", "1.2"]);
     assert_eq!(column(&table, "ratio_to_case_1")[0], "1.000000");

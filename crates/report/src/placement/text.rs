@@ -28,6 +28,8 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     let (points, segments) = (count(points, "point"), count(segments, "segment"));
     let mut text = format!("{}: {points} in {segments}\n\n", problem.robot.name());
     text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
+    let plans = outcome.cases.all().into_iter().map(|case| &case.plan);
+    names::posture_lines(plans).iter().for_each(|row| line(&mut text, row));
     text.push_str(&setup::text(problem, outcome));
     text.push('\n');
     text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));

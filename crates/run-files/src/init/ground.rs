@@ -6,7 +6,7 @@ use stead_cell::{Attachment, Shape, Zone};
 use stead_disk::input::InputError;
 use stead_format::surroundings::read_surroundings;
 
-/// A level surface in the base frame.
+/// A level surface in the cell frame.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ground {
     /// The shape or zone that it is of.
@@ -24,15 +24,20 @@ const HIGHEST: f64 = 0.5;
 /// The normal of a zone below a floor points downwards. cos
 const DOWN: f64 = -0.999;
 
-/// What a part in a cell (ranges of x and y in the base frame, m) would stand on by a file of surroundings: the highest
-/// table in the cell, else the highest floor.
+/// What a part in a cell (ranges of x, y and z in the cell frame, m) would stand on by a file of surroundings, beside a
+/// robot that stands there: the highest table in the cell, else the highest floor.
 ///
 /// # Errors
 /// [`InputError`] for what is wrong in the file.
-pub(super) fn ground(file: &Path, cell: [[f64; 2]; 2], reach: f64) -> Result<Option<Ground>, InputError> {
+pub(super) fn ground(
+    file: &Path,
+    cell: [[f64; 2]; 3],
+    robot: &Vector3<f64>,
+    reach: f64,
+) -> Result<Option<Ground>, InputError> {
     let Some(around) = read_surroundings(file)? else { return Ok(None) };
     let standing = around.shapes().iter().filter(|shape| shape.attached == Attachment::Base);
-    let mut found: Vec<Ground> = standing.filter_map(|shape| surface(shape, cell, reach)).collect();
+    let mut found: Vec<Ground> = standing.filter_map(|shape| surface(shape, cell, robot, reach)).collect();
     found.extend(around.zones().iter().filter_map(|zone| match &zone.zone {
         Zone::HalfSpace { point, normal } if normal.z < DOWN => {
             Some(Ground { name: zone.name.clone(), height: point.z, is_floor: true })
@@ -44,7 +49,7 @@ pub(super) fn ground(file: &Path, cell: [[f64; 2]; 2], reach: f64) -> Result<Opt
 }
 
 /// The upper side of a shape, where the cell is above it.
-fn surface(shape: &Shape, cell: [[f64; 2]; 2], reach: f64) -> Option<Ground> {
+fn surface(shape: &Shape, cell: [[f64; 2]; 3], robot: &Vector3<f64>, reach: f64) -> Option<Ground> {
     let ends = shape.solid.extent();
     let corners = (0..8).map(|corner| {
         let end = |axis: usize| ends[(corner >> axis) & 1][axis];
@@ -56,8 +61,8 @@ fn surface(shape: &Shape, cell: [[f64; 2]; 2], reach: f64) -> Option<Ground> {
         });
     let common = |axis: usize| cell[axis][1].min(high[axis]) - cell[axis][0].max(low[axis]);
     let is_below_cell = (0..2).all(|axis| common(axis) >= NARROWEST);
-    let is_below_robot = (0..2).all(|axis| low[axis] <= 0.0 && high[axis] >= 0.0);
-    (is_below_cell && high.z < HIGHEST * reach).then(|| Ground {
+    let is_below_robot = (0..2).all(|axis| low[axis] <= robot[axis] && high[axis] >= robot[axis]);
+    (is_below_cell && high.z < robot.z + HIGHEST * reach).then(|| Ground {
         name: shape.name.clone(),
         height: high.z,
         is_floor: is_below_robot,

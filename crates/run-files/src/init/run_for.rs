@@ -1,6 +1,7 @@
 //! A run file for a robot and a task that are there.
 
 use super::ground::{Ground, ground};
+use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::{Component, Path, PathBuf, absolute};
 use stead_disk::files::new::{Existing, write_new};
@@ -9,10 +10,11 @@ use stead_format::cam::file_beside;
 use stead_format::document::Document;
 use stead_format::robot::{read_geometry, says_stiffness};
 use stead_format::shipped;
+use stead_format::surroundings::mount_of;
 use stead_format::task::read_csv;
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, ToolTable};
-use stead_model::robot::Robot;
+use stead_model::robot::{Pose, Robot};
 use stead_model::task::ToolPath;
 
 /// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What
@@ -31,15 +33,18 @@ pub fn init_run(robot: &Path, task: &Path, out: &Path, existing: Existing) -> Re
     let quoted = |name: String| toml::Value::from(name).to_string();
     let is_shipped = shipped::text(robot).is_some();
     let reach = arm.geometry().reach();
-    let area = [[0.45 * reach, 0.8 * reach], [-0.3 * reach, 0.3 * reach]];
     let cell = shapes_beside(robot);
+    let mount = cell.as_deref().map(mount_of).transpose()?.flatten();
+    let area = area(reach, mount.as_ref());
+    let stands = mount.map_or_else(Vector3::zeros, |mount| mount.translation);
     let known = Known {
         robot: quoted(if is_shipped { robot.display().to_string() } else { relative(folder, robot) }),
         has_stiffness: says_stiffness(robot)?.unwrap_or(true),
         task: quoted(relative(folder, task)),
         has_forces: imported.wrenches.is_some(),
         surroundings: cell.as_ref().map(|cell| quoted(relative(folder, cell))),
-        ground: cell.map(|cell| ground(&cell, area, reach)).transpose()?.flatten(),
+        ground: cell.map(|cell| ground(&cell, area, &stands, reach)).transpose()?.flatten(),
+        mount,
         cutter: cutter_beside(task)?,
     };
     write_new(out, &text(&arm, &imported.path, area, &known), existing)
@@ -54,6 +59,8 @@ struct Known {
     has_stiffness: bool,
     has_forces: bool,
     ground: Option<Ground>,
+    /// Where the robot stands, by its surroundings.
+    mount: Option<Pose<f64>>,
     cutter: Option<Cutter>,
 }
 
@@ -143,15 +150,29 @@ fn rounded(metres: f64) -> f64 {
     (metres * 100.0).round() * 10.0
 }
 
-/// The text of the run file; `area` are the ranges of x and y of its cell. m
-fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 2], known: &Known) -> String {
+/// The ranges of x, y and z of a cell in front of a robot (m), where that stands: the box around what is in front of it.
+fn area(reach: f64, mount: Option<&Pose<f64>>) -> [[f64; 2]; 3] {
+    let area = [[0.45 * reach, 0.8 * reach], [-0.3 * reach, 0.3 * reach], [0.15 * reach, 0.4 * reach]];
+    let Some(mount) = mount else { return area };
+    let corners = (0..8).map(|corner| {
+        let end = |axis: usize| area[axis][(corner >> axis) & 1];
+        mount.point(&Vector3::new(end(0), end(1), end(2)))
+    });
+    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    corners.fold(none, |ends, corner| {
+        std::array::from_fn(|axis| [ends[axis][0].min(corner[axis]), ends[axis][1].max(corner[axis])])
+    })
+}
+
+/// The text of the run file; `area` are the ranges of its cell, of z where nothing else is known. m
+fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 3], known: &Known) -> String {
     let reach = robot.geometry().reach();
     let [x, y, z] = [0, 1, 2].map(|axis| {
         let [low, high] = ends(path, axis);
         rounded((low + high) / 2.0)
     });
     let range = |[from, to]: [f64; 2]| format!("[{:?}, {:?}]", rounded(from), rounded(to));
-    let (heights, about_heights) = heights(robot, path, known.ground.as_ref());
+    let (heights, about_heights) = heights(robot, path, area[2], known);
     let (feed, about_feed) = feed(path);
     let (turn, about_turn) = spindle_turn(path);
     let mut text = format!(
@@ -166,7 +187,7 @@ task = {}
 xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
 abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
 
-[cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in the base frame
+[cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in {}
 x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
 y_mm = {}
 z_mm = {:<31} # {about_heights}
@@ -199,6 +220,7 @@ max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
             "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them\n"
         )),
         known.removes().map_or("", |_| MATERIAL),
+        if known.mount.is_some() { "the cell frame: [mount] of the surroundings" } else { "the base frame" },
         range(area[0]),
         range(area[1]),
         range(heights),
@@ -221,8 +243,9 @@ max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
 }
 
 /// Where the origin of the workpiece may be above a ground (m), and where that comes from.
-fn heights(robot: &Robot, path: &ToolPath, ground: Option<&Ground>) -> ([f64; 2], String) {
+fn heights(robot: &Robot, path: &ToolPath, area: [f64; 2], known: &Known) -> ([f64; 2], String) {
     let reach = robot.geometry().reach();
+    let ground = known.ground.as_ref();
     if let Some(Ground { name, height, is_floor: false }) = ground {
         // No point of the path is below the table.
         let from = height - ends(path, 2)[0];
@@ -231,6 +254,9 @@ fn heights(robot: &Robot, path: &ToolPath, ground: Option<&Ground>) -> ([f64; 2]
             rounded(*height)
         );
         return ([from, from + 0.25 * reach], about);
+    }
+    if let (Some(_), None) = (known.mount, ground) {
+        return (area, "guess: in front of the robot where the surroundings have it".to_owned());
     }
     // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
     let root = robot.controller().and_then(|controller| controller.root_from_base);

@@ -24,7 +24,7 @@ pub use criterion::{CriterionTable, PositiveWeight, SegmentTable, WeightsTable};
 pub use external_axes::ExternalAxisTable;
 pub use forces::ForcesTable;
 pub use output::OutputTable;
-pub use postures::{Changes, PosturesTable};
+pub use postures::{AllowedPosture, Changes, PosturesTable};
 pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, SearchTable, TransferTable};
@@ -57,7 +57,7 @@ use stead_format::robot::{
 use stead_format::sources::Sources;
 use stead_format::spindle::SpindleTable;
 use stead_format::surroundings::{
-    CollisionTable, KeepOutTable, PartTable, ShapeTable, StockTable, SurroundingsFile, read_scene,
+    CollisionTable, KeepOutTable, PartTable, ShapeTable, StockTable, SurroundingsFile, read_mount, read_scene,
 };
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
@@ -221,8 +221,8 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         checked_to_score(&robot, &robot_source)?;
     }
     let robot = run.constraints.narrowed(robot, &at.key("constraints"))?;
-    let robot = match &run.mount {
-        Some(table) => robot.mounted(&table.cell_from_base(&at.key("mount"))?),
+    let robot = match read_mount(run.mount.as_ref(), &at)? {
+        Some(mount) => robot.mounted(&mount),
         None => robot,
     };
     let robot = on_its_base(robot, run.base_compliance.as_ref(), &at.key("base_compliance"))?;
@@ -286,8 +286,9 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let criterion = criterion.criterion(&segments, &robot, &task, force_uncertainty, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
-    let rules = postures.rules(&at.key("postures"))?;
-    let around = SurroundingsFile { shape: run.shape, keep_out: run.keep_out, collision: run.collision, visual: None };
+    let rules = postures.rules(&robot, &at.key("postures"))?;
+    let (shape, keep_out, collision) = (run.shape, run.keep_out, run.collision);
+    let around = SurroundingsFile { shape, keep_out, collision, ..SurroundingsFile::default() };
     let external_axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
     let around = read_scene(around, &at, &robot, &spindle, &external_axes)?;
     let scene = around.scene;

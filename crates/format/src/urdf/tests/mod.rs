@@ -4,8 +4,10 @@
 mod arms;
 mod collision;
 mod mutations;
+mod postures;
 mod refusals;
 mod rows;
+mod stand;
 mod visual;
 
 use super::*;

@@ -170,3 +170,19 @@ fn arms_of_another_kind_are_refused_at_the_joint() {
         &["joint \"joint_a4\": makes an arm that is not supported", "wrist centre lies on axis 3"],
     );
 }
+
+#[test]
+fn files_of_other_kinds_are_named_with_the_command_that_takes_them() {
+    for (text, parts) in [
+        ("$$ made by hand\nTOOL PATH/CONTOUR,TOOL,MILL\n", ["is CLDATA of a CAM system", "stead import path"]),
+        ("%\nO1000\nN10 G90 G54\n", ["is G-code", "stead import path"]),
+        ("ISO-10303-21;\nHEADER;\n", ["is a STEP file", "a URDF"]),
+        ("name = 'arm'\n[[joints]]\n", ["is a robot file already", "a URDF"]),
+        ("<sdf version='1.6'/>", ["<sdf>: is not a robot", "whose outermost element is <robot>"]),
+    ] {
+        let message = import(text).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| message.contains(part)) && !message.contains('\n'), "{message}");
+    }
+    // A comment is no macro.
+    assert!(import(&fixture("kuka").replacen("<link", "<!-- by xacro, ${pi} --><link", 1)).is_ok());
+}

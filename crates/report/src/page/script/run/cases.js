@@ -4,7 +4,7 @@ import { card, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { cssOf } from '../draw/theme.js';
 import { colourOf } from './colour.js';
-import { CASES, RAW } from './data.js';
+import { CASES, RAW, postureText } from './data.js';
 import { AXES, PART_TURNS } from './external-axes.js';
 import { onChange, set, state } from './state.js';
 /** @import { Case } from './data.js' */
@@ -65,7 +65,7 @@ export function casesCard() {
       el('td', {}, `${fixed(yaw, 1)}°`),
       ...(PART_TURNS ? [el('td', {}, of.entry.orientation || '–')] : []),
       ...AXES.map((axis) => el('td.breaks', {}, positionsText(of, axis))),
-      el('td', {}, posturesText(of.postures)),
+      el('td', { title: [...new Set(of.postures)].sort().map(postureText).join('; ') }, posturesText(of.postures)),
       ...(of.travel === null ? [] : [of.travel.total_deg, of.travel.max_step_deg].map((angle) => el('td', {}, `${fixed(angle, 0)}°`))),
       el('td', {}, of.cycle === null ? '–' : `${fixed(of.cycle, 1)} s`),
     ];

@@ -7,7 +7,7 @@ import { Plot, disc, stroke } from '../draw/plot.js';
 import { clamp, fixed } from '../draw/scale.js';
 import { themeColour } from '../draw/theme.js';
 import { SCALE, colourOf } from './colour.js';
-import { CASES, COUNT } from './data.js';
+import { CASES, COUNT, postureText } from './data.js';
 import { RUNS, pathPoint } from './path.js';
 import { pause } from './play.js';
 import { current, currentMap, currentPoint, mapState, onChange, set, state } from './state.js';
@@ -189,7 +189,7 @@ export function mapCard() {
 
   const stateText = (/** @type {StateMap} */ map, /** @type {Chosen} */ at) => {
     const found = mapState(map, at);
-    const what = found.isAllowed ? `${fixed(found.score, 4)} mm, posture ${found.posture}` : reasonText(found.reason);
+    const what = found.isAllowed ? `${fixed(found.score, 4)} mm, ${postureText(found.posture)}` : reasonText(found.reason);
     return `point ${found.point}, β ${fixed(found.beta, 1)}°: ${what}`;
   };
 

@@ -4,7 +4,7 @@ import { el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { cssOf, turnTheme } from '../draw/theme.js';
 import { colourOf } from './colour.js';
-import { CASES, COUNT, RAW } from './data.js';
+import { CASES, COUNT, RAW, postureText } from './data.js';
 import { reasonText } from './map.js';
 import { RUNS, SEGMENT, isMove, pathPoint } from './path.js';
 import { clock, nextSpeed, onPlaying, pause, playOrPause, timeAt } from './play.js';
@@ -25,7 +25,7 @@ function chosenWords(chosen) {
   const point = `point ${chosen.point} of ${RAW.task.points - 1}`;
   const beta = `β ${fixed(chosen.beta, 1)}°`;
   if (!chosen.isAllowed) return [point, beta, `not allowed: ${reasonText(chosen.reason)}`, 'the robot stays on the plan'];
-  return [point, `segment ${SEGMENT[currentPoint()]}`, `posture ${chosen.posture}`, beta, `${fixed(chosen.score)} mm, chosen in the map`];
+  return [point, `segment ${SEGMENT[currentPoint()]}`, postureText(chosen.posture), beta, `${fixed(chosen.score)} mm, chosen in the map`];
 }
 
 export function transport() {
@@ -61,7 +61,7 @@ export function transport() {
     const parts = [
       `point ${pathPoint(i)} of ${RAW.task.points - 1}`,
       moveWords(of) || `segment ${SEGMENT[i]}`,
-      `posture ${of.columns.posture[i]}`,
+      postureText(of.columns.posture[i]),
       `β ${fixed(of.columns.beta_deg[i], 1)}°`,
       `${fixed(timeAt(clock(), state.t), 1)} s`,
     ];
