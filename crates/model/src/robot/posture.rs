@@ -317,14 +317,14 @@ mod tests {
                 kind: ControllerKind::Kuka,
                 sign: [1.0; 6],
                 offset: [0.0; 6],
-                is_j3_level: false,
+                is_j3_level: Some(false),
                 root_from_base: None,
             };
             (controller.sign[4], controller.offset[4]) = (sign, offset.to_radians());
             let robot = kr270().with_controller(controller);
             for _ in 0..1000 {
                 let angles: [f64; 6] = std::array::from_fn(|_| random.random_range(-3.1..3.1));
-                let words = robot.posture_words(Posture::of(&robot, &controller.joints(&angles)));
+                let words = robot.posture_words(Posture::of(&robot, &controller.joints(&robot, &angles)));
                 assert_eq!(words.has(PostureWord::Flip), angles[4] < 0.0, "{sign} {offset} {angles:?}");
             }
         }
