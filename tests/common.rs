@@ -122,11 +122,12 @@ impl From<std::process::Output> for Ended {
 
 impl Ended {
     /// Standard error but for notes that the published case may have: that the scored part is small beside the whole
-    /// deflection, that collisions were not checked, and how calm its plan is.
+    /// deflection, that collisions were not checked, that it goes over the back of the robot, and how calm its plan is.
     pub fn said(&self) -> String {
         let expected = [
             "note: the scored part of the deflection, ",
             "note: collisions were not checked: nothing stands around",
+            "note: the best plan goes over the back of the robot",
             "note: a calmer plan costs little: ",
             "note: axis ",
         ];

@@ -87,6 +87,59 @@ fn a_posture_that_no_segment_can_take_is_refused_by_its_number() {
 }
 
 #[test]
+fn words_for_postures_are_kept_and_stated_beside_the_numbers() {
+    let bench = Bench::new();
+    let line = bench.replace(RUN, "tie_percent = 0.0", "allowed = [\"front\", \"elbow up\"]");
+    let placed = bench.stead(&["place", RUN, "--out", "out"]);
+    assert_eq!((placed.code, placed.said().as_str()), (Some(0), ""));
+    // No plan goes over the back, and none is noted.
+    assert!(!placed.stderr.contains("over the back"), "{}", placed.stderr);
+    let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    assert_eq!(summary["postures"]["allowed"], serde_json::json!([3, 4]));
+    assert_eq!(summary["posture_words"][2], "front, elbow up, flip");
+    for case in summary["cases"].as_array().unwrap() {
+        let words = case["posture_words"].as_array().unwrap();
+        assert_eq!(words.len(), case["postures"].as_array().unwrap().len());
+        assert!(words.iter().all(|of| of.as_str().unwrap().starts_with("front, elbow up, ")), "{words:?}");
+    }
+    assert!(placed.stdout.contains("\nposture 3: front, elbow up, flip\n"), "{}", placed.stdout);
+    let plan = bench.read("out/best.csv");
+    assert!(
+        plan.lines()
+            .skip(1)
+            .all(|row| row.contains(",3,front; elbow up; flip,") || row.contains(",4,front; elbow up; no flip,"))
+    );
+    assert!(bench.read("out/report.html").contains("front, elbow up, no flip"));
+    // The back is noted, and told apart from numbers that are no words.
+    let refused = |list: &str, parts: &[&str]| {
+        bench.replace(RUN, "allowed = [\"front\", \"elbow up\"]", &format!("allowed = {list}"));
+        let ended = bench.stead(&["check", RUN]);
+        assert_eq!((ended.code, ended.stdout.as_str(), ended.stderr.lines().count()), (Some(2), "", 1), "{list}");
+        ended.assert_says(&[&format!("run.toml:{line}: postures.allowed")]);
+        ended.assert_says(parts);
+        bench.replace(RUN, &format!("allowed = {list}"), "allowed = [\"front\", \"elbow up\"]");
+    };
+    refused(
+        "[\"back\", \"front\"]",
+        &["allowed[2]: and \"back\" before it exclude each other, found", "; allowed: one of the two"],
+    );
+    refused("[\"up\"]", &["allowed[1]: ", "found \"up\"", "\"elbow up\" or \"elbow down\""]);
+    bench.replace("configs/robots/kuka-kr270-2.toml", "min_deg = -125.0", "min_deg = 5.0");
+    refused(
+        "[\"no flip\", \"front\"]",
+        &["leaves no posture: the limits of the joints leave out all that are no flip, front"],
+    );
+    // Another number beside the words.
+    bench.replace(RUN, "allowed = [\"front\", \"elbow up\"]", "allowed = [\"back\", 3]");
+    let placement = [&["score", RUN, "--json"], &PLACE[..]].concat();
+    let scored = bench.stead(&placement);
+    assert_eq!(scored.code, Some(0), "{}", scored.stderr);
+    for posture in scored.json()["best"]["postures"].as_array().unwrap() {
+        assert!(posture.as_u64().unwrap() >= 5 || posture == 3, "{posture}");
+    }
+}
+
+#[test]
 fn a_tie_of_a_thousandth_is_the_default() {
     let bench = Bench::new();
     let score = || bench.stead(&[&["score", RUN, "--json"], &PLACE[..]].concat()).json();

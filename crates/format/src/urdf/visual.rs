@@ -28,8 +28,8 @@ pub struct LinkVisual {
     pub unit: MeshUnit,
 }
 
-/// What stands with the base and the six links behind the moving joints look like, each with all that is fixed to it, and
-/// notes on what is not drawn.
+/// What stands with the base and the six links behind the moving joints look like, each with all that is fixed to it,
+/// and notes on what is not drawn.
 pub(super) fn link_visuals(
     urdf: &Urdf,
     chain: &Chain,

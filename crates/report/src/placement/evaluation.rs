@@ -225,7 +225,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
     let mut header =
         vec!["posture", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm"];
     header.extend(states().find_map(|s| s.own.deviation).map(|_| "std mm"));
-    header.push("");
+    header.extend(["in words", ""]);
     let last = header.len() - 1;
     let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
     let mut broken = String::new();
@@ -237,9 +237,10 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
                 row.extend([fixed(s.inverse_condition, 4), fixed(s.own.scored.abs() * 1e3, 5)]);
                 row.extend(s.own.deviation.map(|deviation| fixed(deviation * 1e3, 5)));
             }
-            None => row.extend((1..last).map(|_| "-".to_owned())),
+            None => row.extend((1..last - 1).map(|_| "-".to_owned())),
         }
-        row.push(format!("{}  {}", if e.is_allowed() { "allowed" } else { "refused" }, e.words));
+        row.push(e.words.to_string());
+        row.push(if e.is_allowed() { "allowed" } else { "refused" }.to_owned());
         rows.push(row);
         for violation in &e.violations {
             broken.push_str(&format!("  posture {}: {violation}\n", e.posture));
@@ -249,7 +250,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
         "{}, point {point}, beta {} deg\n\n{}",
         place_text(placement),
         fixed(beta.to_degrees(), 3),
-        aligned(&rows, &[last])
+        aligned(&rows, &[last - 1, last])
     );
     if let Some(origins) = origins::of_postures(postures) {
         text.push('\n');

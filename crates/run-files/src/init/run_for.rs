@@ -150,7 +150,8 @@ fn rounded(metres: f64) -> f64 {
     (metres * 100.0).round() * 10.0
 }
 
-/// The ranges of x, y and z of a cell in front of a robot (m), where that stands: the box around what is in front of it.
+/// The ranges of x, y and z of a cell in front of a robot that stands there (m): the box around what is in front of
+/// it.
 fn area(reach: f64, mount: Option<&Pose<f64>>) -> [[f64; 2]; 3] {
     let area = [[0.45 * reach, 0.8 * reach], [-0.3 * reach, 0.3 * reach], [0.15 * reach, 0.4 * reach]];
     let Some(mount) = mount else { return area };

@@ -167,20 +167,21 @@ pub(super) fn check_postures(
     }
     let robot = &problem.robot;
     let possible = || Posture::ALL.into_iter().filter(|posture| robot.has_posture(*posture));
-    let named = || possible().map(|posture| robot.named_posture(posture)).collect::<Vec<_>>().join("; ");
     for (entry, place) in table.allowed.iter().flatten().zip(1..) {
         let AllowedPosture::Number(number) = entry else { continue };
         let posture = u8::try_from(number.count()).ok().and_then(Posture::from_number);
         if let Some(posture) = posture.filter(|posture| !robot.has_posture(*posture)) {
             let name = robot.named_posture(posture);
             let why = format!("no segment can take posture {name}: the limits of the joints leave it out");
-            return Err(at.key("allowed").element(place).error(why, named()));
+            let numbers = possible().map(|posture| posture.to_string()).collect::<Vec<_>>().join(", ");
+            return Err(at.key("allowed").element(place).error(why, numbers));
         }
     }
     if table.words().next().is_some() && !possible().any(|posture| table.has_words(robot, posture)) {
         let words = table.words().map(|word| word.to_string()).collect::<Vec<_>>().join(", ");
         let why = format!("leaves no posture: the limits of the joints leave out all that are {words}");
-        return Err(at.key("allowed").error(why, named()));
+        let named = possible().map(|posture| robot.named_posture(posture)).collect::<Vec<_>>().join("; ");
+        return Err(at.key("allowed").error(why, named));
     }
     if problem.postures.move_weight > 0.0 {
         let at = at.key("move_weight_mm_per_s");

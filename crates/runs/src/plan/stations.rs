@@ -234,15 +234,15 @@ fn check_force(station: &PathPoint, row: &PlanRow) -> Result<(), Misfit> {
 /// Whether the joint angles are those of the posture.
 fn check_posture(problem: &Problem, station: &PathPoint, row: &PlanRow) -> Result<(), Misfit> {
     let base_from_flange = station.base_from_tool.then(&problem.spindle.flange_from_tool.inverse());
-    let (posture, name) = (row.posture, problem.robot.named_posture(row.posture));
+    let posture = row.posture;
     let angles = problem
         .robot
         .inverse(&base_from_flange, posture)
-        .map_err(|e| ("posture".to_owned(), format!("posture {name} does not reach this point: {e}")))?;
+        .map_err(|e| ("posture".to_owned(), format!("posture {posture} does not reach this point: {e}")))?;
     for ((column, own), angle) in JOINTS.into_iter().zip(row.joints).zip(angles) {
         if wrap(own - angle).abs() > JOINT_TOLERANCE {
             let [own, expected] = [own, own - wrap(own - angle)].map(f64::to_degrees);
-            let sentence = format!("is {own:.4}, but in posture {name} the joint stands at {expected:.4}");
+            let sentence = format!("is {own:.4}, but in posture {posture} the joint stands at {expected:.4}");
             return Err((column.to_owned(), sentence));
         }
     }
