@@ -19,7 +19,7 @@ fn plain(robot: &Robot, theta: &[f64; 6]) -> Option<([bool; 3], bool)> {
     let ahead = (wrist - frames.origins[0]).dot(&outwards);
     let [reach, out] = [wrist, elbow].map(|point| (point - shoulder).dot(&outwards));
     let above = (elbow - shoulder).z - (wrist - shoulder).z * out / reach;
-    let fifth = robot.controller().map_or(theta[4], |controller| controller.angles(theta)[4]);
+    let fifth = robot.controller().map_or(theta[4], |controller| controller.angles(robot, theta)[4]);
     let is_near = [ahead, reach, above, libm::sin(fifth)].iter().any(|value| value.abs() < 1e-6);
     (!is_near).then_some(([ahead > 0.0, above > 0.0, libm::sin(fifth) < 0.0], (ahead > 0.0) != (reach > 0.0)))
 }
@@ -108,7 +108,7 @@ fn an_imported_arm_has_the_words_of_the_arm_that_it_is() {
                 continue;
             }
             let [first, second] = [(&robot, own), (&found, controller)].map(|(robot, controller)| {
-                let posture = Posture::of(robot, &controller.joints(&values));
+                let posture = Posture::of(robot, &controller.joints(robot, &values));
                 (posture, robot.posture_words(posture))
             });
             assert_eq!(first.1, second.1, "{case} at {values:?}");
