@@ -53,7 +53,7 @@ fn nearest(place: &Pose, way: &[Pose]) -> (f64, [f64; 3]) {
 fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
     let length = |a: [f64; 3]| a.iter().map(|value| value * value).sum::<f64>().sqrt();
     let dot: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
-    (dot / length(a) / length(b)).clamp(-1.0, 1.0).acos().to_degrees()
+    libm::acos((dot / length(a) / length(b)).clamp(-1.0, 1.0)).to_degrees()
 }
 
 /// What the table of a task has that is wrong against the ways of a reading.

@@ -24,8 +24,6 @@ words!(TrackedPoint: "tool" => TrackedPoint::Tool, "wrist" => TrackedPoint::Wris
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurroundingsFile {
-    /// Where the robot stands among them, in place of `[mount]` in the run file.
-    pub mount: Option<MountTable>,
     /// Shapes that keep apart: fence, table, fixture, part, links, spindle.
     pub shape: Option<Vec<ShapeTable>>,
     /// Zones that points of the arm are kept out of.
@@ -34,6 +32,8 @@ pub struct SurroundingsFile {
     pub collision: Option<CollisionTable>,
     /// What the arm looks like: drawn in pages and scenes in place of an illustration, and held against nothing.
     pub visual: Option<Vec<VisualTable>>,
+    /// Where the robot stands among them, in place of `[mount]` in the run file.
+    pub mount: Option<MountTable>,
 }
 
 /// A cylinder along z about the origin of the shape.
