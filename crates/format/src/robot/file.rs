@@ -59,8 +59,8 @@ pub struct ControllerTable {
     /// Angle of each row where the controller's angle is zero.
     pub offset_deg: Array<Deg, 6>,
     /// Whether the controller counts axis 3 against the horizontal and not against the upper arm: then theta_3 =
-    /// sign_3 A_3 + offset_3 - sign_2 A_2. Where left out, true for "fanuc" and false for the others; programs for an arm with
-    /// `axes_2_3.linkage` need it stated.
+    /// sign_3 A_3 + offset_3 - sign_2 A_2. Where left out, true for "fanuc" and false for the others; programs for an
+    /// arm with `axes_2_3.linkage` need it stated.
     pub is_j3_level: Option<bool>,
 }
 
