@@ -80,7 +80,7 @@ impl Setting {
             ("compensator", with_laws(slanted(), &[(1, compensated(0.2, 1e-6 / 3.32))])),
             ("linkage", with_axes_2_3(slanted(), true, [-150.0, -20.0])),
             // Of some sums beyond the range another turn is within it.
-            ("sum of the odd arm", with_axes_2_3(odd_arm(), false, [-100.0, 220.0])),
+            ("sum of the odd arm", with_axes_2_3(odd_arm(), false, [-110.0, 230.0])),
         ]
         .map(|(name, problem)| (name, Self::new(problem)))
         .into()

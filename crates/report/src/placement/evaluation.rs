@@ -222,8 +222,7 @@ pub fn explain_json(
 /// The table of `stead explain`.
 pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[Explanation; 8]) -> String {
     let states = || postures.iter().filter_map(|e| e.state.as_ref());
-    let mut header =
-        vec!["no.", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm"];
+    let mut header = vec!["no.", "th1 deg", "th2 deg", "th3 deg", "th4 deg", "th5 deg", "th6 deg", "1/kappa", "c mm"];
     header.extend(states().find_map(|s| s.own.deviation).map(|_| "std mm"));
     header.extend(["in words", ""]);
     let last = header.len() - 1;
