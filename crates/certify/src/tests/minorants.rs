@@ -95,7 +95,7 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
     let mut random = seeded(21);
     let (mut wrong, mut compared) = (0, 0);
     let turn = TAU / steps.headings as f64;
-    for _ in 0..12 {
+    for _ in 0..14 {
         let (point, place) = anywhere(setting, &mut random);
         let Some((class, _)) = setting.random_state(&mut random, point, place) else { continue };
         let along = |v: f64| (v - steps.length, v + steps.length);
