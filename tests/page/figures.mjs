@@ -126,7 +126,7 @@ export const figures = (folder, plans) => ({
     await page.locator('#setup summary').click();
     // The scene gives the plan, the map its states.
     const plan = tables.get('The cell in three dimensions');
-    assert.deepEqual([plan[0].split(',').length, plan.length], [Object.keys(plans[0][0]).filter((name) => name !== 'posture_words').length, plans[0].length + 1]);
+    assert.deepEqual([plan[0].split(',').length, plan.length], [Object.keys(plans[0][0]).length, plans[0].length + 1]);
     assert.equal(+plan[5].split(',')[plan[0].split(',').indexOf('point')], 4);
     const states = table(join(folder, 'deflection-map-best.csv'));
     const map = tables.get('Deflection map').slice(1).map((line) => line.split(','));

@@ -1,6 +1,7 @@
 //! What a file is that was given in place of another: told by how it begins, so that the message can name the command
 //! that takes it.
 
+use crate::cam::cldata::has_word;
 use std::path::Path;
 use stead_disk::input::InputError;
 
@@ -54,7 +55,7 @@ impl FileKind {
             Some(Self::RunFile)
         } else if any(|line| line == "[stock]") {
             Some(Self::ForcesFile)
-        } else if any(is_cldata) {
+        } else if any(has_word) {
             Some(Self::Cldata)
         } else {
             // What comes before the first block of a program: its end marks, its name, remarks.
@@ -135,15 +136,6 @@ fn has_macros(text: &str) -> bool {
     });
     let is_used = |prefix: &str| text.contains(&format!("<{prefix}:"));
     is_used("xacro") || declared.any(|prefix| is_used(prefix) || !text.contains("<link"))
-}
-
-/// Words of the path, of its tool and of its unit, in every dialect.
-fn is_cldata(line: &str) -> bool {
-    const WORDS: [&str; 10] =
-        ["GOTO", "TOOL PATH", "PARTNO", "LOADTL", "FEDRAT", "CUTTER", "UNITS", "UNIT", "MULTAX", "TLDATA"];
-    let (word, is_slashed) = line.split_once('/').map_or((line, false), |(word, _)| (word, true));
-    let is = |own: &&str| own.eq_ignore_ascii_case(word.trim());
-    (is_slashed && WORDS.iter().any(is)) || line.to_ascii_uppercase().starts_with("PARTNO") || line.starts_with("$$->")
 }
 
 /// A block with a preparatory function, with or without its number.

@@ -101,15 +101,19 @@ impl Reader {
         let kind = bytes.len();
         let gcode = self == Self::Gcode;
         // CLDATA as told from the file half of the time, else in one of its dialects.
-        let dialect = CamFormat::WORDS.get(kind % 16).map_or(CamFormat::Cldata, |(_, format)| *format);
-        let format = if gcode || dialect == CamFormat::Gcode { CamFormat::Gcode } else { dialect };
+        let dialects = &CamFormat::WORDS[..8];
+        let format = if gcode {
+            CamFormat::Gcode
+        } else {
+            dialects.get(kind % 16).map_or(CamFormat::Cldata, |(_, format)| *format)
+        };
         ReadSettings {
             skip_cycles: kind % 11 == 1,
             keep_links: kind % 5 == 2,
             ignore: if gcode { Vec::new() } else { vec!["QUILLX".to_owned()] },
             format: Some(format),
             units: kind.is_multiple_of(3).then_some(LengthUnit::Millimetre),
-            machine: Machine::ALL.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),
+            machine: Machine::WORDS.get(kind % 5).filter(|_| gcode).map(|(_, machine)| *machine),
             pivot: (gcode && kind % 7 < 2).then(|| nalgebra::Vector3::z() * 0.3),
             tool_centre_point: kind % 7 == 6,
             resampling: Resampling { chord: 1e-3, step: 1.0 },

@@ -23,13 +23,13 @@ pub(in super::super) struct PathOptions {
     #[arg(long, value_name = "C", default_value = "0.01", value_parser = chord, allow_hyphen_values = true)]
     pub chord_mm: f64,
     /// Unit of length, where the file does not state it
-    #[arg(long, value_parser = PossibleValuesParser::new(["mm", "inch"]).map(|word| unit(&word)))]
+    #[arg(long, value_parser = one_of(&LengthUnit::WORDS))]
     pub units: Option<LengthUnit>,
     /// What the file is written in; cldata: a dialect told from the file [default: told from the file]
-    #[arg(long, value_parser = PossibleValuesParser::new(CamFormat::WORDS.map(|(word, _)| word)).map(|word| format(&word)))]
+    #[arg(long, value_parser = one_of(&CamFormat::WORDS))]
     pub format: Option<CamFormat>,
     /// Machine that G-code with rotary axes is for
-    #[arg(long, value_parser = PossibleValuesParser::new(Machine::ALL.map(|(word, _)| word)).try_map(|word| machine(&word)))]
+    #[arg(long, value_parser = one_of(&Machine::WORDS))]
     pub machine: Option<Machine>,
     /// Take tool centre point control as on though the G-code has no G43.4
     #[arg(long)]
@@ -98,17 +98,12 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
     print(format!("{report}written: {out}: {segments} segments, {points} points, {scored} of them scored\n").as_bytes())
 }
 
-fn unit(word: &str) -> LengthUnit {
-    if word == "inch" { LengthUnit::Inch } else { LengthUnit::Millimetre }
-}
-
-fn format(word: &str) -> CamFormat {
-    CamFormat::WORDS.into_iter().find(|(own, _)| *own == word).map_or(CamFormat::Cldata, |(_, format)| format)
-}
-
-fn machine(word: &str) -> Result<Machine, String> {
-    let found = Machine::ALL.into_iter().find(|(own, _)| *own == word);
-    found.map(|(_, machine)| machine).ok_or_else(|| "not a machine".to_owned())
+/// What one of some words stands for.
+fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [(&'static str, T)]) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(words.iter().map(|(word, _)| *word)).try_map(move |given| {
+        let found = words.iter().find(|(word, _)| *word == given);
+        found.map(|(_, meaning)| *meaning).ok_or("not one of the words")
+    })
 }
 
 /// A length from 0.01 to 1000 mm.

@@ -62,12 +62,12 @@ impl LengthUnit {
         }
     }
 
+    /// Both with their names as options and keys have them.
+    pub const WORDS: [(&'static str, Self); 2] = [("mm", Self::Millimetre), ("inch", Self::Inch)];
+
     /// Its name as an option has it.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::Millimetre => "mm",
-            Self::Inch => "inch",
-        }
+        word_of(&Self::WORDS, self)
     }
 }
 
@@ -232,6 +232,11 @@ pub(crate) fn format_of(text: &str) -> Option<CamFormat> {
             gcode::foreign(line).map(|_| CamFormat::Gcode)
         }
     })
+}
+
+/// The word of a value.
+fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
+    words.iter().find(|(_, known)| *known == value).map_or("", |(word, _)| word)
 }
 
 /// A number without the digits that its unit has brought in.

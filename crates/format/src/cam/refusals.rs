@@ -54,7 +54,6 @@ pub(super) const IN_PLANE: &str = "an end in the plane of the arc within 0.05 mm
 pub(super) const ANOTHER_CYCLE: &str = "a cycle whose moves are not known here";
 pub(super) const CLOSE_CYCLE: &str = "CYCLE/OFF before, behind the last hole";
 pub(super) const NUMBERS_OF_POINT: &str = "3 or 6 finite numbers";
-pub(super) const NUMBERS_OF_DIRECTION: &str = "3 finite numbers: a direction, as 0,0,1";
 pub(super) const NUMBERS_OF_FEED: &str = "one feed above 0 and its unit";
 pub(super) const THREE_ASKED: Refusal = (
     "three numbers behind MULTAX/OFF while the tool is tilted: in some systems its axis holds, in others it is 0,0,1",

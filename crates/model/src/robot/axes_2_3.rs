@@ -76,9 +76,13 @@ impl Robot {
 
     /// The sums that the ranges of joints 2 and 3 allow by themselves, the least and the largest. rad
     pub fn sums(&self) -> [f64; 2] {
-        let (second, third) = (&self.joints[1], &self.joints[2]);
-        let (from, to) = if self.geometry.fold < 0.0 { (-third.max, -third.min) } else { (third.min, third.max) };
-        [second.min + from, second.max + to]
+        self.sums_within([1, 2].map(|joint| [self.joints[joint].min, self.joints[joint].max]))
+    }
+
+    /// The least and the largest sum with joints 2 and 3 in ranges. rad
+    pub fn sums_within(&self, [second, third]: [[f64; 2]; 2]) -> [f64; 2] {
+        let [from, to] = if self.geometry.fold < 0.0 { [-third[1], -third[0]] } else { third };
+        [second[0] + from, second[1] + to]
     }
 
     /// The sum of joint angles 2 and 3 (rad): how far the forearm is turned against the base.

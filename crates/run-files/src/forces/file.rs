@@ -20,14 +20,9 @@ ranges! {
     Chord: Included(1e-4), Included(10.0);
 }
 
-words!(LengthUnit: "mm" => LengthUnit::Millimetre, "inch" => LengthUnit::Inch);
+words!(LengthUnit);
 words!(CamFormat);
-words!(Machine:
-    "table-ac" => Machine::TableAc,
-    "table-bc" => Machine::TableBc,
-    "head-ac" => Machine::HeadAc,
-    "head-bc" => Machine::HeadBc,
-);
+words!(Machine);
 
 /// Cutting forces from a tool path and the stock that it cuts, for `stead forces`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -243,9 +243,7 @@ fn limits_from(
             return Err(at.element(number).error("is outside the limits of the joint", allowed));
         }
     }
-    let [_, second, third, ..] = limits;
-    let third = if robot.geometry().fold < 0.0 { third.map(|end| -end) } else { third };
-    let sums = [second[0] + third[0].min(third[1]), second[1] + third[0].max(third[1])];
+    let sums = robot.sums_within([limits[1], limits[2]]);
     if let Some(range) = robot.sum_range().filter(|range| sums[0] > range.max || sums[1] < range.min) {
         let (min, max) = (range.min.to_degrees(), range.max.to_degrees());
         let allowed = format!("angles of joints 2 and 3 whose sum can be from {min:.4} to {max:.4}");

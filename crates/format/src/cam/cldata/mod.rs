@@ -11,8 +11,8 @@ mod statement;
 mod told;
 
 pub use dialect::CamFormat;
-pub(super) use statement::without_label;
-pub(super) use told::is_statement;
+pub(crate) use told::has_word;
+pub(super) use told::{is_statement, without_label};
 
 use super::refusals::NO_UNIT;
 use super::{LengthUnit, Program, ReadSettings};

@@ -145,7 +145,7 @@ impl<'a> Reader<'a> {
 
     /// A direction of the file, of unit length.
     fn direction(&self, statement: &Statement<'_>) -> Result<Vector3<f64>, InputError> {
-        let given = self.numbers(statement, &[3], NUMBERS_OF_DIRECTION)?;
+        let given = self.numbers(statement, &[3], NO_DIRECTION.1)?;
         let direction = Vector3::from_column_slice(&given).try_normalize(NO_LENGTH);
         direction.ok_or_else(|| statement.fail(NO_DIRECTION))
     }
@@ -235,8 +235,11 @@ impl<'a> Reader<'a> {
             let what = if is_applied { FRAME_APPLIED } else { FRAME_NAMED };
             self.course.program.note(format!("frame of {}: {what}", statement.name()), statement.line);
         }
-        let of_positions = if is_applied { &mut self.course.frame } else { self.state.named.get_or_insert(frame) };
-        *of_positions = frame;
+        if is_applied {
+            self.course.frame = frame;
+        } else {
+            self.state.named = Some(frame);
+        }
         Ok(())
     }
 

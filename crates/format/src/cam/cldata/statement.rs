@@ -1,6 +1,7 @@
 //! Statements of CLDATA: a word, and behind a slash words and numbers, over one line or several.
 
 use super::dialect::{Dialect, Effect};
+use super::told::without_label;
 use std::path::Path;
 use std::str::Lines;
 use stead_disk::input::InputError;
@@ -195,13 +196,6 @@ impl<'a> Statements<'a> {
 
 fn is_of_word(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
-}
-
-/// A statement without the label before it, as in `A1) GOTO/1,2,3`.
-pub(crate) fn without_label(text: &str) -> &str {
-    let end = text.find(')').unwrap_or(0);
-    let is_label = end > 0 && text.as_bytes()[..end].iter().all(u8::is_ascii_alphanumeric);
-    if is_label { text[end + 1..].trim_start() } else { text }
 }
 
 fn without_comment(text: &str) -> &str {

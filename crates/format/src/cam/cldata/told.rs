@@ -1,12 +1,12 @@
 //! The dialect of a CLDATA file, and the rows of its words.
 
+use super::super::word_of;
 use super::dialect::{COMMON, CamFormat, DIALECTS, Dialect, Effect, Sign};
-use super::statement::without_label;
 
 impl CamFormat {
     /// Its name as an option has it.
     pub fn word(self) -> &'static str {
-        Self::WORDS.iter().find(|(_, format)| *format == self).map_or("", |(word, _)| word)
+        word_of(&Self::WORDS, self)
     }
 }
 
@@ -64,16 +64,38 @@ fn is_same(line: &str, text: &str) -> bool {
     after(line, text).is_some_and(|mut rest| rest.next().is_none())
 }
 
-/// Whether a line reads as a statement of CLDATA.
-pub(crate) fn is_statement(line: &str) -> bool {
+/// What a word does in any dialect.
+fn of_any(word: &str) -> Option<Effect> {
+    DIALECTS.iter().find_map(|dialect| dialect.effect(word))
+}
+
+/// A word of a statement, and whether a slash is behind it.
+fn head(line: &str) -> (&str, bool) {
     let line = without_label(line.trim());
     let end = line.find(['/', ',']).unwrap_or(line.len());
-    let (head, is_slashed) = (line[..end].trim_end(), line[end..].starts_with('/'));
-    let is_word = head.len() > 1 && head.starts_with(|c: char| c.is_ascii_alphabetic());
-    let of = |word: &str| DIALECTS.iter().find_map(|dialect| dialect.effect(word));
-    let first = head.split_whitespace().next().unwrap_or_default();
-    line.starts_with("$$")
-        || (is_word && is_slashed && head.chars().all(|c| c.is_ascii_alphanumeric() || " _-".contains(c)))
-        || (is_word && of(head).is_some_and(|effect| !matches!(effect, Effect::Refused(_))))
-        || (is_word && of(first) == Some(Effect::Text))
+    (line[..end].trim_end(), line[end..].starts_with('/'))
+}
+
+/// Whether a line has a known word with a slash behind it, or what only CLDATA has.
+pub(crate) fn has_word(line: &str) -> bool {
+    let (word, is_slashed) = head(line);
+    let begins = |text: &str| word.get(..text.len()).is_some_and(|start| start.eq_ignore_ascii_case(text));
+    (is_slashed && of_any(word).is_some()) || begins("PARTNO") || begins("$$->")
+}
+
+/// Whether a line reads as a statement of CLDATA, where the file is that or G-code.
+pub(crate) fn is_statement(line: &str) -> bool {
+    let (word, is_slashed) = head(line);
+    let is_word = word.len() > 1 && word.starts_with(|c: char| c.is_ascii_alphabetic());
+    let is_plain = || word.chars().all(|c| c.is_ascii_alphanumeric() || " _-".contains(c));
+    let is_known = || of_any(word).is_some_and(|effect| !matches!(effect, Effect::Refused(_)));
+    let is_text = || word.split_whitespace().next().and_then(of_any) == Some(Effect::Text);
+    word.starts_with("$$") || (is_word && (is_known() || is_text() || (is_slashed && is_plain())))
+}
+
+/// A statement without the label before it, as in `A1) GOTO/1,2,3`.
+pub(crate) fn without_label(text: &str) -> &str {
+    let end = text.find(')').unwrap_or(0);
+    let is_label = end > 0 && text.as_bytes()[..end].iter().all(u8::is_ascii_alphanumeric);
+    if is_label { text[end + 1..].trim_start() } else { text }
 }

@@ -1,6 +1,7 @@
 //! G codes as data: what each does, and the sentence of each refusal.
 
 use super::super::LengthUnit;
+use super::super::refusals::TILTED_OTHERWISE;
 use super::block::Motion;
 use Code::{
     Absolute, Control, Cycle, CycleEnd, Dwell, Home, InverseTime, Machine, Mode, Motion as Moves, Nothing, Offset,
@@ -53,8 +54,7 @@ const COMPENSATION: Code = Refused(
     "cutter compensation: the path is not that of the tool centre",
     "G40: let the CAM system write the path of the tool centre",
 );
-const TILTED_OTHERWISE: Code =
-    Refused("a tilted work plane of another form", "G68.2 X Y Z I J K without P and Q, or CLDATA: post one of them");
+const TILTED: Code = Refused(TILTED_OTHERWISE.0, TILTED_OTHERWISE.1);
 
 /// Codes by ten times their number.
 pub(super) const CODES: &[(i64, Code)] = &[
@@ -106,8 +106,8 @@ pub(super) const CODES: &[(i64, Code)] = &[
     (670, MACRO),
     (680, Refused("a rotation of positions by the program", "positions as they are: post without G68")),
     (682, Mode(Tilt::Plane)),
-    (683, TILTED_OTHERWISE),
-    (684, TILTED_OTHERWISE),
+    (683, TILTED),
+    (684, TILTED),
     (690, Mode(Tilt::End)),
     (730, Cycle),
     (740, Cycle),

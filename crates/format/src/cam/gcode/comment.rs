@@ -24,7 +24,8 @@ pub(super) fn tool_in(line: &str) -> Option<ProgramTool> {
 pub(super) fn says_rapids_at_feed(line: &str) -> bool {
     // Posts break the sentence behind another word.
     let says = ["FEEDRATE OF RAPID", "PERSONAL USE, THE FEEDRATE OF"];
-    line.contains(['(', ';']) && says.iter().any(|words| line.to_ascii_uppercase().contains(words))
+    let line = line.to_ascii_uppercase();
+    line.contains(['(', ';']) && says.iter().any(|words| line.contains(words))
 }
 
 /// The first number above 0 behind one of the words, which is no part of a longer one, with no more than signs between

@@ -3,6 +3,7 @@
 //! Angles count as those of the tool against the workpiece, right-handed about the axes x (A), y (B) and z (C), as ISO
 //! 841 has it for tables too. C turns the other one: the tool axis is Rz(C) Rx(A) z, or Rz(C) Ry(B) z.
 
+use super::super::word_of;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// Which rotary axes a machine has, and what they turn.
@@ -20,7 +21,7 @@ pub enum Machine {
 
 impl Machine {
     /// All of them with their names as options have them.
-    pub const ALL: [(&'static str, Self); 4] = [
+    pub const WORDS: [(&'static str, Self); 4] = [
         ("table-ac", Self::TableAc),
         ("table-bc", Self::TableBc),
         ("head-ac", Self::HeadAc),
@@ -29,7 +30,7 @@ impl Machine {
 
     /// Its name as an option has it.
     pub fn word(self) -> &'static str {
-        Self::ALL.iter().find(|(_, machine)| *machine == self).map_or("", |(word, _)| word)
+        word_of(&Self::WORDS, self)
     }
 
     /// Whether it has this rotary axis, 0 for A to 2 for C.

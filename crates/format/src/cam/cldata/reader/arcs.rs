@@ -11,7 +11,6 @@ use std::f64::consts::{PI, TAU};
 use stead_disk::input::InputError;
 
 /// An arc that the next point ends.
-#[derive(Clone)]
 pub(super) struct Pending {
     pub line: usize,
     /// In the workpiece frame. m

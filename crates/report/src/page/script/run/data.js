@@ -209,9 +209,12 @@ export function caseOf(entry, k, columns, ways, changing) {
 /** @type {Case[]} */
 export const CASES = caseEntries().map((entry, k) => caseOf(entry, k, columnsOf(RAW.plans[k]), RAW.moves ? RAW.moves[k] : [], RAW.clearances?.[k]));
 
-/** A posture with its words, which results of older versions do not state. @param {number | string} posture */
+/** The words of a posture, which results of older versions do not state. @param {number | string} posture @returns {string | undefined} */
+export const wordsOf = (posture) => (RAW.posture_words ?? RAW.document.posture_words)?.[+posture - 1];
+
+/** A posture with its words. @param {number | string} posture */
 export const postureText = (posture) => {
-  const words = (RAW.posture_words ?? RAW.document.posture_words)?.[+posture - 1];
+  const words = wordsOf(posture);
   return words ? `posture ${posture} (${words})` : `posture ${posture}`;
 };
 

@@ -6,6 +6,7 @@ import { rampOf } from '../draw/heat-map.js';
 import { fixed } from '../draw/scale.js';
 import { ILLUSTRATED } from './bodies.js';
 import { COLOURINGS } from './colour.js';
+import { wordsOf } from './data.js';
 import { AXES } from './external-axes.js';
 import { LAYERS, sceneIn } from './scene.js';
 import { reasonText } from './map.js';
@@ -146,8 +147,12 @@ export function sceneCard() {
   // Its figures are those of the plan that is shown.
   const rows = () => {
     const { columns } = current();
-    const heads = Object.keys(columns);
-    return [heads, ...Array.from(columns.point, (_, i) => heads.map((name) => columns[name][i]))];
+    // The words of postures stand in the document, once for all rows.
+    const withWords = (/** @type {string} */ name) => (name === 'posture' && wordsOf(1) ? [name, 'posture_words'] : [name]);
+    const heads = Object.keys(columns).flatMap(withWords);
+    const at = (/** @type {string} */ name, /** @type {number} */ i) =>
+      name === 'posture_words' ? wordsOf(columns.posture[i])?.replaceAll(', ', '; ') : columns[name][i];
+    return [heads, ...Array.from(columns.point, (_, i) => heads.map((name) => at(name, i)))];
   };
   return giving(host, { rows, picture: viewPicture });
 }
