@@ -57,8 +57,8 @@ fn over_head(plan: &Plan) -> Option<String> {
         _ => format!("{count} segments, the first of them {first}"),
     };
     Some(format!(
-        "the best plan goes over the back of the robot along {which}: the wrist is behind axis 1, and the arm reaches over its head \
-         (postures \"back\"); dress packs and cables may not allow it; allowed = [\"front\"] in [postures] leaves such plans out"
+        "the best plan goes over the back of the robot along {which} (wrist behind axis 1), where dress packs and cables may be \
+         in the way: allowed = [\"front\"] in [postures] leaves such plans out"
     ))
 }
 
