@@ -236,7 +236,7 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
         "feed_mm_per_s = 30.0 ",
         "whose own feeds count: 5.0 to 30.0 mm/s",
         "\n[stock] ",
-        "\nallowance_mm = [8.0, 8.0, 2.0]",
+        "\ndepth_mm = ",
     ] {
         assert!(text.contains(part), "{part} in {text}");
     }

@@ -3,6 +3,7 @@
 use crate::moves::Move;
 use crate::operation::EndMill;
 use crate::piece::{EdgePoint, Piece, Surface};
+use crate::profile::Profile;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use stead_model::cutting::{Coefficients, Cutter};
@@ -69,7 +70,11 @@ pub struct Bit {
 impl Tool {
     /// A cutter whose shank goes on above its flutes to a height. m
     pub fn new(mill: &EndMill, height: f64) -> Self {
-        let profile = mill.profile();
+        Self::of_profile(&mill.profile(), mill, height)
+    }
+
+    /// The same of another outer shape.
+    pub fn of_profile(profile: &Profile, mill: &EndMill, height: f64) -> Self {
         let mut pieces = profile.pieces();
         let (mut starts, mut edge) = (Vec::new(), profile.radius - profile.corner);
         if profile.corner >= profile.radius - 1e-9 {

@@ -1,18 +1,20 @@
 //! The job: forces at every point of a path.
 
 use crate::cutting::Tool;
+use crate::memory;
 use crate::moves::PathMoves;
 use crate::operation::{EndMill, ForcesProblem, Operation};
 use crate::outcome::{ForcesDifference, RemovalForces};
 use crate::points::{Loads, added_points};
 use crate::removal::Workpiece;
 use crate::solid_lines::Body;
-use crate::sums::{Found, Requested};
+use crate::sums::{Found, Requested, Sums};
 use crate::surface::{Surface, surface};
 use crate::warnings::{place, warnings};
 use nalgebra::Vector3;
 use stead_cell::Solid;
 use stead_model::task::TaskError;
+use stead_numerics::digits::figures;
 use stead_numerics::monitor::{Monitor, Stop};
 
 /// Why there are no forces.
@@ -21,6 +23,9 @@ pub enum ForcesError {
     /// The stock is a form that it cannot be.
     #[error("the stock and the finished part are boxes, cylinders or closed meshes")]
     Form,
+    /// Stock from a path on which nothing is scored.
+    #[error("no scored move of the path has a wall")]
+    NoWall,
     /// The stock is too long.
     #[error("the stock is {length} m long: at most {most} m", most = LARGEST)]
     Large {
@@ -42,7 +47,7 @@ pub enum ForcesError {
     #[error("the path never touches the stock")]
     Untouched,
     /// The lines do not fit into the memory.
-    #[error("cells of {:.3} mm take {:.1} GB, more than the {:.1} GB allowed: {:.3} mm fits", .cell * 1e3, .needed / 1e9, .allowed / 1e9, .fits * 1e3)]
+    #[error("cells of {} mm take {} GB, more than the {} GB allowed: {}", figures(.cell * 1e3), figures(.needed / 1e9), figures(.allowed / 1e9), fitting(*.fits))]
     Memory {
         /// The distance of lines. m
         cell: f64,
@@ -50,8 +55,8 @@ pub enum ForcesError {
         needed: f64,
         /// What they may take. bytes
         allowed: f64,
-        /// A distance that fits. m
-        fits: f64,
+        /// The smallest distance that fits, where one does with which forces mean something. m
+        fits: Option<f64>,
     },
     /// Points that were added make no path.
     #[error(transparent)]
@@ -61,20 +66,25 @@ pub enum ForcesError {
     Stopped(#[from] Stop),
 }
 
+/// Which cells fit, for messages.
+fn fitting(fits: Option<f64>) -> String {
+    fits.map_or("no cells fit".to_owned(), |fits| format!("{} mm fits", figures(fits * 1e3)))
+}
+
 /// Coordinates of stock are nanometres in 32 bits. m
 const LARGEST: f64 = 4.2;
 /// Of the cells of the first run, over the diameter of the cutter.
 const FIRST: f64 = 12.0;
 /// Of the cells of the last one.
 const LAST: f64 = 24.0;
+/// Of those where plunges take more force than all other cuts together.
+const PLUNGES: f64 = 32.0;
 /// Of the finest cells that are taken without being asked for.
 const FINEST: f64 = 100.0;
 /// Of the width of a cut by a round corner.
 const ROUND: f64 = 10.0;
-/// Share of the path that may be cut less deep than the cells are made for.
+/// Share of the force along the path that may be of cuts less deep than the cells are made for.
 const SHALLOW: f64 = 0.05;
-/// Lines of a tile and what goes with them. bytes
-const TILE_BYTES: f64 = 1024.0 * 16.0 + 200.0;
 /// More lines than this share that are no body's are refused.
 const UNSOUND: f64 = 1e-6;
 
@@ -88,15 +98,15 @@ pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForce
     if operation.path.feed(0).is_none() {
         return Err(ForcesError::NoFeeds(operation.name.clone()));
     }
-    let extent = problem.stock.solid.extent_at(&problem.stock.pose);
+    let diameter = operation.mill.cutter.diameter();
+    let extent = Body::of_stock(problem, diameter)?.extent;
     let length = (extent[1] - extent[0]).max();
     if length > LARGEST {
         return Err(ForcesError::Large { length });
     }
     if let Some(cell) = problem.cell {
-        check_memory(problem, &extent, cell)?;
+        memory::check(problem, &extent, cell)?;
     }
-    let diameter = operation.mill.cutter.diameter();
     let mut first = None;
     let cell = match problem.cell {
         Some(cell) => cell,
@@ -137,8 +147,8 @@ pub(crate) struct Run {
     workpiece: Workpiece,
     /// The surface of the stock before the operation, where turns are asked for: of the last run.
     before: Surface,
-    /// Likewise what those before it have removed. m3
-    removed_before: f64,
+    /// Likewise what those before it have removed, by lines along each axis. m3
+    removed_before: [f64; 3],
     pub path: PathMoves,
     pub found: Found,
     tool: Tool,
@@ -153,12 +163,12 @@ impl Run {
         stage: &'static str,
         monitor: &Monitor,
     ) -> Result<Self, ForcesError> {
-        let body = Body::new(&problem.stock.solid, &problem.stock.pose, cell).ok_or(ForcesError::Form)?;
+        let body = Body::of_stock(problem, cell)?;
         let part = match &problem.finished_part {
             Some((mesh, pose)) => Some(Body::new(&Solid::Mesh(mesh.clone()), pose, cell).ok_or(ForcesError::Form)?),
             None => None,
         };
-        check_memory(problem, &body.extent, cell)?;
+        memory::check(problem, &body.extent, cell)?;
         let diagonal = (body.extent[1] - body.extent[0]).norm();
         let tool = |mill: &EndMill| Tool::new(mill, diagonal);
         let mut workpiece = Workpiece::new(body, part, cell);
@@ -168,7 +178,7 @@ impl Run {
             workpiece.cut(&tool(&before.mill), &path, Requested::Removal, "cutting what is cut before", monitor)?;
         }
         let (before, removed_before) = match requested {
-            Requested::Turns => (surface(&workpiece), workpiece.removed(2)),
+            Requested::Turns => (surface(&workpiece), workpiece.removed().map(|(_, volume)| volume)),
             Requested::Removal | Requested::Forces => Default::default(),
         };
         let (tool, path) = (tool(&problem.operation.mill), PathMoves::new(&problem.operation, window));
@@ -184,12 +194,24 @@ impl Run {
     }
 
     /// The distance of lines with which forces are good: a share of the diameter, and no more than the depth of the
-    /// cut, or, where a round corner cuts all of it, than a share of the width that it cuts at that depth. m
+    /// cut along legs with a wall, or, where a round corner cuts all of it, than a share of the width that it cuts at that depth. m
     fn cell_for(&self, operation: &Operation) -> f64 {
-        let mut tops: Vec<f64> =
-            self.found.sums.iter().filter(|sums| sums.volume > 0.0).map(|sums| sums.heights[1]).collect();
-        tops.sort_by(f64::total_cmp);
-        let depth = tops.get((tops.len() as f64 * SHALLOW) as usize).copied().unwrap_or(f64::INFINITY);
+        let force = |sums: &Sums| (sums.chip_force + sums.edge_force).norm();
+        let cuts = |has_wall: bool| {
+            let legs = self.path.legs.iter().filter(move |leg| leg.has_wall == has_wall);
+            let nodes = legs.flat_map(|leg| &self.found.sums[leg.nodes.first..=leg.nodes.first + leg.nodes.intervals]);
+            nodes.filter(|sums| sums.volume > 0.0)
+        };
+        let of_plunges: f64 = cuts(false).map(force).sum();
+        let mut tops: Vec<[f64; 2]> = cuts(true).map(|sums| [sums.heights[1], force(sums)]).collect();
+        tops.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let of_walls: f64 = tops.iter().map(|[_, force]| force).sum();
+        let mut below = 0.0;
+        let is_deep = |[_, force]: &&[f64; 2]| {
+            below += force;
+            below > SHALLOW * of_walls
+        };
+        let depth = tops.iter().find(is_deep).map_or(f64::INFINITY, |[top, _]| *top);
         let (mill, diameter) = (&operation.mill, operation.mill.cutter.diameter());
         let round = mill.corner_radius * (1.0 - libm::sin(mill.taper));
         let width = if depth < round {
@@ -197,7 +219,8 @@ impl Run {
         } else {
             f64::INFINITY
         };
-        let cell = (diameter / LAST).min(depth).min(width);
+        let last = if of_plunges > of_walls { PLUNGES } else { LAST };
+        let cell = (diameter / last).min(depth).min(width);
         cell.max(diameter / FINEST)
     }
 
@@ -209,7 +232,10 @@ impl Run {
         let rough: Vec<_> = (0..points).map(|point| coarse.at_point(point)).collect();
         let difference = ForcesDifference::between(&fine, &rough);
         let (path, points) = added_points(&operation.path, fine, &loads)?;
-        let removed = self.workpiece.removed(2) - self.removed_before;
+        // By the axis along which most lines were cut: walls are thin along the others, or floors.
+        let volumes = self.workpiece.removed().into_iter().zip(self.removed_before);
+        let most = volumes.max_by_key(|((lines, _), _)| *lines);
+        let removed = most.map_or(0.0, |((_, volume), before)| volume - before);
         let stock = [self.before, surface(&self.workpiece)];
         let cell = self.workpiece.cell();
         let mut all = RemovalForces {
@@ -226,37 +252,6 @@ impl Run {
         warnings(&mut all, problem, &self.found, &self.tool);
         Ok(all)
     }
-}
-
-/// Refuses cells whose lines would not fit into the memory.
-fn check_memory(problem: &ForcesProblem, extent: &[Vector3<f64>; 2], cell: f64) -> Result<(), ForcesError> {
-    let operations = || problem.before.iter().chain([&problem.operation]);
-    let widest = operations().map(|operation| operation.mill.cutter.diameter()).fold(0.0, f64::max);
-    let places = operations().flat_map(|operation| operation.path.points()).map(|point| point.position);
-    let about = places.fold(None, |known: Option<[Vector3<f64>; 2]>, at| {
-        Some(known.map_or([at, at], |[low, high]| [low.inf(&at), high.sup(&at)]))
-    });
-    let Some([low, high]) = about else { return Ok(()) };
-    // Above the path all of the stock may be met.
-    let margin = Vector3::repeat(widest);
-    let low = (low - margin).sup(&extent[0]);
-    let high = (high + margin).inf(&extent[1]);
-    let size = (high - low).sup(&Vector3::zeros());
-    let tile = crate::lattice::TILE as f64;
-    let needed = |cell: f64| {
-        let tiles = |axis: usize| (size[axis] / (cell * tile)).ceil() + 1.0;
-        (tiles(0) * tiles(1) + tiles(1) * tiles(2) + tiles(2) * tiles(0)) * TILE_BYTES
-    };
-    if needed(cell) <= problem.memory {
-        return Ok(());
-    }
-    let mut fits = cell;
-    while needed(fits) > problem.memory && fits < 1.0 {
-        fits *= 1.01;
-    }
-    // Up, to a figure that can be typed.
-    let fits = (fits * 1e6).ceil() / 1e6;
-    Err(ForcesError::Memory { cell, needed: needed(cell), allowed: problem.memory, fits })
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Moves through the lines of a tile: what each sweeps, and what that adds to the sums.
 
 use crate::cutting::{Moving, Tool};
-use crate::lattice::{TILE, TileKey, others, place};
+use crate::lattice::{TileKey, TileLines};
 use crate::moves::{Move, MoveKind};
 use crate::piece::Piece;
 use crate::quadrature::Quadrature;
@@ -11,7 +11,7 @@ use crate::tile::{NANO, Tile};
 use crate::turn::{Arcs, TurnGrid};
 use nalgebra::Vector3;
 use std::cell::OnceCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 /// Points of a removed piece of a line, over its length in cells.
 const POINTS: f64 = 2.5;
@@ -74,56 +74,67 @@ pub struct OfTile {
     pub events: BTreeMap<(Event, u32), f64>,
 }
 
-/// The entry of a node among the last ones of a list, or a new one: moves come back to a node after others, and then it
-/// is there twice.
-fn recent<T>(list: &mut Vec<(u32, T)>, node: u32, new: impl FnOnce() -> T) -> Option<&mut T> {
-    let from = list.len().saturating_sub(RECENT);
-    let place = match list[from..].iter().rposition(|(known, _)| *known == node) {
-        Some(place) => from + place,
-        None => {
-            list.push((node, new()));
-            list.len() - 1
-        }
-    };
-    list.get_mut(place).map(|(_, entry)| entry)
+/// What a move adds to the nodes of a tile, from the first that it meets to the last.
+struct Window<T> {
+    first: u32,
+    entries: VecDeque<Option<T>>,
 }
 
-/// Entries that are looked at.
-const RECENT: usize = 6;
+/// Entries at the end of a list in which a node is looked for.
+const RECENT: usize = 8;
+
+impl<T> Window<T> {
+    fn empty() -> Self {
+        Self { first: 0, entries: VecDeque::new() }
+    }
+
+    fn entry(&mut self, node: u32, new: impl FnOnce() -> T) -> Option<&mut T> {
+        if self.entries.is_empty() {
+            self.first = node;
+        }
+        while node < self.first {
+            self.entries.push_front(None);
+            self.first -= 1;
+        }
+        let place = (node - self.first) as usize;
+        if place >= self.entries.len() {
+            self.entries.resize_with(place + 1, || None);
+        }
+        self.entries.get_mut(place).map(|entry| entry.get_or_insert_with(new))
+    }
+
+    /// Moves all to a list by node: moves come back to a node after others, and then it may be there twice.
+    fn flush(&mut self, list: &mut Vec<(u32, T)>, add: impl Fn(&mut T, &T)) {
+        let found = (self.first..).zip(self.entries.drain(..));
+        for (node, entry) in found.filter_map(|(node, entry)| Some((node, entry?))) {
+            let from = list.len().saturating_sub(RECENT);
+            match list[from..].iter_mut().rev().find(|(known, _)| *known == node) {
+                Some((_, own)) => add(own, &entry),
+                None => list.push((node, entry)),
+            }
+        }
+    }
+}
+
+/// What is counted of a tile, and of the move that goes through it.
+struct Counted {
+    of_tile: OfTile,
+    sums: Window<Sums>,
+    turns: Window<Arcs>,
+}
 
 impl Job<'_> {
     /// Takes moves through a tile, in the order of the path.
     pub fn cut(&self, key: TileKey, indices: &[u32], tile: &mut Tile) -> OfTile {
-        let mut of_tile = OfTile::default();
-        let (axis, i, j) = key;
+        let mut counted = Counted { of_tile: OfTile::default(), sums: Window::empty(), turns: Window::empty() };
+        let (axis, ..) = key;
         let cell = self.cell;
         let mut d = Vector3::zeros();
         d[axis] = 1.0;
-        let columns: Vec<f64> = (0..TILE).map(|column| place(0, j * TILE + column)[0]).collect();
-        let rows: Vec<f64> = (0..TILE).map(|row| place(i * TILE + row, 0)[1]).collect();
         // Made when something of the tile is cut for the first time.
         let of_part: OnceCell<Tile> = OnceCell::new();
         let mut removed = Vec::new();
-        let [a, b] = others(axis);
-        let lines = |reach: &Reach, each: &mut dyn FnMut(usize, &Vector3<f64>)| {
-            let within = |first: i64, [low, high]: [f64; 2]| {
-                let first_line = (low / cell).floor() as i64 - 1 - first * TILE;
-                let last_line = (high / cell).ceil() as i64 - first * TILE;
-                first_line.max(0)..last_line.min(TILE - 1) + 1
-            };
-            for row in within(i, reach.0[a]) {
-                for column in within(j, reach.0[b]) {
-                    let x = ((i * TILE + row) as f64 + columns[column as usize]) * cell;
-                    let y = ((j * TILE + column) as f64 + rows[row as usize]) * cell;
-                    if x < reach.0[a][0] || x > reach.0[a][1] || y < reach.0[b][0] || y > reach.0[b][1] {
-                        continue;
-                    }
-                    let mut o = Vector3::zeros();
-                    (o[a], o[b], o[axis]) = (x, y, self.extent[0][axis]);
-                    each((row * TILE + column) as usize, &o);
-                }
-            }
-        };
+        let lines = TileLines::new(key, cell, self.extent[0][axis]);
         let nano = |end: f64| ((end - self.extent[0][axis]) * NANO).round().clamp(0.0, f64::from(u32::MAX)) as u32;
         for index in indices {
             let (one, reach) = (&self.moves[*index as usize], &self.reaches[*index as usize]);
@@ -131,7 +142,7 @@ impl Job<'_> {
             let is_counted = self.requested != Requested::Removal && !self.tool.cuts_along(one, axis);
             if !reach.is_empty() {
                 let along = reach.0[axis].map(nano);
-                lines(reach, &mut |number, o| {
+                lines.within(&reach.0, &mut |number, o| {
                     if !tile.meets(number, along) {
                         return;
                     }
@@ -143,7 +154,7 @@ impl Job<'_> {
                         return;
                     }
                     for ends in &removed {
-                        self.count(&moving, axis, o, ends.map(|end| f64::from(end) / NANO), &mut of_tile);
+                        self.count(&moving, axis, o, ends.map(|end| f64::from(end) / NANO), &mut counted);
                         let Some(part) = self.part else { continue };
                         let lines = of_part.get_or_init(|| tile_of(part, self.extent, cell, key));
                         for [from, to] in lines.intervals(number) {
@@ -155,20 +166,22 @@ impl Job<'_> {
                                     axis,
                                     o,
                                     [from, to].map(|end| f64::from(end) / NANO),
-                                    &mut of_tile,
+                                    &mut counted.of_tile,
                                 );
                             }
                         }
                     }
                 });
             }
+            counted.sums.flush(&mut counted.of_tile.sums, |own, other| own.add(other, 1.0));
+            counted.turns.flush(&mut counted.of_tile.turns, Arcs::add);
             // Shank and holder cut nothing: one grid of lines tells whether they are in the stock.
             let Some(held) = self.held.get(*index as usize).filter(|held| !held.is_empty()) else { continue };
             if self.requested == Requested::Removal || axis != one.axis.iamax() {
                 continue;
             }
             let along = held.0[axis].map(nano);
-            lines(held, &mut |number, o| {
+            lines.within(&held.0, &mut |number, o| {
                 if !tile.meets(number, along) {
                     return;
                 }
@@ -180,16 +193,18 @@ impl Job<'_> {
                         .map(|[from, to]| f64::from(to.min(high).saturating_sub(from.max(low))))
                         .sum();
                     if met > 0.0 {
-                        *of_tile.events.entry((Event::Holder, one.point)).or_default() += met / NANO * cell * cell;
+                        *counted.of_tile.events.entry((Event::Holder, one.point)).or_default() +=
+                            met / NANO * cell * cell;
                     }
                 }
             });
         }
-        of_tile
+        counted.of_tile
     }
 
     /// Counts a removed piece of a line.
-    fn count(&self, moving: &Moving<'_>, axis: usize, o: &Vector3<f64>, [low, high]: [f64; 2], of_tile: &mut OfTile) {
+    fn count(&self, moving: &Moving<'_>, axis: usize, o: &Vector3<f64>, [low, high]: [f64; 2], counted: &mut Counted) {
+        let Counted { of_tile, sums: of_nodes, turns: of_turns } = counted;
         let (cell, one) = (self.cell, moving.one);
         // A piece may be thin and yet be cut all along the move.
         for (share, weight) in self.quadrature.of(POINTS * (high - low).max(one.by.norm()) / cell) {
@@ -220,7 +235,7 @@ impl Job<'_> {
                     let (node, part) = at(one.nodes);
                     for (node, part) in [(node, 1.0 - part), (node + 1, part)] {
                         if part > 0.0
-                            && let Some(sums) = recent(&mut of_tile.sums, node, Sums::default)
+                            && let Some(sums) = of_nodes.entry(node, Sums::default)
                         {
                             sums.add(&of_bit, part);
                         }
@@ -230,7 +245,7 @@ impl Job<'_> {
                         let (node, part) = at(one.turns);
                         for (node, part) in [(node, 1.0 - part), (node + 1, part)] {
                             if part > 0.0 {
-                                let arcs = recent(&mut of_tile.turns, node, || self.grid.arcs());
+                                let arcs = of_turns.entry(node, || self.grid.arcs());
                                 arcs.into_iter().for_each(|arcs| arcs.put(&field, part));
                             }
                         }
@@ -285,7 +300,7 @@ impl Move {
     }
 
     /// The interval of a line `o + l d` that the pieces sweep, where there is one.
-    fn extent(&self, pieces: &[Piece], o: &Vector3<f64>, d: &Vector3<f64>) -> Option<[f64; 2]> {
+    pub(crate) fn extent(&self, pieces: &[Piece], o: &Vector3<f64>, d: &Vector3<f64>) -> Option<[f64; 2]> {
         let by = |u: &Vector3<f64>| {
             let w = o - self.middle + u / 2.0;
             let mut ends = [f64::INFINITY, f64::NEG_INFINITY];

@@ -1,5 +1,7 @@
 //! Lines through the stock: a sheared lattice, so that no wall or floor is parallel to its rows, in square tiles.
 
+use nalgebra::Vector3;
+
 /// The golden section, whose multiples fall most evenly between whole numbers.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 
@@ -28,6 +30,51 @@ pub fn others(axis: usize) -> [usize; 2] {
 /// The tiles that a stretch of an axis (m) meets; a line is shifted by less than a cell.
 pub fn tiles([low, high]: [f64; 2], cell: f64) -> std::ops::RangeInclusive<i64> {
     ((low / cell).floor() as i64 - 1).div_euclid(TILE)..=((high / cell).ceil() as i64).div_euclid(TILE)
+}
+
+/// The rows of a tile, by its number, that a stretch of an axis (m) may meet; a line is shifted by less than a cell.
+pub fn lines_of(tile: i64, [low, high]: [f64; 2], cell: f64) -> std::ops::Range<i64> {
+    let first = (low / cell).floor() as i64 - 1 - tile * TILE;
+    let last = (high / cell).ceil() as i64 - tile * TILE;
+    first.max(0)..last.min(TILE - 1) + 1
+}
+
+/// The lines of a tile, with where they stand.
+pub struct TileLines {
+    key: TileKey,
+    cell: f64,
+    /// Where lines begin along their axis. m
+    low: f64,
+    columns: [f64; TILE as usize],
+    rows: [f64; TILE as usize],
+}
+
+impl TileLines {
+    /// The lines of a tile at a distance from each other (m), which begin at a place along their axis (m).
+    pub fn new(key: TileKey, cell: f64, low: f64) -> Self {
+        let (_, i, j) = key;
+        let columns = std::array::from_fn(|column| place(0, j * TILE + column as i64)[0]);
+        let rows = std::array::from_fn(|row| place(i * TILE + row as i64, 0)[1]);
+        Self { key, cell, low, columns, rows }
+    }
+
+    /// Goes through those within a box (m), with their number and where they begin.
+    pub fn within(&self, reach: &[[f64; 2]; 3], each: &mut dyn FnMut(usize, &Vector3<f64>)) {
+        let (axis, i, j) = self.key;
+        let [a, b] = others(axis);
+        for row in lines_of(i, reach[a], self.cell) {
+            for column in lines_of(j, reach[b], self.cell) {
+                let x = ((i * TILE + row) as f64 + self.columns[column as usize]) * self.cell;
+                let y = ((j * TILE + column) as f64 + self.rows[row as usize]) * self.cell;
+                if x < reach[a][0] || x > reach[a][1] || y < reach[b][0] || y > reach[b][1] {
+                    continue;
+                }
+                let mut o = Vector3::zeros();
+                (o[a], o[b], o[axis]) = (x, y, self.low);
+                each((row * TILE + column) as usize, &o);
+            }
+        }
+    }
 }
 
 /// The line nearest to a place, in lengths of a cell.

@@ -6,9 +6,11 @@
 
 pub mod cutting;
 pub mod forces;
+pub mod guess;
 mod job;
 pub mod lattice;
 pub mod leaning;
+mod memory;
 pub mod moves;
 pub mod operation;
 pub mod outcome;
@@ -20,6 +22,7 @@ pub mod removal;
 pub mod solid_lines;
 pub mod sums;
 pub mod surface;
+mod swept;
 pub mod tile;
 pub mod turn;
 mod warnings;

@@ -53,6 +53,8 @@ pub struct Leg {
     pub nodes: Nodes,
     /// Likewise of the turns of the spindle.
     pub turns: Nodes,
+    /// Whether a move of it is far enough from the tool axis that there is a wall.
+    pub has_wall: bool,
 }
 
 /// The nodes of a leg.
@@ -98,8 +100,18 @@ const TURN: f64 = 0.5 * std::f64::consts::PI / 180.0;
 const PUT_DOWN: f64 = 1e-6;
 /// Shorter ways are none. m
 const NO_WAY: f64 = 1e-9;
+/// Sine of the smallest angle between feed and tool axis at which there is a wall: what a task accepts for a scored
+/// point, and room for rounding.
+const NO_WALL: f64 = 0.089;
 /// Distance of nodes of the turns of the spindle. m
 const TURN_NODES: f64 = 4e-3;
+
+/// Whether the way to a point is far enough from the tool axis that there is a wall.
+pub fn has_wall(path: &ToolPath, to: usize) -> bool {
+    let [from, to] = [to - 1, to].map(|point| &path.points()[point]);
+    let way = to.position - from.position;
+    [from, to].iter().all(|end| way.cross(&end.axis).norm() > NO_WALL * way.norm())
+}
 
 /// The place of the tool at a point of a path.
 fn place_of(path: &ToolPath, point: usize) -> AirPoint {
@@ -174,7 +186,8 @@ impl PathMoves {
         let turns = Nodes { first: self.counts[1], intervals: turns };
         self.counts = [nodes.first + nodes.intervals + 1, turns.first + turns.intervals + 1];
         let leg = self.legs.len();
-        self.legs.push(Leg { length, nodes, turns });
+        let has_wall = (from + 1..=last).any(|to| has_wall(path, to));
+        self.legs.push(Leg { length, nodes, turns, has_wall });
         let mut along = 0.0;
         self.places[from][1] = Some(LegPlace { leg, along });
         for to in from + 1..=last {

@@ -9,13 +9,29 @@ use stead_model::cutting::Cutter;
 use stead_model::robot::Pose;
 use stead_model::task::ToolPath;
 
-/// Material before it is cut, in the workpiece frame: a box, a cylinder, or a closed mesh.
+/// Material before it is cut.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stock {
-    /// Its form.
-    pub solid: Solid,
-    /// The pose of the form in the workpiece frame.
-    pub pose: Pose<f64>,
+pub enum Stock {
+    /// A form: a box, a cylinder, or a closed mesh.
+    Solid {
+        /// The form.
+        solid: Solid,
+        /// The pose of the form in the workpiece frame.
+        pose: Pose<f64>,
+    },
+    /// What the operation itself passes over.
+    Path(PathStock),
+}
+
+/// Stock from the path: what the cutter sweeps on its scored moves, up to a height above its tip, less what it would
+/// sweep on the same path were it smaller by a layer and as much higher. At least one of the two is stated.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PathStock {
+    /// Axial depth: how high above the tip material stands before the cut (m); where it is not stated, up to the end of
+    /// the corner.
+    pub depth: Option<f64>,
+    /// Thickness of the layer that the operation before has left, normal to the surface. m
+    pub layer: Option<f64>,
 }
 
 /// An end mill with its outer shape: flat, bull nose, ball or tapered.

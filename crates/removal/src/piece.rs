@@ -6,10 +6,14 @@
 //!
 //! a ball of radius R about the height c has alpha 0, beta c, gamma `R^2 - c^2`; a cone of radius `s + k h` has alpha
 //! `1 + k^2`, beta `k s`, gamma `s^2`, and a cylinder is one with k = 0. Along a line, `y = w + l d`, Q is a quadratic
-//! in l; swept, `y = w + l d - m u`, one in l and m. A piece and what it sweeps are convex, so that each has one
-//! interval on a line.
+//! in l; swept, `y = w + l d - m u`, one in l and m. The corner of a bull nose is a disc grown by a ball (`corner`). A
+//! piece and what it sweeps are convex, so that each has one interval on a line.
 
+mod corner;
+
+use corner::{Corner, Line};
 use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
 
 /// A point of the edge of a cutter.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +34,10 @@ pub struct Piece {
     pub heights: [f64; 2],
     /// Its largest radius. m
     pub radius: f64,
+    /// Radius of the disc that is grown by a ball. m
+    disc: f64,
+    /// Angle along its edge, of a round one. rad
+    arc: f64,
 }
 
 /// Which surface of a piece a line meets.
@@ -56,23 +64,38 @@ pub struct Chord {
 const TINY: f64 = 1e-12;
 
 impl Piece {
-    /// A ball about a point of the axis at a height, of a radius (m).
-    pub fn ball(height: f64, radius: f64) -> Self {
-        let gamma = radius * radius - height * height;
-        Self { alpha: 0.0, beta: height, gamma, heights: [height - radius, height + radius], radius }
+    /// The round corner at the tip of a cutter: a disc of a radius about the axis, grown by that of the corner (m), to a
+    /// side at an angle to the axis (rad). A ball has a disc without a radius.
+    pub fn corner(disc: f64, corner: f64, taper: f64) -> Self {
+        Self {
+            alpha: 0.0,
+            beta: corner,
+            gamma: 0.0,
+            heights: [0.0, 2.0 * corner],
+            radius: disc + corner,
+            disc,
+            arc: FRAC_PI_2 - taper,
+        }
     }
 
     /// A cone (or cylinder) between two heights, with the radii there (m).
     pub fn cone(heights: [f64; 2], radii: [f64; 2]) -> Self {
         let k = (radii[1] - radii[0]) / (heights[1] - heights[0]);
         let s = radii[0] - k * heights[0];
-        Self { alpha: 1.0 + k * k, beta: k * s, gamma: s * s, heights, radius: radii[0].max(radii[1]) }
+        let radius = radii[0].max(radii[1]);
+        Self { alpha: 1.0 + k * k, beta: k * s, gamma: s * s, heights, radius, disc: 0.0, arc: 0.0 }
     }
 
-    /// Length of its edge from end to end of its heights; of a ball from its tip to its equator. m
+    /// A cylinder without ends, of a radius (m).
+    fn cylinder(radius: f64) -> Self {
+        let heights = [f64::NEG_INFINITY, f64::INFINITY];
+        Self { alpha: 1.0, beta: 0.0, gamma: radius * radius, heights, radius, disc: 0.0, arc: 0.0 }
+    }
+
+    /// Length of its edge from end to end of its heights; of a corner from the tip to the side. m
     pub fn edge(&self) -> f64 {
         let [from, to] = self.heights;
-        if self.has_planes() { (to - from) * self.alpha.sqrt() } else { self.radius * std::f64::consts::FRAC_PI_2 }
+        if self.has_planes() { (to - from) * self.alpha.sqrt() } else { self.round() * self.arc }
     }
 
     /// Place along its edge of a point of its side at a height and a distance from the axis (m), from its lower end. m
@@ -80,7 +103,7 @@ impl Piece {
         if self.has_planes() {
             (height - self.heights[0]) * self.alpha.sqrt()
         } else {
-            self.radius * libm::atan2(radius, self.beta - height)
+            self.round() * libm::atan2((radius - self.disc).max(0.0), self.beta - height)
         }
     }
 
@@ -91,9 +114,19 @@ impl Piece {
             let [grows, rises] = [(self.alpha - 1.0).max(0.0).sqrt() / slant, 1.0 / slant];
             EdgePoint { height: self.heights[0] + along * rises, normal: [rises, -grows] }
         } else {
-            let (sine, cosine) = libm::sincos(along / self.radius);
-            EdgePoint { height: self.beta - self.radius * cosine, normal: [sine, -cosine] }
+            let (sine, cosine) = libm::sincos(along / self.round());
+            EdgePoint { height: self.beta - self.round() * cosine, normal: [sine, -cosine] }
         }
+    }
+
+    /// Radius of its corner. m
+    fn round(&self) -> f64 {
+        self.radius - self.disc
+    }
+
+    /// Its corner, where it has a disc.
+    fn grown(&self) -> Option<Corner> {
+        (self.disc > 0.0).then(|| Corner { disc: self.disc, radius: self.round() })
     }
 
     /// Whether it has planes at its ends.
@@ -103,11 +136,26 @@ impl Piece {
 
     /// The normal out of its side at a point y, not of unit length.
     pub fn normal(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+        if let Some(corner) = self.grown() {
+            return corner.from_disc(y, axis);
+        }
         y - axis * (self.alpha * y.dot(axis) + self.beta)
     }
 
     /// The part of a line `y + l d` inside, where there is one.
     pub fn chord(&self, axis: &Vector3<f64>, y: &Vector3<f64>, d: &Vector3<f64>) -> Option<Chord> {
+        if let Some(corner) = self.grown() {
+            let ends = corner.interval(&Line { axis, w: y, d, u: &Vector3::zeros() })?;
+            let at = y + d * ends[0];
+            let height = at.dot(axis);
+            let is_flat = (at - axis * height).norm() <= self.disc;
+            let first = match height < self.beta {
+                _ if !is_flat => Surface::Side,
+                true => Surface::Bottom,
+                false => Surface::Top,
+            };
+            return Some(Chord { ends, first });
+        }
         let (h, hd) = (y.dot(axis), d.dot(axis));
         let a = d.dot(d) - self.alpha * hd * hd;
         let b = y.dot(d) - self.alpha * h * hd - self.beta * hd;
@@ -178,6 +226,9 @@ impl Piece {
         ends: &mut [f64; 2],
     ) {
         let mut take = |l: f64| *ends = [ends[0].min(l), ends[1].max(l)];
+        if let Some(corner) = self.grown() {
+            return corner.interval(&Line { axis, w, d, u }).into_iter().flatten().for_each(take);
+        }
         for start in [*w, w - u] {
             if let Some(chord) = self.chord(axis, &start, d) {
                 chord.ends.into_iter().for_each(&mut take);

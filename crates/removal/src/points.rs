@@ -1,6 +1,6 @@
 //! The load at the points of a path, and the points that are added where a straight line between two misses it.
 
-use crate::moves::{LegPlace, PathMoves};
+use crate::moves::{LegPlace, PathMoves, has_wall};
 use crate::outcome::PointForces;
 use crate::sums::{Found, Sums};
 use crate::turn::Turn;
@@ -13,9 +13,6 @@ const STRAIGHT: f64 = 0.1;
 const SMOOTH: f64 = 2.5;
 /// Forces below this share of the largest of the path need no point.
 const SMALL: f64 = 0.05;
-/// Sine of the smallest angle between feed and tool axis of a point that is added: what a task accepts, and room for
-/// rounding.
-const NO_WALL: f64 = 0.089;
 /// Less is nothing. m2
 const NOTHING: f64 = 1e-11;
 
@@ -28,9 +25,13 @@ pub struct Loads<'l> {
 }
 
 impl Loads<'_> {
-    /// The load at a point of the path: of the leg that ends there or that begins there, whichever is larger.
+    /// The load at a point of the path: of the leg that ends there or that begins there, whichever is larger; of legs
+    /// with a wall, where one of them has it, since a plunge is not what is scored there.
     pub fn at_point(&self, point: usize) -> PointForces {
-        let places = self.path.places[point].iter().flatten().map(|place| self.at(place));
+        let legs = || self.path.places[point].iter().flatten();
+        let has_wall = |place: &&LegPlace| self.path.legs[place.leg].has_wall;
+        let is_any = legs().any(|place| has_wall(&place));
+        let places = legs().filter(|place| has_wall(place) || !is_any).map(|place| self.at(place));
         let larger = |a: PointForces, b: PointForces| {
             if b.at_feed(1.0).force.norm() > a.at_feed(1.0).force.norm() { b } else { a }
         };
@@ -122,10 +123,7 @@ pub fn added_points(
     for point in 1..loads.len() {
         let Some([start, end]) = along.path.leg_between(point - 1) else { continue };
         // Along the tool axis there is no wall, and no point that could be scored.
-        let points = path.points();
-        let way = (points[point].position - points[point - 1].position).normalize();
-        let has_wall = [point - 1, point].iter().all(|end| way.cross(&points[*end].axis).norm() > NO_WALL);
-        if !path.is_scored(point) || !has_wall {
+        if !path.is_scored(point) || !has_wall(path, point) {
             continue;
         }
         let way = end.along - start.along;

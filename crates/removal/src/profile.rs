@@ -15,10 +15,36 @@ pub struct Profile {
     pub length: f64,
 }
 
-/// Cones that the corner of a bull nose is made of.
-const CORNER_CONES: usize = 8;
+/// Cones that stand for the corner of a cutter that is cut off.
+const CORNER_CONES: usize = 12;
 
 impl Profile {
+    /// This cutter, smaller by a layer (m) all over.
+    pub fn smaller(&self, layer: f64) -> Self {
+        Self { radius: self.radius - layer, corner: (self.corner - layer).max(0.0), ..*self }
+    }
+
+    /// Its pieces up to a height (m), the corner as cones between points of it.
+    pub fn below(&self, height: f64) -> Vec<Piece> {
+        let Self { radius, corner, taper, .. } = *self;
+        let (sine, cosine) = libm::sincos(taper);
+        let centre = radius - corner;
+        let side = [corner * (1.0 - sine), centre + corner * cosine];
+        let top = height.min(side[0]);
+        let at = |share: f64| {
+            let up = top * share * share;
+            [up, centre + (corner * corner - (corner - up) * (corner - up)).max(0.0).sqrt()]
+        };
+        let ends: Vec<[f64; 2]> = (0..=CORNER_CONES).map(|k| at(k as f64 / CORNER_CONES as f64)).collect();
+        let cones = ends.windows(2).filter(|pair| pair[1][0] > pair[0][0] + 1e-12);
+        let mut pieces: Vec<Piece> =
+            cones.map(|pair| Piece::cone([pair[0][0], pair[1][0]], [pair[0][1], pair[1][1]])).collect();
+        if height > side[0] + 1e-12 {
+            pieces.push(Piece::cone([side[0], height], [side[1], side[1] + (height - side[0]) * sine / cosine]));
+        }
+        pieces
+    }
+
     /// Its pieces, from below; together they are convex.
     pub fn pieces(&self) -> Vec<Piece> {
         let Self { radius, corner, taper, length } = *self;
@@ -27,23 +53,8 @@ impl Profile {
         let centre = radius - corner;
         let [side_height, side_radius] = [corner * (1.0 - sine), centre + corner * cosine];
         let mut pieces = Vec::new();
-        if corner > 0.0 && centre <= 1e-9 {
-            pieces.push(Piece::ball(corner, corner));
-        } else if corner > 0.0 {
-            // Chords of an arc as long as the arc in area: their corners lie a little outside.
-            let step = (std::f64::consts::FRAC_PI_2 - taper) / CORNER_CONES as f64;
-            let outer = corner / (1.0 - step * step / 12.0);
-            let at = |k: usize| {
-                let (s, c) = libm::sincos(step * k as f64);
-                let r = if k == 0 || k == CORNER_CONES { corner } else { outer };
-                [corner - r * c, centre + r * s]
-            };
-            for k in 0..CORNER_CONES {
-                let [[h0, r0], [h1, r1]] = [at(k), at(k + 1)];
-                if h1 > h0 + 1e-12 {
-                    pieces.push(Piece::cone([h0, h1], [r0, r1]));
-                }
-            }
+        if corner > 0.0 {
+            pieces.push(Piece::corner(if centre <= 1e-9 { 0.0 } else { centre }, corner, taper));
         }
         let top = side_radius + (length - side_height) * sine / cosine;
         pieces.push(Piece::cone([side_height, length], [side_radius, top]));

@@ -26,10 +26,13 @@ use crate::turn::{Arcs, Turn, TurnGrid};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
 
 /// Moves that all tiles go through before the next ones.
 const CHUNK: usize = 4096;
+/// Tiles by thread that are cut before their sums are added up, so that few of them are held.
+const BATCH: usize = 8;
 /// Nodes of turns that they reach over, at most.
 const CHUNK_TURNS: f64 = 128.0;
 
@@ -113,8 +116,6 @@ impl Workpiece {
                     }
                 }
             }
-            let jobs: Vec<(TileKey, Vec<u32>, Option<Tile>)> =
-                jobs.into_iter().map(|(key, indices)| (key, indices, self.tiles.remove(&key))).collect();
             let job = Job {
                 tool,
                 moves: chunk,
@@ -127,27 +128,34 @@ impl Workpiece {
                 requested,
                 grid: &grid,
             };
-            let done: Vec<(TileKey, Tile, OfTile)> = jobs
-                .into_par_iter()
-                .map(|(key, indices, tile)| {
-                    let mut tile = tile.unwrap_or_else(|| tile_of(&self.body, &self.body.extent, self.cell, key));
-                    let of_tile = job.cut(key, &indices, &mut tile);
-                    (key, tile, of_tile)
-                })
-                .collect();
-            for (key, tile, of_tile) in done {
-                self.tiles.insert(key, tile);
-                for (node, sums) in &of_tile.sums {
-                    found.sums[*node as usize].add(sums, 1.0);
-                }
-                for (node, arcs) in of_tile.turns {
-                    match open.entry(node) {
-                        std::collections::btree_map::Entry::Vacant(place) => _ = place.insert(arcs),
-                        std::collections::btree_map::Entry::Occupied(mut place) => place.get_mut().add(&arcs),
+            let jobs: Vec<(TileKey, Vec<u32>)> = jobs.into_iter().collect();
+            for batch in jobs.chunks(BATCH * rayon::current_num_threads()) {
+                monitor.go_on()?;
+                let tiles: Vec<Option<Tile>> = batch.iter().map(|(key, _)| self.tiles.remove(key)).collect();
+                let done: Vec<(Tile, OfTile)> = batch
+                    .par_iter()
+                    .zip(tiles)
+                    .map(|((key, indices), tile)| {
+                        let new = || tile_of(&self.body, &self.body.extent, self.cell, *key);
+                        let mut tile = tile.unwrap_or_else(new);
+                        let of_tile = job.cut(*key, indices, &mut tile);
+                        (tile, of_tile)
+                    })
+                    .collect();
+                for ((key, _), (tile, of_tile)) in batch.iter().zip(done) {
+                    self.tiles.insert(*key, tile);
+                    for (node, sums) in &of_tile.sums {
+                        found.sums[*node as usize].add(sums, 1.0);
                     }
-                }
-                for (event, volume) in of_tile.events {
-                    *found.events.entry(event).or_default() += volume;
+                    for (node, arcs) in of_tile.turns {
+                        match open.entry(node) {
+                            Entry::Vacant(place) => _ = place.insert(arcs),
+                            Entry::Occupied(mut place) => place.get_mut().add(&arcs),
+                        }
+                    }
+                    for (event, volume) in of_tile.events {
+                        *found.events.entry(event).or_default() += volume;
+                    }
                 }
             }
             let still = moves.get(end).map_or(u32::MAX, |next| next.turns[0].floor() as u32);
@@ -164,13 +172,19 @@ impl Workpiece {
         Ok(found)
     }
 
-    /// What the lines along an axis have lost. m3
-    pub fn removed(&self, axis: usize) -> f64 {
-        let lost = |(key, tile): (&TileKey, &Tile)| {
-            tile_of(&self.body, &self.body.extent, self.cell, *key).length() - tile.length()
-        };
-        let tiles = self.tiles.iter().filter(|((of, ..), _)| *of == axis);
-        tiles.map(lost).sum::<f64>() / NANO * self.cell * self.cell
+    /// What is removed, by the lines along each axis (m3), and how many of them have lost something.
+    pub fn removed(&self) -> [(usize, f64); 3] {
+        let mut removed = [(0, 0.0); 3];
+        for (key, tile) in &self.tiles {
+            let whole = tile_of(&self.body, &self.body.extent, self.cell, *key);
+            let (count, volume) = &mut removed[key.0];
+            for line in 0..(TILE * TILE) as usize {
+                let lost = whole.length(line) - tile.length(line);
+                *count += usize::from(lost > 0.0);
+                *volume += lost / NANO * self.cell * self.cell;
+            }
+        }
+        removed
     }
 
     /// The share of lines whose surface is no body's, and where one of them runs.
@@ -187,8 +201,9 @@ impl Workpiece {
         self.tiles.len()
     }
 
-    /// What is left of the line of the lattice nearest to a place, along an axis: intervals. m
-    pub fn left_of(&self, axis: usize, at: &Vector3<f64>) -> Vec<[f64; 2]> {
+    /// What is left of the line of the lattice nearest to a place, along an axis: intervals (m). Tiles that are not cut
+    /// are made once for lines that are asked for in rows.
+    pub fn left_of(&self, axis: usize, at: &Vector3<f64>, made: &mut BTreeMap<TileKey, Tile>) -> Vec<[f64; 2]> {
         let [a, b] = others(axis);
         let (x, y) = (at[a] / self.cell, at[b] / self.cell);
         let (i, j) = lattice::nearest(x, y);
@@ -196,12 +211,15 @@ impl Workpiece {
         let line = (i.rem_euclid(TILE) * TILE + j.rem_euclid(TILE)) as usize;
         let low = self.body.extent[0][axis];
         let metres = |[from, to]: [u32; 2]| [low + f64::from(from) / NANO, low + f64::from(to) / NANO];
-        match self.tiles.get(&key) {
-            Some(tile) => tile.intervals(line).map(metres).collect(),
-            None => {
-                let o = origin(&self.body.extent, self.cell, key, line);
-                self.body.line(key, &o).intervals.into_iter().map(|ends| ends.map(|end| low + end)).collect()
-            }
+        if let Some(tile) = self.tiles.get(&key) {
+            return tile.intervals(line).map(metres).collect();
         }
+        if !self.body.is_by_tile() {
+            let o = origin(&self.body.extent, self.cell, key, line);
+            return self.body.line(key, &o).intervals.into_iter().map(|ends| ends.map(|end| low + end)).collect();
+        }
+        made.retain(|(of, row, _), _| *of == axis && (row - key.1).abs() <= 1);
+        let new = || tile_of(&self.body, &self.body.extent, self.cell, key);
+        made.entry(key).or_insert_with(new).intervals(line).map(metres).collect()
     }
 }

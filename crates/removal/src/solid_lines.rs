@@ -1,6 +1,9 @@
 //! Where lines along the axes run inside a body: the stock before it is cut, and the finished part.
 
-use crate::lattice::{TILE, TileKey, others, place};
+use crate::forces::ForcesError;
+use crate::lattice::{self, TILE, TileKey, others, place};
+use crate::operation::{ForcesProblem, Stock};
+use crate::swept::Swept;
 use crate::tile::{NANO, Tile};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -22,6 +25,7 @@ enum Form {
     Box(Vector3<f64>, Pose<f64>),
     Cylinder(f64, f64, Pose<f64>),
     Mesh(Arc<Facets>),
+    Swept(Swept),
 }
 
 /// Triangles in the workpiece frame, and which of them the lines of a tile can meet.
@@ -41,6 +45,20 @@ pub struct Inside {
 }
 
 impl Body {
+    /// The stock of a problem.
+    ///
+    /// # Errors
+    /// [`ForcesError::Form`] and [`ForcesError::NoWall`].
+    pub fn of_stock(problem: &ForcesProblem, cell: f64) -> Result<Self, ForcesError> {
+        match &problem.stock {
+            Stock::Solid { solid, pose } => Self::new(solid, pose, cell).ok_or(ForcesError::Form),
+            Stock::Path(stock) => {
+                let swept = Swept::new(&problem.operation, stock, cell).ok_or(ForcesError::NoWall)?;
+                Ok(Self { extent: swept.extent, form: Form::Swept(swept) })
+            }
+        }
+    }
+
     /// A box, cylinder or closed mesh with its pose; nothing for another form.
     pub fn new(solid: &Solid, pose: &Pose<f64>, cell: f64) -> Option<Self> {
         let form = match solid {
@@ -50,6 +68,20 @@ impl Body {
             Solid::Capsule { .. } | Solid::Hull(_) => return None,
         };
         Some(Self { form, extent: solid.extent_at(pose) })
+    }
+
+    /// Whether its lines are found faster by the tile than one by one.
+    pub fn is_by_tile(&self) -> bool {
+        matches!(self.form, Form::Mesh(_) | Form::Swept(_))
+    }
+
+    /// All lines of a tile, where they are found so.
+    fn lines(&self, key: TileKey, extent: &[Vector3<f64>; 2], cell: f64) -> Option<Vec<Inside>> {
+        match &self.form {
+            Form::Mesh(facets) => Some(facets.lines(key, extent, cell)),
+            Form::Swept(swept) => Some(swept.lines(key, cell)),
+            Form::Box(..) | Form::Cylinder(..) => None,
+        }
     }
 
     /// How far a point inside is from the surface along the axis in which that is least; 0 outside. m
@@ -97,6 +129,7 @@ impl Body {
                 Inside::convex(ends)
             }
             Form::Mesh(facets) => facets.line(key, o),
+            Form::Swept(swept) => swept.line(key, o),
         }
     }
 }
@@ -120,62 +153,20 @@ fn slab(ends: &mut [f64; 2], at: f64, rate: f64, [low, high]: [f64; 2]) {
 }
 
 impl Inside {
+    /// Ascending intervals.
+    pub fn of(intervals: Vec<[f64; 2]>) -> Self {
+        Self { intervals, is_sound: true }
+    }
+
     fn convex([low, high]: [f64; 2]) -> Self {
         let intervals = if low < high { vec![[low, high]] } else { Vec::new() };
         Self { intervals, is_sound: true }
     }
-}
 
-impl Facets {
-    fn new(mesh: &TriangleMesh, pose: &Pose<f64>, cell: f64) -> Self {
-        let vertices: Vec<Vector3<f64>> = mesh.vertices().iter().map(|vertex| pose.point(vertex)).collect();
-        let corners: Vec<[Vector3<f64>; 3]> =
-            mesh.triangles().iter().map(|triangle| triangle.map(|vertex| vertices[vertex as usize])).collect();
-        let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-        for (number, corners) in corners.iter().enumerate() {
-            for axis in 0..3 {
-                let tiles = others(axis).map(|k| {
-                    let [low, high] = ends(corners.map(|corner| corner[k]));
-                    crate::lattice::tiles([low, high], cell)
-                });
-                for i in tiles[0].clone() {
-                    for j in tiles[1].clone() {
-                        by_tile.entry((axis, i, j)).or_default().push(number as u32);
-                    }
-                }
-            }
-        }
-        Self { corners, by_tile }
-    }
-
-    fn line(&self, key: TileKey, o: &Vector3<f64>) -> Inside {
-        let axis = key.0;
-        let [a, b] = others(axis);
-        let mut crossings: Vec<(f64, f64)> = Vec::new();
-        for number in self.by_tile.get(&key).into_iter().flatten() {
-            let corners = &self.corners[*number as usize];
-            let flat = corners.map(|corner| [corner[a] - o[a], corner[b] - o[b]]);
-            let area = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
-            // An edge that two triangles share is reckoned the same way for both, so that a line meets one of them.
-            let side = |p: usize, q: usize| {
-                let is_turned = flat[p] > flat[q];
-                let area = if is_turned { -area(flat[q], flat[p]) } else { area(flat[p], flat[q]) };
-                (area, if area == 0.0 { is_turned } else { area > 0.0 })
-            };
-            let [(u, is_u), (v, is_v), (w, is_w)] = [side(1, 2), side(2, 0), side(0, 1)];
-            if is_u != is_v || is_v != is_w {
-                continue;
-            }
-            let sum = u + v + w;
-            if sum == 0.0 {
-                continue;
-            }
-            let along = (corners[0][axis] * u + corners[1][axis] * v + corners[2][axis] * w) / sum;
-            crossings.push((along - o[axis], sum.signum()));
-        }
+    /// Between crossings of triangles that face outwards: on the way in they face against the line.
+    fn between(mut crossings: Vec<(f64, f64)>) -> Self {
         crossings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
-        // Triangles face outwards: on the way in they face against the line.
-        let mut inside = Inside { intervals: Vec::new(), is_sound: true };
+        let mut inside = Self { intervals: Vec::new(), is_sound: true };
         let (mut depth, mut from) = (0_i32, 0.0);
         for (along, facing) in crossings {
             let before = depth;
@@ -189,6 +180,70 @@ impl Facets {
         }
         inside.is_sound &= depth == 0;
         inside
+    }
+}
+
+impl Facets {
+    fn new(mesh: &TriangleMesh, pose: &Pose<f64>, cell: f64) -> Self {
+        let vertices: Vec<Vector3<f64>> = mesh.vertices().iter().map(|vertex| pose.point(vertex)).collect();
+        let corners: Vec<[Vector3<f64>; 3]> =
+            mesh.triangles().iter().map(|triangle| triangle.map(|vertex| vertices[vertex as usize])).collect();
+        let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
+        for (number, corners) in corners.iter().enumerate() {
+            for axis in 0..3 {
+                let tiles = others(axis).map(|k| {
+                    let [low, high] = ends(corners.map(|corner| corner[k]));
+                    lattice::tiles([low, high], cell)
+                });
+                for i in tiles[0].clone() {
+                    for j in tiles[1].clone() {
+                        by_tile.entry((axis, i, j)).or_default().push(number as u32);
+                    }
+                }
+            }
+        }
+        Self { corners, by_tile }
+    }
+
+    fn line(&self, key: TileKey, o: &Vector3<f64>) -> Inside {
+        let numbers = self.by_tile.get(&key).into_iter().flatten();
+        Inside::between(numbers.filter_map(|number| self.crossing(*number, key.0, o)).collect())
+    }
+
+    /// All lines of a tile, triangle by triangle: each meets few of them.
+    fn lines(&self, key: TileKey, extent: &[Vector3<f64>; 2], cell: f64) -> Vec<Inside> {
+        let (axis, i, j) = key;
+        let mut crossings: Vec<Vec<(f64, f64)>> = vec![Vec::new(); (TILE * TILE) as usize];
+        for number in self.by_tile.get(&key).into_iter().flatten() {
+            let corners = &self.corners[*number as usize];
+            let [rows, columns] = [0, 1].map(|side| {
+                let [low, high] = ends(corners.map(|corner| corner[others(axis)[side]]));
+                lattice::lines_of([i, j][side], [low, high], cell)
+            });
+            for line in rows.flat_map(|row| columns.clone().map(move |column| (row * TILE + column) as usize)) {
+                crossings[line].extend(self.crossing(*number, axis, &origin(extent, cell, key, line)));
+            }
+        }
+        crossings.into_iter().map(Inside::between).collect()
+    }
+
+    /// Where a line from `o` along an axis crosses a triangle, and whether that faces along it.
+    fn crossing(&self, number: u32, axis: usize, o: &Vector3<f64>) -> Option<(f64, f64)> {
+        let [a, b] = others(axis);
+        let corners = &self.corners[number as usize];
+        let flat = corners.map(|corner| [corner[a] - o[a], corner[b] - o[b]]);
+        let area = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+        // An edge that two triangles share is reckoned the same way for both, so that a line meets one of them.
+        let side = |p: usize, q: usize| {
+            let is_turned = flat[p] > flat[q];
+            let area = if is_turned { -area(flat[q], flat[p]) } else { area(flat[p], flat[q]) };
+            (area, if area == 0.0 { is_turned } else { area > 0.0 })
+        };
+        let [(u, is_u), (v, is_v), (w, is_w)] = [side(1, 2), side(2, 0), side(0, 1)];
+        let sum = u + v + w;
+        let is_met = is_u == is_v && is_v == is_w && sum != 0.0;
+        let along = (corners[0][axis] * u + corners[1][axis] * v + corners[2][axis] * w) / sum;
+        is_met.then_some((along - o[axis], sum.signum()))
     }
 }
 
@@ -214,19 +269,63 @@ pub(crate) fn tile_of(body: &Body, extent: &[Vector3<f64>; 2], cell: f64, key: T
     let nano = |end: f64| (end * NANO).round().clamp(0.0, length.round()) as u32;
     let [a, b] = others(axis);
     let mut tile = Tile::empty();
-    for line in 0..(TILE * TILE) as usize {
-        let o = origin(extent, cell, key, line);
-        if o[a] < body.extent[0][a] || o[a] > body.extent[1][a] || o[b] < body.extent[0][b] || o[b] > body.extent[1][b]
-        {
-            continue;
-        }
-        let inside = body.line(key, &o);
+    let mut put = |line: usize, inside: Inside| {
         let intervals: Vec<[u32; 2]> =
             inside.intervals.iter().map(|ends| ends.map(nano)).filter(|[from, to]| to > from).collect();
         tile.set(line, &intervals);
         if !inside.is_sound {
             tile.unsound.push(line);
         }
+    };
+    if let Some(lines) = body.lines(key, extent, cell) {
+        lines.into_iter().enumerate().for_each(|(line, inside)| put(line, inside));
+        return tile;
+    }
+    for line in 0..(TILE * TILE) as usize {
+        let o = origin(extent, cell, key, line);
+        let is_beside = |k: usize| o[k] < body.extent[0][k] || o[k] > body.extent[1][k];
+        if !is_beside(a) && !is_beside(b) {
+            put(line, body.line(key, &o));
+        }
     }
     tile
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block with a pyramid on top, in a turned pose: triangles large and small, and edges that lines may meet.
+    #[test]
+    fn lines_of_a_tile_are_those_asked_for_one_by_one() {
+        let corner = |x: f64, y: f64, z: f64| Vector3::new(x, y, z) * 1e-2;
+        let vertices = [
+            corner(0.0, 0.0, 0.0),
+            corner(4.0, 0.0, 0.0),
+            corner(4.0, 3.0, 0.0),
+            corner(0.0, 3.0, 0.0),
+            corner(2.1, 1.3, 2.0),
+        ];
+        let triangles = [[0, 2, 1], [0, 3, 2], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = TriangleMesh::new(&vertices, &triangles).unwrap();
+        let rotation = *nalgebra::Rotation3::from_euler_angles(0.3, -0.2, 0.5).matrix();
+        for pose in [Pose::identity(), Pose { rotation, translation: Vector3::new(0.003, -0.001, 0.002) }] {
+            let cell = 0.7e-3;
+            let body = Body::new(&Solid::Mesh(mesh.clone().into()), &pose, cell).unwrap();
+            let Form::Mesh(facets) = &body.form else { panic!("a mesh") };
+            let mut crossed = 0;
+            for axis in 0..3 {
+                let [rows, columns] =
+                    others(axis).map(|k| lattice::tiles([body.extent[0][k], body.extent[1][k]], cell));
+                for key in rows.flat_map(|i| columns.clone().map(move |j| (axis, i, j))) {
+                    let all = facets.lines(key, &body.extent, cell);
+                    for (line, found) in all.iter().enumerate() {
+                        assert_eq!(*found, body.line(key, &origin(&body.extent, cell, key, line)), "{key:?} {line}");
+                        crossed += found.intervals.len();
+                    }
+                }
+            }
+            assert!(crossed > 3000, "{crossed}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use crate::lattice::others;
 use crate::removal::Workpiece;
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// Triangles that face out of the stock. m
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,13 +34,14 @@ impl Grid {
         // Even on both sides, so that no node is on a side.
         let low = Vector3::from_fn(|k, _| low[k] - ((counts[k] - 1) as f64 * step - size[k]) / 2.0);
         let mut grid = Self { low, step, counts, inside: vec![f64::INFINITY; counts.iter().product()] };
+        let mut made = BTreeMap::new();
         for axis in 0..3 {
             let [a, b] = others(axis);
             for i in 0..counts[a] {
                 for j in 0..counts[b] {
                     let mut node = [0; 3];
                     (node[a], node[b]) = (i, j);
-                    let left = workpiece.left_of(axis, &grid.place(node));
+                    let left = workpiece.left_of(axis, &grid.place(node), &mut made);
                     for k in 0..counts[axis] {
                         node[axis] = k;
                         let at = grid.place(node)[axis];

@@ -97,8 +97,8 @@ impl Tile {
         }
     }
 
-    /// What is left of all lines together. nm
-    pub fn length(&self) -> f64 {
-        (0..self.lines.len()).flat_map(|line| self.intervals(line)).map(|[from, to]| f64::from(to - from)).sum()
+    /// What is left of a line. nm
+    pub fn length(&self, line: usize) -> f64 {
+        self.intervals(line).map(|[from, to]| f64::from(to - from)).sum()
     }
 }

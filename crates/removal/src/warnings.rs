@@ -1,10 +1,11 @@
 //! What the user should see to in forces from a path.
 
 use crate::cutting::Tool;
-use crate::operation::ForcesProblem;
+use crate::operation::{ForcesProblem, PathStock, Stock};
 use crate::outcome::RemovalForces;
 use crate::sums::{Event, Found, GOUGE};
 use nalgebra::Vector3;
+use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 
 /// A place for a message.
@@ -45,9 +46,12 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
         all.warnings.push(Warning::new(kind, message));
     };
     warn(Event::Rapid, "rapid-in-stock", &|| "rapid moves go through the stock".to_owned());
-    warn(Event::Before, "starts-in-stock", &|| {
-        "the cutter stands in the stock where a segment begins, which gives no force:".to_owned()
-    });
+    // Stock from the path is where the cutter is put down.
+    if let Stock::Solid { .. } = &problem.stock {
+        warn(Event::Before, "starts-in-stock", &|| {
+            "the cutter stands in the stock where a segment begins, which gives no force:".to_owned()
+        });
+    }
     warn(Event::InPlace, "turns-in-stock", &|| {
         "the tool turns in place in the stock, without a feed and so without a force".to_owned()
     });
@@ -111,6 +115,15 @@ fn notes(all: &mut RemovalForces, problem: &ForcesProblem) {
         moment.0,
         moment.1
     ));
+    if let Stock::Path(PathStock { depth, layer }) = &problem.stock {
+        let mm = |metres: f64| figures(metres * 1e3);
+        let depth = depth.map(|depth| format!("up to {} mm above its tip", mm(depth)));
+        let layer = layer.map(|layer| format!("a layer of {} mm that the operation before has left", mm(layer)));
+        let what = [depth, layer].into_iter().flatten().collect::<Vec<_>>().join(", and of it ");
+        all.notes.push(format!(
+            "the stock is what the cutter passes over on its scored moves, {what}: what else stands there is not known"
+        ));
+    }
     let added = all.points.iter().filter(|point| point.is_added).count();
     if added > 0 {
         all.notes.push(format!(

@@ -3,6 +3,7 @@
 mod forces_for;
 mod ground;
 mod run_for;
+mod stock;
 
 pub use forces_for::init_forces;
 pub use run_for::init_run;

@@ -39,6 +39,10 @@ impl ForcesRun {
                 at(&self.places.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
             }
             ForcesError::Open { .. } => at(&self.places.stock, "a closed mesh whose surface does not cross itself"),
+            ForcesError::NoWall => at(
+                &self.places.stock,
+                "a path whose scored moves go across the tool axis, or box_mm, cylinder_mm, mesh",
+            ),
             ForcesError::Untouched => {
                 at(&self.places.stock, "stock that the path cuts: look at its place and its unit")
             }

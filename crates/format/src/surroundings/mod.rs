@@ -6,7 +6,7 @@ mod solid;
 mod stock;
 mod tables;
 
-pub use stock::{PartTable, PlacedSolid, StockTable};
+pub use stock::{PartTable, PlacedSolid, StockForm, StockTable};
 pub use tables::{
     CapsuleTable, CollisionTable, CylinderTable, HalfSpaceTable, KeepOutTable, ShapeTable, SurroundingsFile,
     VisualTable,

@@ -18,7 +18,8 @@ use stead_disk::input::{InputError, InputFile};
 use stead_model::robot::Pose;
 use stead_model::task::ToolPath;
 
-/// Material before it is cut, in the workpiece frame: exactly one of `box_mm`, `cylinder_mm`, `mesh`, `allowance_mm`.
+/// Material before it is cut, in the workpiece frame: exactly one of `box_mm`, `cylinder_mm`, `mesh`, `allowance_mm`, or
+/// what the path itself passes over: `depth_mm`, `layer_mm` or both.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StockTable {
@@ -33,6 +34,11 @@ pub struct StockTable {
     /// The box of the tool centre points that are scored, grown along x and y by the first two numbers on both sides,
     /// and along z by the third at the top.
     pub allowance_mm: Option<Vector<Mm<NotNegative>>>,
+    /// What the cutter passes over on its scored moves, up to this height above its tip: the axial depth.
+    pub depth_mm: Option<Mm<Positive>>,
+    /// What the operation before has left, normal to the surface; up to `depth_mm`, or to the end of the corner without
+    /// it.
+    pub layer_mm: Option<Mm<Positive>>,
     /// Where the origin of the stock is, in the workpiece frame; zero where left out.
     pub xyz_mm: Option<Vector<Mm>>,
     /// How it is turned, as a rotation matrix by rows: this, one of the four keys below, or none.
@@ -74,7 +80,22 @@ pub struct PlacedSolid {
     pub file: Option<InputFile>,
 }
 
-const FORMS: &str = "exactly one of box_mm, cylinder_mm = { radius, length }, mesh (a closed mesh file), allowance_mm";
+/// The forms that stock can have.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StockForm {
+    /// A body.
+    Solid(PlacedSolid),
+    /// What the path passes over: axial depth and thickness of a layer, of which one at least is there. m
+    Path {
+        /// Axial depth.
+        depth: Option<f64>,
+        /// Thickness of the layer.
+        layer: Option<f64>,
+    },
+}
+
+const FORMS: &str = "exactly one of box_mm, cylinder_mm = { radius, length }, mesh (a closed mesh file), allowance_mm, or depth_mm \
+                     and layer_mm, alone or together";
 const CLOSED: &str = "a closed mesh: every edge of two triangles";
 
 impl StockTable {
@@ -83,8 +104,9 @@ impl StockTable {
     /// # Errors
     /// [`InputError`] for two forms or none, a mesh that cannot be read or is not closed, an allowance with a place,
     /// and one that leaves no volume.
-    pub fn solid(&self, path: &ToolPath, at: &Place<'_>) -> Result<PlacedSolid, InputError> {
-        let given = ["box_mm", "cylinder_mm", "mesh", "allowance_mm"].map(|key| at.key(key));
+    pub fn form(&self, path: &ToolPath, at: &Place<'_>) -> Result<StockForm, InputError> {
+        let of_path = if self.depth_mm.is_some() { "depth_mm" } else { "layer_mm" };
+        let given = ["box_mm", "cylinder_mm", "mesh", "allowance_mm", of_path].map(|key| at.key(key));
         let mut given = given.iter().filter(|place| place.is_given());
         let Some(form) = given.next() else { return Err(at.key("box_mm").error("has no form", FORMS)) };
         if let Some(second) = given.next() {
@@ -95,15 +117,20 @@ impl StockTable {
             return Err(at.key("unit").error("is for a mesh file", "mesh beside it; box_mm and the others are in mm"));
         }
         let keys = orientation_keys!(self);
+        let [depth, layer] = [self.depth_mm, self.layer_mm].map(|length| length.map(Quantity::si));
+        let is_of_path = depth.or(layer).is_some();
+        if (is_of_path || self.allowance_mm.is_some()) && (self.xyz_mm.is_some() || keys.is_given()) {
+            let key = if self.xyz_mm.is_some() { at.key("xyz_mm") } else { form.clone() };
+            return Err(key.error(
+                "is there with stock that lies about the path",
+                "allowance_mm, depth_mm or layer_mm without a place, or box_mm with xyz_mm and an orientation",
+            ));
+        }
+        if is_of_path {
+            return Ok(StockForm::Path { depth, layer });
+        }
         if let Some(allowance) = self.allowance_mm {
-            if self.xyz_mm.is_some() || keys.is_given() {
-                let key = if self.xyz_mm.is_some() { at.key("xyz_mm") } else { form.clone() };
-                return Err(key.error(
-                    "is there with a box that lies about the path",
-                    "allowance_mm alone, or box_mm with xyz_mm and an orientation",
-                ));
-            }
-            return about(path, allowance.vector(), form);
+            return about(path, allowance.vector(), form).map(StockForm::Solid);
         }
         let pose = pose(self.xyz_mm, &keys, at)?;
         let (solid, file) = if let Some(edges) = self.box_mm {
@@ -114,7 +141,7 @@ impl StockTable {
             let (mesh, file) = closed(form, self.unit)?;
             (Solid::Mesh(mesh), Some(file))
         };
-        Ok(PlacedSolid { solid, pose, file })
+        Ok(StockForm::Solid(PlacedSolid { solid, pose, file }))
     }
 
     /// Distance of lines, where it is stated. m

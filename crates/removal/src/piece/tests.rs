@@ -3,13 +3,15 @@
 use super::*;
 use proptest::prelude::*;
 
-fn pieces() -> [Piece; 5] {
+fn pieces() -> [Piece; 7] {
     [
-        Piece::ball(5e-3, 5e-3),
+        Piece::corner(0.0, 5e-3, 0.0),
         Piece::cone([0.0, 0.02], [8e-3, 8e-3]),
         Piece::cone([0.0, 0.02], [2e-3, 6e-3]),
         Piece::cone([1e-3, 2e-3], [5e-3, 5.8e-3]),
         Piece::cone([2e-3, 0.03], [2e-3, 2.5e-3]),
+        Piece::corner(4e-3, 2e-3, 0.0),
+        Piece::corner(1e-3, 5e-3, 0.2),
     ]
 }
 
@@ -18,14 +20,16 @@ proptest! {
 
     #[test]
     fn a_sweep_is_what_stamps_along_it_cover(
-        which in 0..5_usize,
+        which in 0..7_usize,
         axis in prop::array::uniform3(-1.0..1.0_f64),
         at in prop::array::uniform2(-9e-3..9e-3_f64),
         by in prop::array::uniform3(-4e-3..4e-3_f64),
         along in 0..3_usize,
-        is_upright in any::<bool>()
+        upright in 0..3_usize
     ) {
-        let axis = if is_upright { Vector3::z() } else { Vector3::from(axis) };
+        // Leaning, upright, and upright on a level move.
+        let axis = if upright > 0 { Vector3::z() } else { Vector3::from(axis) };
+        let by = if upright > 1 { [by[0], by[1], 0.0] } else { by };
         prop_assume!(axis.norm() > 0.1);
         let axis = axis.normalize();
         let piece = pieces()[which];
@@ -57,12 +61,15 @@ proptest! {
 
     #[test]
     fn the_ends_of_a_chord_are_on_the_surface_and_its_middle_is_inside(
-        which in 0..5_usize,
+        which in 0..7_usize,
         axis in prop::array::uniform3(-1.0..1.0_f64),
         y in prop::array::uniform3(-8e-3..8e-3_f64),
-        d in prop::array::uniform3(-1.0..1.0_f64)
+        d in prop::array::uniform3(-1.0..1.0_f64),
+        upright in 0..3_usize
     ) {
-        let (axis, d) = (Vector3::from(axis), Vector3::from(d));
+        // Leaning, and upright lines and level ones about an upright axis.
+        let axis = if upright > 0 { Vector3::z() } else { Vector3::from(axis) };
+        let d = [Vector3::from(d), Vector3::z() * d[2], Vector3::new(d[0], d[1], 0.0)][upright];
         prop_assume!(axis.norm() > 0.1 && d.norm() > 0.1);
         let (axis, y, piece) = (axis.normalize(), Vector3::from(y), pieces()[which]);
         // How far a point is outside: of the side and of the planes at its ends.
@@ -70,8 +77,9 @@ proptest! {
             let height = point.dot(&axis);
             let radius = (point - axis * height).norm();
             let [from, to] = piece.heights;
-            if which == 0 {
-                return libm::hypot(height - 5e-3, radius) - 5e-3;
+            let corners = [(0, [0.0, 5e-3]), (5, [4e-3, 2e-3]), (6, [1e-3, 5e-3])];
+            if let Some((_, [disc, corner])) = corners.iter().find(|(number, _)| *number == which) {
+                return libm::hypot(height - corner, (radius - disc).max(0.0)) - corner;
             }
             let share = (height - from) / (to - from);
             let ends = [[8e-3, 8e-3], [2e-3, 6e-3], [5e-3, 5.8e-3], [2e-3, 2.5e-3]][which - 1];

@@ -16,12 +16,12 @@ use stead_format::file_kind::FileKind;
 use stead_format::place::{Place, required};
 use stead_format::quantity::Quantity;
 use stead_format::sources::Sources;
-use stead_format::surroundings::{PartTable, StockTable};
+use stead_format::surroundings::{PartTable, PlacedSolid, StockForm, StockTable};
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
 use stead_model::cutting::{Coefficients, Cutter, Rotation};
 use stead_model::task::ToolPath;
-use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, Stock};
+use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, PathStock, Stock};
 use stead_runs::forces::{ForcesPlaces, ForcesRun};
 
 /// Reads a forces file, the keys of [`ForcesFile`], and the files that it names.
@@ -133,8 +133,21 @@ impl RemovalTables<'_> {
             inputs.push(named_before.input);
         }
         let stock_at = at.key("stock");
-        let placed = self.stock.solid(&path, &stock_at)?;
-        inputs.extend(placed.file);
+        let stock = match self.stock.form(&path, &stock_at)? {
+            StockForm::Solid(PlacedSolid { solid, pose, file }) => {
+                inputs.extend(file);
+                Stock::Solid { solid, pose }
+            }
+            StockForm::Path { depth, layer } => {
+                let most = if mill.corner_radius > 0.0 { mill.corner_radius } else { mill.cutter.radius() };
+                if layer.is_some_and(|layer| layer >= most) {
+                    let of = if mill.corner_radius > 0.0 { "the corner radius" } else { "half the diameter" };
+                    let allowed = format!("a number above 0 and below {of}, {} mm", rounded_mm(most));
+                    return Err(stock_at.key("layer_mm").out_of_range(allowed));
+                }
+                Stock::Path(PathStock { depth, layer })
+            }
+        };
         let finished_part = match self.finished_part {
             Some(table) => {
                 let (mesh, pose, input) = table.mesh(&at.key("finished_part"))?;
@@ -144,7 +157,7 @@ impl RemovalTables<'_> {
             None => None,
         };
         let problem = ForcesProblem {
-            stock: Stock { solid: placed.solid, pose: placed.pose },
+            stock,
             before,
             operation: Operation { name: named.input.name, path, rapids: named.rapids, mill, spindle_speed },
             finished_part,
@@ -158,6 +171,11 @@ impl RemovalTables<'_> {
         };
         Ok(ForcesRun { problem, inputs, notes, places })
     }
+}
+
+/// Millimetres without the digits that the unit has brought in.
+pub(crate) fn rounded_mm(metres: f64) -> f64 {
+    (metres * 1e9).round() / 1e6
 }
 
 /// Whether two names are of one file.

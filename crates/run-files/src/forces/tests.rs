@@ -88,13 +88,41 @@ fn a_program_brings_its_rapid_moves_and_its_spindle_speed() {
 fn stock_may_be_a_cylinder_a_mesh_or_about_the_path() {
     let with = |stock: &str| read(&TEXT.replace("box_mm = [80, 26, 20]\nxyz_mm = [40, 17, -10]", stock)).unwrap();
     let cylinder = with("cylinder_mm = { radius = 30, length = 20 }\nxyz_mm = [0, 0, -10]").problem.stock;
-    assert_eq!(cylinder.solid, Solid::Cylinder { radius: 0.03, length: 0.02 });
+    let solid = |stock: &Stock| match stock {
+        Stock::Solid { solid, pose } => (solid.clone(), *pose),
+        Stock::Path(_) => panic!("a form"),
+    };
+    assert_eq!(solid(&cylinder).0, Solid::Cylinder { radius: 0.03, length: 0.02 });
     let mesh = with("mesh = 'cube.obj'");
-    assert!(matches!(mesh.problem.stock.solid, Solid::Mesh(_)) && mesh.inputs.last().unwrap().role == "mesh");
+    assert!(matches!(solid(&mesh.problem.stock).0, Solid::Mesh(_)) && mesh.inputs.last().unwrap().role == "mesh");
     let about = with("allowance_mm = [10, 20, 2]").problem.stock;
-    let [low, high] = about.solid.extent_at(&about.pose).map(|end| end * 1e3);
+    let (about, pose) = solid(&about);
+    let [low, high] = about.extent_at(&pose).map(|end| end * 1e3);
     for (found, is) in low.iter().chain(high.iter()).zip([-30.0, -20.0, -5.0, 70.0, 20.0, -3.0]) {
         assert!((found - is).abs() < 1e-9, "{low} {high}");
+    }
+}
+
+#[test]
+fn stock_may_be_what_the_path_passes_over() {
+    let with = |stock: &str| read(&TEXT.replace("box_mm = [80, 26, 20]\nxyz_mm = [40, 17, -10]", stock));
+    for (keys, is) in [
+        ("depth_mm = 4", [Some(4e-3), None]),
+        ("layer_mm = 0.5", [None, Some(5e-4)]),
+        ("layer_mm = 0.5\ndepth_mm = 12", [Some(12e-3), Some(5e-4)]),
+    ] {
+        let [depth, layer] = is;
+        assert_eq!(with(keys).unwrap().problem.stock, Stock::Path(PathStock { depth, layer }), "{keys}");
+    }
+    for (keys, parts) in [
+        ("depth_mm = 0", &["stock.depth_mm: ", "found 0;"][..]),
+        ("depth_mm = 3\nallowance_mm = [1, 1, 1]", &["stock.depth_mm: is a second form beside allowance_mm"]),
+        ("layer_mm = 3\nbox_mm = [1, 1, 1]", &["stock.layer_mm: is a second form beside box_mm"]),
+        ("depth_mm = 3\nxyz_mm = [1, 1, 1]", &["stock.xyz_mm: is there with stock that lies about the path"]),
+        ("layer_mm = 8", &["stock.layer_mm: is out of range", "found 8;", "below half the diameter, 8 mm"]),
+    ] {
+        let error = with(keys).unwrap_err().to_string();
+        assert!(parts.iter().all(|part| error.contains(part)), "{error}");
     }
 }
 
@@ -128,7 +156,7 @@ fn each_broken_rule_names_line_field_value_and_what_is_allowed() {
         ("box_mm = [80, 26, 20]\n", "", &[":2: stock.box_mm: has no form", "allowance_mm"][..]),
         ("box_mm", "mesh = 'cube.obj'\nbox_mm", &["stock.mesh: is a second form beside box_mm"]),
         ("box_mm = [80, 26, 20]", "mesh = 'open.obj'", &[":3: stock.mesh: is not closed", "found 'open.obj'"]),
-        ("box_mm = [80, 26, 20]", "allowance_mm = [1, 1, 1]", &["stock.xyz_mm: is there with a box that lies"]),
+        ("box_mm = [80, 26, 20]", "allowance_mm = [1, 1, 1]", &["stock.xyz_mm: is there with stock that lies"]),
         ("box_mm = [80, 26, 20]\nxyz_mm = [40, 17, -10]", "allowance_mm = [1, 0, 1]", &["leaves a box of"]),
         ("box_mm", "unit = 'm'\nbox_mm", &["stock.unit: is for a mesh file"]),
         ("flute_length_mm = 30\n", "", &["tool.flute_length_mm: is missing"]),

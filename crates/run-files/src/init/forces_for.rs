@@ -1,6 +1,7 @@
 //! A forces file for a tool path that is there.
 
 use super::run_for::{relative, tool_beside};
+use super::stock::of_path;
 use crate::forces::{ReadingTable, path_of};
 use std::path::Path;
 use stead_disk::files::{
@@ -44,10 +45,12 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
              # xyz_mm = [0.0, 0.0, 0.0]             # where its origin is",
             quoted(mesh)
         ),
-        None => format!(
-            "allowance_mm = {:<23} # guess: a box about the scored points, larger by this along x and y to either side, along z above",
-            format!("[{half:?}, {half:?}, 2.0]")
-        ),
+        None => {
+            let guess = of_path(&known.path, 2.0 * half, corner.unwrap_or_default());
+            let (row, comment) =
+                guess.unwrap_or_else(|| (format!("allowance_mm = [{half:?}, {half:?}, 2.0]"), "guess"));
+            format!("{row:<38} # {comment}")
+        }
     };
     let row = |key: String, comment: &str| format!("{key:<38} # {comment}\n");
     let mut text = format!(

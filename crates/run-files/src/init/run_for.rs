@@ -1,6 +1,7 @@
 //! A run file for a robot and a task that are there.
 
 use super::ground::{Ground, ground};
+use super::stock::of_path;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::{Component, Path, PathBuf, absolute};
@@ -67,17 +68,18 @@ struct Known {
 /// The tables of a cutter for a run file.
 struct Cutter {
     text: String,
-    /// Half its diameter, where it is a table. mm
-    half: Option<f64>,
+    /// Half its diameter and its corner radius, where it is a table. mm
+    sizes: Option<(f64, f64)>,
     /// Whether it states one engagement for the whole path.
     has_engagement: bool,
 }
 
 impl Known {
-    /// Half the diameter of the cutter (mm) where the forces are to be those of what it removes of a stock.
-    fn removes(&self) -> Option<f64> {
+    /// Half the diameter of the cutter and its corner radius (mm) where the forces are to be those of what it removes of
+    /// a stock.
+    fn removes(&self) -> Option<(f64, f64)> {
         let cutter = self.cutter.as_ref().filter(|cutter| !self.has_forces && !cutter.has_engagement)?;
-        cutter.half
+        cutter.sizes
     }
 }
 
@@ -105,7 +107,10 @@ fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
     let lines: Vec<&str> = source.text().lines().skip(head).collect();
     Ok(Some(Cutter {
         text: lines.join("\n").trim().to_owned(),
-        half: read.tool.map(|tool| tool.cutter_diameter_mm.written() / 2.0),
+        sizes: read.tool.map(|tool| {
+            let corner = tool.corner_radius_mm.map_or(0.0, |corner| corner.written());
+            (tool.cutter_diameter_mm.written() / 2.0, corner)
+        }),
         has_engagement: read.cut.is_some_and(|cut| cut.radial_depth_mm.is_some() || cut.engagement.is_some()),
     }))
 }
@@ -228,9 +233,10 @@ max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
         rounded(0.6 * reach),
         format!("{:?}", rounded(reach / 4.0)),
     );
-    if let Some(half) = known.removes() {
-        let stock = format!("allowance_mm = [{half:?}, {half:?}, 2.0]");
-        text.push_str(&format!("\n{STOCK}{stock:<38} # x and y to either side, z above\n"));
+    if let Some((half, corner)) = known.removes() {
+        let guess = of_path(path, 2.0 * half, corner);
+        let (row, comment) = guess.unwrap_or_else(|| (format!("allowance_mm = [{half:?}, {half:?}, 2.0]"), "guess"));
+        text.push_str(&format!("\n{STOCK}{row:<38} # {comment}\n"));
     }
     if let Some(cutter) = &known.cutter {
         // A cut beside the forces of the task would be a second source of them.
@@ -336,9 +342,9 @@ const AXES: &str = "\
 
 /// Stock for a task that has no forces.
 const STOCK: &str = "\
-[stock]                                # guess: the material before it is cut, a box about the scored points that is larger by this. Or
-#                                      # box_mm and xyz_mm, or a closed mesh. In place of it: one engagement for the whole path, in
-#                                      # [cut], or one force in its frame, [forces] without [cut]
+[stock]                                # the material before it is cut: what the path passes over, up to depth_mm above the tip, or a
+#                                      # layer, layer_mm; or allowance_mm, box_mm and xyz_mm, a closed mesh. In place of it: one
+#                                      # engagement for the whole path, in [cut], or one force in its frame, [forces] without [cut]
 ";
 
 /// Forces for a task that has none.

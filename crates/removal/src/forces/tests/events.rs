@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::operation::AirPoint;
+use crate::operation::Stock;
 use stead_cell::tool_scene::Cylinder;
 
 fn warning(found: &RemovalForces, kind: &str) -> String {
@@ -100,24 +101,25 @@ fn thin_chips_are_told() {
 fn what_makes_no_forces_is_refused() {
     let refused = |problem: &ForcesProblem| forces(problem, &Monitor::silent()).unwrap_err();
     let mut far = slot();
-    far.stock.pose.translation.z = 1.0;
+    far.stock = stock([[0.0, -30.0, 980.0], [80.0, 30.0, 1000.0]], &Pose::identity());
     assert_eq!(refused(&far), ForcesError::Untouched);
     let mut small = slot();
-    (small.cell, small.memory) = (Some(1e-5), 1e8);
-    let ForcesError::Memory { fits, .. } = refused(&small) else { panic!("not refused") };
+    (small.cell, small.memory) = (Some(1e-5), 1e7);
+    let ForcesError::Memory { fits: Some(fits), .. } = refused(&small) else { panic!("not refused") };
     small.cell = Some(fits);
     assert!(forces(&small, &Monitor::silent()).is_ok());
     let mut large = slot();
-    large.stock.solid = Solid::Box(Vector3::new(5.0, 0.1, 0.1));
+    let of = |solid: Solid| Stock::Solid { solid, pose: Pose::identity() };
+    large.stock = of(Solid::Box(Vector3::new(5.0, 0.1, 0.1)));
     assert_eq!(refused(&large), ForcesError::Large { length: 5.0 });
     let mut hull = slot();
-    hull.stock.solid = Solid::Capsule { radius: 0.1, length: 0.1 };
+    hull.stock = of(Solid::Capsule { radius: 0.1, length: 0.1 });
     assert_eq!(refused(&hull), ForcesError::Form);
     // A box without its top.
     let whole = box_mesh([[0.0, -30.0, -20.0], [80.0, 30.0, 0.0]]);
     let open = TriangleMesh::new(whole.vertices(), &[&whole.triangles()[..2], &whole.triangles()[4..]].concat());
     let mut broken = slot();
-    broken.stock = crate::operation::Stock { solid: Solid::Mesh(open.unwrap().into()), pose: Pose::identity() };
+    broken.stock = Stock::Solid { solid: Solid::Mesh(open.unwrap().into()), pose: Pose::identity() };
     let error = refused(&broken);
     assert!(matches!(error, ForcesError::Open { .. }), "{error}");
     assert!(error.to_string().contains("the surface of the stock is no closed one"), "{error}");

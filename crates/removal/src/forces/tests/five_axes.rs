@@ -32,12 +32,10 @@ impl Cut<'_> {
     }
 
     fn problem(&self, pose: &Pose<f64>) -> ForcesProblem {
-        let placed = Pose {
-            rotation: pose.rotation * self.stock.pose.rotation,
-            translation: pose.point(&self.stock.pose.translation),
-        };
+        let Stock::Solid { solid, pose: own } = &self.stock else { panic!("a form") };
+        let placed = Pose { rotation: pose.rotation * own.rotation, translation: pose.point(&own.translation) };
         ForcesProblem {
-            stock: Stock { solid: self.stock.solid.clone(), pose: placed },
+            stock: Stock::Solid { solid: solid.clone(), pose: placed },
             before: vec![operation(&self.points(self.before), &self.mill, pose)],
             operation: operation(&self.points(self.at), &self.mill, pose),
             finished_part: None,
@@ -101,7 +99,7 @@ fn with_patch(step_deg: f64, half_deg: f64, each: &mut dyn FnMut(&Cut<'_>)) {
         mill,
         at: &|along| pose(along / radius, 0.0),
         before: &|along| pose(along / radius, -1.5e-3),
-        stock: Stock {
+        stock: Stock::Solid {
             solid: Solid::Cylinder { radius: 61e-3, length: 40e-3 },
             pose: Pose { rotation: lying, translation: Vector3::zeros() },
         },

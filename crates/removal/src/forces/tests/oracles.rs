@@ -64,7 +64,7 @@ pub(super) fn operation(points: &[(Vector3<f64>, Vector3<f64>)], mill: &EndMill,
 pub(super) fn stock([min, max]: [[f64; 3]; 2], pose: &Pose<f64>) -> Stock {
     let [min, max] = [min, max].map(|corner| Vector3::from(corner) / 1e3);
     let pose = Pose { translation: pose.point(&((min + max) / 2.0)), ..*pose };
-    Stock { solid: Solid::Box(max - min), pose }
+    Stock::Solid { solid: Solid::Box(max - min), pose }
 }
 
 /// Poses of the whole about the grid: along its rows, quarter turns and odd angles.

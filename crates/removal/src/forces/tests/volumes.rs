@@ -23,7 +23,7 @@ fn prism(outline: &[[f64; 2]], walls: &[&[u32]], parts: &[&[u32]], [low, high]: 
     }
     let mesh = TriangleMesh::new(&vertices, &triangles).unwrap();
     assert!(mesh.is_closed());
-    Stock { solid: Solid::Mesh(mesh.into()), pose: Pose::identity() }
+    Stock::Solid { solid: Solid::Mesh(mesh.into()), pose: Pose::identity() }
 }
 
 fn of(stock: Stock, mill: &EndMill, cuts: &[Vec<Knot>]) -> RemovalForces {
@@ -56,7 +56,7 @@ fn volumes_are_those_of_exact_booleans_of_meshes() {
     let lead = [sine, -0.1, cosine];
     let lines = [-6.0, -3.0, 0.0].map(|y| vec![([-25.0, y, -3.0], lead), ([25.0, y, -3.0], lead)]);
     let lying = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0);
-    let cylinder = Stock {
+    let cylinder = Stock::Solid {
         solid: Solid::Cylinder { radius: 30e-3, length: 80e-3 },
         pose: Pose { rotation: lying, translation: Vector3::new(0.0, 0.0, -30e-3) },
     };

@@ -120,7 +120,9 @@ fn the_cutter_beside_the_task_is_taken_and_with_its_cut_gives_the_forces() {
     };
     let (text, guessed) = made();
     assert!(
-        text.contains("\ncutter_diameter_mm = 16.0 ") && text.contains("\nallowance_mm = [8.0, 8.0, 2.0]"),
+        text.contains("\ncutter_diameter_mm = 16.0 ")
+            && text.contains("\ndepth_mm = 4.0 ")
+            && text.contains("one level, so its depth is not in the path"),
         "{text}"
     );
     assert!(!text.contains("\n[forces]") && text.contains("\nspindle_rpm = 9000.0 "), "{text}");

@@ -1,0 +1,172 @@
+//! Stock from the path: what a cutter sweeps on its scored moves, less what a smaller one would.
+
+use crate::cutting::Tool;
+use crate::job::{Reach, Size};
+use crate::lattice::{TILE, TileKey, TileLines, others, tiles};
+use crate::moves::{Move, MoveKind, PathMoves, has_wall};
+use crate::operation::{EndMill, Operation, PathStock};
+use crate::piece::Piece;
+use crate::profile::Profile;
+use crate::solid_lines::Inside;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Intervals that are no farther apart are one: rounding. m
+const TOGETHER: f64 = 1e-8;
+/// Any window: what is asked for are the moves.
+const WINDOW: f64 = 1e-3;
+
+/// What the stock of a path is made of.
+#[derive(Debug, Clone)]
+pub struct Swept {
+    added: Arc<Sweep>,
+    /// What the operation before has taken.
+    taken: Option<Arc<Sweep>>,
+    /// m
+    pub extent: [Vector3<f64>; 2],
+}
+
+/// Moves of a cutter, and which of them the lines of a tile can meet.
+#[derive(Debug)]
+struct Sweep {
+    pieces: Vec<Piece>,
+    moves: Vec<Move>,
+    reaches: Vec<Reach>,
+    by_tile: BTreeMap<TileKey, Vec<u32>>,
+}
+
+impl Swept {
+    /// The stock of the path of an operation, in tiles of cells; nothing where no scored move has a wall.
+    pub fn new(operation: &Operation, stock: &PathStock, cell: f64) -> Option<Self> {
+        let profile = operation.mill.profile();
+        let all = PathMoves::new(operation, WINDOW).moves;
+        let feeds = || all.iter().filter(|one| one.kind == MoveKind::Feed);
+        let path = &operation.path;
+        let is_scored = |one: &&Move| path.is_scored(one.point as usize) && has_wall(path, one.point as usize);
+        let scored: Vec<Move> = feeds().filter(is_scored).copied().collect();
+        let pieces = profile.below(stock.height(&profile));
+        let size = Size::of(&pieces);
+        let anywhere = [f64::NEG_INFINITY, f64::INFINITY].map(Vector3::repeat);
+        let reaches = scored.iter().map(|one| one.reach(&size, &anywhere));
+        let Reach(whole) = reaches.reduce(|a, b| a.with(&b))?;
+        let extent = [0, 1].map(|end| Vector3::from(whole.map(|side| side[end])));
+        let taken = stock.layer.map(|layer| {
+            let Profile { radius, corner, .. } = profile.smaller(layer);
+            let mill = EndMill { corner_radius: corner, ..operation.mill.clone() };
+            let height = (extent[1] - extent[0]).norm();
+            let pieces = Tool::of_profile(&Profile { radius, corner, ..profile }, &mill, height).pieces;
+            let raised = feeds().map(|one| Move { middle: one.middle + one.axis * layer, ..*one }).collect();
+            Arc::new(Sweep::new(pieces, raised, &extent, cell))
+        });
+        Some(Self { added: Arc::new(Sweep::new(pieces, scored, &extent, cell)), taken, extent })
+    }
+
+    /// All lines of a tile.
+    pub fn lines(&self, key: TileKey, cell: f64) -> Vec<Inside> {
+        let lines = TileLines::new(key, cell, self.extent[0][key.0]);
+        let added = self.added.lines(key, &lines);
+        let Some(taken) = &self.taken else { return added.into_iter().map(Inside::of).collect() };
+        let taken = taken.lines(key, &lines);
+        added.into_iter().zip(taken).map(|(added, taken)| Inside::of(less(&added, &taken))).collect()
+    }
+
+    /// A line from `o`.
+    pub fn line(&self, key: TileKey, o: &Vector3<f64>) -> Inside {
+        let added = self.added.line(key, o);
+        Inside::of(self.taken.as_ref().map_or(added.clone(), |taken| less(&added, &taken.line(key, o))))
+    }
+}
+
+impl PathStock {
+    /// How high above the tip it goes, where nothing is stated up to the end of the corner, and at least a layer. m
+    fn height(&self, profile: &Profile) -> f64 {
+        let corner = profile.corner * (1.0 - libm::sin(profile.taper));
+        self.depth.unwrap_or(corner.max(self.layer.unwrap_or_default()))
+    }
+}
+
+impl Sweep {
+    fn new(pieces: Vec<Piece>, moves: Vec<Move>, extent: &[Vector3<f64>; 2], cell: f64) -> Self {
+        let size = Size::of(&pieces);
+        let reaches: Vec<Reach> = moves.iter().map(|one| one.reach(&size, extent)).collect();
+        let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
+        for (number, Reach(reach)) in (0..).zip(&reaches).filter(|(_, reach)| !reach.is_empty()) {
+            for axis in 0..3 {
+                let [rows, columns] = others(axis).map(|k| tiles(reach[k], cell));
+                for key in rows.flat_map(|i| columns.clone().map(move |j| (axis, i, j))) {
+                    by_tile.entry(key).or_default().push(number);
+                }
+            }
+        }
+        Self { pieces, moves, reaches, by_tile }
+    }
+
+    fn met(&self, key: TileKey) -> impl Iterator<Item = (&Move, &Reach)> {
+        let numbers = self.by_tile.get(&key).into_iter().flatten();
+        numbers.map(|number| (&self.moves[*number as usize], &self.reaches[*number as usize]))
+    }
+
+    fn lines(&self, key: TileKey, lines: &TileLines) -> Vec<Vec<[f64; 2]>> {
+        let d = Vector3::ith(key.0, 1.0);
+        let mut all = vec![Vec::new(); (TILE * TILE) as usize];
+        for (one, reach) in self.met(key) {
+            lines.within(&reach.0, &mut |number, o| {
+                if let Some(interval) = one.extent(&self.pieces, o, &d) {
+                    put(&mut all[number], interval);
+                }
+            });
+        }
+        all.into_iter().map(together).collect()
+    }
+
+    fn line(&self, key: TileKey, o: &Vector3<f64>) -> Vec<[f64; 2]> {
+        let d = Vector3::ith(key.0, 1.0);
+        let mut all = Vec::new();
+        for interval in self.met(key).filter_map(|(one, _)| one.extent(&self.pieces, o, &d)) {
+            put(&mut all, interval);
+        }
+        together(all)
+    }
+}
+
+/// Adds an interval, to the last one where they meet: moves come one after the other.
+fn put(all: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
+    match all.last_mut() {
+        Some([from, to]) if low <= *to + TOGETHER && high >= *from - TOGETHER => {
+            (*from, *to) = (from.min(low), to.max(high))
+        }
+        _ => all.push([low, high]),
+    }
+}
+
+/// Ascending, and those that meet as one.
+fn together(mut all: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    all.dedup_by(|next, last| {
+        let meets = next[0] <= last[1] + TOGETHER;
+        if meets {
+            last[1] = last[1].max(next[1]);
+        }
+        meets
+    });
+    all
+}
+
+/// What is left of ascending intervals where others are taken away.
+fn less(all: &[[f64; 2]], taken: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut left = Vec::new();
+    for [low, high] in all {
+        let mut from = *low;
+        for [start, end] in taken.iter().filter(|[start, end]| *end > *low && *start < *high) {
+            if *start > from {
+                left.push([from, *start]);
+            }
+            from = from.max(*end);
+        }
+        if from < *high {
+            left.push([from, *high]);
+        }
+    }
+    left
+}
