@@ -164,13 +164,11 @@ impl<'m> Moving<'m> {
         let start = point - one.middle + u / 2.0;
         // The first piece that gets to the point, and when.
         let mut met: Option<(f64, usize, Surface)> = None;
-        for (number, piece) in tool.pieces.iter().enumerate() {
-            let Some(chord) = piece.chord(&one.axis, &start, &-u) else { continue };
-            let when = chord.ends[0];
-            if chord.ends[1] < 0.0 || met.is_some_and(|(known, ..)| known <= when) {
-                continue;
+        for (number, piece) in tool.pieces.iter().enumerate().rev() {
+            let until = met.map_or(f64::INFINITY, |(when, ..)| when);
+            if let Some((when, surface)) = piece.entry(&one.axis, &start, &-u, until) {
+                met = Some((when, number, surface));
             }
-            met = Some((when, number, chord.first));
         }
         let (when, number, surface) = met?;
         let y = start - u * when;

@@ -304,7 +304,8 @@ impl Move {
         let by = |u: &Vector3<f64>| {
             let w = o - self.middle + u / 2.0;
             let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-            pieces.iter().for_each(|piece| piece.sweep(&self.axis, &w, d, u, &mut ends));
+            // From above: what shank and side reach, a corner need not be asked for.
+            pieces.iter().rev().for_each(|piece| piece.sweep(&self.axis, &w, d, u, &mut ends));
             (ends[0] < ends[1]).then_some(ends)
         };
         let ends = by(&self.by)?;

@@ -60,6 +60,8 @@ pub struct Chord {
     pub first: Surface,
 }
 
+/// No interval.
+const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 /// Lengths that are less are none. m
 const TINY: f64 = 1e-12;
 
@@ -142,19 +144,32 @@ impl Piece {
         y - axis * (self.alpha * y.dot(axis) + self.beta)
     }
 
+    /// Which surface of a corner a point of it is on.
+    fn surface_at(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Surface {
+        let height = y.dot(axis);
+        match height < self.beta {
+            _ if (y - axis * height).norm() > self.disc => Surface::Side,
+            true => Surface::Bottom,
+            false => Surface::Top,
+        }
+    }
+
+    /// Where a line `y + l d` comes in and by which surface, where that is no later than a place and it does not leave
+    /// before 0.
+    pub fn entry(&self, axis: &Vector3<f64>, y: &Vector3<f64>, d: &Vector3<f64>, until: f64) -> Option<(f64, Surface)> {
+        if let Some(corner) = self.grown() {
+            let at = corner.entry(&Line { axis, w: y, d, u: &Vector3::zeros() }, until)?;
+            return Some((at, self.surface_at(&(y + d * at), axis)));
+        }
+        let Chord { ends, first } = self.chord(axis, y, d)?;
+        (ends[1] >= 0.0 && ends[0] <= until).then_some((ends[0], first))
+    }
+
     /// The part of a line `y + l d` inside, where there is one.
     pub fn chord(&self, axis: &Vector3<f64>, y: &Vector3<f64>, d: &Vector3<f64>) -> Option<Chord> {
         if let Some(corner) = self.grown() {
-            let ends = corner.interval(&Line { axis, w: y, d, u: &Vector3::zeros() })?;
-            let at = y + d * ends[0];
-            let height = at.dot(axis);
-            let is_flat = (at - axis * height).norm() <= self.disc;
-            let first = match height < self.beta {
-                _ if !is_flat => Surface::Side,
-                true => Surface::Bottom,
-                false => Surface::Top,
-            };
-            return Some(Chord { ends, first });
+            let ends = corner.interval(&Line { axis, w: y, d, u: &Vector3::zeros() }, NOWHERE)?;
+            return Some(Chord { ends, first: self.surface_at(&(y + d * ends[0]), axis) });
         }
         let (h, hd) = (y.dot(axis), d.dot(axis));
         let a = d.dot(d) - self.alpha * hd * hd;
@@ -225,9 +240,10 @@ impl Piece {
         u: &Vector3<f64>,
         ends: &mut [f64; 2],
     ) {
+        let known = *ends;
         let mut take = |l: f64| *ends = [ends[0].min(l), ends[1].max(l)];
         if let Some(corner) = self.grown() {
-            return corner.interval(&Line { axis, w, d, u }).into_iter().flatten().for_each(take);
+            return corner.interval(&Line { axis, w, d, u }, known).into_iter().flatten().for_each(take);
         }
         for start in [*w, w - u] {
             if let Some(chord) = self.chord(axis, &start, d) {

@@ -46,7 +46,10 @@ impl ForcesRun {
             ForcesError::Untouched => {
                 at(&self.places.stock, "stock that the path cuts: look at its place and its unit")
             }
-            ForcesError::Memory { .. } => at(&self.places.cell, "larger cells, or more memory_gb"),
+            ForcesError::Memory { fits: Some(_), .. } => at(&self.places.cell, "larger cells, or more memory_gb"),
+            ForcesError::Memory { fits: None, .. } => {
+                at(&self.places.cell, "more memory_gb: what the path meets takes it")
+            }
             ForcesError::NoFeeds(_) | ForcesError::Path(_) => at(&self.places.path, "a path with feeds"),
         }
     }

@@ -30,66 +30,89 @@ pub(super) struct Corner {
     pub radius: f64,
 }
 
-impl Corner {
-    /// From the nearest point of the disc to a point. m
-    pub fn from_disc(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
-        self.with_slope(y, axis, &Vector3::zeros()).0
+/// Products of a line and its move, from the point of the line that is nearest to the middle of the corner: with them a
+/// point is `y = w + l d - m u` by a few numbers.
+struct Products {
+    /// Of w with axis, w, d and u.
+    w: [f64; 4],
+    /// Of d with axis, d and u.
+    d: [f64; 3],
+    /// Of u with axis and u.
+    u: [f64; 2],
+    /// Length of u. m
+    size: f64,
+}
+
+/// The way v from the disc to a point: its length, its parts along d and u, and how that along u grows with -m.
+struct Way {
+    length: f64,
+    along: f64,
+    with_move: f64,
+    curve: f64,
+}
+
+impl Products {
+    fn new(axis: &Vector3<f64>, w: &Vector3<f64>, d: &Vector3<f64>, u: &Vector3<f64>) -> Self {
+        Self {
+            w: [w.dot(axis), w.norm_squared(), w.dot(d), w.dot(u)],
+            d: [d.dot(axis), d.norm_squared(), d.dot(u)],
+            u: [u.dot(axis), u.norm_squared()],
+            size: u.norm(),
+        }
     }
 
-    /// The same, and how it grows along a direction: `u . dv/dy u`.
-    fn with_slope(&self, y: &Vector3<f64>, axis: &Vector3<f64>, u: &Vector3<f64>) -> (Vector3<f64>, f64) {
-        let (h, rise) = (y.dot(axis), u.dot(axis));
-        let across = y - axis * h;
-        let square = across.norm_squared();
-        let up = axis * (h - self.radius);
-        if square <= self.disc * self.disc {
-            return (up, rise * rise);
+    fn way(&self, corner: &Corner, l: f64, m: f64) -> Way {
+        let ([h, ww, wd, wu], [hd, dd, du], [hu, uu]) = (self.w, self.d, self.u);
+        let height = h + l * hd - m * hu;
+        let (by_d, by_u) = (wd + l * dd - m * du, wu + l * du - m * uu);
+        let square = ww + l * (wd + by_d) - m * (wu + by_u) - height * height;
+        let up = height - corner.radius;
+        if square <= corner.disc * corner.disc {
+            return Way { length: up.abs(), along: up * hd, with_move: up * hu, curve: hu * hu };
         }
         let rho = square.sqrt();
-        let (part, out) = (1.0 - self.disc / rho, u.dot(&across) / rho);
-        let around = (u.norm_squared() - rise * rise - out * out).max(0.0);
-        (up + across * part, rise * rise + out * out + part * around)
+        let part = 1.0 - corner.disc / rho;
+        let (out_d, out_u) = (by_d - height * hd, by_u - height * hu);
+        let across = out_u * out_u / square;
+        Way {
+            length: (up * up + (rho - corner.disc) * (rho - corner.disc)).sqrt(),
+            along: up * hd + part * out_d,
+            with_move: up * hu + part * out_u,
+            curve: hu * hu + across + part * (uu - hu * hu - across).max(0.0),
+        }
     }
 
-    /// The interval of a line that is inside at any time of the move.
-    pub fn interval(&self, line: &Line<'_>) -> Option<[f64; 2]> {
-        let Line { axis, w, d, u } = *line;
-        let (hd, hu) = (d.dot(axis), u.dot(axis));
-        if hu.abs() <= TINY && hd.abs() <= 1e-9 {
-            return self.level(line);
+    /// The shortest way from the disc to a point of the line within the move, from the time at which a search begins.
+    fn nearest(&self, corner: &Corner, l: f64, m: &mut f64) -> Way {
+        let (mut low, mut high) = (-f64::EPSILON, 1.0 + f64::EPSILON);
+        let mut way = self.way(corner, l, *m);
+        for _ in 0..STEPS_OF_MOVE {
+            let slope = -way.with_move;
+            if slope == 0.0 || (slope > 0.0 && *m <= 0.0) || (slope < 0.0 && *m >= 1.0) {
+                break;
+            }
+            *(if slope > 0.0 { &mut high } else { &mut low }) = *m;
+            let next = (*m - slope / way.curve.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let next = if next > low && next < high { next } else { (low + high) / 2.0 };
+            if (next - *m).abs() * self.size < ROUNDING {
+                break;
+            }
+            *m = next;
+            way = self.way(corner, l, *m);
         }
-        if hu.abs() <= TINY && hd * hd >= d.norm_squared() * (1.0 - 1e-15) {
-            return self.upright(line, hd);
-        }
-        // From where the line comes into the ball about all of it.
-        let square = d.norm_squared();
-        let reach = self.disc + self.radius;
-        let to_centre = axis * self.radius - w;
-        let [centre, shift] = [to_centre.dot(d), u.dot(d)].map(|along| along / square);
-        let (beside, by) = (to_centre - d * centre, u - d * shift);
-        let m = (-beside.dot(&by) / by.norm_squared().max(TINY * TINY)).clamp(0.0, 1.0);
-        let half = reach * reach - (beside + by * m).norm_squared();
-        if half <= 0.0 {
-            return None;
-        }
-        let half = (half / square).sqrt();
-        let (from, to) = (centre + shift.min(0.0) - half, centre + shift.max(0.0) + half);
-        let low = self.end(line, from, to)?;
-        let high = self.end(line, to, low)?;
-        (high > low).then_some([low, high])
+        way
     }
 
     /// The end of the interval that is met from outside, on the way to a limit.
-    fn end(&self, line: &Line<'_>, from: f64, limit: f64) -> Option<f64> {
-        let (mut l, mut m) = (from, 0.5);
+    fn end(&self, corner: &Corner, from: f64, limit: f64) -> Option<f64> {
+        let (mut l, mut m) = (from, if self.size > 0.0 { 0.5 } else { 0.0 });
         for _ in 0..STEPS {
-            let v = self.nearest(line, &(line.w + line.d * l), &mut m);
-            let length = v.norm();
-            let outside = length - self.radius;
+            let way = self.nearest(corner, l, &mut m);
+            let outside = way.length - corner.radius;
             if outside <= ROUNDING {
                 return Some(l);
             }
-            let step = -outside * length / v.dot(line.d);
+            let step = -outside * way.length / way.along;
             let is_ahead = step.is_finite() && (step > 0.0) == (limit > from);
             if !is_ahead || (l + step - limit) * (limit - from) > 0.0 {
                 return None;
@@ -98,40 +121,68 @@ impl Corner {
         }
         Some(l)
     }
+}
 
-    /// The shortest way from the disc to a point within the move, and when, from where a search begins.
-    fn nearest(&self, line: &Line<'_>, y: &Vector3<f64>, m: &mut f64) -> Vector3<f64> {
-        let Line { axis, u, .. } = *line;
-        let at = |m: f64| {
-            let (v, curve) = self.with_slope(&(y - u * m), axis, u);
-            (v, -v.dot(u), curve)
-        };
-        let (first, begins, _) = at(0.0);
-        if begins >= 0.0 {
-            *m = 0.0;
-            return first;
+impl Corner {
+    /// From the nearest point of the disc to a point. m
+    pub fn from_disc(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+        let h = y.dot(axis);
+        let across = y - axis * h;
+        let rho = across.norm();
+        let up = axis * (h - self.radius);
+        if rho <= self.disc { up } else { up + across * (1.0 - self.disc / rho) }
+    }
+
+    /// The interval of a line that is inside at any time of the move; ends that are within a known one may be left where
+    /// they are met at the latest.
+    pub fn interval(&self, line: &Line<'_>, known: [f64; 2]) -> Option<[f64; 2]> {
+        let Line { axis, d, u, .. } = *line;
+        let (hd, hu) = (d.dot(axis), u.dot(axis));
+        if hu.abs() <= TINY && hd.abs() <= 1e-9 {
+            return self.level(line);
         }
-        let (last, ends, _) = at(1.0);
-        if ends <= 0.0 {
-            *m = 1.0;
-            return last;
+        if hu.abs() <= TINY && hd * hd >= d.norm_squared() * (1.0 - 1e-15) {
+            return self.upright(line, hd);
         }
-        if *m <= 0.0 || *m >= 1.0 {
-            *m = begins / (begins - ends);
-        }
-        let [mut low, mut high] = [0.0, 1.0];
-        let size = u.norm();
-        for _ in 0..STEPS_OF_MOVE {
-            let (v, slope, curve) = at(*m);
-            *(if slope > 0.0 { &mut high } else { &mut low }) = *m;
-            let next = *m - slope / curve.max(f64::MIN_POSITIVE);
-            let next = if next > low && next < high { next } else { (low + high) / 2.0 };
-            if (next - *m).abs() * size < ROUNDING {
-                return v;
+        let (products, centre, [from, to]) = self.about(line)?;
+        let ends = match [known[0] <= centre + from, known[1] >= centre + to] {
+            [true, true] => None,
+            [true, false] => products.end(self, to, from).map(|high| [high, high]),
+            [false, true] => products.end(self, from, to).map(|low| [low, low]),
+            [false, false] => {
+                let low = products.end(self, from, to)?;
+                let high = products.end(self, to, low)?;
+                (high > low).then_some([low, high])
             }
-            *m = next;
+        };
+        ends.map(|ends| ends.map(|end| centre + end))
+    }
+
+    /// Where a line that does not move comes in, where that is no later than a place and it does not leave before 0.
+    pub fn entry(&self, line: &Line<'_>, until: f64) -> Option<f64> {
+        let (products, centre, [from, to]) = self.about(line)?;
+        if centre + to < 0.0 || centre + from > until {
+            return None;
         }
-        at(*m).0
+        let low = products.end(self, from, to)?;
+        let is_left = || products.end(self, to, low).is_none_or(|high| centre + high < 0.0);
+        (centre + low <= until && (centre + low >= 0.0 || !is_left())).then_some(centre + low)
+    }
+
+    /// The products of a line, counted from where it is nearest to the middle of the corner, that place, and from there
+    /// where it comes into the ball about all of the corner and leaves it.
+    fn about(&self, line: &Line<'_>) -> Option<(Products, f64, [f64; 2])> {
+        let Line { axis, w, d, u } = *line;
+        let square = d.norm_squared();
+        let reach = self.disc + self.radius;
+        let to_centre = axis * self.radius - w;
+        let [centre, shift] = [to_centre.dot(d), u.dot(d)].map(|along| along / square);
+        let (beside, by) = (to_centre - d * centre, u - d * shift);
+        let m = (-beside.dot(&by) / by.norm_squared().max(TINY * TINY)).clamp(0.0, 1.0);
+        let half = reach * reach - (beside + by * m).norm_squared();
+        let half = (half.max(0.0) / square).sqrt();
+        let products = Products::new(axis, &(w + d * centre), d, u);
+        (half > 0.0).then_some((products, centre, [shift.min(0.0) - half, shift.max(0.0) + half]))
     }
 
     /// Of a line and a move normal to the axis: those of the circle at its height.

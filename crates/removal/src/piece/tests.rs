@@ -90,6 +90,9 @@ proptest! {
                 for end in chord.ends {
                     prop_assert!(outside(&(y + d * end)).abs() < 1e-8);
                 }
+                let entry = piece.entry(&axis, &y, &d, f64::INFINITY).map(|(at, _)| at);
+                prop_assert!(entry.is_some() == (chord.ends[1] >= 0.0), "{:?} {:?}", entry, chord);
+                prop_assert!(entry.is_none_or(|at| (at - chord.ends[0]).abs() < 1e-9), "{:?} {:?}", entry, chord);
                 prop_assert!(outside(&(y + d * ((chord.ends[0] + chord.ends[1]) / 2.0))) < 1e-9);
             }
             None => {
