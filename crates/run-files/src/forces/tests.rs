@@ -1,5 +1,6 @@
 use super::*;
 use stead_cell::Solid;
+use stead_model::robot::Pose;
 
 /// A run on one straight cut of a block, `[stock]` on line 2.
 const TEXT: &str = "path = 'part.csv'
@@ -25,6 +26,14 @@ const PATH: &str = "segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,ax
 ";
 
 const PROGRAM: &str = "%\nG90 G21 G17\nT1 M6\nS6000 M3\nG0 X-20 Y0 Z50\nG0 Z-5\nG1 X60 F1200\nG0 Z50\nG0 X-20 Y-4\nG0 Z-5\nG1 X60\nG0 Z50\nM30\n%\n";
+
+/// The form of stock and its pose.
+fn solid(stock: &Stock) -> (Solid, Pose<f64>) {
+    match stock {
+        Stock::Solid { solid, pose } => (solid.clone(), *pose),
+        Stock::Path(_) => panic!("a form"),
+    }
+}
 
 /// A cube of 20 mm, with or without its top.
 fn cube(is_closed: bool) -> String {
@@ -52,8 +61,9 @@ fn read(text: &str) -> Result<ForcesRun, InputError> {
 fn a_file_becomes_what_is_to_be_cut() {
     let run = read(TEXT).unwrap();
     let ForcesProblem { stock, before, operation, finished_part, cell, memory } = &run.problem;
-    assert!(matches!(&stock.solid, Solid::Box(edges) if (edges.x - 0.08).abs() < 1e-12));
-    assert!((stock.pose.translation.y - 0.017).abs() < 1e-12);
+    let (stock, pose) = solid(stock);
+    assert!(matches!(stock, Solid::Box(edges) if (edges.x - 0.08).abs() < 1e-12));
+    assert!((pose.translation.y - 0.017).abs() < 1e-12);
     assert!(before.is_empty() && finished_part.is_none() && cell.is_none());
     assert_eq!((*memory, operation.spindle_speed), (2e9, 100.0));
     assert_eq!((operation.mill.flute_length, operation.mill.corner_radius, operation.mill.taper), (0.03, 0.0, 0.0));
@@ -88,10 +98,6 @@ fn a_program_brings_its_rapid_moves_and_its_spindle_speed() {
 fn stock_may_be_a_cylinder_a_mesh_or_about_the_path() {
     let with = |stock: &str| read(&TEXT.replace("box_mm = [80, 26, 20]\nxyz_mm = [40, 17, -10]", stock)).unwrap();
     let cylinder = with("cylinder_mm = { radius = 30, length = 20 }\nxyz_mm = [0, 0, -10]").problem.stock;
-    let solid = |stock: &Stock| match stock {
-        Stock::Solid { solid, pose } => (solid.clone(), *pose),
-        Stock::Path(_) => panic!("a form"),
-    };
     assert_eq!(solid(&cylinder).0, Solid::Cylinder { radius: 0.03, length: 0.02 });
     let mesh = with("mesh = 'cube.obj'");
     assert!(matches!(solid(&mesh.problem.stock).0, Solid::Mesh(_)) && mesh.inputs.last().unwrap().role == "mesh");
