@@ -267,6 +267,52 @@ pub fn deflection(largest: f64) -> Option<String> {
     })
 }
 
+/// What is usual of a number of a cut: between two numbers, or so many diameters of the cutter.
+struct Usual {
+    key: &'static str,
+    unit: &'static str,
+    range: [f64; 2],
+    is_of_diameter: bool,
+    question: &'static str,
+}
+
+const fn usual(key: &'static str, unit: &'static str, range: [f64; 2], question: &'static str) -> Usual {
+    Usual { key, unit, range, is_of_diameter: false, question }
+}
+
+const fn of_diameter(key: &'static str, most: f64, question: &'static str) -> Usual {
+    Usual { key, unit: "mm", range: [0.0, most], is_of_diameter: true, question }
+}
+
+/// What is usual of a cut.
+const CUTS: &[Usual] = &[
+    usual("tool.cutter_diameter_mm", "mm", [0.5, 500.0], "is it in mm?"),
+    usual("tool.kt_mpa", "MPa", [0.0, 1e4], "is it in MPa, which are N/mm2?"),
+    usual("tool.kr_mpa", "MPa", [0.0, 1e4], "is it in MPa, or kr above the ratio of K_r to K_t?"),
+    usual("tool.kte_n_per_mm", "N/mm", [0.0, 500.0], "is it in N for each mm of edge?"),
+    usual("tool.kre_n_per_mm", "N/mm", [0.0, 500.0], "is it in N for each mm of edge?"),
+    usual("cut.spindle_rpm", "1/min", [100.0, 2e5], "is it in turns per minute?"),
+    of_diameter("feed per tooth", 1.0 / 20.0, "are feed, speed and teeth in their units?"),
+    of_diameter("stock.cell_mm", 1.0 / 6.0, "a cut is a few lines wide"),
+    of_diameter("stock.depth_mm", 2.0, "is it the axial depth of one cut?"),
+    of_diameter("stock.layer_mm", 1.0 / 4.0, "is it what the operation before left?"),
+];
+
+/// Numbers of a cut, by their keys in the units of these, that hardly any cut by a cutter of this diameter (mm) has.
+pub fn cut(diameter: f64, numbers: &[(&str, f64)]) -> Vec<String> {
+    let odd = |(key, value): &(&str, f64)| {
+        let Usual { unit, range, is_of_diameter, question, .. } = CUTS.iter().find(|usual| usual.key == *key)?;
+        let scale = if *is_of_diameter { diameter } else { 1.0 };
+        let [low, high] = range.map(|end| end * scale);
+        let of = if *is_of_diameter { format!(" for a cutter of {} mm", figures(diameter)) } else { String::new() };
+        (!(low..=high).contains(value)).then(|| {
+            let usual = format!("{} to {}", figures(low), figures(high));
+            format!("{key} is {} {unit}, where {usual} {unit} are usual{of}: {question}", figures(*value))
+        })
+    };
+    numbers.iter().filter_map(odd).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -280,6 +326,39 @@ mod tests {
         let task = five_segments();
         assert_eq!((arm(&kr270()), spindle(&mounted())), (Vec::new(), None));
         assert_eq!((path(task.path()), force(2700.0), deflection(2.8e-3)), (None, None, None));
+    }
+
+    #[test]
+    fn numbers_of_a_cut_are_held_against_what_is_usual() {
+        let usual = [
+            ("tool.cutter_diameter_mm", 16.0),
+            ("tool.kt_mpa", 3333.0),
+            ("tool.kr_mpa", 2289.0),
+            ("tool.kte_n_per_mm", 30.0),
+            ("tool.kre_n_per_mm", 0.0),
+            ("cut.spindle_rpm", 9000.0),
+            ("feed per tooth", 0.15),
+            ("stock.cell_mm", 0.7),
+            ("stock.depth_mm", 30.0),
+            ("stock.layer_mm", 0.5),
+        ];
+        assert_eq!(usual.len(), CUTS.len());
+        assert_eq!(cut(16.0, &usual), Vec::<String>::new());
+        for (key, value, said) in [
+            ("tool.cutter_diameter_mm", 0.016, "is 0.0160 mm, where 0.500 to 500 mm are usual"),
+            ("tool.kt_mpa", 8e8, "MPa"),
+            ("tool.kr_mpa", 3.2e4, "MPa"),
+            ("tool.kte_n_per_mm", 20_000.0, "N for each mm of edge?"),
+            ("tool.kre_n_per_mm", 501.0, "N for each mm of edge?"),
+            ("cut.spindle_rpm", 15.0, "is it in turns per minute?"),
+            ("feed per tooth", 0.9, "where 0 to 0.800 mm are usual for a cutter of 16.0 mm"),
+            ("stock.cell_mm", 2.7, "a cut is a few lines wide"),
+            ("stock.depth_mm", 33.0, "the axial depth of one cut?"),
+            ("stock.layer_mm", 4.1, "what the operation before left?"),
+        ] {
+            let notes = cut(16.0, &[(key, value)]);
+            assert!(notes.len() == 1 && notes[0].starts_with(key) && notes[0].contains(said), "{notes:?}");
+        }
     }
 
     #[test]

@@ -77,9 +77,8 @@ const LARGEST: f64 = 4.2;
 const FIRST: f64 = 12.0;
 /// Of the cells of the last one.
 const LAST: f64 = 24.0;
-/// Of those where plunges take more force than all other cuts together.
-const PLUNGES: f64 = 32.0;
-/// Of the finest cells that are taken without being asked for.
+/// Of the finest cells that are taken without being asked for, and of those where plunges take more force than all
+/// other cuts.
 const FINEST: f64 = 100.0;
 /// Of the width of a cut by a round corner.
 const ROUND: f64 = 10.0;
@@ -194,7 +193,8 @@ impl Run {
     }
 
     /// The distance of lines with which forces are good: a share of the diameter, and no more than the depth of the
-    /// cut along legs with a wall, or, where a round corner cuts all of it, than a share of the width that it cuts at that depth. m
+    /// cut along legs with a wall, or, where a round corner cuts all of it, than a share of the width that it cuts at
+    /// that depth. m
     fn cell_for(&self, operation: &Operation) -> f64 {
         let force = |sums: &Sums| (sums.chip_force + sums.edge_force).norm();
         let cuts = |has_wall: bool| {
@@ -219,7 +219,7 @@ impl Run {
         } else {
             f64::INFINITY
         };
-        let last = if of_plunges > of_walls { PLUNGES } else { LAST };
+        let last = if of_plunges > of_walls { FINEST } else { LAST };
         let cell = (diameter / last).min(depth).min(width);
         cell.max(diameter / FINEST)
     }

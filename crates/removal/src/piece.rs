@@ -66,8 +66,8 @@ const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 const TINY: f64 = 1e-12;
 
 impl Piece {
-    /// The round corner at the tip of a cutter: a disc of a radius about the axis, grown by that of the corner (m), to a
-    /// side at an angle to the axis (rad). A ball has a disc without a radius.
+    /// The round corner at the tip of a cutter: a disc of a radius about the axis, grown by that of the corner (m), to
+    /// a side at an angle to the axis (rad). A ball has a disc without a radius.
     pub fn corner(disc: f64, corner: f64, taper: f64) -> Self {
         Self {
             alpha: 0.0,

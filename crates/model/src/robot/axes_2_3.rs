@@ -38,7 +38,7 @@ impl Robot {
                 }
             }
             if sum.min >= sum.max {
-                let reason = format!("is not below sum_max = {} deg", sum.max.to_degrees());
+                let reason = format!("is not below sum_max = {:.4} deg", sum.max.to_degrees());
                 return Err(RobotError::Sum { field: "sum_min", reason });
             }
             for joint in [1, 2] {

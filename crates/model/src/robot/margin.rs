@@ -28,7 +28,7 @@ impl Robot {
             Some(Axes23 { linkage, sum }) => {
                 let sum = Range { min: sum.min + margin, max: sum.max - margin };
                 if sum.min >= sum.max {
-                    let reason = format!("is not below sum_max = {} deg", sum.max.to_degrees());
+                    let reason = format!("is not below sum_max = {:.4} deg", sum.max.to_degrees());
                     return Err(RobotError::Sum { field: "sum_min", reason });
                 }
                 Some(Axes23 { linkage, sum })

@@ -133,8 +133,8 @@ impl Corner {
         if rho <= self.disc { up } else { up + across * (1.0 - self.disc / rho) }
     }
 
-    /// The interval of a line that is inside at any time of the move; ends that are within a known one may be left where
-    /// they are met at the latest.
+    /// The interval of a line that is inside at any time of the move; ends that are within a known one may be left
+    /// where they are met at the latest.
     pub fn interval(&self, line: &Line<'_>, known: [f64; 2]) -> Option<[f64; 2]> {
         let Line { axis, d, u, .. } = *line;
         let (hd, hu) = (d.dot(axis), u.dot(axis));

@@ -20,6 +20,7 @@ use stead_format::surroundings::{PartTable, PlacedSolid, StockForm, StockTable};
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
 use stead_model::cutting::{Coefficients, Cutter, Rotation};
+use stead_model::plausibility;
 use stead_model::task::ToolPath;
 use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, PathStock, Stock};
 use stead_runs::forces::{ForcesPlaces, ForcesRun};
@@ -156,6 +157,7 @@ impl RemovalTables<'_> {
             }
             None => None,
         };
+        notes.extend(unusual(&mill, &path, spindle_speed, &stock, self.stock.cell()));
         let problem = ForcesProblem {
             stock,
             before,
@@ -171,6 +173,30 @@ impl RemovalTables<'_> {
         };
         Ok(ForcesRun { problem, inputs, notes, places })
     }
+}
+
+/// Numbers of a cut that look like a wrong unit.
+fn unusual(mill: &EndMill, path: &ToolPath, spindle_speed: f64, stock: &Stock, cell: Option<f64>) -> Vec<String> {
+    let diameter = mill.cutter.diameter() * 1e3;
+    let k = mill.cutter.coefficients();
+    let fastest = (0..path.points().len()).filter_map(|point| path.feed(point)).fold(0.0, f64::max);
+    let per_tooth = fastest / spindle_speed / mill.cutter.teeth().len() as f64;
+    let of_path = match stock {
+        Stock::Path(of_path) => *of_path,
+        Stock::Solid { .. } => PathStock::default(),
+    };
+    let mut numbers = vec![
+        ("tool.cutter_diameter_mm", diameter),
+        ("tool.kt_mpa", k.tangential / 1e6),
+        ("tool.kr_mpa", k.radial / 1e6),
+        ("tool.kte_n_per_mm", k.tangential_edge / 1e3),
+        ("tool.kre_n_per_mm", k.radial_edge / 1e3),
+        ("cut.spindle_rpm", spindle_speed * 60.0),
+        ("feed per tooth", per_tooth * 1e3),
+    ];
+    let lengths = [("stock.cell_mm", cell), ("stock.depth_mm", of_path.depth), ("stock.layer_mm", of_path.layer)];
+    numbers.extend(lengths.into_iter().filter_map(|(key, length)| Some((key, length? * 1e3))));
+    plausibility::cut(diameter, &numbers)
 }
 
 /// Millimetres without the digits that the unit has brought in.

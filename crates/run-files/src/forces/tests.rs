@@ -133,6 +133,22 @@ fn stock_may_be_what_the_path_passes_over() {
 }
 
 #[test]
+fn numbers_of_another_unit_are_noted() {
+    let notes = |from: &str, to: &str| read(&TEXT.replace(from, to)).unwrap().notes;
+    assert!(!notes("", "").iter().any(|note| note.contains("are usual")));
+    for (from, to, said) in [
+        ("spindle_rpm = 6000", "spindle_rpm = 60", "cut.spindle_rpm is 60.0 1/min"),
+        ("kte_n_per_mm = 20", "kte_n_per_mm = 20000", "tool.kte_n_per_mm is 20000 N/mm"),
+        ("kr = 0.4", "kr = 40", "tool.kr_mpa is 32000 MPa"),
+        ("box_mm", "cell_mm = 3\nbox_mm", "stock.cell_mm is 3.00 mm"),
+        ("box_mm = [80, 26, 20]\nxyz_mm = [40, 17, -10]", "depth_mm = 40", "stock.depth_mm is 40.0 mm"),
+    ] {
+        let notes = notes(from, to);
+        assert!(notes.iter().any(|note| note.starts_with(said)), "{to}: {notes:?}");
+    }
+}
+
+#[test]
 fn published_coefficients_take_the_place_of_those_of_the_tool() {
     let bare = TEXT.replace("kt_mpa = 800\nkr = 0.4\nkte_n_per_mm = 20\nkre_n_per_mm = 20\n", "");
     let run = read(&format!("material = 'aluminium-7075'\n{bare}")).unwrap();
