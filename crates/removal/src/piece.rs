@@ -139,7 +139,7 @@ impl Piece {
     /// The normal out of its side at a point y, not of unit length.
     pub fn normal(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
         if let Some(corner) = self.grown() {
-            return corner.from_disc(y, axis);
+            return corner.way_to(y, axis);
         }
         y - axis * (self.alpha * y.dot(axis) + self.beta)
     }

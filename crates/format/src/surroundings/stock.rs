@@ -18,8 +18,8 @@ use stead_disk::input::{InputError, InputFile};
 use stead_model::robot::Pose;
 use stead_model::task::ToolPath;
 
-/// Material before it is cut, in the workpiece frame: exactly one of `box_mm`, `cylinder_mm`, `mesh`, `allowance_mm`, or
-/// what the path itself passes over: `depth_mm`, `layer_mm` or both.
+/// Material before it is cut, in the workpiece frame: exactly one of `box_mm`, `cylinder_mm`, `mesh`, `allowance_mm`,
+/// or what the path itself passes over: `depth_mm`, `layer_mm` or both.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StockTable {

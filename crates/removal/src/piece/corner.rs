@@ -125,7 +125,7 @@ impl Products {
 
 impl Corner {
     /// From the nearest point of the disc to a point. m
-    pub fn from_disc(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
+    pub fn way_to(&self, y: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
         let h = y.dot(axis);
         let across = y - axis * h;
         let rho = across.norm();

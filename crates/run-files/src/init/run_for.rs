@@ -75,8 +75,8 @@ struct Cutter {
 }
 
 impl Known {
-    /// Half the diameter of the cutter and its corner radius (mm) where the forces are to be those of what it removes of
-    /// a stock.
+    /// Half the diameter of the cutter and its corner radius (mm) where the forces are to be those of what it removes
+    /// of a stock.
     fn removes(&self) -> Option<(f64, f64)> {
         let cutter = self.cutter.as_ref().filter(|cutter| !self.has_forces && !cutter.has_engagement)?;
         cutter.sizes
