@@ -56,7 +56,6 @@ pub const FACTORS: &[Factor] = &[
     factor("unscored", &["none", "plunge", "turn in place"]),
     factor("feeds", &["run", "task"]),
     factor("load", &["task", "moments", "forces", "forces by segment", "conventional", "climb", "stock"]),
-    factor("stock", &["allowance", "depth", "layer"]),
     factor("scored", &["wall", "axis", "total", "surface", "weights"]),
     factor("aggregate", &["mean", "rms", "max"]),
     factor("force errors", &["0", "0.1"]),

@@ -7,6 +7,7 @@ mod yielding;
 
 use crate::cover::{Choice, Random, value_of};
 use crate::values::{Answer, number, placed};
+use cutter::STOCK;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -124,7 +125,7 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
         let [file, task] = ["forces.toml", crate::path::WITH_STOCK].map(|name| folder.join(name));
         // The feed of the run: 0.1 mm a tooth of three at 8000 1/min are 40 mm/s.
         let feed = if of("feeds") == "run" { "feed_per_tooth_mm = 0.1\n" } else { "" };
-        let text = format!("path = \"task.csv\"\n{}{feed}{}", writer.stock(), writer.tool());
+        let text = format!("path = \"task.csv\"\n{STOCK}{feed}{}", writer.tool());
         std::fs::write(&file, text).map_err(told)?;
         Some([file, task])
     } else {
@@ -469,7 +470,7 @@ impl Writer<'_> {
                 "\n[forces]\nfeed_n = -150.0\nnormal_n = -90.0\naxis_n = 40.0\n\n\
                  [[forces.segment]]\nnumber = 1\nfeed_n = 60.0\nnormal_n = 200.0\naxis_n = 10.0\n",
             ),
-            "stock" => text.push_str(&self.stock()),
+            "stock" => text.push_str(STOCK),
             load @ ("conventional" | "climb") => {
                 let _ = writeln!(
                     text,

@@ -2,17 +2,11 @@
 
 use super::Writer;
 
-impl Writer<'_> {
-    /// The stock about the path, or from it, and the speed of the spindle.
-    pub(super) fn stock(&self) -> String {
-        let form = match self.of("stock") {
-            "depth" => "depth_mm = 3.0",
-            "layer" => "layer_mm = 0.8\ndepth_mm = 2.5",
-            _ => "allowance_mm = [6.0, 6.0, 3.0]",
-        };
-        format!("\n[stock]\n{form}\ncell_mm = 0.7\n\n[cut]\nspindle_rpm = 8000.0\n")
-    }
+/// The stock about the path and the speed of the spindle.
+pub(super) const STOCK: &str =
+    "\n[stock]\nallowance_mm = [6.0, 6.0, 3.0]\ncell_mm = 0.7\n\n[cut]\nspindle_rpm = 8000.0\n";
 
+impl Writer<'_> {
     /// The table of the cutter.
     pub(super) fn tool(&self) -> String {
         let mut text = String::new();
