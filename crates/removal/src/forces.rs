@@ -72,7 +72,7 @@ fn fitting(fits: Option<f64>) -> String {
 }
 
 /// Coordinates of stock are nanometres in 32 bits. m
-const LARGEST: f64 = 4.2;
+pub(crate) const LARGEST: f64 = 4.2;
 /// Of the cells of the first run, over the diameter of the cutter.
 const FIRST: f64 = 12.0;
 /// Of the cells of the last one.
@@ -97,15 +97,10 @@ pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForce
     if operation.path.feed(0).is_none() {
         return Err(ForcesError::NoFeeds(operation.name.clone()));
     }
-    let diameter = operation.mill.cutter.diameter();
-    let extent = Body::of_stock(problem, diameter)?.extent;
-    let length = (extent[1] - extent[0]).max();
-    if length > LARGEST {
-        return Err(ForcesError::Large { length });
-    }
     if let Some(cell) = problem.cell {
-        memory::check(problem, &extent, cell)?;
+        memory::check(problem, &Body::of_stock(problem, cell)?.extent, cell)?;
     }
+    let diameter = operation.mill.cutter.diameter();
     let mut first = None;
     let cell = match problem.cell {
         Some(cell) => cell,

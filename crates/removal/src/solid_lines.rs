@@ -1,6 +1,6 @@
 //! Where lines along the axes run inside a body: the stock before it is cut, and the finished part.
 
-use crate::forces::ForcesError;
+use crate::forces::{ForcesError, LARGEST};
 use crate::lattice::{self, TILE, TileKey, others, place};
 use crate::operation::{ForcesProblem, Stock};
 use crate::swept::Swept;
@@ -48,13 +48,21 @@ impl Body {
     /// The stock of a problem.
     ///
     /// # Errors
-    /// [`ForcesError::Form`] and [`ForcesError::NoWall`].
+    /// [`ForcesError::Form`], [`ForcesError::NoWall`] and [`ForcesError::Large`].
     pub fn of_stock(problem: &ForcesProblem, cell: f64) -> Result<Self, ForcesError> {
+        let small = |extent: [Vector3<f64>; 2]| {
+            let length = (extent[1] - extent[0]).max();
+            if length > LARGEST { Err(ForcesError::Large { length }) } else { Ok(extent) }
+        };
         match &problem.stock {
-            Stock::Solid { solid, pose } => Self::new(solid, pose, cell).ok_or(ForcesError::Form),
+            Stock::Solid { solid, pose } => {
+                // Before the triangles of a mesh in another unit are put into tiles.
+                small(solid.extent_at(pose))?;
+                Self::new(solid, pose, cell).ok_or(ForcesError::Form)
+            }
             Stock::Path(stock) => {
                 let swept = Swept::new(&problem.operation, stock, cell).ok_or(ForcesError::NoWall)?;
-                Ok(Self { extent: swept.extent, form: Form::Swept(swept) })
+                Ok(Self { extent: small(swept.extent)?, form: Form::Swept(swept) })
             }
         }
     }

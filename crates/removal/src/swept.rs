@@ -4,7 +4,7 @@ use crate::cutting::Tool;
 use crate::job::{Reach, Size};
 use crate::lattice::{TILE, TileKey, TileLines, others, tiles};
 use crate::moves::{Move, MoveKind, PathMoves, has_wall};
-use crate::operation::{EndMill, Operation, PathStock};
+use crate::operation::{Operation, PathStock};
 use crate::piece::Piece;
 use crate::profile::Profile;
 use crate::solid_lines::Inside;
@@ -52,10 +52,8 @@ impl Swept {
         let Reach(whole) = reaches.reduce(|a, b| a.with(&b))?;
         let extent = [0, 1].map(|end| Vector3::from(whole.map(|side| side[end])));
         let taken = stock.layer.map(|layer| {
-            let Profile { radius, corner, .. } = profile.smaller(layer);
-            let mill = EndMill { corner_radius: corner, ..operation.mill.clone() };
             let height = (extent[1] - extent[0]).norm();
-            let pieces = Tool::of_profile(&Profile { radius, corner, ..profile }, &mill, height).pieces;
+            let pieces = Tool::of_profile(&profile.smaller(layer), &operation.mill, height).pieces;
             let raised = feeds().map(|one| Move { middle: one.middle + one.axis * layer, ..*one }).collect();
             Arc::new(Sweep::new(pieces, raised, &extent, cell))
         });

@@ -2,7 +2,7 @@
 
 use super::run_for::{relative, tool_beside};
 use super::stock::of_path;
-use crate::forces::{ReadingTable, path_of};
+use crate::forces::{ReadingTable, path_of, rounded_mm};
 use std::path::Path;
 use stead_disk::files::{
     new::{Existing, write_new},
@@ -29,12 +29,11 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
     let known = stated.or_else(|error| read(&in_mm).map_err(|_| error))?;
     let beside = tool_beside(path)?;
     let of_program = known.tool.as_ref();
-    let mm = |metres: f64| (metres * 1e9).round() / 1e6;
-    let diameter = of_program.and_then(|tool| tool.diameter).map(mm);
+    let diameter = of_program.and_then(|tool| tool.diameter).map(rounded_mm);
     let diameter = diameter.or(beside.as_ref().map(|tool| tool.cutter_diameter_mm.written()));
-    let corner = of_program.and_then(|tool| tool.corner_radius).map(mm);
+    let corner = of_program.and_then(|tool| tool.corner_radius).map(rounded_mm);
     let corner = corner.or(beside.as_ref().and_then(|tool| tool.corner_radius_mm).map(|corner| corner.written()));
-    let length = of_program.and_then(|tool| tool.length).map(mm);
+    let length = of_program.and_then(|tool| tool.length).map(rounded_mm);
     let about = |is_known: bool| if is_known { "as the program has it" } else { "guess" };
     let folder = out.parent().unwrap_or(Path::new(""));
     let quoted = |file: &Path| toml::Value::from(relative(folder, file)).to_string();
