@@ -1,7 +1,7 @@
 //! Arcs as points that are nowhere farther from the arc than the chord error.
 
 use super::Resampling;
-use super::refusals::NO_AXIS_OF_ARC;
+use super::refusals::{Measured, misses_end};
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -16,43 +16,13 @@ pub(super) struct Arc {
     pub start: Vector3<f64>,
     pub end: Vector3<f64>,
     pub centre: Vector3<f64>,
-    /// Its direction; of any length but zero.
-    pub axis: Vector3<f64>,
+    pub axis: Unit<Vector3<f64>>,
     /// Full turns beside the part of a turn from start to end.
     pub more_turns: u32,
 }
 
-/// Why there is no such arc.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ArcError {
-    /// The axis has no length.
-    Axis,
-    /// The radius at the start, which is that of a point, and at the end. m
-    Radius(f64, f64),
-}
-
-impl ArcError {
-    /// What is wrong, and what is allowed.
-    pub fn words(self) -> (String, &'static str) {
-        let Self::Radius(from, to) = self else { return (NO_AXIS_OF_ARC.0.to_owned(), NO_AXIS_OF_ARC.1) };
-        let [from, to] = [from, to].map(millimetres);
-        let problem = format!("the arc misses its end: radius {from} at its start, {to} there");
-        (problem, "the same radius, above 0, within 0.05 mm")
-    }
-}
-
-/// A length (m) for messages.
-pub(super) fn millimetres(length: f64) -> String {
-    format!("{:.4} mm", length * 1e3)
-}
-
 impl Arc {
-    /// The radius at the start. m
-    pub fn radius(&self) -> Option<f64> {
-        Unit::try_new(self.axis, 1e-9).map(|_| self.distance(self.start))
-    }
-
-    /// How far a point is from its axis, which has a length. m
+    /// How far a point is from its axis. m
     pub fn distance(&self, point: Vector3<f64>) -> f64 {
         self.arm(point).norm()
     }
@@ -60,8 +30,7 @@ impl Arc {
     /// The part of a turn from start to end, a whole one where they are one above the other. rad
     pub fn turn(&self) -> f64 {
         let [from, to] = [self.start, self.end].map(|point| self.arm(point));
-        let axis = self.axis.normalize();
-        let turn = libm::atan2(axis.dot(&from.cross(&to)), from.dot(&to)).rem_euclid(TAU);
+        let turn = libm::atan2(self.axis.dot(&from.cross(&to)), from.dot(&to)).rem_euclid(TAU);
         if turn < FULL || TAU - turn < FULL { TAU } else { turn }
     }
 
@@ -72,24 +41,21 @@ impl Arc {
 
     /// From the axis to a point.
     fn arm(&self, point: Vector3<f64>) -> Vector3<f64> {
-        let (axis, arm) = (self.axis.normalize(), point - self.centre);
-        arm - axis * arm.dot(&axis)
+        let arm = point - self.centre;
+        arm - self.axis.scale(arm.dot(&self.axis))
     }
 
     /// How far the end is from the plane of the start, along the axis. m
     pub fn rise(&self) -> f64 {
-        Unit::try_new(self.axis, 1e-9).map_or(0.0, |axis| (self.end - self.start).dot(&axis))
+        (self.end - self.start).dot(&self.axis)
     }
 
     /// The points after the start up to the end, which is the last, so many that neither the chord error nor the step
-    /// is passed.
-    pub fn points(&self, resampling: &Resampling) -> Result<Vec<Vector3<f64>>, ArcError> {
-        let axis = Unit::try_new(self.axis, 1e-9).ok_or(ArcError::Axis)?;
+    /// is passed; or what is wrong, and what is allowed, where the end is not as far from the axis as the start.
+    pub fn points(&self, resampling: &Resampling) -> Result<Vec<Vector3<f64>>, Measured> {
         let (from, to) = (self.arm(self.start), self.arm(self.end));
         let radius = from.norm();
-        if radius < 1e-9 || (radius - to.norm()).abs() > MISSED {
-            return Err(ArcError::Radius(radius, to.norm()));
-        }
+        ensure!(radius >= 1e-9 && (radius - to.norm()).abs() <= MISSED, misses_end([radius, to.norm()]));
         let turn = self.turn() + TAU * f64::from(self.more_turns);
         let part = 2.0 * libm::acos((1.0 - resampling.chord / radius).clamp(-1.0, 1.0));
         let part = part.min(resampling.step / radius).clamp(1e-4, PI / 4.0);
@@ -99,7 +65,7 @@ impl Arc {
         let mut points: Vec<Vector3<f64>> = (1..count)
             .map(|k| {
                 let share = k as f64 / count as f64;
-                let arm = Rotation3::from_axis_angle(&axis, turn * share) * from * (1.0 + growth * share);
+                let arm = Rotation3::from_axis_angle(&self.axis, turn * share) * from * (1.0 + growth * share);
                 self.start - from + arm + rise * share
             })
             .collect();
@@ -116,6 +82,7 @@ mod tests {
     const FINE: Resampling = Resampling { chord: 1e-5, step: 0.1 };
 
     fn arc(end: Vector3<f64>, axis: Vector3<f64>) -> Arc {
+        let axis = Unit::new_normalize(axis);
         Arc { start: vector![0.01, 0.0, 0.0], end, centre: Vector3::zeros(), axis, more_turns: 0 }
     }
 
@@ -140,7 +107,7 @@ mod tests {
         let helix = arc(vector![0.0, 0.01, 0.004], Vector3::z()).points(&FINE).unwrap();
         let middle = helix[helix.len() / 2 - 1];
         assert!((middle.z - 0.002).abs() < 3e-4 && (middle.xy().norm() - 0.01).abs() < 1e-12);
-        assert_eq!(arc(Vector3::zeros(), Vector3::zeros()).points(&FINE), Err(ArcError::Axis));
-        assert_eq!(arc(vector![0.0, 0.02, 0.0], Vector3::z()).points(&FINE), Err(ArcError::Radius(0.01, 0.02)));
+        let (problem, _) = arc(vector![0.0, 0.02, 0.0], Vector3::z()).points(&FINE).unwrap_err();
+        assert_eq!(problem, "the arc misses its end: radius 10.0000 mm at its start, 20.0000 mm there");
     }
 }

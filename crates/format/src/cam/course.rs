@@ -1,8 +1,9 @@
 //! Where the tool is and how it goes on: what the readers of CLDATA and of G-code have in common.
 
-use super::arc::{Arc, ArcError};
+use super::arc::Arc;
+use super::refusals::Measured;
 use super::{Move, Program, Resampling};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 /// Moves that meet at more than this turn back. cos
 const TURNED_BACK: f64 = -0.9;
@@ -10,17 +11,11 @@ const TURNED_BACK: f64 = -0.9;
 pub(super) const NO_LENGTH: f64 = 1e-6;
 
 /// A frame of positions in the workpiece frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Frame {
-    pub rotation: Matrix3<f64>,
+    pub rotation: Rotation3<f64>,
     /// m
     pub origin: Vector3<f64>,
-}
-
-impl Default for Frame {
-    fn default() -> Self {
-        Self { rotation: Matrix3::identity(), origin: Vector3::zeros() }
-    }
 }
 
 impl Frame {
@@ -30,7 +25,8 @@ impl Frame {
     }
 
     pub fn is_near(&self, other: &Self) -> bool {
-        (self.rotation - other.rotation).abs().max() < 1e-9 && (self.origin - other.origin).norm() < 1e-9
+        let turn = self.rotation.matrix() - other.rotation.matrix();
+        turn.abs().max() < 1e-9 && (self.origin - other.origin).norm() < 1e-9
     }
 }
 
@@ -102,14 +98,8 @@ impl Course {
     }
 
     /// Goes along an arc; where it is told by its axis alone, it is turned if it would turn back at both ends.
-    pub fn go_round(
-        &mut self,
-        arc: Arc,
-        end: Move,
-        is_certain: bool,
-        line: usize,
-    ) -> Result<(), (String, &'static str)> {
-        let points = arc.points(&self.resampling).map_err(ArcError::words)?;
+    pub fn go_round(&mut self, arc: Arc, end: Move, is_certain: bool, line: usize) -> Result<(), Measured> {
+        let points = arc.points(&self.resampling)?;
         let [out, back] = arc.tangents();
         self.meet(Some(out));
         let is_against = self.arrived.is_some_and(|way| way.dot(&out) < TURNED_BACK);
@@ -126,7 +116,7 @@ impl Course {
         self.program.moves.extend(points.into_iter().zip(1..).map(|(position, place): (_, u32)| {
             let share = f64::from(place) / count;
             let axis = (from * (1.0 - share) + end.axis * share).try_normalize(NO_LENGTH).unwrap_or(end.axis);
-            Move { position, axis, is_arc: true, ..end }
+            Move { position, axis, is_fixed: true, ..end }
         }));
     }
 

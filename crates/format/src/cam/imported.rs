@@ -1,7 +1,7 @@
 //! An imported tool path: its points as a task file, and what was found and changed.
 
 use super::refusals::*;
-use super::segments::{Counts, Point, Resampling, Segments, expected_points, segments};
+use super::segments::{Counts, Point, Resampling, Segments, angle, expected_points, segments};
 use super::tool::{self, ProgramTool, Use};
 use super::{CamFormat, Found, Move, Program, rounded};
 use crate::task::parse_csv;
@@ -19,9 +19,7 @@ use stead_model::task::ToolPath;
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportedPath {
     format: CamFormat,
-    segments: Vec<Vec<Point>>,
-    rapids: Vec<Vec<Move>>,
-    counts: Counts,
+    cuts: Segments,
     resampling: Resampling,
     has_feeds: bool,
     tools: Vec<String>,
@@ -50,30 +48,22 @@ impl ImportedPath {
         let has_feeds = cutting().any(|one| one.feed.is_some());
         let fail = |(problem, allowed): (String, &str)| InputError::new(file, problem).allowed(allowed);
         let fail_at = |one: &Move, (problem, allowed): Refusal| fail((problem.to_owned(), allowed)).at_line(one.line);
-        if let (true, Some(without)) = (has_feeds, cutting().find(|one| one.feed.is_none())) {
+        if let Some(without) = cutting().find(|one| has_feeds && one.feed.is_none()) {
             return Err(fail_at(without, FEED_TOO_LATE));
         }
-        let is_unusual = |one: &&Move| one.feed.is_some_and(|feed| !FEEDS.contains(&feed));
-        if let Some(one) = cutting().find(is_unusual) {
-            let feed = one.feed.unwrap_or_default() * 1e3;
-            return Err(fail_at(one, UNUSUAL_FEED).found(format!("{feed:e} mm/s")));
+        for one in cutting() {
+            let unusual = one.feed.filter(|feed| !FEEDS.contains(feed)).map(|feed| format!("{:e} mm/s", feed * 1e3));
+            ensure!(unusual.is_none(), fail_at(one, UNUSUAL_FEED).found_if(unusual));
         }
         let expected = expected_points(&program, resampling);
-        ensure!(expected <= LARGEST_COUNT, fail((format!("{expected:.0} points within --step-mm"), TOO_MANY)));
-        let Segments { segments, rapids, counts } = segments(&program, resampling);
-        let problem = || format!("{} cutting moves, none of which can be scored", counts.cutting);
-        ensure!(segments.iter().flatten().any(|point| point.is_scored), fail((problem(), SCORED)));
-        let mut notes = Vec::new();
-        let mut note = |count: usize, text: &str| {
-            if count > 0 {
-                notes.push(format!("{count} {text}"));
-            }
-        };
-        note(counts.doubled, "moves end where they start: left out");
-        note(counts.left_out, "points left out, for which straight lines stand within the chord error");
-        note(counts.added, "points added, on lines longer than the step or turns of the tool axis by more than 5 deg");
-        note(counts.plunging, "points of plunges along the tool axis, where there is no wall: followed, not scored");
-        note(counts.turning, "points of turns of the tool in place, where there is no wall: followed, not scored");
+        ensure!(expected <= LARGEST_COUNT, fail(too_many(expected)));
+        let cuts = segments(&program, resampling);
+        let points = || cuts.segments.iter().flatten();
+        ensure!(points().any(|point| point.is_scored), fail(none_scored(cuts.counts.cutting)));
+        let Counts { doubled, left_out, added, plunging, turning, .. } = cuts.counts;
+        let counted = [doubled, left_out, added, plunging, turning].into_iter().zip(COUNTED);
+        let counted = counted.filter(|(count, _)| *count > 0).map(|(count, text)| format!("{count} {text}"));
+        let mut notes: Vec<String> = counted.collect();
         notes.extend(listed(&program.notes));
         if !program.holes_left_out.is_empty() {
             let place = |(place, line): &(Vector3<f64>, usize)| {
@@ -86,15 +76,13 @@ impl ImportedPath {
         if !program.passed_over.is_empty() {
             notes.push(format!("words passed over: {}", listed(&program.passed_over).join(", ")));
         }
-        let points = || segments.iter().flatten();
         notes.extend(plausibility::tool_axes(points().map(|point| &point.axis), "in the frame of the part"));
         notes.extend(plausibility::feed(points().filter_map(|point| point.feed).fold(0.0, f64::max)));
         if !has_feeds {
             notes.push("no feed in the program: no column feed_mm_per_s".to_owned());
         }
         let uses = program.uses();
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        let cutter = tool::text(&uses, &name);
+        let cutter = tool::text(&uses, &file.file_name().unwrap_or_default().to_string_lossy());
         notes.extend(uses.iter().filter(|one| one.tool.is_other_shape).map(|one| {
             let description = shorten(&one.tool.description);
             format!("{description}: its shape is not that of a run file, of which the diameter alone is taken")
@@ -109,7 +97,7 @@ impl ImportedPath {
             ));
         }
         let (tools, format) = (program.tools, program.format);
-        Ok(Self { format, segments, rapids, counts, resampling, has_feeds, tools, cutter, tool, notes })
+        Ok(Self { format, cuts, resampling, has_feeds, tools, cutter, tool, notes })
     }
 
     /// The task file, checked as it will be read; `file` is its name in messages.
@@ -119,7 +107,7 @@ impl ImportedPath {
     pub fn csv(&self, file: &Path) -> Result<String, InputError> {
         let mut text = String::from("segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z");
         text.push_str(if self.has_feeds { ",feed_mm_per_s,scored\n" } else { ",scored\n" });
-        for (number, segment) in self.segments.iter().enumerate() {
+        for (number, segment) in self.cuts.segments.iter().enumerate() {
             for point in segment {
                 // Writing to a string cannot fail.
                 let _ = write!(text, "{}", number + 1);
@@ -172,7 +160,7 @@ impl ImportedPath {
     /// The rapid moves before each segment and after the last: the places in the air between the end of one and the
     /// start of the next.
     pub fn rapids(&self) -> &[Vec<Move>] {
-        &self.rapids
+        &self.cuts.rapids
     }
 
     /// What the program says of its tool: of several that with the longest way.
@@ -180,35 +168,20 @@ impl ImportedPath {
         self.tool.as_ref()
     }
 
-    /// What the program is written in.
-    pub fn format(&self) -> CamFormat {
-        self.format
-    }
-
     /// Number of segments.
     pub fn segment_count(&self) -> usize {
-        self.segments.len()
+        self.cuts.segments.len()
     }
 
     /// Number of points, and of those that are scored.
     pub fn point_counts(&self) -> [usize; 2] {
-        let points = || self.segments.iter().flatten();
+        let points = || self.cuts.segments.iter().flatten();
         [points().count(), points().filter(|point| point.is_scored).count()]
     }
 
     /// What was changed and why, in sentences.
     pub fn notes(&self) -> &[String] {
         &self.notes
-    }
-
-    fn length(&self) -> f64 {
-        let steps = self.segments.iter().flat_map(|segment| segment.windows(2));
-        steps.map(|pair| (pair[1].position - pair[0].position).norm()).sum()
-    }
-
-    fn range(&self, of: impl Fn(&Point) -> Option<f64>) -> Option<[f64; 2]> {
-        let values = self.segments.iter().flatten().filter_map(of);
-        values.map(|value| [value; 2]).reduce(|[low, high], [value, _]| [low.min(value), high.max(value)])
     }
 }
 
@@ -233,30 +206,37 @@ fn push_number(text: &mut String, value: f64, digits: usize) {
 impl fmt::Display for ImportedPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [points, scored] = self.point_counts();
-        let Counts { cutting, rapid, .. } = self.counts;
-        let range = |of: &dyn Fn(&Point) -> Option<f64>, unit: &str| match self.range(of) {
-            Some([low, high]) if high - low < 5e-4 => format!("{low:.3} {unit}"),
-            Some([low, high]) => format!("{low:.3} to {high:.3} {unit}"),
-            None => "none".to_owned(),
+        let Segments { segments, counts: Counts { cutting, rapid, .. }, .. } = &self.cuts;
+        let range = |of: &dyn Fn(&Point) -> Option<f64>, unit: &str| {
+            let values = segments.iter().flatten().filter_map(of).map(|value| [value; 2]);
+            match values.reduce(|[low, high], [value, _]| [low.min(value), high.max(value)]) {
+                Some([low, high]) if high - low < 5e-4 => format!("{low:.3} {unit}"),
+                Some([low, high]) => format!("{low:.3} to {high:.3} {unit}"),
+                None => "none".to_owned(),
+            }
         };
-        writeln!(f, "format    {}", self.format.word())?;
-        writeln!(f, "read      {cutting} cutting and {rapid} rapid moves")?;
-        writeln!(f, "segments  {}", self.segments.len())?;
-        writeln!(f, "points    {points}, of which {scored} are scored")?;
-        writeln!(f, "length    {:.3} mm", self.length() * 1e3)?;
-        for (name, k) in [("x", 0), ("y", 1), ("z", 2)] {
-            writeln!(f, "{name:<9} {}", range(&|point| Some(point.position[k] * 1e3), "mm"))?;
-        }
-        let tilt = |point: &Point| {
-            let axis = point.axis;
-            Some(libm::atan2(axis.cross(&Vector3::z()).norm(), axis.z).to_degrees())
-        };
-        writeln!(f, "tilt      {}", range(&tilt, "deg from the z axis of the workpiece"))?;
-        writeln!(f, "feed      {}", range(&|point| point.feed.map(|feed| feed * 1e3), "mm/s"))?;
-        let Resampling { chord, step } = self.resampling;
-        writeln!(f, "chord     {} mm, step {} mm", rounded(chord * 1e3), rounded(step * 1e3))?;
-        if !self.tools.is_empty() {
-            writeln!(f, "tools     {}", self.tools.join("; "))?;
+        let along = |axis: usize| range(&|point| Some(point.position[axis] * 1e3), "mm");
+        let tilt = |point: &Point| Some(angle(&point.axis, &Vector3::z()).to_degrees());
+        let steps = segments.iter().flat_map(|segment| segment.windows(2));
+        let length: f64 = steps.map(|pair| (pair[1].position - pair[0].position).norm()).sum();
+        let [chord, step] = [self.resampling.chord, self.resampling.step].map(|length| rounded(length * 1e3));
+        for (name, text) in [
+            ("format", self.format.word().to_owned()),
+            ("read", format!("{cutting} cutting and {rapid} rapid moves")),
+            ("segments", segments.len().to_string()),
+            ("points", format!("{points}, of which {scored} are scored")),
+            ("length", format!("{:.3} mm", length * 1e3)),
+            ("x", along(0)),
+            ("y", along(1)),
+            ("z", along(2)),
+            ("tilt", range(&tilt, "deg from the z axis of the workpiece")),
+            ("feed", range(&|point| point.feed.map(|feed| feed * 1e3), "mm/s")),
+            ("chord", format!("{chord} mm, step {step} mm")),
+            ("tools", self.tools.join("; ")),
+        ] {
+            if !text.is_empty() {
+                writeln!(f, "{name:<9} {text}")?;
+            }
         }
         self.notes.iter().try_for_each(|note| writeln!(f, "- {note}"))
     }

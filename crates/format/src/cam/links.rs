@@ -27,13 +27,10 @@ pub(super) fn take_out(program: &mut Program) {
     while start < moves.len() {
         let axis = moves[start].axis;
         let is_level = |at: usize| {
-            let (before, here) = (&moves[at - 1], &moves[at]);
-            let is_along = |one: &Move| (one.axis - axis).norm() < SAME_AXIS;
-            !here.is_rapid
-                && is_along(here)
-                && is_along(before)
+            !moves[at].is_rapid
+                && moves[at - 1..=at].iter().all(|one| (one.axis - axis).norm() < SAME_AXIS)
                 && along(moves, at).is_some_and(|part| part.abs() < LEVEL)
-                && here.position.dot(&axis) > levels[at] - SAME
+                && moves[at].position.dot(&axis) > levels[at] - SAME
         };
         let end = (start..moves.len()).find(|at| !is_level(*at)).unwrap_or(moves.len());
         let is_run = start > 1 && end > start && end < moves.len() && !moves[start - 1].is_rapid;
@@ -66,7 +63,7 @@ fn levels(program: &Program) -> Vec<f64> {
     // Where the first move of an operation leads down, and the next one too, the level where it ends.
     let (mut operation, mut is_begun) = (f64::INFINITY, false);
     let mut last = (Vector3::zeros(), f64::INFINITY);
-    let mut level = |at: usize| {
+    let level = |at: usize| {
         let here = &moves[at];
         let is_down = |at: usize| along(moves, at).map(|part| part < -STRAIGHT_DOWN && !moves[at].is_rapid);
         if here.is_rapid {
@@ -82,7 +79,7 @@ fn levels(program: &Program) -> Vec<f64> {
         }
         last.1.min(operation)
     };
-    (0..moves.len()).map(&mut level).collect()
+    (0..moves.len()).map(level).collect()
 }
 
 /// How much of the direction of a move is along its tool axis; nothing where it ends where it starts.

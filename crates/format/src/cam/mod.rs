@@ -7,12 +7,12 @@
 
 /// Refuses what does not hold.
 macro_rules! ensure {
-    ($holds:expr, $refused:expr) => {
+    ($holds:expr, $refused:expr) => {{
         let holds: bool = $holds;
         if !holds {
             return Err($refused);
         }
-    };
+    }};
 }
 
 mod arc;
@@ -106,8 +106,8 @@ pub struct Move {
     pub feed: Option<f64>,
     /// Whether it is a move in the air.
     pub is_rapid: bool,
-    /// Whether it ends on an arc, whose points are as far apart as they may be.
-    pub is_arc: bool,
+    /// Whether its end stays when points are left out: on an arc they are as far apart as they may be.
+    pub is_fixed: bool,
     /// Line in the file, from 1.
     pub line: usize,
 }
@@ -198,14 +198,11 @@ pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Resul
     // CAM systems write comments in the code page of their machine.
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}');
-    let format = match settings.format {
-        Some(format) => format,
-        None => format_of(text).ok_or_else(|| {
-            InputError::new(file, "is neither CLDATA nor G-code that can be told as such")
-                .in_field("--format")
-                .allowed("--format cldata or --format gcode, for a file that is one of them")
-        })?,
-    };
+    let format = settings.format.or_else(|| format_of(text)).ok_or_else(|| {
+        InputError::new(file, "is neither CLDATA nor G-code that can be told as such")
+            .in_field("--format")
+            .allowed("--format cldata or --format gcode, for a file that is one of them")
+    })?;
     let mut program = match format {
         CamFormat::Gcode => gcode::read(file, text, settings)?,
         _ => cldata::read(file, text, settings)?,

@@ -1,7 +1,9 @@
-//! The sentences of refusals as data: what is wrong, and what is allowed.
+//! What is said, as data: of refusals what is wrong and what is allowed; notes of an import; guesses of a cutter.
 
 /// What is wrong, and what is allowed.
 pub(super) type Refusal = (&'static str, &'static str);
+/// A refusal with figures of the program in it.
+pub(super) type Measured = (String, &'static str);
 
 const STRAIGHT: &str = "GOTO, RAPID, arcs and drilling cycles: let the CAM system write straight moves and arcs";
 const ONE_OFFSET: &str = "a second work offset, and how the two lie to each other is not in the file";
@@ -15,8 +17,25 @@ pub(super) const NO_AXIS_OF_ARC: Refusal = ("the axis of the arc has no length",
 pub(super) const FEED_TOO_LATE: Refusal =
     ("a cutting move before the first feed", "a feed before the first cutting move, or none in the whole program");
 pub(super) const UNUSUAL_FEED: Refusal = ("a cutting move with no usual feed", "a feed from 0.0001 to 100000 mm/s");
-pub(super) const TOO_MANY: &str = "20000000 points at most: a larger --step-mm";
-pub(super) const SCORED: &str = "at least one cutting move at 5.05 deg or more from the tool axis";
+/// Of a program with about so many points.
+pub(super) fn too_many(points: f64) -> Measured {
+    (format!("{points:.0} points within --step-mm"), "20000000 points at most: a larger --step-mm")
+}
+/// Of a program with so many cutting moves, all along the tool axis.
+pub(super) fn none_scored(cutting: usize) -> Measured {
+    let problem = format!("{cutting} cutting moves, none of which can be scored");
+    (problem, "at least one cutting move at 5.05 deg or more from the tool axis")
+}
+/// Of an arc with these radii (m) at its start and at its end.
+pub(super) fn misses_end(radii: [f64; 2]) -> Measured {
+    let [from, to] = radii.map(millimetres);
+    let problem = format!("the arc misses its end: radius {from} at its start, {to} there");
+    (problem, "the same radius, above 0, within 0.05 mm")
+}
+
+fn millimetres(length: f64) -> String {
+    format!("{:.4} mm", length * 1e3)
+}
 
 // Of CLDATA.
 pub(super) const NO_UNIT: Refusal = ("names no unit of length", "MM or INCHES");
@@ -41,24 +60,61 @@ pub(super) const FRAME_APPLIED: &str = "positions and tool axes turned into that
 pub(super) const FRAME_NAMED: &str = "positions are taken as those in it, and it as the part's";
 pub(super) const NO_CUTTER: Refusal = ("no numbers that can be read", "numbers of the tool");
 pub(super) const HALF_AN_ARC: Refusal = ("the file ends before the end of the arc", BEHIND_ARC);
-pub(super) const BEHIND_ARC: &str = "a GOTO behind each arc";
+const BEHIND_ARC: &str = "a GOTO behind each arc";
 pub(super) const NO_START: Refusal = ("an arc without a start", "a GOTO before the arc");
 pub(super) const RAPID_ARC: Refusal = ("RAPID and the end of an arc for the same move", "an arc as a cutting move");
 pub(super) const WORDS_OF_ARC: &str = "an arc with words or an angle that are not known here";
 pub(super) const NO_WAY_OUT: &str = "an arc without its way out";
 pub(super) const NOT_ALONG: &str = "the way out is not along the circle";
-pub(super) const SAME_RADIUS: &str = "the same radius within 0.05 mm";
-pub(super) const WHOLE_TURNS: &str = "whole turns behind TIMES: let the CAM system write straight moves";
-pub(super) const SAME_ANGLE: &str = "the same angle within 1 deg";
-pub(super) const IN_PLANE: &str = "an end in the plane of the arc within 0.05 mm";
 pub(super) const ANOTHER_CYCLE: &str = "a cycle whose moves are not known here";
-pub(super) const CLOSE_CYCLE: &str = "CYCLE/OFF before, behind the last hole";
 pub(super) const NUMBERS_OF_POINT: &str = "3 or 6 finite numbers";
 pub(super) const NUMBERS_OF_FEED: &str = "one feed above 0 and its unit";
 pub(super) const THREE_ASKED: Refusal = (
     "three numbers behind MULTAX/OFF while the tool is tilted: in some systems its axis holds, in others it is 0,0,1",
     "the system that wrote the file: --format catia, nx or solidworks (it holds), autodesk, camplete or creo (0,0,1)",
 );
+
+/// Of a unit of length that contradicts one that the file or the option has stated.
+pub(super) fn another_unit(is_option: bool, stated: &str) -> Measured {
+    let by = if is_option { "--units" } else { "the file before" };
+    (format!("is not what {by} says: {stated}"), "one unit of length for the whole file")
+}
+
+/// Of a word before the end of the arc of a line.
+pub(super) fn within_arc(line: usize) -> Measured {
+    (format!("stands between the arc of line {line} and its end"), BEHIND_ARC)
+}
+
+/// Of what begins while the cycle of a line is open.
+pub(super) fn cycle_is_open(line: usize) -> Measured {
+    let problem = format!("the cycle of line {line} is still open here: holes may follow, or cuts");
+    (problem, "CYCLE/OFF before, behind the last hole")
+}
+
+/// Of an arc whose radius as it is found at its start is not the one stated. m
+pub(super) fn misses_start(radii: [f64; 2]) -> Measured {
+    let [found, stated] = radii.map(millimetres);
+    (format!("the arc misses its start: radius {found}, stated {stated}"), "the same radius within 0.05 mm")
+}
+
+/// Of a helix whose end is so far (m) from where whole turns lead.
+pub(super) fn no_whole_turns(off: f64) -> Measured {
+    let problem = format!("a helix whose end is {} beside its start, along the turn", millimetres(off));
+    (problem, "whole turns behind TIMES: let the CAM system write straight moves")
+}
+
+/// Of an arc that turns by another angle than is stated. rad
+pub(super) fn another_angle(turns: [f64; 2]) -> Measured {
+    let [turn, stated] = turns.map(f64::to_degrees);
+    let problem = format!("the arc turns by {turn:.3} deg to its end, and {stated:.3} are stated");
+    (problem, "the same angle within 1 deg")
+}
+
+/// Of an arc whose end is so far (m) out of its plane.
+pub(super) fn out_of_plane(rise: f64) -> Measured {
+    let problem = format!("the arc misses its end, which is {} out of its plane", millimetres(rise));
+    (problem, "an end in the plane of the arc within 0.05 mm")
+}
 
 /// Of a word that is refused by name.
 pub(super) fn not_read(why: &str, word: &str) -> (String, String) {
@@ -131,3 +187,36 @@ pub(super) const AXIS_IN_PLANE: Refusal = (
 );
 pub(super) const NO_MACHINE: Refusal =
     ("a rotary axis of a machine that is not named", "--machine table-ac, table-bc, head-ac or head-bc");
+
+/// Of a rotary axis that the machine of this name has not.
+pub(super) fn not_of_machine(name: &str) -> Measured {
+    (format!("not a rotary axis of {name}"), "another --machine")
+}
+
+// Notes and guesses.
+pub(super) const TURNED: &str =
+    "rapid moves of a turned tool without tool centre point control: where it is then is not known here";
+/// Of moves and points, behind how many they are.
+pub(super) const COUNTED: [&str; 5] = [
+    "moves end where they start: left out",
+    "points left out, for which straight lines stand within the chord error",
+    "points added, on lines longer than the step or turns of the tool axis by more than 5 deg",
+    "points of plunges along the tool axis, where there is no wall: followed, not scored",
+    "points of turns of the tool in place, where there is no wall: followed, not scored",
+];
+pub(super) const NOT_THE_SHAPE: &str = "to be stated: the shape of this cutter is not that of a run file";
+/// What no program states of its tool, with where it is from.
+pub(super) const GUESSES: [(&str, &str); 6] = [
+    ("teeth = 2", "guess"),
+    ("helix_deg = 30.0", "guess"),
+    ("kt_mpa = 800.0", "guess: cutting coefficients of an aluminium alloy; or `material` beside [stock]"),
+    ("kr = 0.4", "guess"),
+    ("kte_n_per_mm = 20.0", "guess: edge forces"),
+    ("kre_n_per_mm = 20.0", "guess"),
+];
+/// Keys in place of the stock, as comments.
+pub(super) const ONE_ENGAGEMENT: [(&str, &str); 3] = [
+    ("milling = \"climb\"", "guess; in place of [stock], one engagement for the whole path: these keys"),
+    ("radial_depth_mm = 2.0", "guess"),
+    ("axial_depth_mm = 2.0", "guess"),
+];

@@ -71,80 +71,57 @@ pub(super) struct Counts {
     pub turning: usize,
 }
 
-/// The end of a move.
-#[derive(Clone, Copy)]
-struct Knot {
-    position: Vector3<f64>,
-    axis: Vector3<f64>,
-    feed: Option<f64>,
-    is_fixed: bool,
-}
-
-impl Knot {
-    /// Direction from the knot before, nothing where the tool only turns.
-    fn direction(&self, before: &Self) -> Option<Vector3<f64>> {
-        (self.position - before.position).try_normalize(SAME_PLACE)
-    }
+/// Direction from an end of a move to another, nothing where the tool only turns.
+fn way(from: &Move, to: &Move) -> Option<Vector3<f64>> {
+    (to.position - from.position).try_normalize(SAME_PLACE)
 }
 
 /// About how many points a program has at most.
 pub(super) fn expected_points(program: &Program, resampling: Resampling) -> f64 {
-    let steps = |pair: &[Move]| match pair[1].is_rapid {
-        true => 0.0,
-        false => 1.0 + (pair[1].position - pair[0].position).norm() / resampling.step,
-    };
-    program.moves.windows(2).map(steps).sum()
+    let cuts = program.moves.windows(2).filter(|pair| !pair[1].is_rapid);
+    cuts.map(|pair| 1.0 + (pair[1].position - pair[0].position).norm() / resampling.step).sum()
 }
 
 /// The segments of a program, and the rapid moves before each of them and after the last: the places in the air
 /// between the end of one and the start of the next.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Segments {
     pub segments: Vec<Vec<Point>>,
     pub rapids: Vec<Vec<Move>>,
     pub counts: Counts,
 }
 
-/// The segments of a program.
+/// The segments of a program. Inside, a move that `is_fixed` keeps its end whatever the chord error.
 pub(super) fn segments(program: &Program, resampling: Resampling) -> Segments {
-    let mut counts = Counts::default();
-    let (mut segments, mut rapids) = (Vec::new(), Vec::new());
-    let mut knots: Vec<Knot> = Vec::new();
-    let mut start: Option<&Move> = None;
+    let mut all = Segments::default();
+    let counts = &mut all.counts;
+    counts.rapid = program.moves.iter().skip(1).filter(|one| one.is_rapid).count();
     // Rapid moves since the end of the last segment.
     let mut air: Vec<Move> = Vec::new();
-    let mut close = |knots: &mut Vec<Knot>, counts: &mut Counts, air: &mut Vec<Move>| {
+    for run in program.moves.chunk_by(|one, next| one.is_rapid == next.is_rapid) {
+        if run[0].is_rapid {
+            air.extend(run);
+            continue;
+        }
+        counts.cutting += run.len();
+        let start = air.last().map(|start| Move { feed: run[0].feed, is_fixed: true, ..*start });
+        let mut knots = Vec::from_iter(start);
+        run.iter().for_each(|one| push(&mut knots, one, counts));
         if knots.len() > 1 {
-            let kept = kept(knots, resampling, counts);
-            segments.push(points(&divided(&kept, resampling, counts), counts));
+            let kept = kept(&knots, resampling, counts);
+            all.segments.push(points(&divided(&kept, resampling, counts), counts));
             // The last of them ends where the segment starts.
             air.pop();
-            rapids.push(std::mem::take(air));
+            all.rapids.push(std::mem::take(&mut air));
         }
-        knots.clear();
-    };
-    for (place, one) in program.moves.iter().enumerate() {
-        if one.is_rapid {
-            counts.rapid += usize::from(place > 0);
-            close(&mut knots, &mut counts, &mut air);
-            air.push(*one);
-        } else {
-            counts.cutting += 1;
-            if let (true, Some(start)) = (knots.is_empty(), start) {
-                knots.push(Knot { position: start.position, axis: start.axis, feed: one.feed, is_fixed: true });
-            }
-            push(&mut knots, one, &mut counts);
-        }
-        start = Some(one);
     }
-    close(&mut knots, &mut counts, &mut air);
-    rapids.push(air);
-    Segments { segments, rapids, counts }
+    all.rapids.push(air);
+    all
 }
 
 /// Adds the end of a move, unless the tool is there already.
-fn push(knots: &mut Vec<Knot>, one: &Move, counts: &mut Counts) {
-    let mut knot = Knot { position: one.position, axis: one.axis, feed: one.feed, is_fixed: one.is_arc };
+fn push(knots: &mut Vec<Move>, one: &Move, counts: &mut Counts) {
+    let mut knot = *one;
     if let Some(last) = knots.last_mut()
         && (last.position - knot.position).norm() < SAME_PLACE
     {
@@ -159,18 +136,13 @@ fn push(knots: &mut Vec<Knot>, one: &Move, counts: &mut Counts) {
 }
 
 /// The knots that are left when lines stand for what is within the chord error.
-fn kept(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<Knot> {
+fn kept(knots: &[Move], resampling: Resampling, counts: &mut Counts) -> Vec<Move> {
     let mut kept = vec![knots[0]];
     let mut anchor = 0;
     while anchor + 1 < knots.len() {
-        let mut end = anchor + 1;
-        while end + 1 < knots.len()
-            && end - anchor < MAX_RUN
-            && !is_fixed(knots, end)
-            && stands_for(knots, anchor, end + 1, resampling)
-        {
-            end += 1;
-        }
+        let last = knots.len().min(anchor + MAX_RUN + 1);
+        let is_end = |at: &usize| stays(&knots[at - 1..at + 2]) || !stands_for(&knots[anchor..at + 2], resampling);
+        let end = (anchor + 1..last - 1).find(is_end).unwrap_or(last - 1);
         counts.left_out += end - anchor - 1;
         kept.push(knots[end]);
         anchor = end;
@@ -178,25 +150,25 @@ fn kept(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<Knot
     kept
 }
 
-/// Whether an inner knot stays whatever the chord error.
-fn is_fixed(knots: &[Knot], at: usize) -> bool {
-    let [before, here, after] = [at - 1, at, at + 1].map(|k| &knots[k]);
-    let (Some(to), Some(from)) = (here.direction(before), after.direction(here)) else { return true };
+/// Whether a knot between two others stays whatever the chord error.
+fn stays(around: &[Move]) -> bool {
+    let [before, here, after] = around else { return true };
+    let (Some(to), Some(from)) = (way(before, here), way(here, after)) else { return true };
     here.is_fixed
         || here.feed != after.feed
         || angle(&to, &from) > CORNER
         || has_wall(&to, here) != has_wall(&from, here)
 }
 
-/// Whether the line between two knots is within the errors of all between them, and no longer than the step.
-fn stands_for(knots: &[Knot], from: usize, to: usize, resampling: Resampling) -> bool {
-    let (start, end) = (&knots[from], &knots[to]);
+/// Whether the line from the first knot to the last is within the errors of all between, and no longer than the step.
+fn stands_for(knots: &[Move], resampling: Resampling) -> bool {
+    let [start, inner @ .., end] = knots else { return true };
     let way = end.position - start.position;
     let length = way.norm();
     if length > resampling.step || length < SAME_PLACE || angle(&start.axis, &end.axis) > AXIS_STEP {
         return false;
     }
-    knots[from + 1..to].iter().all(|knot| {
+    inner.iter().all(|knot| {
         let share = ((knot.position - start.position).dot(&way) / (length * length)).clamp(0.0, 1.0);
         let axis = start.axis * (1.0 - share) + end.axis * share;
         (knot.position - start.position - way * share).norm() <= resampling.chord
@@ -205,7 +177,7 @@ fn stands_for(knots: &[Knot], from: usize, to: usize, resampling: Resampling) ->
 }
 
 /// The knots with points between those that are too far apart.
-fn divided(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<Knot> {
+fn divided(knots: &[Move], resampling: Resampling, counts: &mut Counts) -> Vec<Move> {
     let mut all = vec![knots[0]];
     for pair in knots.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
@@ -216,7 +188,7 @@ fn divided(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<K
         all.extend((1..parts).map(|part| {
             let share = f64::from(part) / f64::from(parts);
             let axis = about.map_or(from.axis, |about| Rotation3::from_axis_angle(&about, turn * share) * from.axis);
-            Knot { position: from.position + (to.position - from.position) * share, axis, ..*to }
+            Move { position: from.position + (to.position - from.position) * share, axis, ..*to }
         }));
         counts.added += parts as usize - 1;
         all.push(*to);
@@ -226,34 +198,23 @@ fn divided(knots: &[Knot], resampling: Resampling, counts: &mut Counts) -> Vec<K
 
 /// The points with their directions: to the next point, or from the one before where there is no wall on the way to the
 /// next.
-fn points(knots: &[Knot], counts: &mut Counts) -> Vec<Point> {
-    let walled = |direction: Option<Vector3<f64>>, knot: &Knot| direction.filter(|direction| has_wall(direction, knot));
-    let directions: Vec<Option<Vector3<f64>>> = (0..knots.len())
-        .map(|k| {
-            let here = &knots[k];
-            let before = k.checked_sub(1).map(|before| &knots[before]);
-            let to = before.and_then(|before| here.direction(before));
-            let from = knots.get(k + 1).and_then(|next| next.direction(here));
-            let turned = before.is_some() && to.is_none();
-            let direction = if turned { None } else { walled(from, here).or_else(|| walled(to, here)) };
-            counts.turning += usize::from(turned);
-            counts.plunging += usize::from(!turned && direction.is_none());
-            direction
-        })
-        .collect();
-    let mut reference = directions.iter().flatten().next().copied().unwrap_or_else(Vector3::x);
-    let mut points = Vec::with_capacity(knots.len());
-    for (knot, direction) in knots.iter().zip(&directions) {
-        reference = direction.unwrap_or_else(|| across(&reference, &knot.axis));
-        points.push(Point {
-            position: knot.position,
-            axis: knot.axis,
-            direction: reference,
-            feed: knot.feed,
-            is_scored: direction.is_some(),
-        });
+fn points(knots: &[Move], counts: &mut Counts) -> Vec<Point> {
+    let mut directions = Vec::with_capacity(knots.len());
+    for (place, here) in knots.iter().enumerate() {
+        let to = place.checked_sub(1).map(|before| way(&knots[before], here));
+        let from = knots.get(place + 1).and_then(|next| way(here, next));
+        let is_turn = to == Some(None);
+        let walled = [from, to.flatten()].into_iter().flatten().find(|way| !is_turn && has_wall(way, here));
+        counts.turning += usize::from(is_turn);
+        counts.plunging += usize::from(!is_turn && walled.is_none());
+        directions.push(walled);
     }
-    points
+    let mut reference = directions.iter().flatten().next().copied().unwrap_or_else(Vector3::x);
+    let point = |(&Move { position, axis, feed, .. }, walled): (&Move, Option<Vector3<f64>>)| {
+        reference = walled.unwrap_or_else(|| across(&reference, &axis));
+        Point { position, axis, direction: reference, feed, is_scored: walled.is_some() }
+    };
+    knots.iter().zip(directions).map(point).collect()
 }
 
 /// The direction normal to an axis that is nearest to another, or any where that is along the axis.
@@ -264,12 +225,12 @@ fn across(direction: &Vector3<f64>, axis: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Whether a direction of the feed is far enough from the tool axis to tell the normal of the wall.
-fn has_wall(direction: &Vector3<f64>, knot: &Knot) -> bool {
+fn has_wall(direction: &Vector3<f64>, knot: &Move) -> bool {
     let off = angle(direction, &knot.axis);
     off > NO_WALL && std::f64::consts::PI - off > NO_WALL
 }
 
 /// The angle between two directions of any length. rad
-fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+pub(super) fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
 }

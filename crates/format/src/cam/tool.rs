@@ -1,8 +1,8 @@
 //! The cutter of a program, as far as it is described there, as tables of a run file.
 
+use super::refusals::{GUESSES, NOT_THE_SHAPE, ONE_ENGAGEMENT};
 use super::{Program, rounded};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use stead_disk::quote::shorten;
 
@@ -37,23 +37,16 @@ pub fn file_beside(task: &Path) -> PathBuf {
 }
 
 /// What a tool cuts.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Use {
     pub tool: ProgramTool,
     /// Length of its cutting moves. m
     pub way: f64,
-    /// The feed of the longest part of them. m/s
-    pub feed: Option<f64>,
+    /// How much of it goes at each feed (m), by the bits of the feed in m/s.
+    feeds: BTreeMap<u64, f64>,
 }
 
 impl ProgramTool {
-    /// This tool with lengths in a unit (m) in metres.
-    pub(super) fn scaled(&self, metres: f64) -> Self {
-        let [diameter, corner_radius, length] =
-            [self.diameter, self.corner_radius, self.length].map(|length| length.map(|length| length * metres));
-        Self { diameter, corner_radius, length, ..self.clone() }
-    }
-
     /// This tool in the spindle of another.
     pub(super) fn turning_as(self, other: &Self) -> Self {
         let Self { spindle_speed, is_counterclockwise, .. } = *other;
@@ -71,44 +64,28 @@ impl Program {
 
     /// The tools that cut, that with the longest way first.
     pub(super) fn uses(&self) -> Vec<Use> {
-        let mut uses: Vec<(Use, BTreeMap<u64, f64>)> = Vec::new();
+        let mut uses: Vec<Use> = Vec::new();
         for (place, (from, tool)) in self.tools_from.iter().enumerate() {
             let to = self.tools_from.get(place + 1).map_or(self.moves.len(), |(to, _)| *to);
             let moves = &self.moves[from.saturating_sub(1)..to];
-            let cuts = || moves.windows(2).filter(|pair| !pair[1].is_rapid);
-            if cuts().next().is_none() {
-                continue;
-            }
-            let known = uses.iter().position(|(one, _)| one.tool == *tool);
-            let known = known.unwrap_or_else(|| {
-                uses.push((Use { tool: tool.clone(), way: 0.0, feed: None }, BTreeMap::new()));
-                uses.len() - 1
-            });
-            let (one, feeds) = &mut uses[known];
-            for pair in cuts() {
-                let way = (pair[1].position - pair[0].position).norm();
+            for pair in moves.windows(2).filter(|pair| !pair[1].is_rapid) {
+                let known = uses.iter().position(|one| one.tool == *tool).unwrap_or_else(|| {
+                    uses.push(Use { tool: tool.clone(), ..Use::default() });
+                    uses.len() - 1
+                });
+                let (one, way) = (&mut uses[known], (pair[1].position - pair[0].position).norm());
                 one.way += way;
                 if let Some(feed) = pair[1].feed {
-                    *feeds.entry(feed.to_bits()).or_default() += way;
+                    *one.feeds.entry(feed.to_bits()).or_default() += way;
                 }
             }
         }
-        for (one, feeds) in &mut uses {
-            let longest = feeds.iter().max_by(|a, b| a.1.total_cmp(b.1));
-            one.feed = longest.map(|(feed, _)| f64::from_bits(*feed));
-        }
-        let mut uses: Vec<Use> = uses.into_iter().map(|(one, _)| one).collect();
         uses.sort_by(|a, b| b.way.total_cmp(&a.way));
         uses
     }
 }
 
 impl Use {
-    /// Whether the program says anything of it that a run file has a place for.
-    pub fn is_described(&self) -> bool {
-        self.tool.diameter.is_some() || self.tool.spindle_speed.is_some()
-    }
-
     /// The tool in few words: `D 20 mm, corner 3 mm, 12000 rpm`.
     pub fn words(&self) -> String {
         let tool = &self.tool;
@@ -130,87 +107,69 @@ fn mm(metres: f64) -> f64 {
 /// Where a figure is from.
 const STATED: &str = "of the CAM file";
 
-/// Lines with a comment in one column.
-struct Lines(String);
+/// Whether a row holds or stands as a comment, its text where it has one, and where that is from.
+type Row<'a> = (bool, Option<String>, &'a str);
 
-impl Lines {
-    fn row(&mut self, key: &str, comment: &str) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(self.0, "{key:<38} # {comment}");
-    }
+fn lines(rows: Vec<Row<'_>>) -> String {
+    let line = |(holds, text, from): Row<'_>| {
+        let text = if holds { text? } else { format!("# {}", text?) };
+        Some(format!("{text:<38} # {from}\n"))
+    };
+    rows.into_iter().filter_map(line).collect()
 }
 
 /// The tables of a run file for the tool with the longest way of those that a program describes.
 pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
-    let first = uses.iter().find(|one| one.is_described())?;
+    // A run file has a place for these.
+    let first = uses.iter().find(|one| one.tool.diameter.or(one.tool.spindle_speed).is_some())?;
     let tool = &first.tool;
-    let mut lines = Lines(format!(
-        "# The cutter of {} as far as it is described there, by `stead import path`. `stead init place` puts\n\
-         # what follows into the run file.\n\n",
-        shorten(program)
-    ));
-    let described = shorten(&tool.description);
-    let is_known = tool.diameter.is_some();
-    let key = |text: String| if is_known { text } else { format!("# {text}") };
-    lines.row(&key("[tool]".to_owned()), if described.is_empty() { STATED } else { &described });
-    match tool.diameter {
-        Some(diameter) => lines.row(&format!("cutter_diameter_mm = {:?}", mm(diameter)), STATED),
-        None => lines.row("# cutter_diameter_mm = 10.0", "guess: the CAM file does not state it"),
-    }
-    let flutes = match (tool.length, tool.diameter) {
-        (Some(length), _) if tool.is_length_of_flutes => Some((mm(length), STATED)),
-        (Some(length), _) => Some((mm(length), "of the CAM file, perhaps with its shank")),
-        (None, diameter) => diameter.filter(|_| !tool.is_other_shape).map(|diameter| (mm(3.0 * diameter), "guess")),
+    // That of the longest part of its cutting moves.
+    let feed = first.feeds.iter().max_by(|a, b| a.1.total_cmp(b.1)).map(|(feed, _)| f64::from_bits(*feed));
+    let (is_known, described) = (tool.diameter.is_some(), shorten(&tool.description));
+    let number = |key: &str, value: Option<f64>| value.map(|value| format!("{key} = {value:?}"));
+    let word = |is_there: bool, text: &str| is_there.then(|| text.to_owned());
+    let (flutes, flutes_from) = match (tool.length, tool.diameter) {
+        (Some(length), _) if tool.is_length_of_flutes => (Some(length), STATED),
+        (Some(length), _) => (Some(length), "of the CAM file, perhaps with its shank"),
+        (None, diameter) => (diameter.filter(|_| !tool.is_other_shape).map(|diameter| 3.0 * diameter), "guess"),
     };
-    for (name, value) in [
-        ("rotation", tool.is_counterclockwise.then(|| ("\"counterclockwise\"".to_owned(), "seen from the spindle"))),
-        ("corner_radius_mm", tool.corner_radius.map(|corner| (format!("{:?}", mm(corner)), STATED))),
-        ("taper_deg", tool.taper.map(|taper| (format!("{:?}", rounded(taper.to_degrees())), STATED))),
-        ("flute_length_mm", flutes.map(|(length, comment)| (format!("{length:?}"), comment))),
-    ] {
-        if let Some((value, comment)) = value {
-            lines.row(&key(format!("{name} = {value}")), comment);
-        }
+    let is_odd = is_known && flutes.is_none();
+    let mut of_tool = vec![
+        (is_known, word(true, "[tool]"), if described.is_empty() { STATED } else { &described }),
+        (is_known, number("cutter_diameter_mm", tool.diameter.map(mm)), STATED),
+        (false, word(!is_known, "cutter_diameter_mm = 10.0"), "guess: the CAM file does not state it"),
+        (is_known, word(tool.is_counterclockwise, "rotation = \"counterclockwise\""), "seen from the spindle"),
+        (is_known, number("corner_radius_mm", tool.corner_radius.map(mm)), STATED),
+        (is_known, number("taper_deg", tool.taper.map(|taper| rounded(taper.to_degrees()))), STATED),
+        (is_known, number("flute_length_mm", flutes.map(mm)), flutes_from),
+        (false, word(is_odd, "flute_length_mm = 10.0"), NOT_THE_SHAPE),
+    ];
+    of_tool.extend(GUESSES.map(|(text, from)| (is_known, word(true, text), from)));
+    let speed = tool.spindle_speed.map(|speed| rounded(speed * 60.0));
+    let speed_from = if speed.is_some() { STATED } else { "guess" };
+    let mut of_cut = vec![(is_known, number("spindle_rpm", speed.or(Some(9000.0))), speed_from)];
+    of_cut.extend(ONE_ENGAGEMENT.map(|(text, from)| (false, word(true, text), from)));
+    let (mut tooth, mut tooth_from) = (0.05, "guess".to_owned());
+    if let (Some(turns), Some(speed), Some(feed)) = (tool.spindle_speed, speed, feed) {
+        let fine = |mm: f64| (mm * 1e4).round() / 1e4;
+        let (turn, feed) = (fine(feed / turns * 1e3), rounded(feed * 6e4));
+        tooth = fine(turn / 2.0);
+        tooth_from = format!("{turn} mm a turn at {feed} mm/min and {speed} rpm, over 2 teeth");
     }
-    if flutes.is_none() && is_known {
-        lines.row("# flute_length_mm = 10.0", "to be stated: the shape of this cutter is not that of a run file");
-    }
-    for (row, comment) in [
-        ("teeth = 2", "guess"),
-        ("helix_deg = 30.0", "guess"),
-        ("kt_mpa = 800.0", "guess: cutting coefficients of an aluminium alloy; or `material` beside [stock]"),
-        ("kr = 0.4", "guess"),
-        ("kte_n_per_mm = 20.0", "guess: edge forces"),
-        ("kre_n_per_mm = 20.0", "guess"),
-    ] {
-        lines.row(&key(row.to_owned()), comment);
-    }
-    lines.0.push_str(if is_known { "\n[cut]\n" } else { "\n# [cut]\n" });
-    let (speed, comment) = match tool.spindle_speed {
-        Some(speed) => (rounded(speed * 60.0), STATED),
-        None => (9000.0, "guess"),
-    };
-    lines.row(&key(format!("spindle_rpm = {speed:?}")), comment);
-    lines.row("# milling = \"climb\"", "guess; in place of [stock], one engagement for the whole path: these keys");
-    lines.row("# radial_depth_mm = 2.0", "guess");
-    lines.row("# axial_depth_mm = 2.0", "guess");
-    let feed_per_tooth = match (tool.spindle_speed, first.feed) {
-        (Some(speed), Some(feed)) => {
-            let fine = |mm: f64| (mm * 1e4).round() / 1e4;
-            let (turn, speed, feed) = (fine(feed / speed * 1e3), rounded(speed * 60.0), rounded(feed * 6e4));
-            let comment = format!("{turn} mm a turn at {feed} mm/min and {speed} rpm, over 2 teeth");
-            (fine(turn / 2.0), comment)
-        }
-        _ => (0.05, "guess".to_owned()),
-    };
     // A path without feeds has need of it in any case.
-    let is_needed = is_known && first.feed.is_none();
-    let row = format!("feed_per_tooth_mm = {:?}", feed_per_tooth.0);
-    lines.row(&if is_needed { row } else { format!("# {row}") }, &feed_per_tooth.1);
+    of_cut.push((is_known && feed.is_none(), number("feed_per_tooth_mm", Some(tooth)), &tooth_from));
+    let mut text = format!(
+        "# The cutter of {} as far as it is described there, by `stead import path`. `stead init place` puts\n\
+         # what follows into the run file.\n\n{}\n{}[cut]\n{}",
+        shorten(program),
+        lines(of_tool),
+        if is_known { "" } else { "# " },
+        lines(of_cut)
+    );
     for other in uses.iter().filter(|other| *other != first) {
         let words = other.words();
-        let words = if words.is_empty() { "not described".to_owned() } else { words };
-        let _ = writeln!(lines.0, "# Another tool of the program, with less to cut or less said of it: {words}");
+        let words = if words.is_empty() { "not described" } else { &words };
+        text += &format!("# Another tool of the program, with less to cut or less said of it: {words}\n");
     }
-    Some(lines.0)
+    Some(text)
 }

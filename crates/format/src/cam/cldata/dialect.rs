@@ -106,10 +106,10 @@ pub(super) struct ArcForm {
     pub allowed: &'static str,
 }
 
-/// One way to write an arc: its words, how many numbers, and the places of these. The centre is first.
+/// One way to write an arc: its words between commas, how many numbers, and the places of these. The centre is first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ArcWay {
-    pub words: &'static [&'static str],
+    pub words: &'static str,
     pub count: usize,
     /// 1.0 where the arc is right-handed about the axis behind the centre, -1.0 where it is left-handed; nothing where
     /// the way out tells the axis.
@@ -276,13 +276,12 @@ pub(super) static DIALECTS: &[Dialect] = &[
 ];
 
 /// Centre and axis, right-handed.
-const CENTRE_AXIS: ArcWay = ArcWay { words: &[], count: 6, hand: Some(1.0), radius: None, turns: None, angle: None };
+const CENTRE_AXIS: ArcWay = ArcWay { words: "", count: 6, hand: Some(1.0), radius: None, turns: None, angle: None };
 const CENTRE_AXIS_RADIUS: ArcWay = ArcWay { count: 7, radius: Some(6), ..CENTRE_AXIS };
 const ELEVEN: ArcWay = ArcWay { count: 11, hand: Some(-1.0), ..CENTRE_AXIS_RADIUS };
-const TURNS: ArcWay = ArcWay { words: &["TIMES"], count: 12, turns: Some(11), ..ELEVEN };
-const ANGLE: ArcWay = ArcWay { words: &["ANGLE"], count: 8, angle: Some(7), ..CENTRE_AXIS_RADIUS };
-const WAY_OUT: ArcWay =
-    ArcWay { words: &["GOFWD", "CIRCLE", "ON", "LINE"], count: 10, hand: None, radius: Some(3), ..CENTRE_AXIS };
+const TURNS: ArcWay = ArcWay { words: "TIMES", count: 12, turns: Some(11), ..ELEVEN };
+const ANGLE: ArcWay = ArcWay { words: "ANGLE", count: 8, angle: Some(7), ..CENTRE_AXIS_RADIUS };
+const WAY_OUT: ArcWay = ArcWay { words: "GOFWD,CIRCLE,ON,LINE", count: 10, hand: None, radius: Some(3), ..CENTRE_AXIS };
 
 const CIRCLE: ArcForm = ArcForm {
     ways: &[CENTRE_AXIS, CENTRE_AXIS_RADIUS, ELEVEN, TURNS],
@@ -295,14 +294,14 @@ const CIRCLE_WITH_ANGLE: ArcForm = ArcForm {
 const MOVARC: ArcForm = ArcForm {
     ways: &[
         CENTRE_AXIS_RADIUS,
-        ArcWay { words: &["CENTER", "AXIS", "RADIUS"], ..CENTRE_AXIS_RADIUS },
+        ArcWay { words: "CENTER,AXIS,RADIUS", ..CENTRE_AXIS_RADIUS },
         ANGLE,
-        ArcWay { words: &["CENTER", "AXIS", "RADIUS", "ANGLE"], ..ANGLE },
+        ArcWay { words: "CENTER,AXIS,RADIUS,ANGLE", ..ANGLE },
     ],
     allowed: "centre, axis, radius, or these behind CENTER, AXIS and RADIUS; ANGLE and degrees up to 360",
 };
 const TLON: ArcForm = ArcForm {
-    ways: &[WAY_OUT, ArcWay { words: &["GOFWD", "CIRCLE", "ON", "INTOF", "LINE"], count: 11, ..WAY_OUT }],
+    ways: &[WAY_OUT, ArcWay { words: "GOFWD,CIRCLE,ON,INTOF,LINE", count: 11, ..WAY_OUT }],
     allowed: "INDIRV/i,j,k, then TLON,GOFWD/(CIRCLE/centre,radius),ON[,2,INTOF],(LINE/centre,end)",
 };
 
@@ -394,6 +393,10 @@ pub(super) const FEEDS: &[(&str, Option<LengthUnit>, bool)] = &[
     ("IPR", Some(LengthUnit::Inch), true),
     ("PERREV", None, true),
 ];
+
+/// Units of length as `UNITS` states them.
+pub(super) const UNITS: [(&str, LengthUnit); 3] =
+    [("MM", LengthUnit::Millimetre), ("INCH", LengthUnit::Inch), ("INCHES", LengthUnit::Inch)];
 
 const SPLINE: Effect = Refused("a spline");
 const TRANSFORMATION: Effect = Refused("a transformation of what follows");

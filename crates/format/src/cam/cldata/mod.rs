@@ -14,9 +14,9 @@ pub use dialect::CamFormat;
 pub(crate) use told::has_word;
 pub(super) use told::{is_statement, without_label};
 
-use super::refusals::NO_UNIT;
+use super::refusals::{NO_UNIT, another_unit};
 use super::{LengthUnit, Program, ReadSettings};
-use dialect::Dialect;
+use dialect::{Dialect, Effect, UNITS};
 use reader::Reader;
 use statement::Statements;
 use std::path::Path;
@@ -32,13 +32,13 @@ pub fn read(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program,
     let dialect = Dialect::of(text, settings.format);
     let unit = unit_of(file, dialect, text, settings.units)?;
     let mut reader = Reader::new(dialect, unit, settings);
-    let mut statements = Statements::new(file, dialect, text);
+    let mut statements = Statements::new(file, dialect, text, 1);
     while let Some(statement) = statements.next() {
         if !reader.take(statement)? {
             break;
         }
     }
-    reader.finish(statements.last())
+    reader.finish(&statements.statement)
 }
 
 /// The unit that a file states, or the one given for a file that does not.
@@ -48,27 +48,19 @@ fn unit_of(
     text: &str,
     given: Option<LengthUnit>,
 ) -> Result<LengthUnit, InputError> {
-    let known = [("MM", LengthUnit::Millimetre), ("INCH", LengthUnit::Inch), ("INCHES", LengthUnit::Inch)];
-    let mut unit = given;
-    let mut at = 0;
+    let (mut unit, mut at) = (given, 0);
     for (line, number) in text.split_inclusive('\n').zip(1..) {
-        let mut statements = Statements::new(file, dialect, &text[at..]);
+        let mut statements = Statements::new(file, dialect, &text[at..], number);
         at += line.len();
         // Most lines are moves, which a look at their letters shows.
         let may_state = line.bytes().any(|byte| byte.eq_ignore_ascii_case(&b'u'));
-        while may_state && let Some(statement) = statements.next().filter(|statement| statement.line == 1) {
-            if !["UNIT", "UNITS"].iter().any(|word| statement.word.eq_ignore_ascii_case(word)) {
-                continue;
+        while may_state && let Some(statement) = statements.next().filter(|statement| statement.line == number) {
+            if dialect.effect(statement.word) == Some(Effect::Unit) {
+                let stated =
+                    UNITS.iter().find(|(word, _)| statement.has(word)).ok_or_else(|| statement.fail(NO_UNIT))?;
+                let unit = *unit.get_or_insert(stated.1);
+                ensure!(unit == stated.1, statement.fail(another_unit(given.is_some(), unit.word())));
             }
-            let fail = |problem: &str, allowed: &str| statement.fail((problem, allowed)).at_line(number);
-            let stated = known.iter().find(|(word, _)| statement.has(word)).map(|(_, unit)| *unit);
-            let stated = stated.ok_or_else(|| fail(NO_UNIT.0, NO_UNIT.1))?;
-            if let Some(unit) = unit.filter(|unit| *unit != stated) {
-                let other = if given.is_some() { "--units" } else { "the file before" };
-                let problem = format!("is not what {other} says: {}", unit.word());
-                return Err(fail(&problem, "one unit of length for the whole file"));
-            }
-            unit = Some(stated);
         }
     }
     unit.ok_or_else(|| {

@@ -3,6 +3,7 @@
 mod arcs;
 mod points;
 
+use super::super::arc::Arc;
 use super::super::course::{Course, Frame, NO_LENGTH};
 use super::super::refusals::*;
 use super::super::{LARGEST, LengthUnit, Program, ReadSettings};
@@ -11,7 +12,7 @@ use super::cycle::Cycle;
 use super::dialect::{CYCLES_TAKEN, CutterForm, Dialect, Effect, Ending, FEEDS, FrameForm};
 use super::statement::Statement;
 use arcs::Pending;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use stead_disk::input::InputError;
 use stead_disk::quote::one_line;
 
@@ -19,12 +20,6 @@ use stead_disk::quote::one_line;
 const FRAME_ROUNDING: f64 = 1e-3;
 /// An unknown word with so many numbers may hold a position, a direction or a frame.
 const NUMBERS_OF_A_PLACE: usize = 3;
-
-/// What becomes of the points that follow.
-enum Holes {
-    Drilled(Cycle),
-    LeftOut,
-}
 
 /// Reads statements into moves.
 pub(super) struct Reader<'a> {
@@ -50,10 +45,11 @@ struct State {
     pending: Option<Pending>,
     /// The way out of the next arc, in the workpiece frame.
     tangent: Option<Vector3<f64>>,
-    /// The arc whose circle the next points may lie on, where the dialect has such.
-    circle: Option<Pending>,
-    /// A cycle that is open, with its line.
-    holes: Option<(Holes, usize)>,
+    /// The arc whose circle the next points may lie on, where the dialect has such, and what it rises in a turn of 1
+    /// rad. m
+    circle: Option<(Arc, f64)>,
+    /// A cycle that is open, nothing of it where its holes are left out, with its line.
+    holes: Option<(Option<Cycle>, usize)>,
     /// Length of flutes (m) that is stated before any move from this one on.
     flutes: Option<(f64, usize)>,
     is_ended: bool,
@@ -71,8 +67,7 @@ impl<'a> Reader<'a> {
         let Some(effect) = self.effect(statement)? else { return Ok(true) };
         let is_move = matches!(effect, Effect::Move(_));
         if let (Some(pending), false) = (&self.state.pending, is_move || effect == Effect::Feed) {
-            let problem = format!("stands between the arc of line {} and its end", pending.line);
-            return Err(statement.fail((problem, BEHIND_ARC)));
+            return Err(statement.fail(within_arc(pending.line)));
         }
         if !is_move {
             self.state.circle = None;
@@ -153,36 +148,31 @@ impl<'a> Reader<'a> {
     fn cycle(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
         let first = statement.words().next().unwrap_or_default();
         let is_none = ["OFF", "END", "INIT", "CLEAR"].iter().any(|word| first.eq_ignore_ascii_case(word));
-        let holes = if is_none {
-            None
-        } else if self.settings.skip_cycles {
-            Some(Holes::LeftOut)
-        } else {
+        let mut cycle = None;
+        if !is_none && !self.settings.skip_cycles {
             self.numbers(statement, &[], CYCLES_TAKEN)?;
-            let cycle = Cycle::of(statement, self.dialect.hole_depth);
-            Some(Holes::Drilled(cycle.ok_or_else(|| statement.fail((ANOTHER_CYCLE, CYCLES_TAKEN)))?))
-        };
-        self.state.holes = holes.map(|holes| (holes, statement.line));
+            cycle = Cycle::of(statement, self.dialect.hole_depth);
+            ensure!(cycle.is_some(), statement.fail((ANOTHER_CYCLE, CYCLES_TAKEN)));
+        }
+        self.state.holes = (!is_none).then_some((cycle, statement.line));
         Ok(())
     }
 
     /// Refuses what begins while a cycle is open: holes may follow, or cuts.
     fn no_cycle_is_open(&self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let Some((_, line)) = &self.state.holes else { return Ok(()) };
-        let problem = format!("the cycle of line {line} is still open here: holes may follow, or cuts");
-        Err(statement.fail((problem, CLOSE_CYCLE)))
+        self.state.holes.as_ref().map_or(Ok(()), |(_, line)| Err(statement.fail(cycle_is_open(*line))))
     }
 
     fn fedrat(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
         let value = self.numbers(statement, &[1], NUMBERS_OF_FEED)?[0];
         ensure!(value > 0.0, statement.fail(NOT_A_FEED));
-        let words: Vec<&str> = statement.words().collect();
-        if words.is_empty() {
+        // No unit of feed is two words.
+        let mut word = statement.worded();
+        if word.is_empty() {
             let note = format!("FEDRAT without a unit, taken in {} per minute", self.unit.word());
             self.course.program.note(note, statement.line);
+            word.push_str("PERMIN");
         }
-        // No unit of feed is two words.
-        let word = if words.is_empty() { "PERMIN".to_owned() } else { words.join(",") };
         self.course.feed = Some(self.feed_in(statement, value, &word)?);
         Ok(())
     }
@@ -226,20 +216,16 @@ impl<'a> Reader<'a> {
         }
         let x = rotation.column(0).normalize();
         let z = x.cross(&rotation.column(1)).normalize();
-        let rotation = Matrix3::from_columns(&[x, z.cross(&x), z]);
+        let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[x, z.cross(&x), z]));
         let frame = Frame { rotation, origin: at(form.origin) * self.unit.metres() };
         let is_applied = self.dialect.applies_frames;
-        let is_one = is_applied || self.state.named.is_none_or(|named| frame.is_near(&named));
-        ensure!(is_one, statement.fail(SECOND_FRAME));
         if !frame.is_near(&self.course.frame) {
             let what = if is_applied { FRAME_APPLIED } else { FRAME_NAMED };
             self.course.program.note(format!("frame of {}: {what}", statement.name()), statement.line);
         }
-        if is_applied {
-            self.course.frame = frame;
-        } else {
-            self.state.named = Some(frame);
-        }
+        let named = if is_applied { &mut self.course.frame } else { self.state.named.get_or_insert(frame) };
+        ensure!(is_applied || frame.is_near(named), statement.fail(SECOND_FRAME));
+        *named = frame;
         Ok(())
     }
 

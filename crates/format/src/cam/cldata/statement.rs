@@ -41,9 +41,9 @@ impl<'a> Statement<'a> {
         self.words().any(|own| own.eq_ignore_ascii_case(word))
     }
 
-    /// Whether its words are these.
-    pub fn has_just(&self, words: &[&str]) -> bool {
-        self.words().count() == words.len() && self.words().zip(words).all(|(own, word)| own.eq_ignore_ascii_case(word))
+    /// Its words between commas.
+    pub fn worded(&self) -> String {
+        self.words().collect::<Vec<_>>().join(",")
     }
 
     /// What stands behind the slash, as written.
@@ -68,8 +68,9 @@ impl<'a> Statement<'a> {
         format!("{} numbers that can be read", self.numbers().count())
     }
 
-    /// Adds what stands behind the slash.
+    /// Adds what stands behind the slash; a dollar sign at its end says that the statement goes on.
     fn take(&mut self, text: &'a str) {
+        let text = text.trim_end_matches('$');
         let minors = |text: &'a str| text.split(',').map(str::trim).filter(|text| !text.is_empty()).map(minor);
         if text.contains(['(', ')']) {
             // Geometry within a statement: (CIRCLE/x,y,z,r).
@@ -90,32 +91,30 @@ pub(super) struct Statements<'a> {
     line: usize,
     /// What stands behind a semicolon.
     rest: Option<&'a str>,
-    statement: Statement<'a>,
+    /// The last one that was read.
+    pub statement: Statement<'a>,
 }
 
 impl<'a> Statements<'a> {
-    pub fn new(file: &'a Path, dialect: &'static Dialect, text: &'a str) -> Self {
-        let statement = Statement { file, line: 1, word: "", minors: Vec::new() };
-        Self { dialect, lines: text.lines(), line: 0, rest: None, statement }
-    }
-
-    /// The last one that was read.
-    pub fn last(&self) -> &Statement<'a> {
-        &self.statement
+    /// Those from a line on, with which the text begins.
+    pub fn new(file: &'a Path, dialect: &'static Dialect, text: &'a str, line: usize) -> Self {
+        let statement = Statement { file, line, word: "", minors: Vec::new() };
+        Self { dialect, lines: text.lines(), line: line - 1, rest: None, statement }
     }
 
     fn next_line(&mut self) -> Option<&'a str> {
-        self.line += 1;
-        self.lines.next().map(str::trim)
+        let line = self.rest.take().or_else(|| {
+            self.line += 1;
+            self.lines.next()
+        });
+        line.map(str::trim)
     }
 
     /// The next statement.
     pub fn next(&mut self) -> Option<&Statement<'a>> {
         let mut is_continued = false;
         loop {
-            let Some(line) = self.rest.take().map(str::trim).or_else(|| self.next_line()) else {
-                return is_continued.then_some(&self.statement);
-            };
+            let Some(line) = self.next_line() else { return is_continued.then_some(&self.statement) };
             if line.starts_with("$$") {
                 if !is_continued && self.comment(line) {
                     return Some(&self.statement);
@@ -123,24 +122,25 @@ impl<'a> Statements<'a> {
                 continue;
             }
             let mut line = without_comment(if is_continued { line } else { without_label(line) });
-            let is_free = !is_continued && self.is_free_text(line);
+            let end = line.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(line.len());
+            // Most statements are moves.
+            let is_known = is_continued || &line[..end] == "GOTO";
+            let is_free = !is_known && self.dialect.effect(&line[..end]) == Some(Effect::Text);
             if let (Some((first, rest)), false) = (line.split_once(';'), is_free) {
                 (line, self.rest) = (first.trim(), Some(rest));
             }
-            let body = line.strip_suffix('$').unwrap_or(line).trim_end();
-            let goes_on = line.ends_with('$');
-            if body.is_empty() && !goes_on && !is_continued {
+            if is_continued {
+                self.statement.take(line);
+            } else if line.is_empty() {
                 continue;
-            }
-            let mut rest = body;
-            if !is_continued {
-                let end = if is_free { body.find(|c| !is_of_word(c)) } else { body.find(['/', ',']) };
-                let (word, behind) = body.split_at(end.unwrap_or(body.len()));
+            } else {
+                let body = line.trim_end_matches('$');
+                let end = if is_free { end } else { body.find(['/', ',']).unwrap_or(body.len()) };
+                let (word, behind) = body.split_at(end);
                 self.begin(word.trim_end());
-                rest = if is_free { "" } else { behind.trim_start_matches(['/', ',']) };
+                self.statement.take(if is_free { "" } else { behind.trim_start_matches(['/', ',']) });
             }
-            self.statement.take(rest);
-            if !goes_on {
+            if !line.ends_with('$') {
                 return Some(&self.statement);
             }
             is_continued = true;
@@ -161,14 +161,14 @@ impl<'a> Statements<'a> {
                 self.rows_below();
                 return true;
             }
-            self.statement.take(rest.trim_end_matches('$'));
+            self.statement.take(rest);
         }
         // A comment may end in a dollar sign: no move is lost to it.
         let is_move = |next: &str| without_label(next.trim()).starts_with("GOTO");
         while line.ends_with('$') && !line.ends_with("$$") && !self.lines.clone().next().is_none_or(is_move) {
             line = without_comment(self.next_line().unwrap_or_default());
             if known.is_some() {
-                self.statement.take(line.trim_end_matches('$'));
+                self.statement.take(line);
             }
         }
         known.is_some()
@@ -186,16 +186,6 @@ impl<'a> Statements<'a> {
             }
         }
     }
-
-    fn is_free_text(&self, text: &str) -> bool {
-        // Most statements are moves.
-        let word = &text[..text.find(|c| !is_of_word(c)).unwrap_or(text.len())];
-        word != "GOTO" && self.dialect.effect(word) == Some(Effect::Text)
-    }
-}
-
-fn is_of_word(c: char) -> bool {
-    c.is_ascii_alphanumeric() || c == '_'
 }
 
 fn without_comment(text: &str) -> &str {
@@ -213,7 +203,7 @@ mod tests {
     #[test]
     fn comments_continuations_and_free_text() {
         let text = "$$ a comment\n\nGOTO/1.,-.5, $ \n 3 $$ more\nRAPID\r\nRAPID/\nPPRINT a / b, 'c'\nTOOL PATH/A,TOOL,B\n  FINI";
-        let mut statements = Statements::new(Path::new("f"), Dialect::of(text, None), text);
+        let mut statements = Statements::new(Path::new("f"), Dialect::of(text, None), text, 1);
         let mut found = Vec::new();
         while let Some(one) = statements.next() {
             found.push((one.line, one.word.to_owned(), one.text()));

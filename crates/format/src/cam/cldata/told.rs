@@ -30,16 +30,12 @@ impl Dialect {
 
     /// The dialect of a format, or the one that a text is told to be of.
     pub fn of(text: &str, format: Option<CamFormat>) -> &'static Self {
-        if let Some(stated) = DIALECTS.iter().find(|dialect| Some(dialect.format) == format) {
-            return stated;
-        }
         // Most lines are moves, and no sign is one.
         let lines = text.lines().map(str::trim_start).filter(|line| !line.starts_with("GOTO")).map(without_label);
-        let found = lines.fold(DIALECTS.len() - 1, |found, line| {
-            let told = |dialect: &Dialect| dialect.told_by.iter().any(|sign| sign.is_in(line));
-            DIALECTS[..found].iter().position(told).unwrap_or(found)
-        });
-        &DIALECTS[found]
+        let lines: Vec<&str> = lines.collect();
+        let is_told = |dialect: &&Self| lines.iter().any(|line| dialect.told_by.iter().any(|sign| sign.is_in(line)));
+        let stated = DIALECTS.iter().find(|dialect| Some(dialect.format) == format);
+        stated.or_else(|| DIALECTS.iter().find(is_told)).unwrap_or(&DIALECTS[DIALECTS.len() - 1])
     }
 }
 

@@ -9,13 +9,11 @@ pub(super) fn tool_in(line: &str) -> Option<ProgramTool> {
     let start = line.find(['(', ';'])?;
     let comment = line[start + 1..].trim_end().trim_end_matches(')').trim();
     let text = comment.to_ascii_uppercase();
-    let diameter = number_after(&text, &["D=", "D =", "DIAMETER", "TOOL DIA", "DIA"])?;
-    let corner = number_after(&text, &["CR=", "CR =", "CORNER RADIUS", "CORNER RAD"]);
     Some(ProgramTool {
         description: shorten(comment),
         number: number_of(&text),
-        diameter: Some(diameter),
-        corner_radius: corner,
+        diameter: Some(number_after(&text, &["D=", "D =", "DIAMETER", "TOOL DIA", "DIA"])?),
+        corner_radius: number_after(&text, &["CR=", "CR =", "CORNER RADIUS", "CORNER RAD"]),
         ..ProgramTool::default()
     })
 }
@@ -31,22 +29,14 @@ pub(super) fn says_rapids_at_feed(line: &str) -> bool {
 /// The first number above 0 behind one of the words, which is no part of a longer one, with no more than signs between
 /// them.
 fn number_after(text: &str, words: &[&str]) -> Option<f64> {
-    words.iter().find_map(|word| {
-        let places =
-            text.match_indices(word).filter(|(at, _)| !text[..*at].ends_with(|c: char| c.is_ascii_alphabetic()));
-        let mut numbers = places.filter_map(|(at, _)| {
-            // Behind an abbreviation there may be a point: DIA. - 12.
-            let rest = text[at + word.len()..].trim_start_matches('.').trim_start_matches([' ', '=', ':', '-']);
-            leading_number(rest)
-        });
-        numbers.find(|number| *number > 0.0)
-    })
-}
-
-/// The number that a text begins with.
-fn leading_number(text: &str) -> Option<f64> {
-    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
-    text[..end].parse().ok().filter(|number: &f64| number.is_finite())
+    let mut numbers = words.iter().flat_map(|word| text.match_indices(word)).filter_map(|(at, word)| {
+        let is_whole = !text[..at].ends_with(|c: char| c.is_ascii_alphabetic());
+        // Behind an abbreviation there may be a point: DIA. - 12.
+        let rest = text[at + word.len()..].trim_start_matches('.').trim_start_matches([' ', '=', ':', '-']);
+        let number: f64 = rest.split(|c: char| !c.is_ascii_digit() && c != '.').next()?.parse().ok()?;
+        (is_whole && number > 0.0 && number.is_finite()).then_some(number)
+    });
+    numbers.next()
 }
 
 /// The number of the tool: `T1`, `TOOL - 1`, `TOOL 1`.
@@ -55,7 +45,7 @@ fn number_of(text: &str) -> Option<u32> {
         text.split(|c: char| !c.is_ascii_alphanumeric()).find_map(|word| word.strip_prefix('T')?.parse().ok());
     by_letter.or_else(|| {
         let rest = text[text.find("TOOL")? + 4..].trim_start_matches([' ', '-', '#', ':', '.']);
-        rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())].parse().ok()
+        rest.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
     })
 }
 

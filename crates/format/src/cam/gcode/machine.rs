@@ -4,7 +4,7 @@
 //! 841 has it for tables too. C turns the other one: the tool axis is Rz(C) Rx(A) z, or Rz(C) Ry(B) z.
 
 use super::super::word_of;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 /// Which rotary axes a machine has, and what they turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,20 +35,13 @@ impl Machine {
 
     /// Whether it has this rotary axis, 0 for A to 2 for C.
     pub(super) fn has(self, axis: usize) -> bool {
-        match self {
-            Self::TableAc | Self::HeadAc => axis != 1,
-            Self::TableBc | Self::HeadBc => axis != 0,
-        }
+        axis != usize::from(matches!(self, Self::TableAc | Self::HeadAc))
     }
 
     /// How the tool stands in the workpiece frame at angles of A, B and C (rad).
-    pub(in super::super) fn workpiece_from_tool(self, [a, b, c]: [f64; 3]) -> Matrix3<f64> {
-        let about = |axis, angle| *Rotation3::from_axis_angle(&axis, angle).matrix();
-        let tilt = match self {
-            Self::TableAc | Self::HeadAc => about(Vector3::x_axis(), a),
-            Self::TableBc | Self::HeadBc => about(Vector3::y_axis(), b),
-        };
-        about(Vector3::z_axis(), c) * tilt
+    pub(in super::super) fn workpiece_from_tool(self, [a, b, c]: [f64; 3]) -> Rotation3<f64> {
+        let (axis, angle) = if self.has(0) { (Vector3::x_axis(), a) } else { (Vector3::y_axis(), b) };
+        Rotation3::from_axis_angle(&Vector3::z_axis(), c) * Rotation3::from_axis_angle(&axis, angle)
     }
 
     /// The tool centre point in the workpiece frame, from what is programmed without tool centre point control. m

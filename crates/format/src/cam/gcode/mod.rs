@@ -45,9 +45,7 @@ fn blocks(file: &Path, text: &str, settings: &ReadSettings) -> Result<Program, I
     let mut reader = Reader::new(settings);
     let (mut words, mut last) = (Vec::new(), 1);
     for (line, number) in text.lines().zip(1..) {
-        if let Some(refused) = refused(file, line, number, |_| true) {
-            return Err(refused);
-        }
+        refused(file, line, number, |_| true).map_or(Ok(()), Err)?;
         if let Err(text) = block::words(line, &mut words) {
             let error = InputError::new(file, NOT_A_WORD.0).at_line(number);
             return Err(error.found(format!("'{}'", text.trim())).allowed(NOT_A_WORD.1));

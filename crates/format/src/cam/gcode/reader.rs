@@ -102,7 +102,15 @@ impl<'a> Reader<'a> {
             return Ok(true);
         }
         let codes = self.codes(block)?;
-        self.check_letters(block)?;
+        let in_cycle = self.modes.motion == Some(Motion::Cycle);
+        for (place, word) in block.words.iter().enumerate() {
+            let letter = word.0;
+            let is_known = LETTERS.contains(letter) || (in_cycle && "QL".contains(letter));
+            ensure!(is_known, block.fail(*word, ("a letter that is not known here", LETTERS)));
+            let is_twice = !"GMN".contains(letter) && block.words[..place].iter().any(|(before, _)| *before == letter);
+            ensure!(!is_twice, block.fail(*word, TWICE));
+            ensure!(letter != 'M' || !SUBPROGRAMS.contains(&word.1), block.fail(*word, SUBPROGRAM));
+        }
         self.course.is_after_change |= block.words.contains(&('M', 6.0));
         if let Some(feed) = block.get('F') {
             ensure!(feed > 0.0 && feed <= 1e7, block.fail(('F', feed), NOT_A_FEED));
@@ -122,19 +130,6 @@ impl<'a> Reader<'a> {
             }
         }
         Ok(![2.0, 30.0].iter().any(|end| block.words.contains(&('M', *end))))
-    }
-
-    fn check_letters(&self, block: &Block<'_>) -> Result<(), InputError> {
-        let in_cycle = self.modes.motion == Some(Motion::Cycle);
-        for (place, word) in block.words.iter().enumerate() {
-            let letter = word.0;
-            let is_known = LETTERS.contains(letter) || (in_cycle && "QL".contains(letter));
-            ensure!(is_known, block.fail(*word, ("a letter that is not known here", LETTERS)));
-            let is_twice = !"GMN".contains(letter) && block.words[..place].iter().any(|(before, _)| *before == letter);
-            ensure!(!is_twice, block.fail(*word, TWICE));
-            ensure!(letter != 'M' || !SUBPROGRAMS.contains(&word.1), block.fail(*word, SUBPROGRAM));
-        }
-        Ok(())
     }
 
     /// The program, when the file is at its end.
@@ -158,9 +153,8 @@ impl<'a> Reader<'a> {
             match code {
                 Code::Motion(motion) => {
                     motions += 1;
-                    let is_one = motions == 1 || modes.motion == Some(motion);
-                    ensure!(is_one, block.fail(*word, TWO_WAYS));
-                    modes.motion = Some(motion);
+                    let before = modes.motion.replace(motion);
+                    ensure!(motions == 1 || before == Some(motion), block.fail(*word, TWO_WAYS));
                 }
                 Code::Plane(normal) => modes.plane = normal,
                 Code::Unit(unit) => {
@@ -180,10 +174,9 @@ impl<'a> Reader<'a> {
                 }
                 Code::Cycle => {
                     ensure!(self.settings.skip_cycles, block.fail(*word, CANNED_CYCLE));
-                    if modes.motion != Some(Motion::Cycle) {
+                    if modes.motion.replace(Motion::Cycle) != Some(Motion::Cycle) {
                         modes.heights = [self.course.place[modes.plane], None];
                     }
-                    modes.motion = Some(Motion::Cycle);
                 }
                 Code::CycleEnd => modes.motion = modes.motion.filter(|motion| *motion != Motion::Cycle),
                 Code::ToPlane(is_to_plane) => modes.is_to_plane = is_to_plane,
@@ -201,7 +194,8 @@ impl<'a> Reader<'a> {
         match tilt {
             Tilt::Plane => {
                 ensure!(!block.has("PQ"), block.fail_at("PQ", TILTED_OTHERWISE));
-                let metres = self.unit(block, word)?.metres();
+                ensure!(self.modes.unit.is_some(), block.fail(word, NO_UNIT_BEFORE));
+                let metres = self.metres();
                 let [origin, angles] = ["XYZ", "IJK"].map(|letters| {
                     Vector3::from_iterator(letters.chars().map(|letter| block.get(letter).unwrap_or(0.0)))
                 });
@@ -212,7 +206,7 @@ impl<'a> Reader<'a> {
                 let rotation = turned(z, angles.x) * turned(x, angles.y) * turned(z, angles.z);
                 let note = "tilted work planes (G68.2): positions turned into the frame of the part";
                 self.course.program.note(note, line);
-                self.set_frame(Frame { rotation: rotation.into_inner(), origin: origin * metres }, "G68.2", line);
+                self.set_frame(Frame { rotation, origin: origin * metres }, "G68.2", line);
                 self.modes.is_tilted = true;
             }
             Tilt::Tool { is_about_tip } => {
@@ -237,7 +231,8 @@ impl<'a> Reader<'a> {
         self.course.forget([true; 3], code, line);
     }
 
-    fn unit(&self, block: &Block<'_>, word: Word) -> Result<LengthUnit, InputError> {
-        self.modes.unit.ok_or_else(|| block.fail(word, NO_UNIT_BEFORE))
+    /// The unit of length, 0 as long as it is not known. m
+    fn metres(&self) -> f64 {
+        self.modes.unit.map_or(0.0, LengthUnit::metres)
     }
 }

@@ -23,7 +23,7 @@ fn every_word_is_understood() {
     for feed in [30.0 * inch / 60.0, 0.1e-3 * 100.0, 0.005 * inch * 100.0] {
         assert!(feeds.iter().any(|own| (own - feed).abs() < 1e-12), "{feed} in {feeds:?}");
     }
-    let arc: Vec<&Move> = read.moves.iter().filter(|one| one.is_arc).collect();
+    let arc: Vec<&Move> = read.moves.iter().filter(|one| one.is_fixed).collect();
     near(arc[arc.len() - 1].position, [3.0, -1.0, 0.0]);
     assert!(arc.iter().all(|one| ((one.position / inch - Vector3::new(2.0, -1.0, 0.0)).norm() - 1.0).abs() < 1e-9));
     // Counter-clockwise in the frame of the file is by way of its lower right.
@@ -135,7 +135,7 @@ fn a_file_that_is_cut_short_is_read_and_said_to_be() {
 fn arc_of(circle: &str, goto: &str) -> Vec<Vector3<f64>> {
     let text = format!("UNITS/MM\nFEDRAT/600,MMPM\nGOTO/10,0,0\n{circle}\nGOTO/{goto}\nFINI\n");
     let read = program(&text, &settings()).unwrap_or_else(|e| panic!("{e}"));
-    read.moves.iter().filter(|one| one.is_arc).map(|one| one.position * 1e3).collect()
+    read.moves.iter().filter(|one| one.is_fixed).map(|one| one.position * 1e3).collect()
 }
 
 #[test]

@@ -123,7 +123,7 @@ fn points_of_creo_go_on_along_their_arc_and_helices_rise_up_to_a_turn() {
     for goto in ["GOTO/0,10,0\nFEDRAT/500,MMPM\nGOTO/-10,0,0", "GOTO/0,10,0\nGOTO/0,10,5\nGOTO/-10,0,5"] {
         let moves = program(&on(goto), &creo).unwrap().moves;
         let end = moves.iter().position(|one| one.position.x < -9.9e-3).unwrap();
-        assert!(!moves[end].is_arc, "{goto}");
+        assert!(!moves[end].is_fixed, "{goto}");
     }
     let turn = places(&on("GOTO/10,0,-3"), &creo);
     assert!(turn.len() > 30 && turn.iter().any(|place| place.x < -9.9 && (place.z + 1.5).abs() < 0.1));

@@ -1,12 +1,12 @@
 //! Arcs of CLDATA: a word with the circle, and the move behind it to the end.
 
 use super::super::super::Move;
-use super::super::super::arc::{Arc, MISSED, millimetres};
+use super::super::super::arc::{Arc, MISSED};
 use super::super::super::refusals::*;
 use super::super::dialect::ArcForm;
 use super::super::statement::Statement;
 use super::Reader;
-use nalgebra::Vector3;
+use nalgebra::{Unit, Vector3};
 use std::f64::consts::{PI, TAU};
 use stead_disk::input::InputError;
 
@@ -23,8 +23,6 @@ pub(super) struct Pending {
     angle: Option<f64>,
     /// Whether the sense of the turn is stated, not told from the axis.
     is_certain: bool,
-    /// What an arc that goes on rises in a turn of 1 rad. m
-    rise: f64,
 }
 
 /// The most turns of a helix.
@@ -39,7 +37,8 @@ impl Reader<'_> {
     pub(super) fn arc(&mut self, statement: &Statement<'_>, form: ArcForm) -> Result<(), InputError> {
         self.no_cycle_is_open(statement)?;
         let given = self.numbers(statement, &[], form.allowed)?;
-        let way = form.ways.iter().find(|way| way.count == given.len() && statement.has_just(way.words));
+        let way =
+            form.ways.iter().find(|way| way.count == given.len() && statement.worded().eq_ignore_ascii_case(way.words));
         let is_of_numbers = statement.words().next().is_none();
         let problem = if is_of_numbers { statement.counted() } else { WORDS_OF_ARC.to_owned() };
         let way = way.ok_or_else(|| statement.fail((problem, form.allowed)))?;
@@ -56,7 +55,7 @@ impl Reader<'_> {
         let angle = angle.map(f64::to_radians).filter(|angle| *angle > 0.0);
         let turns = turns.map(|turns| turns as u32);
         let is_certain = way.hand.is_none();
-        let mut pending = Pending { line, centre, axis, radius, turns, angle, is_certain, rise: 0.0 };
+        let mut pending = Pending { line, centre, axis, radius, turns, angle, is_certain };
         if is_certain {
             let tangent = self.state.tangent.take();
             let tangent = tangent.ok_or_else(|| statement.fail((NO_WAY_OUT, form.allowed)))?;
@@ -65,7 +64,7 @@ impl Reader<'_> {
             ensure!(is_along, statement.fail((NOT_ALONG, form.allowed)));
             let place = at(given.len() - 3) * unit;
             self.end_arc(statement, pending, self.end(statement, place))?;
-            self.course.place = [place.x, place.y, place.z].map(Some);
+            self.course.place = <[f64; 3]>::from(place).map(Some);
         } else {
             self.state.pending = Some(pending);
         }
@@ -79,66 +78,47 @@ impl Reader<'_> {
     }
 
     /// Goes along an arc to its end.
-    pub(super) fn end_arc(
-        &mut self,
-        statement: &Statement<'_>,
-        mut pending: Pending,
-        end: Move,
-    ) -> Result<(), InputError> {
+    pub(super) fn end_arc(&mut self, statement: &Statement<'_>, arc: Pending, end: Move) -> Result<(), InputError> {
         let start = self.start_of_arc(statement)?.position;
         ensure!(!end.is_rapid, statement.fail(RAPID_ARC));
-        let Pending { centre, axis, turns, angle, .. } = pending;
-        let mut arc = Arc { start, end: end.position, centre, axis, more_turns: 0 };
-        if let Some(found) = arc.radius() {
-            let (turn, stated) = (arc.turn(), pending.radius.unwrap_or(found));
-            let problem = || {
-                let [found, stated] = [found, stated].map(millimetres);
-                format!("the arc misses its start: radius {found}, stated {stated}")
-            };
-            ensure!((stated - found).abs() < MISSED, statement.fail((problem(), SAME_RADIUS)));
-            if let Some(turns) = turns {
-                let off = found * turn.min(TAU - turn);
-                let problem = || format!("a helix whose end is {} beside its start, along the turn", millimetres(off));
-                ensure!(off < MISSED, statement.fail((problem(), WHOLE_TURNS)));
-                arc.more_turns = if turn < PI { turns } else { turns - 1 };
-            }
-            if let Some(angle) = angle {
-                let rounding = ANGLE_ROUNDING.max(2.0 * MISSED / found.max(MISSED));
-                let fits = |turn: f64| (turn - angle).abs() < rounding;
-                let other = Arc { axis: -axis, ..arc };
-                pending.is_certain = fits(turn) != fits(other.turn());
-                if pending.is_certain && !fits(turn) {
-                    arc = other;
-                    self.course.program.note("arcs taken the way round that their angle fits", pending.line);
-                }
-                let problem = || {
-                    let [turn, angle] = [turn, angle].map(f64::to_degrees);
-                    format!("the arc turns by {turn:.3} deg to its end, and {angle:.3} are stated")
-                };
-                ensure!(fits(arc.turn()), statement.fail((problem(), SAME_ANGLE)));
-            }
-            let rise = arc.rise().abs();
-            let may_rise = turns.is_some() || self.dialect.arcs_go_on || rise < MISSED;
-            let problem = || format!("the arc misses its end, which is {} out of its plane", millimetres(rise));
-            ensure!(may_rise, statement.fail((problem(), IN_PLANE)));
+        let Pending { line, centre, radius, turns, angle, mut is_certain, .. } = arc;
+        let axis = Unit::try_new(arc.axis, 1e-9).ok_or_else(|| statement.fail(NO_AXIS_OF_ARC))?;
+        let written = Arc { start, end: end.position, centre, axis, more_turns: 0 };
+        let (mut arc, turn, found) = (written, written.turn(), written.distance(start));
+        let stated = radius.unwrap_or(found);
+        ensure!((stated - found).abs() < MISSED, statement.fail(misses_start([found, stated])));
+        if let Some(turns) = turns {
+            let off = found * turn.min(TAU - turn);
+            ensure!(off < MISSED, statement.fail(no_whole_turns(off)));
+            arc.more_turns = if turn < PI { turns } else { turns - 1 };
         }
-        let drawn = self.course.go_round(arc, end, pending.is_certain, pending.line);
-        drawn.map_err(|words| statement.fail(words))?;
-        if self.dialect.arcs_go_on {
-            pending.rise = arc.rise() / arc.turn();
-            self.state.circle = Some(pending);
+        if let Some(angle) = angle {
+            let rounding = ANGLE_ROUNDING.max(2.0 * MISSED / found.max(MISSED));
+            let fits = |turn: f64| (turn - angle).abs() < rounding;
+            let other = Arc { axis: -axis, ..arc };
+            is_certain = fits(turn) != fits(other.turn());
+            if is_certain && !fits(turn) {
+                arc = other;
+                self.course.program.note("arcs taken the way round that their angle fits", line);
+            }
+            ensure!(fits(arc.turn()), statement.fail(another_angle([turn, angle])));
         }
+        let rise = arc.rise();
+        let may_rise = turns.is_some() || self.dialect.arcs_go_on || rise.abs() < MISSED;
+        ensure!(may_rise, statement.fail(out_of_plane(rise.abs())));
+        self.course.go_round(arc, end, is_certain, line).map_err(|words| statement.fail(words))?;
+        self.state.circle = Some((written, rise / arc.turn())).filter(|_| self.dialect.arcs_go_on);
         Ok(())
     }
 
     /// The arc to a point on the circle of the arc before.
     pub(super) fn on_circle(&self, end: &Move) -> Option<Arc> {
-        let Pending { centre, axis, rise, .. } = *self.state.circle.as_ref().filter(|_| !end.is_rapid)?;
+        let (circle, rise) = self.state.circle.filter(|_| !end.is_rapid)?;
         let start = self.course.program.moves.last()?.position;
-        let arc = Arc { start, end: end.position, centre, axis, more_turns: 0 };
+        let arc = Arc { start, end: end.position, ..circle };
         let [from, to] = [start, end.position].map(|point| arc.distance(point));
         let off = (from - to).abs().max((arc.rise() - rise * arc.turn()).abs());
-        let has_moved = (end.position - start - axis.normalize() * arc.rise()).norm() > ON_CIRCLE;
+        let has_moved = (end.position - start - arc.axis.scale(arc.rise())).norm() > ON_CIRCLE;
         (off < ON_CIRCLE && has_moved).then_some(arc)
     }
 }

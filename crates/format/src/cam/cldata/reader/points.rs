@@ -5,7 +5,7 @@ use super::super::super::course::NO_LENGTH;
 use super::super::super::refusals::*;
 use super::super::dialect::{Ends, Three};
 use super::super::statement::Statement;
-use super::{FRAME_ROUNDING, Holes, Reader};
+use super::{FRAME_ROUNDING, Reader};
 use nalgebra::Vector3;
 use stead_disk::input::InputError;
 
@@ -19,10 +19,7 @@ impl Reader<'_> {
         let given = self.numbers(statement, &[], NUMBERS_OF_POINT)?;
         let is_on_arc = self.state.pending.is_some() || self.state.circle.is_some();
         let are_points = self.dialect.arcs_go_on && is_on_arc && given.len() > 3 && given.len().is_multiple_of(3);
-        let axis = match given[..] {
-            [_, _, _, i, j, k] => Some(Vector3::new(i, j, k)),
-            _ => None,
-        };
+        let axis = given.get(3..).filter(|axis| axis.len() == 3).map(Vector3::from_column_slice);
         let axis = axis.filter(|axis| !are_points || (axis.norm() - 1.0).abs() < FRAME_ROUNDING);
         let is_form = (axis.is_some() || given.len() == 3 || are_points) && statement.words().next().is_none();
         ensure!(is_form, statement.fail((statement.counted(), NUMBERS_OF_POINT)));
@@ -35,34 +32,30 @@ impl Reader<'_> {
                 }
                 self.course.axis = axis / length;
             }
-            None => self.stand_by_three(statement)?,
+            None => {
+                let is_tilted = (self.course.axis - Vector3::z()).norm() > NO_LENGTH;
+                let is_asked = self.dialect.three == Three::Asked && self.state.is_three_axis && is_tilted;
+                ensure!(!is_asked, statement.fail(THREE_ASKED));
+                if self.dialect.three == Three::Upright {
+                    self.course.axis = Vector3::z();
+                }
+            }
         }
         let places = if axis.is_some() { &given[..3] } else { &given[..] };
         let unit = self.unit.metres();
         places.chunks_exact(3).try_for_each(|place| self.to(statement, ends, Vector3::from_column_slice(place) * unit))
     }
 
-    /// The tool axis of a point with three numbers.
-    fn stand_by_three(&mut self, statement: &Statement<'_>) -> Result<(), InputError> {
-        let is_tilted = (self.course.axis - Vector3::z()).norm() > NO_LENGTH;
-        let is_asked = self.dialect.three == Three::Asked && self.state.is_three_axis && is_tilted;
-        ensure!(!is_asked, statement.fail(THREE_ASKED));
-        if self.dialect.three == Three::Upright {
-            self.course.axis = Vector3::z();
-        }
-        Ok(())
-    }
-
     /// The end of a move to a place in the frame (m).
     pub(super) fn end(&self, statement: &Statement<'_>, place: Vector3<f64>) -> Move {
         let frame = &self.course.frame;
         let (position, axis) = (frame.place(place), frame.rotation * self.course.axis);
-        Move { position, axis, feed: self.course.feed, is_rapid: false, is_arc: false, line: statement.line }
+        Move { position, axis, feed: self.course.feed, is_rapid: false, is_fixed: false, line: statement.line }
     }
 
     /// Moves to a place in the frame. m
     fn to(&mut self, statement: &Statement<'_>, ends: Ends, place: Vector3<f64>) -> Result<(), InputError> {
-        let known = [place.x, place.y, place.z].map(Some);
+        let known = <[f64; 3]>::from(place).map(Some);
         let mut end = self.end(statement, place);
         end.is_rapid = std::mem::take(&mut self.state.is_rapid) || ends != Ends::To;
         self.state.tangent = None;
@@ -84,7 +77,7 @@ impl Reader<'_> {
 
     /// A hole at a point.
     fn hole(&mut self, statement: &Statement<'_>, end: Move) -> Result<(), InputError> {
-        if let Some((Holes::Drilled(cycle), _)) = &self.state.holes {
+        if let Some((Some(cycle), _)) = &self.state.holes {
             let above = |height: f64| end.position + end.axis * (height * self.unit.metres());
             let own = cycle.feed.as_ref().map(|(value, word)| self.feed_in(statement, *value, word)).transpose()?;
             self.course.program.moves.extend([

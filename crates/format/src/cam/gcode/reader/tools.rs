@@ -1,6 +1,5 @@
 //! The tool in the spindle: how it is called, how it turns, and what comments say of it.
 
-use super::super::super::LengthUnit;
 use super::super::super::tool::ProgramTool;
 use super::super::block::Block;
 use super::Reader;
@@ -28,7 +27,7 @@ impl Reader<'_> {
 
     /// Gives the tools of the program what comments say of them.
     pub(super) fn describe_tools(&mut self) {
-        let metres = self.modes.unit.map_or(0.0, LengthUnit::metres);
+        let metres = self.metres();
         // A comment without a number is of the tool where there is but one.
         let is_one = self.course.program.tools.len() <= 1 && self.described.len() == 1;
         if self.course.program.tools_from.is_empty() {
@@ -39,8 +38,9 @@ impl Reader<'_> {
             let is_its = |known: &&ProgramTool| is_one && (known.number.is_none() || tool.number.is_none());
             let known = known.or_else(|| self.described.first().filter(is_its));
             if let Some(known) = known {
-                let number = tool.number;
-                *tool = ProgramTool { number, ..known.scaled(metres).turning_as(tool) };
+                let [diameter, corner_radius] =
+                    [known.diameter, known.corner_radius].map(|length| length.map(|length| length * metres));
+                *tool = ProgramTool { number: tool.number, diameter, corner_radius, ..known.clone().turning_as(tool) };
             } else if let Some(number) = tool.number {
                 tool.description = format!("T{number}");
             }
