@@ -127,7 +127,7 @@ impl Robot {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{kr270, odd_arms};
+    use super::super::testing::{irb4400, kr270, odd_arms};
     use super::super::{Frames, Joint};
     use super::*;
 
@@ -187,5 +187,28 @@ mod tests {
         let narrow = linked.with_joint_margin(0.1).unwrap();
         let [wide, narrow] = [&linked, &narrow].map(|arm| arm.sum_range().unwrap());
         assert!((narrow.min - wide.min - 0.1).abs() < 1e-15 && (wide.max - narrow.max - 0.1).abs() < 1e-15);
+    }
+
+    /// The two rows of ABB's IRB 8700: A3, which its controller counts against the horizontal, from -30 deg whatever A2,
+    /// and A3 - A2, the angle between the links, up to 67 deg (RobotComponents, issue 181).
+    #[test]
+    fn the_irb_8700_has_a_range_of_a3_and_one_of_a3_less_a2() {
+        let counted_so = irb4400();
+        let mut joints = counted_so.joints().clone();
+        // theta_3 = -180 deg - (A3 - A2), and theta_2 + theta_3 = -90 deg - A3; the other ends are wide.
+        (joints[2].min, joints[2].max) = ((-180.0_f64 - 67.0).to_radians(), -90_f64.to_radians());
+        let sum = Range { min: -200_f64.to_radians(), max: (-90.0_f64 + 30.0).to_radians() };
+        let arm = Robot::new("irb8700", joints).unwrap().with_axes_2_3(Some(Axes23 { linkage: true, sum })).unwrap();
+        let controller = counted_so.controller().unwrap();
+        // Whether angles of the controller in degrees are within the row of A3, and within that of A3 - A2.
+        let within = |a2: f64, a3: f64| {
+            let theta = controller.joints(&arm, &[0.0, a2.to_radians(), a3.to_radians(), 0.0, 0.0, 0.0]);
+            [arm.beyond_sum(&theta) < 1e-9, !arm.joints()[2].is_beyond(theta[2], 1e-9)]
+        };
+        for (a2, highest) in [(0.0, 67.0), (15.0, 82.0), (30.0, 97.0)] {
+            assert_eq!([within(a2, -30.0), within(a2, highest)], [[true; 2]; 2], "A2 = {a2}");
+            assert_eq!(within(a2, -30.1), [false, true], "A2 = {a2}");
+            assert_eq!(within(a2, highest + 0.1), [true, false], "A2 = {a2}");
+        }
     }
 }
