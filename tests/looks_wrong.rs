@@ -26,7 +26,7 @@ type Change = fn(&Bench);
 
 #[test]
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
-    let cases: [(Change, &str); 12] = [
+    let cases: [(Change, &str); 19] = [
         (
             |bench| {
                 bench.replace(ROBOT, "= 3.32", "= 332e3");
@@ -86,6 +86,54 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
             },
             "the cell is no wider than 0.640 mm in any direction",
         ),
+        (
+            |bench| {
+                bench.replace(RUN, "q4 = [-1.0, 1.0]", "yaw_deg = [-3.1416, 3.1416]");
+            },
+            "cell.yaw_deg[1] is -3.1416, which is -pi: is it in degrees?",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "[spindle]", "[spindle]\nmass_kg = 3000\ncentre_of_mass_mm = [0, 0, 200]");
+            },
+            "spindle.mass_kg is 3000 kg, where 0 to 2000 kg are usual: is it in kg?",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "[spindle]", "[spindle]\nmass_kg = 30\ncentre_of_mass_mm = [0, 0, 0.2]");
+            },
+            "spindle.centre_of_mass_mm is 0.200 mm from the flange, where 5.00 to 5000 mm",
+        ),
+        (
+            |bench| {
+                let soft = "[spindle]\ntip_um_per_n = [[90, 0, 0], [0, 90, 0], [0, 0, 90]]";
+                bench.replace(RUN, "[spindle]", soft);
+            },
+            "holder and tool yields by 90.0 um/N at the tool, more than ten times the ",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "max_beta_rate_deg_per_mm = ", "max_beta_rate_deg_per_mm = 0.009 # ");
+            },
+            "redundancy.max_beta_rate_deg_per_mm is 0.00900 deg/mm, where at least 0.0100 deg/mm is usual",
+        ),
+        (
+            |bench| {
+                let text = bench.read(TASK);
+                let tenth = |(number, line): (usize, &str)| match (number, line.rsplit_once(',')) {
+                    (10, Some((before, _))) => format!("{before},99999\n"),
+                    _ => format!("{line}\n"),
+                };
+                bench.write(TASK, &text.lines().enumerate().map(tenth).collect::<String>());
+            },
+            "the force at point 9 is ",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "[cell]", "[tool]\ncutter_diameter_mm = 0.4\n[cell]");
+            },
+            "tool.cutter_diameter_mm is 0.400 mm, where 0.500 to 500 mm are usual: is it in mm?",
+        ),
         (|_| (), ""),
     ];
     for (change, note) in cases {
@@ -102,6 +150,9 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
         } else {
             assert!(notes.iter().any(|found| found.contains(note)), "{note} in {notes:?}");
             ended.assert_says(&["note: ", note]);
+            let checked = bench.stead(&["check", RUN]);
+            assert_eq!(checked.code, Some(0), "{note}: {}", checked.stderr);
+            checked.assert_says(&["note: ", note]);
         }
     }
 }
