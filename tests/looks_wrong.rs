@@ -179,8 +179,10 @@ fn simulation_and_stability_note_it_too() {
     bench.copy_all(&[STEEL, TX200]);
     bench.replace(STEEL, "# [stability] ", "[stability]\nlobes_points = 2\n# ");
     bench.replace(TX200, "stiffness_mnm_per_rad = 2.03", "stiffness_mnm_per_rad = 2.03e-6");
+    bench.replace(STEEL, "kt_mpa = 3333.0", "kt_mpa = 33330.0");
     let ended = bench.stead(&["stability", STEEL, "--json"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: tool.kt_mpa is 33330 MPa, where 0 to 10000 MPa are usual"]);
     ended.assert_says(&["note: Staubli TX200: joint 1 with 2.03e-6 MN m/rad is a hundred times stiffer or softer"]);
     assert!(ended.json()["notes"][0].as_str().unwrap().contains("joint 1"));
 }
