@@ -106,10 +106,10 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
         ),
         (
             |bench| {
-                let soft = "[spindle]\ntip_um_per_n = [[90, 0, 0], [0, 90, 0], [0, 0, 90]]";
+                let soft = "[spindle]\ntip_um_per_n = [[400, 0, 0], [0, 400, 0], [0, 0, 400]]";
                 bench.replace(RUN, "[spindle]", soft);
             },
-            "holder and tool yields by 90.0 um/N at the tool, more than ten times the ",
+            "holder and tool yields by 400 um/N at the tool, more than ten times the ",
         ),
         (
             |bench| {

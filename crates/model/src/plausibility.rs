@@ -584,9 +584,9 @@ mod tests {
             softer_than_the_arm(&robot, &spindle, &task)
         };
         assert_eq!((noted(0.0), noted(1.0)), (Vec::new(), Vec::new()));
-        let notes = noted(80.0);
+        let notes = noted(400.0);
         assert!(
-            notes.len() == 1 && notes[0].starts_with("holder and tool yields by 80.0 um/N at the tool"),
+            notes.len() == 1 && notes[0].starts_with("holder and tool yields by 400 um/N at the tool"),
             "{notes:?}"
         );
         assert!(
@@ -595,13 +595,13 @@ mod tests {
         );
         let part = task
             .clone()
-            .with_part_compliances(vec![Matrix3::from_diagonal_element(80e-6); task.points().len()])
+            .with_part_compliances(vec![Matrix3::from_diagonal_element(400e-6); task.points().len()])
             .unwrap();
-        assert!(softer_than_the_arm(&robot, &mounted(), &part)[0].starts_with("the part yields by 80.0 um/N"));
-        let base = BaseCompliance::new(Vector3::zeros(), Matrix6::from_diagonal_element(80e-6)).unwrap();
+        assert!(softer_than_the_arm(&robot, &mounted(), &part)[0].starts_with("the part yields by 400 um/N"));
+        let base = BaseCompliance::new(Vector3::zeros(), Matrix6::from_diagonal_element(400e-6)).unwrap();
         let notes = softer_than_the_arm(&robot.clone().with_base_compliance(Some(base)), &mounted(), &five_segments());
         assert!(notes.len() == 1 && notes[0].starts_with("what carries the robot yields by "), "{notes:?}");
-        let spindle = mounted().with_mount(Matrix6::from_diagonal_element(80e-6)).unwrap();
+        let spindle = mounted().with_mount(Matrix6::from_diagonal_element(400e-6)).unwrap();
         assert!(softer_than_the_arm(&robot, &spindle, &five_segments())[0].starts_with("the mount of the spindle"));
     }
 

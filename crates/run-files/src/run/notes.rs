@@ -178,7 +178,7 @@ mod tests {
         let carried = "[spindle]\nmass_kg = 3000\ncentre_of_mass_mm = [0, 0, 0.2]\n";
         noted(&[("run.toml", "[spindle]\n", carried)], "spindle.mass_kg is 3000 kg, where 0 to 2000 kg are usual");
         noted(&[("run.toml", "[spindle]\n", carried)], "spindle.centre_of_mass_mm is 0.200 mm from the flange");
-        let soft = "[spindle]\ntip_um_per_n = [[90, 0, 0], [0, 90, 0], [0, 0, 90]]\n";
-        noted(&[("run.toml", "[spindle]\n", soft)], "holder and tool yields by 90.0 um/N at the tool");
+        let soft = "[spindle]\ntip_um_per_n = [[400, 0, 0], [0, 400, 0], [0, 0, 400]]\n";
+        noted(&[("run.toml", "[spindle]\n", soft)], "holder and tool yields by 400 um/N at the tool");
     }
 }
