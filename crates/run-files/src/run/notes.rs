@@ -146,7 +146,10 @@ mod tests {
     fn angles_in_radians_are_noted_in_run_and_robot_file() {
         let rotation = "rotation = [[0, -0.70710678, 0.70710678], [1, 0, 0], [0, 0.70710678, 0.70710678]]";
         noted(&[("run.toml", rotation, "abc_deg = [0, 1.5708, 0]")], "spindle.abc_deg[2] is 1.5708, which is pi/2");
-        noted(&[("run.toml", "z_mm", "yaw_deg = [-3.14, 3.14]\nz_mm")], "cell.yaw_deg[1] is -3.14, which is -pi");
+        noted(
+            &[("run.toml", "z_mm = [-500", "yaw_deg = [-3.14, 3.14]\nz_mm = [-500")],
+            "cell.yaw_deg[1] is -3.14, which is -pi",
+        );
         let home = std::fs::read_to_string(folder().path().join("arm.toml")).unwrap();
         let limit = home.lines().find(|line| line.starts_with("max_deg = ")).unwrap();
         noted(&[("arm.toml", limit, "max_deg = 6.2832")], "robot.joints[1].max_deg is 6.2832, which is 2 pi");
