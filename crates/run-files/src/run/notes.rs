@@ -132,6 +132,21 @@ mod tests {
     }
 
     #[test]
+    fn what_is_shipped_looks_right() {
+        let files = std::fs::read_dir(stead_format::testing::root().join("configs")).unwrap();
+        let files = files.map(|file| file.unwrap().path()).filter(|file| file.extension().is_some_and(|e| e == "toml"));
+        let mut count = 0;
+        for file in files.filter(|file| std::fs::read_to_string(file).unwrap().contains("\n[redundancy]")) {
+            let Run { notes, .. } = crate::read_run(&file).unwrap();
+            let parts = ["usual", "ten times", "is it in degrees", "points back to the flange", "the force at point"];
+            let odd: Vec<&String> = notes.iter().filter(|note| parts.iter().any(|part| note.contains(part))).collect();
+            assert!(odd.is_empty(), "{}: {odd:?}", file.display());
+            count += 1;
+        }
+        assert!(count > 8, "{count}");
+    }
+
+    #[test]
     fn a_slip_of_a_force_column_is_noted_with_its_point() {
         let rows = "1,20,0,0,1,0,0,0,0,1,10,20,0\n1,30,0,0,1,0,0,0,0,1,10,2000,0\n1,40,0,0,1,0,0,0,0,1,10,20,0\n";
         let last = "1,10,0,0,1,0,0,0,0,1,10,20,0\n";
