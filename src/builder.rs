@@ -92,6 +92,7 @@ impl PlaceOptions {
         {
             return Err(refused("search.tables", "Always", format!("Auto or Never: there can be none, {unsuited}")));
         }
+        self.search.check_for(problem).map_err(|unfit| Error::Argument(format!("search of PlaceOptions: {unfit}")))?;
         if self.search.postures == PostureSearch::Genetic && !problem.postures.may_change {
             return Err(refused("search.postures", "Genetic", "Exact, where postures may not change"));
         }

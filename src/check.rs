@@ -6,7 +6,7 @@ use crate::robot::Arm;
 use crate::{Error, Monitor, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use stead_format::robot::says_stiffness;
+use stead_format::robot::{robot_radians, says_stiffness};
 use stead_placement::overview::Overview;
 use stead_report::check::{CheckedRun, robot_json, robot_lines, run_json, run_text};
 use stead_report::picture::{arm_alone, arm_of_run};
@@ -48,7 +48,7 @@ impl Checked {
         match says_stiffness(file)? {
             Some(has_stiffness) => {
                 let arm = Arm::read(file)?;
-                Ok(Self::of_arm(&arm, has_stiffness))
+                Ok(Self::of_arm(&arm, has_stiffness, robot_radians(file)?))
             }
             None => {
                 let run = Run::read_with(file, Vec::new(), monitor)?;
@@ -57,9 +57,10 @@ impl Checked {
         }
     }
 
-    fn of_arm(arm: &Arm, has_stiffness: bool) -> Self {
+    /// With what is to be said of the file beside what is said of its arm.
+    fn of_arm(arm: &Arm, has_stiffness: bool, of_file: Vec<String>) -> Self {
         let robot = arm.robot();
-        let notes = stead_model::plausibility::arm(robot);
+        let notes: Vec<String> = of_file.into_iter().chain(stead_model::plausibility::arm(robot)).collect();
         Self {
             text: robot_lines(robot, Some(has_stiffness)),
             document: robot_json(robot, has_stiffness, &notes, arm.inputs()),

@@ -107,10 +107,16 @@ impl Run {
 
     /// The same run with the basins of the best placement refined once more where scores have to cover force errors of
     /// a relative size, to see how far the optimum moves.
-    #[must_use]
-    pub fn with_sensitivity(mut self, force_error: f64) -> Self {
-        Arc::make_mut(&mut self.run).search.sensitivity = Some(force_error);
-        self
+    ///
+    /// # Errors
+    /// [`Error::Argument`] where the problem has none ([`SearchSettings::check_for`]).
+    ///
+    /// [`SearchSettings::check_for`]: stead_placement::settings::SearchSettings::check_for
+    pub fn with_sensitivity(mut self, force_error: f64) -> Result<Self, Error> {
+        let run = Arc::make_mut(&mut self.run);
+        run.search.sensitivity = Some(force_error);
+        run.search.check_for(&run.problem).map_err(|unfit| Error::Argument(format!("--sensitivity: {unfit}")))?;
+        Ok(self)
     }
 
     /// The same run with the part in one of its orientations, by name.

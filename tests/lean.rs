@@ -32,6 +32,14 @@ fn objective(document: &Value) -> f64 {
 }
 
 #[test]
+fn a_sensitivity_to_force_errors_is_refused_where_the_tool_leans() {
+    let ended = bench().stead(&["place", RUN, "--sensitivity"]);
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{}", ended.stderr);
+    assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
+    ended.assert_says(&["error: --sensitivity: how far force errors move", "[lean]", "; allowed: "]);
+}
+
+#[test]
 fn a_tool_that_may_lean_deflects_less_and_the_judge_agrees() {
     let bench = bench();
     ok(&bench, &["place", RUN, "--no-page", "--out", "leaned"]);

@@ -26,7 +26,7 @@ type Change = fn(&Bench);
 
 #[test]
 fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
-    let cases: [(Change, &str); 12] = [
+    let cases: [(Change, &str); 19] = [
         (
             |bench| {
                 bench.replace(ROBOT, "= 3.32", "= 332e3");
@@ -86,6 +86,54 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
             },
             "the cell is no wider than 0.640 mm in any direction",
         ),
+        (
+            |bench| {
+                bench.replace(RUN, "q4 = [-1.0, 1.0]", "yaw_deg = [-3.1416, 3.1416]");
+            },
+            "cell.yaw_deg[1] is -3.1416, which is -pi: is it in degrees?",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "[spindle]", "[spindle]\nmass_kg = 3000\ncentre_of_mass_mm = [0, 0, 200]");
+            },
+            "spindle.mass_kg is 3000 kg, where 0 to 2000 kg are usual: is it in kg?",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "[spindle]", "[spindle]\nmass_kg = 30\ncentre_of_mass_mm = [0, 0, 0.2]");
+            },
+            "spindle.centre_of_mass_mm is 0.200 mm from the flange, where 5.00 to 5000 mm",
+        ),
+        (
+            |bench| {
+                let soft = "[spindle]\ntip_um_per_n = [[400, 0, 0], [0, 400, 0], [0, 0, 400]]";
+                bench.replace(RUN, "[spindle]", soft);
+            },
+            "holder and tool yields by 400 um/N at the tool, more than ten times the ",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "max_beta_rate_deg_per_mm = ", "max_beta_rate_deg_per_mm = 0.009 # ");
+            },
+            "redundancy.max_beta_rate_deg_per_mm is 0.00900 deg/mm, where at least 0.0100 deg/mm is usual",
+        ),
+        (
+            |bench| {
+                let text = bench.read(TASK);
+                let tenth = |(number, line): (usize, &str)| match (number, line.rsplit_once(',')) {
+                    (10, Some((before, _))) => format!("{before},99999\n"),
+                    _ => format!("{line}\n"),
+                };
+                bench.write(TASK, &text.lines().enumerate().map(tenth).collect::<String>());
+            },
+            "the force at point 9 is ",
+        ),
+        (
+            |bench| {
+                bench.replace(RUN, "[cell]", "[tool]\ncutter_diameter_mm = 0.4\n[cell]");
+            },
+            "tool.cutter_diameter_mm is 0.400 mm, where 0.500 to 500 mm are usual: is it in mm?",
+        ),
         (|_| (), ""),
     ];
     for (change, note) in cases {
@@ -102,6 +150,9 @@ fn inputs_that_look_wrong_are_noted_and_computed_all_the_same() {
         } else {
             assert!(notes.iter().any(|found| found.contains(note)), "{note} in {notes:?}");
             ended.assert_says(&["note: ", note]);
+            let checked = bench.stead(&["check", RUN]);
+            assert_eq!(checked.code, Some(0), "{note}: {}", checked.stderr);
+            checked.assert_says(&["note: ", note]);
         }
     }
 }
@@ -128,8 +179,10 @@ fn simulation_and_stability_note_it_too() {
     bench.copy_all(&[STEEL, TX200]);
     bench.replace(STEEL, "# [stability] ", "[stability]\nlobes_points = 2\n# ");
     bench.replace(TX200, "stiffness_mnm_per_rad = 2.03", "stiffness_mnm_per_rad = 2.03e-6");
+    bench.replace(STEEL, "kt_mpa = 3333.0", "kt_mpa = 33330.0");
     let ended = bench.stead(&["stability", STEEL, "--json"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: tool.kt_mpa is 33330 MPa, where 0 to 10000 MPa are usual"]);
     ended.assert_says(&["note: Staubli TX200: joint 1 with 2.03e-6 MN m/rad is a hundred times stiffer or softer"]);
     assert!(ended.json()["notes"][0].as_str().unwrap().contains("joint 1"));
 }

@@ -18,6 +18,7 @@ const LEFT_OUT: &[(&str, &str)] = &[
     ("run:reference.case_mm", "figures beside the results"),
     ("run:reference.source", "figures beside the results"),
     ("run:search.memory_gb", "changes no result"),
+    ("run:stiffness_like", "of a robot file without stiffness, which no run here has"),
     ("run:cut.engagement", "of assessments"),
     ("run:cut.open_width_mm", "of assessments"),
     ("run:tool.entering_angle_deg", "of assessments"),

@@ -5,8 +5,9 @@ use crate::study::{STUDY, bench, run};
 #[test]
 fn a_study_of_arms_with_borrowed_stiffness_does_not_rank_their_stiffness() {
     let bench = bench();
-    let text = bench.read(crate::common::RUN);
-    bench.write(crate::common::RUN, &format!("stiffness_like = \"KUKA KR500\"\n{text}"));
+    let robot = "configs/robots/kuka-kr270-2.toml";
+    let text = bench.read(robot);
+    bench.write(robot, &format!("stiffness_like = \"KUKA KR500\"\n{text}"));
     run(&bench, "out", &[]);
     let ended = bench.stead(&["study", "report", STUDY, "--out", "out"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
@@ -16,7 +17,7 @@ fn a_study_of_arms_with_borrowed_stiffness_does_not_rank_their_stiffness() {
             assert!(text.contains(part), "{part} in {text}");
         }
     }
-    bench.replace(crate::common::RUN, "stiffness_like = \"KUKA KR500\"", "stiffness_like = ' '");
+    bench.replace(robot, "stiffness_like = \"KUKA KR500\"", "stiffness_like = ' '");
     let wrong = bench.stead(&["check", crate::common::RUN]);
     assert_eq!(wrong.code, Some(2));
     wrong.assert_says(&["stiffness_like: is blank", "; allowed: "]);

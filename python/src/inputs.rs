@@ -73,7 +73,7 @@ impl Run {
             let run = stead::Run::read_with(&file, values, monitor)?;
             let run = if let Some(gap) = gap { run.with_certificate(gap) } else { run };
             let run = if let Some(seed) = seed { run.with_seed(seed) } else { run };
-            Ok(if sensitivity { run.with_sensitivity(stead::Run::FORCE_ERROR) } else { run })
+            if sensitivity { run.with_sensitivity(stead::Run::FORCE_ERROR) } else { Ok(run) }
         };
         let (result, was_stopped) = run_stoppable(py, &options, read)?;
         read_or_stopped(py, result.map(Self), was_stopped)
@@ -88,8 +88,8 @@ impl Run {
         Self(self.0.clone().with_seed(seed))
     }
 
-    fn with_sensitivity(&self, force_error: f64) -> Self {
-        Self(self.0.clone().with_sensitivity(force_error))
+    fn with_sensitivity(&self, py: Python<'_>, force_error: f64) -> PyResult<Self> {
+        self.0.clone().with_sensitivity(force_error).map(Self).map_err(|error| raised(py, error))
     }
 
     fn without_worst(&self) -> Self {

@@ -102,7 +102,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         run = run.with_seed(seed);
     }
     if options.sensitivity {
-        run = run.with_sensitivity(Run::FORCE_ERROR);
+        run = run.with_sensitivity(Run::FORCE_ERROR)?;
     }
     if options.no_worst {
         run = run.without_worst();

@@ -1,8 +1,10 @@
 //! A place in a TOML file where a value is, or would be: what errors are located by.
 
+use crate::deserialize::number;
 use crate::quantity::Expects;
 use crate::toml_file::TomlFile;
 use stead_disk::input::InputError;
+use stead_model::plausibility;
 use toml::Spanned;
 use toml::de::DeValue;
 
@@ -80,6 +82,28 @@ impl<'a> Place<'a> {
         value.ok_or_else(|| self.key(key).missing(T::expected()))
     }
 
+    /// Numbers here, and in what is here, whose keys say that they are in degrees and that look like radians: in
+    /// sentences, with `prefix` before their keys.
+    pub fn radians(&self, prefix: &str) -> Vec<String> {
+        let mut notes = Vec::new();
+        self.find_radians(prefix, false, &mut notes);
+        notes
+    }
+
+    fn find_radians(&self, prefix: &str, is_angle: bool, notes: &mut Vec<String>) {
+        let Some(value) = self.value.map(Spanned::get_ref) else { return };
+        if let Some(array) = value.as_array() {
+            (1..=array.len()).for_each(|number| self.element(number).find_radians(prefix, is_angle, notes));
+        } else if let Some(table) = value.as_table() {
+            for (key, _) in table {
+                let name: &str = key.get_ref();
+                self.key(name).find_radians(prefix, name.ends_with("_deg"), notes);
+            }
+        } else if let Some(degrees) = number(value).filter(|_| is_angle) {
+            notes.extend(plausibility::angle(&format!("{prefix}{}", self.path), degrees));
+        }
+    }
+
     /// An error about a number that is here, but not among those that the rest of the file allows.
     pub fn out_of_range(&self, allowed: impl Into<String>) -> InputError {
         self.error("is out of range", allowed)
@@ -94,3 +118,26 @@ macro_rules! required {
     };
 }
 pub use crate::required;
+
+#[cfg(test)]
+mod tests {
+    use crate::toml_file::TomlFile;
+
+    #[test]
+    fn angles_that_look_like_radians_are_found_wherever_they_stand() {
+        let text = "a_deg = 1.5708\nb_mm = 3.14\nc_deg = [0, 90]\nd_deg_per_mm = 3.14\n[cell]\nyaw_deg = [-3.14, 3]\n\
+                    [[shape]]\nabc_deg = [0, 180, 6.283]\n[joints]\nwidth_deg = [[3.1416]]\n";
+        let file = TomlFile::new("a.toml".as_ref(), text.as_bytes().to_vec()).unwrap();
+        let document = file.parse().unwrap();
+        let mut notes = document.root().radians("robot.");
+        notes.sort();
+        let starts = [
+            "robot.a_deg is 1.5708, which is pi/2: ",
+            "robot.cell.yaw_deg[1] is -3.14, which is -pi: ",
+            "robot.joints.width_deg[1][1] is 3.1416",
+            "robot.shape[1].abc_deg[3] is 6.283, which is 2 pi: ",
+        ];
+        assert_eq!(notes.len(), starts.len(), "{notes:?}");
+        assert!(notes.iter().zip(starts).all(|(note, start)| note.starts_with(start)), "{notes:?}");
+    }
+}

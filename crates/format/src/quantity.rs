@@ -64,6 +64,8 @@ pub trait Unit: Copy + Debug + PartialEq + 'static {
 pub trait Range: Copy + Debug + PartialEq + 'static {
     /// Its ends.
     const ENDS: (Bound<f64>, Bound<f64>);
+    /// What is said behind them of one number.
+    const EXAMPLE: &'static str = "";
 }
 
 /// A finite number of a file in a unit and a range, and no larger than any machine has it.
@@ -133,7 +135,7 @@ fn in_words_up_to(ends: (Bound<f64>, Bound<f64>), limit: f64, is_one: bool) -> S
 
 impl<U: Unit, R: Range> Expects for Quantity<U, R> {
     fn expected() -> String {
-        in_words_up_to(R::ENDS, U::LARGEST, true)
+        in_words_up_to(R::ENDS, U::LARGEST, true) + R::EXAMPLE
     }
 
     fn expected_of_each() -> String {

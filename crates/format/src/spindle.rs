@@ -7,11 +7,17 @@ use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
 use crate::toml_file::TomlFile;
 use crate::units::{Deg, Kg, Mm, Positive};
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use stead_disk::input::InputError;
 use stead_model::robot::{Pose, Spindle};
+use stead_numerics::rotation::rotation_from_zyx;
+
+/// A tool whose axis is within 60 deg of the direction from the flange to its centre point points away from the flange:
+/// the cosine.
+const ALONG: f64 = 0.5;
 
 /// The tool frame in the flange frame, and the body that the flange carries. The tool frame has its origin at the tool
 /// centre point and its z axis along the tool, out of the spindle to the work.
@@ -67,8 +73,16 @@ impl SpindleTable {
     /// # Errors
     /// [`InputError`] with file, line and field: a matrix that is no rotation, a body that cannot be.
     pub fn spindle(&self, at: &Place<'_>) -> Result<Spindle, InputError> {
-        let flange_from_tool =
-            Pose { rotation: orientation_keys!(self).rotation(at)?, translation: self.xyz_mm.vector() };
+        let keys = orientation_keys!(self);
+        let rotation = keys.rotation(at).map_err(|error| match keys.is_given() {
+            true => error,
+            false => {
+                let allowed = error.allowed.as_deref().unwrap_or_default();
+                let allowed = format!("{allowed}; the guide's page `conventions` shows the tool frame");
+                InputError { allowed: Some(allowed.into()), ..error }
+            }
+        })?;
+        let flange_from_tool = Pose { rotation, translation: self.xyz_mm.vector() };
         let mut spindle = Spindle::rigid(flange_from_tool);
         let matrix = |rows| wrench_matrix(rows, &at.key("mount_matrix"));
         spindle.mount = self.mount_matrix.as_ref().map(matrix).transpose()?;
@@ -80,6 +94,26 @@ impl SpindleTable {
             spindle.point_mass = Some(point_mass_from(self.mass_kg, self.centre_of_mass_mm, at)?);
         }
         Ok(spindle)
+    }
+
+    /// Where the tool points from its centre point back to the flange, the key by whose order its angles, or the same
+    /// numbers from the last to the first, would agree with where that point is.
+    pub fn order_note(&self) -> Option<String> {
+        let place = self.xyz_mm.vector().try_normalize(0.0)?;
+        let out = |rotation: Matrix3<f64>| rotation.column(2).dot(&place);
+        let (key, angles) = [("abc_deg", self.abc_deg), ("wpr_deg", self.wpr_deg), ("rpy_deg", self.rpy_deg)]
+            .into_iter()
+            .find_map(|(key, angles)| Some((key, angles?.si())))?;
+        let [first, second, third] = angles;
+        let [stated, other] = [[first, second, third], [third, second, first]].map(rotation_from_zyx);
+        let (stated, other, known) =
+            if key == "abc_deg" { (stated, other, "wpr_deg or rpy_deg") } else { (other, stated, "abc_deg") };
+        (out(stated) < 0.0 && out(other) > ALONG).then(|| {
+            format!(
+                "spindle.{key}: the tool points back to the flange with these angles, and away from it with the same numbers as \
+                 {known}: that order agrees with spindle.xyz_mm"
+            )
+        })
     }
 
     /// The same where motion is computed: what the flange carries has to be known.
@@ -95,5 +129,40 @@ impl SpindleTable {
             return Err(at.key(key).error(what, allowed));
         }
         Ok(spindle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(table: &str) -> Result<Option<String>, InputError> {
+        let text = format!("[spindle]\nxyz_mm = [-30, 0, 350]\n{table}\n");
+        let file = TomlFile::new("run.toml".as_ref(), text.into_bytes())?;
+        let document = file.parse()?;
+        let at = document.root().key("spindle");
+        let table: SpindleTable = at.read()?;
+        table.spindle(&at)?;
+        Ok(table.order_note())
+    }
+
+    #[test]
+    fn angles_in_another_order_are_noted_with_the_order_that_agrees() {
+        // Rz(180) lets the tool point out, Rx(180) back.
+        let note = read("wpr_deg = [180, 0, 0]").unwrap().unwrap();
+        assert!(note.starts_with("spindle.wpr_deg: ") && note.contains("same numbers as abc_deg"), "{note}");
+        let note = read("abc_deg = [0, 0, 170]").unwrap().unwrap();
+        assert!(note.contains("same numbers as wpr_deg or rpy_deg"), "{note}");
+        for right in ["abc_deg = [180, 0, 0]", "rpy_deg = [0, 0, 180]", "abc_deg = [0, 180, 0]", "abc_deg = [0, 90, 0]"]
+        {
+            assert_eq!(read(right).unwrap(), None, "{right}");
+        }
+    }
+
+    #[test]
+    fn a_spindle_without_orientation_is_refused_with_the_page_that_shows_how() {
+        let message = read("").unwrap_err().to_string();
+        assert!(message.contains("spindle.rotation: is missing; allowed: exactly one of "), "{message}");
+        assert!(message.ends_with("the guide's page `conventions` shows the tool frame"), "{message}");
     }
 }

@@ -17,6 +17,7 @@ use std::ops::Bound::{Excluded, Included};
 use stead_cell::tool_scene::{Cylinder, ToolBody};
 use stead_disk::input::InputError;
 use stead_model::cutting::{MillingDirection, Rotation, Side};
+use stead_model::plausibility;
 
 /// Speeds beyond this are those of no spindle. rpm
 pub const MAX_SPINDLE_SPEED_RPM: f64 = 1e6;
@@ -115,6 +116,25 @@ pub struct CutTable {
 }
 
 impl ToolTable {
+    /// Diameter and coefficients as they are stated, by their keys.
+    pub fn numbers(&self) -> Vec<(&'static str, f64)> {
+        let stated = [
+            ("tool.cutter_diameter_mm", Some(self.cutter_diameter_mm.written())),
+            ("tool.kt_mpa", self.kt_mpa.map(Quantity::written)),
+            ("tool.kr", self.kr.map(Quantity::written)),
+            ("tool.kr_mpa", self.kr_mpa.map(Quantity::written)),
+            ("tool.ka_mpa", self.ka_mpa.map(Quantity::written)),
+            ("tool.kte_n_per_mm", self.kte_n_per_mm.map(Quantity::written)),
+            ("tool.kre_n_per_mm", self.kre_n_per_mm.map(Quantity::written)),
+        ];
+        stated.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+    }
+
+    /// What looks wrong in its numbers, in sentences.
+    pub fn notes(&self) -> Vec<String> {
+        plausibility::cut(self.cutter_diameter_mm.written(), &self.numbers())
+    }
+
     /// The cylinders that cutter, shank and holder fill.
     pub fn body(&self) -> ToolBody {
         let flutes = self.flute_length_mm.map_or(0.0, Quantity::si);
@@ -182,6 +202,18 @@ impl<'a> Cutting<'a> {
             (Some(_), None) => Err(at.key("cut").missing("a table [cut] beside [tool]")),
             (None, Some(_)) => Err(at.key("tool").missing("a table [tool] beside [cut]")),
         }
+    }
+
+    /// What looks wrong in their numbers, in sentences.
+    pub fn notes(&self) -> Vec<String> {
+        let stated = [
+            ("cut.spindle_rpm", self.cut.spindle_rpm.map(Quantity::written)),
+            ("feed per tooth", self.cut.feed_per_tooth_mm.map(Quantity::written)),
+            ("cut.axial_depth_mm", self.cut.axial_depth_mm.map(Quantity::written)),
+        ];
+        let of_cut = stated.into_iter().filter_map(|(key, value)| Some((key, value?)));
+        let numbers: Vec<_> = self.tool.numbers().into_iter().chain(of_cut).collect();
+        plausibility::cut(self.tool.cutter_diameter_mm.written(), &numbers)
     }
 
     /// The tables where they are needed.

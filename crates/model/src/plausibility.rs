@@ -1,8 +1,11 @@
 //! What is possible but looks like a wrong unit or sign, in sentences: said beside a result, never refused.
 
-use crate::robot::{Robot, Spindle, SpringModel};
+use crate::robot::{Frames, NormalSprings, Robot, Spindle, SpringModel};
+use crate::stiffness::Displacement;
+use crate::stiffness::whole::{ByOrigin, WholeArm};
 use crate::task::{Task, ToolPath};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use stead_numerics::digits::figures;
 
 /// The softest and the stiffest joint of any published arm: joints 4 to 6 of small ones, joint 2 of the largest. N
@@ -45,6 +48,7 @@ pub fn arm(robot: &Robot) -> Vec<String> {
         .chain(joint_ranges(robot))
         .chain(borrowed)
         .chain(axial_part(robot))
+        .chain(bearings(robot))
         .chain(unverified)
         .collect()
 }
@@ -267,7 +271,7 @@ pub fn deflection(largest: f64) -> Option<String> {
     })
 }
 
-/// What is usual of a number of a cut: between two numbers, or so many diameters of the cutter.
+/// What is usual of a number: between two numbers, or so many diameters of the cutter.
 struct Usual {
     key: &'static str,
     unit: &'static str,
@@ -284,42 +288,198 @@ const fn of_diameter(key: &'static str, most: f64, question: &'static str) -> Us
     Usual { key, unit: "mm", range: [0.0, most], is_of_diameter: true, question }
 }
 
-/// What is usual of a cut.
-const CUTS: &[Usual] = &[
+/// Keys of the table that are used here.
+const CENTRE: &str = "spindle.centre_of_mass_mm";
+const SAG: &str = "the sag of the tool by the weight of links and spindle";
+const BEARING: &str = "bearing_mm";
+
+/// What is usual of a run and of its cut.
+const USUAL: &[Usual] = &[
     usual("tool.cutter_diameter_mm", "mm", [0.5, 500.0], "is it in mm?"),
     usual("tool.kt_mpa", "MPa", [0.0, 1e4], "is it in MPa, which are N/mm2?"),
-    usual("tool.kr_mpa", "MPa", [0.0, 1e4], "is it in MPa, or kr above the ratio of K_r to K_t?"),
+    usual("tool.kr", "times kt_mpa", [0.0, 5.0], "is it the ratio of K_r to K_t, and no coefficient in MPa?"),
+    usual("tool.kr_mpa", "MPa", [-1e4, 1e4], "is it in MPa, which are N/mm2?"),
+    usual("tool.ka_mpa", "MPa", [-1e4, 1e4], "is it in MPa, which are N/mm2?"),
     usual("tool.kte_n_per_mm", "N/mm", [0.0, 500.0], "is it in N for each mm of edge?"),
     usual("tool.kre_n_per_mm", "N/mm", [0.0, 500.0], "is it in N for each mm of edge?"),
     usual("cut.spindle_rpm", "1/min", [100.0, 2e5], "is it in turns per minute?"),
     of_diameter("feed per tooth", 1.0 / 20.0, "are feed, speed and teeth in their units?"),
+    of_diameter("cut.axial_depth_mm", 2.0, "is it the axial depth of one cut?"),
     of_diameter("stock.cell_mm", 1.0 / 6.0, "a cut is a few lines wide"),
     of_diameter("stock.depth_mm", 2.0, "is it the axial depth of one cut?"),
     of_diameter("stock.layer_mm", 1.0 / 4.0, "is it what the operation before left?"),
+    usual("spindle.mass_kg", "kg", [0.0, 2000.0], "is it in kg?"),
+    usual(CENTRE, "mm from the flange", [5.0, 5000.0], "is it in mm?"),
+    usual(SAG, "mm", [0.0, 5.0], "is spindle.mass_kg in kg, and the stiffness in its unit?"),
+    usual(BEARING, "mm from the origin of its row", [5.0, 2000.0], "is it in mm?"),
+    usual(
+        "redundancy.max_beta_rate_deg_per_mm",
+        "deg/mm",
+        [0.01, f64::INFINITY],
+        "is it in degrees for each mm of the path? The spindle can hardly turn",
+    ),
+    usual(
+        "redundancy.max_spindle_turn_deg_per_mm",
+        "deg/mm",
+        [0.01, f64::INFINITY],
+        "is it in degrees for each mm of the path? The spindle can hardly turn",
+    ),
+    usual(
+        "redundancy.max_spindle_turn_deg_per_s",
+        "deg/s",
+        [0.1, f64::INFINITY],
+        "is it in degrees per second? The spindle can hardly turn",
+    ),
 ];
+
+/// A number by its key in the table, by whatever name it is said: beyond what is usual of it in its unit, of a cutter
+/// of a diameter (mm) where that counts.
+fn beyond(key: &str, name: &str, value: f64, diameter: f64) -> Option<String> {
+    let Usual { unit, range, is_of_diameter, question, .. } = USUAL.iter().find(|usual| usual.key == key)?;
+    let scale = if *is_of_diameter { diameter } else { 1.0 };
+    let [low, high] = range.map(|end| end * scale);
+    if (low..=high).contains(&value) {
+        return None;
+    }
+    let of = if *is_of_diameter { format!(" for a cutter of {} mm", figures(diameter)) } else { String::new() };
+    let usual = if high.is_finite() {
+        format!("{} to {} {unit} are usual", figures(low), figures(high))
+    } else {
+        format!("at least {} {unit} is usual", figures(low))
+    };
+    Some(format!("{name} is {} {unit}, where {usual}{of}: {question}", figures(value)))
+}
 
 /// Numbers of a cut, by their keys in the units of these, that hardly any cut by a cutter of this diameter (mm) has.
 pub fn cut(diameter: f64, numbers: &[(&str, f64)]) -> Vec<String> {
-    let odd = |(key, value): &(&str, f64)| {
-        let Usual { unit, range, is_of_diameter, question, .. } = CUTS.iter().find(|usual| usual.key == *key)?;
-        let scale = if *is_of_diameter { diameter } else { 1.0 };
-        let [low, high] = range.map(|end| end * scale);
-        let of = if *is_of_diameter { format!(" for a cutter of {} mm", figures(diameter)) } else { String::new() };
-        (!(low..=high).contains(value)).then(|| {
-            let usual = format!("{} to {}", figures(low), figures(high));
-            format!("{key} is {} {unit}, where {usual} {unit} are usual{of}: {question}", figures(*value))
-        })
+    numbers.iter().filter_map(|(key, value)| beyond(key, key, *value, diameter)).collect()
+}
+
+/// Numbers of a run, by their keys in the units of these, that hardly any run has.
+pub fn run(numbers: &[(&str, f64)]) -> Vec<String> {
+    cut(f64::INFINITY, numbers)
+}
+
+/// So heavy a body has its centre of mass away from the flange. kg
+const HEAVY: f64 = 10.0;
+
+/// What the flange carries, where its mass or the place of its centre looks like one of another unit.
+pub fn carried(spindle: &Spindle) -> Vec<String> {
+    let Some(body) = spindle.carried_mass() else { return Vec::new() };
+    let centre = (body.mass >= HEAVY).then(|| (CENTRE, body.centre.norm() * 1e3));
+    run(&[Some(("spindle.mass_kg", body.mass)), centre].into_iter().flatten().collect::<Vec<_>>())
+}
+
+/// How far the weight moves the tool (m), where hardly any arm lets it.
+pub fn sag(largest: f64) -> Option<String> {
+    beyond(SAG, SAG, largest * 1e3, f64::INFINITY)
+}
+
+/// Places on the joint axes in which they yield normal to them, where no joint is built so.
+fn bearings(robot: &Robot) -> Vec<String> {
+    let stated = robot.stated_normal_springs().into_iter().flatten().zip(1..);
+    let odd = |(springs, number): (&NormalSprings, usize)| {
+        let name = format!("{}: joints[{number}].{BEARING}", robot.name());
+        // 0 is the origin of the row itself, also where nothing is stated.
+        let is_away = springs.bearing != 0.0;
+        let note = is_away.then(|| beyond(BEARING, &name, springs.bearing.abs() * 1e3, f64::INFINITY));
+        note.flatten()
     };
-    numbers.iter().filter_map(odd).collect()
+    stated.filter_map(odd).collect()
+}
+
+/// So many times softer than the arm what stands beside it looks wrong.
+const SOFTER: f64 = 10.0;
+
+/// What carries the robot, the mount of the spindle, holder and tool, or the part, where it is ten times as soft as the
+/// arm in the middle of its joint ranges.
+pub fn softer_than_the_arm(robot: &Robot, spindle: &Spindle, task: &Task) -> Vec<String> {
+    let middle = robot.mid_range();
+    let frames = Frames::new(robot, &middle);
+    let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
+    let arm = WholeArm::new(robot, spindle, &frames, robot.compliances_at(&middle), tip);
+    let columns = [Vector3::x(), Vector3::y(), Vector3::z()].map(|force| arm.by_origin(&force, &Vector3::zeros()));
+    let largest = |matrix: &Matrix3<f64>| matrix.symmetric_eigenvalues().max();
+    let of = |moved: &dyn Fn(&ByOrigin<Displacement<f64>>) -> Vector3<f64>| {
+        largest(&Matrix3::from_columns(&columns.map(|column| moved(&column))))
+    };
+    let own = of(&|by| by.axes.linear + by.normal.linear);
+    let part = (0..task.points().len()).filter_map(|point| task.part_compliance(point)).map(largest);
+    let others = [
+        ("what carries the robot", "base_compliance.matrix", of(&|by| by.base.linear)),
+        ("the mount of the spindle", "spindle.mount_matrix", of(&|by| by.mount.linear)),
+        ("holder and tool", "spindle.tip_um_per_n", of(&|by| by.tip.linear)),
+        ("the part", "its matrix", part.fold(0.0, f64::max)),
+    ];
+    let um_per_n = |compliance: f64| figures(compliance * 1e6);
+    let softer = others.into_iter().filter(|(_, _, other)| *other > SOFTER * own);
+    softer
+        .map(|(what, key, other)| {
+            format!(
+                "{what} yields by {} um/N at the tool, more than ten times the {} um/N of the arm in the middle of its joint \
+                 ranges: is {key} in um/N, urad/N and urad/(N m)?",
+                um_per_n(other),
+                um_per_n(own)
+            )
+        })
+        .collect()
+}
+
+/// Angles that people write in radians, in them, and as they are called.
+const RADIANS: [(f64, &str); 4] =
+    [(FRAC_PI_4, "pi/4"), (FRAC_PI_2, "pi/2"), (std::f64::consts::PI, "pi"), (std::f64::consts::TAU, "2 pi")];
+/// By how much 3.14 misses it. Relative
+const AS_WRITTEN: f64 = 6e-4;
+
+/// An angle in degrees, by its key, that looks like one in radians.
+pub fn angle(key: &str, degrees: f64) -> Option<String> {
+    let is_near = |(radians, _): &&(f64, &str)| (degrees.abs() / radians - 1.0).abs() <= AS_WRITTEN;
+    let (_, name) = RADIANS.iter().find(is_near)?;
+    let sign = if degrees < 0.0 { "-" } else { "" };
+    Some(format!("{key} is {degrees}, which is {sign}{name}: is it in degrees?"))
+}
+
+/// A force so many times the median of the points, or so small a share of it, looks wrong.
+const FORCE_BEYOND: f64 = 10.0;
+const FORCE_BELOW: f64 = 0.01;
+
+/// Points whose force is another than that of the others by more than a factor (N, of all points in their order, by
+/// segment): more than ten times the median, or below a hundredth of it between two points of its segment of which
+/// neither is below a tenth. Points without force cut nothing, and are left out.
+pub fn forces(segments: &[Vec<(usize, f64)>]) -> Option<String> {
+    let mut sizes: Vec<f64> = segments.iter().flatten().map(|(_, size)| *size).filter(|size| *size > 0.0).collect();
+    sizes.sort_by(f64::total_cmp);
+    let median = *sizes.get(sizes.len() / 2)?;
+    let large = segments.iter().flatten().filter(|(_, size)| *size > FORCE_BEYOND * median);
+    let between = segments.iter().flat_map(|segment| segment.windows(3));
+    let is_slip = |near: &&[(usize, f64)]| {
+        let [before, here, after] = [0, 1, 2].map(|k| near.get(k).map_or(0.0, |(_, size)| *size));
+        here > 0.0 && here < FORCE_BELOW * median && before.min(after) >= median / FORCE_BEYOND
+    };
+    let small = between.filter(is_slip).filter_map(|near| near.get(1));
+    let mut odd: Vec<&(usize, f64)> = large.chain(small).collect();
+    odd.sort_by_key(|(point, _)| *point);
+    let (point, size) = odd.first()?;
+    let more = match odd.len() - 1 {
+        0 => String::new(),
+        more => format!(", and {more} more such"),
+    };
+    Some(format!(
+        "the force at point {point} is {} N, where half of the points have no more than {} N{more}: is it a slip of the pen, or of \
+         its unit?",
+        figures(*size),
+        figures(median)
+    ))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::robot::testing::{kr270, spindle as mounted};
+    use crate::robot::{BaseCompliance, PointMass};
     use crate::task::PathPoint;
     use crate::task::testing::five_segments;
-    use nalgebra::vector;
+    use nalgebra::{Matrix6, vector};
 
     #[test]
     fn what_is_usual_is_not_noted() {
@@ -333,21 +493,41 @@ mod tests {
         let usual = [
             ("tool.cutter_diameter_mm", 16.0),
             ("tool.kt_mpa", 3333.0),
+            ("tool.kr", 0.7),
             ("tool.kr_mpa", 2289.0),
+            ("tool.ka_mpa", -300.0),
             ("tool.kte_n_per_mm", 30.0),
             ("tool.kre_n_per_mm", 0.0),
             ("cut.spindle_rpm", 9000.0),
             ("feed per tooth", 0.15),
+            ("cut.axial_depth_mm", 31.0),
             ("stock.cell_mm", 0.7),
             ("stock.depth_mm", 30.0),
             ("stock.layer_mm", 0.5),
+            ("spindle.mass_kg", 180.0),
+            (CENTRE, 158.0),
+            (SAG, 1.2),
+            (BEARING, 621.0),
+            ("redundancy.max_beta_rate_deg_per_mm", 0.9),
+            ("redundancy.max_spindle_turn_deg_per_mm", 0.9),
+            ("redundancy.max_spindle_turn_deg_per_s", 40.0),
         ];
-        assert_eq!(usual.len(), CUTS.len());
+        assert_eq!(usual.len(), USUAL.len());
         assert_eq!(cut(16.0, &usual), Vec::<String>::new());
         for (key, value, said) in [
             ("tool.cutter_diameter_mm", 0.016, "is 0.0160 mm, where 0.500 to 500 mm are usual"),
             ("tool.kt_mpa", 8e8, "MPa"),
+            ("tool.kr", 320.0, "is 320 times kt_mpa, where 0 to 5.00 times kt_mpa are usual: is it the ratio"),
             ("tool.kr_mpa", 3.2e4, "MPa"),
+            ("tool.ka_mpa", -3.2e4, "MPa"),
+            ("cut.axial_depth_mm", 33.0, "the axial depth of one cut?"),
+            (
+                "redundancy.max_spindle_turn_deg_per_mm",
+                0.009,
+                "is 0.00900 deg/mm, where at least 0.0100 deg/mm is usual",
+            ),
+            ("redundancy.max_beta_rate_deg_per_mm", 0.009, "can hardly turn"),
+            ("redundancy.max_spindle_turn_deg_per_s", 0.09, "can hardly turn"),
             ("tool.kte_n_per_mm", 20_000.0, "N for each mm of edge?"),
             ("tool.kre_n_per_mm", 501.0, "N for each mm of edge?"),
             ("cut.spindle_rpm", 15.0, "is it in turns per minute?"),
@@ -359,6 +539,98 @@ mod tests {
             let notes = cut(16.0, &[(key, value)]);
             assert!(notes.len() == 1 && notes[0].starts_with(key) && notes[0].contains(said), "{notes:?}");
         }
+    }
+
+    #[test]
+    fn what_the_flange_carries_is_held_against_what_is_usual() {
+        let with = |mass: f64, centre: Vector3<f64>| {
+            let mut spindle = mounted();
+            spindle.point_mass = Some(PointMass { mass, centre });
+            carried(&spindle)
+        };
+        let away = vector![0.0, 0.0, 0.158];
+        assert_eq!((with(44.4, away), with(9.9, away / 1e3)), (Vec::new(), Vec::new()));
+        let heavy = with(44400.0, away);
+        assert!(
+            heavy.len() == 1 && heavy[0].starts_with("spindle.mass_kg is 44400 kg, where 0 to 2000 kg"),
+            "{heavy:?}"
+        );
+        let metres = with(44.4, away / 1e3);
+        let start = "spindle.centre_of_mass_mm is 0.158 mm from the flange, where 5.00 to 5000 mm";
+        assert!(metres.len() == 1 && metres[0].starts_with(start), "{metres:?}");
+        assert_eq!(sag(4.9e-3), None);
+        assert!(sag(5.1e-3).unwrap().contains("is 5.10 mm, where 0 to 5.00 mm are usual"));
+    }
+
+    #[test]
+    fn bearings_of_another_unit_are_noted_with_their_joint() {
+        let with = |bearing: f64| {
+            let mut springs = [NormalSprings { compliance: [1e-7; 2], bearing: 0.0 }; 6];
+            springs[3].bearing = bearing;
+            let robot = kr270().with_normal_springs(Some(springs)).unwrap();
+            arm(&robot).into_iter().find(|note| note.contains("bearing_mm"))
+        };
+        assert_eq!((with(0.0), with(-0.621), with(2.0)), (None, None, None));
+        let note = with(-0.621e-3).unwrap();
+        assert!(note.starts_with("test: joints[4].bearing_mm is 0.621 mm from the origin of its row"), "{note}");
+        assert!(with(621.0).is_some());
+    }
+
+    #[test]
+    fn what_is_ten_times_softer_than_the_arm_is_noted_with_both_figures() {
+        let (robot, task) = (kr270(), five_segments());
+        let noted = |um_per_n: f64| {
+            let spindle = mounted().with_tip(Matrix3::from_diagonal_element(um_per_n * 1e-6)).unwrap();
+            softer_than_the_arm(&robot, &spindle, &task)
+        };
+        assert_eq!((noted(0.0), noted(1.0)), (Vec::new(), Vec::new()));
+        let notes = noted(400.0);
+        assert!(
+            notes.len() == 1 && notes[0].starts_with("holder and tool yields by 400 um/N at the tool"),
+            "{notes:?}"
+        );
+        assert!(
+            notes[0].contains(" um/N of the arm") && notes[0].contains("is spindle.tip_um_per_n in um/N"),
+            "{notes:?}"
+        );
+        let part = task
+            .clone()
+            .with_part_compliances(vec![Matrix3::from_diagonal_element(400e-6); task.points().len()])
+            .unwrap();
+        assert!(softer_than_the_arm(&robot, &mounted(), &part)[0].starts_with("the part yields by 400 um/N"));
+        let base = BaseCompliance::new(Vector3::zeros(), Matrix6::from_diagonal_element(400e-6)).unwrap();
+        let notes = softer_than_the_arm(&robot.clone().with_base_compliance(Some(base)), &mounted(), &five_segments());
+        assert!(notes.len() == 1 && notes[0].starts_with("what carries the robot yields by "), "{notes:?}");
+        let spindle = mounted().with_mount(Matrix6::from_diagonal_element(400e-6)).unwrap();
+        assert!(softer_than_the_arm(&robot, &spindle, &five_segments())[0].starts_with("the mount of the spindle"));
+    }
+
+    #[test]
+    fn angles_that_are_written_in_radians_are_noted() {
+        for degrees in [3.14, -3.1416, 1.57, 1.5708, 6.283185, 0.7854, 0.785] {
+            assert!(angle("spindle.abc_deg[2]", degrees).is_some(), "{degrees}");
+        }
+        for degrees in [0.0, 3.0, 3.1, 3.15, 1.5, 1.6, 6.3, 0.78, 90.0, 180.0, -45.0] {
+            assert_eq!(angle("spindle.abc_deg[2]", degrees), None, "{degrees}");
+        }
+        let said = "cell.yaw_deg[1] is -3.1416, which is -pi: is it in degrees?";
+        assert_eq!(angle("cell.yaw_deg[1]", -3.1416).unwrap(), said);
+    }
+
+    #[test]
+    fn forces_of_single_points_that_are_far_from_the_others_are_noted() {
+        let noted = |sizes: &[f64]| forces(&[sizes.iter().copied().enumerate().collect()]);
+        assert_eq!(noted(&[]), None);
+        assert_eq!(noted(&[100.0, 110.0, 990.0, 60.0, 100.0]), None);
+        let slip = noted(&[100.0, 110.0, 1120.0, 60.0, 100.0]).unwrap();
+        assert!(
+            slip.starts_with("the force at point 2 is 1120 N, where half of the points have no more than 100 N:"),
+            "{slip}"
+        );
+        let slip = noted(&[100.0, 110.0, 0.9, 60.0, 100.0, 2000.0]).unwrap();
+        assert!(slip.contains("at point 2 is 0.900 N") && slip.contains("and 1 more such"), "{slip}");
+        // A cutter that comes into the cut, or has none.
+        assert_eq!(noted(&[0.0, 0.5, 60.0, 100.0, 100.0, 0.0, 100.0]), None);
     }
 
     #[test]

@@ -5,9 +5,12 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_cell::scene::FAR;
 use stead_cell::{Attachment, Shape};
-use stead_model::robot::Robot;
+use stead_model::plausibility;
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::turns::Range;
+use stead_model::robot::{Frames, Robot};
+use stead_model::stiffness::elastic::ElasticArm;
+use stead_model::stiffness::whole::{WholeArm, of_part};
 use stead_numerics::digits::figures;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_planning::problem::{Interval, Placement, Problem};
@@ -36,10 +39,59 @@ pub struct Overview {
     pub cell_distances: [f64; 2],
     /// The workpiece in the middle of its cell.
     pub middle: Stance,
+    /// What yields of the deflection there, where not the springs about the axes alone do.
+    pub yields: Option<Yields>,
+    /// How far the weight of links and spindle moves the tool there, where the mass on the flange is known. m
+    pub sag: Option<f64>,
     /// The shapes with the arm and the workpiece there.
     pub shapes: Vec<Stand>,
     /// Pairs of shapes that are nearer to each other there than they may be.
     pub hits: Vec<Hit>,
+}
+
+/// Shares of the deflection of the tool against the part, each along the whole of it: 1 in all.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Yields {
+    /// Of springs about the joint axes.
+    pub axes: f64,
+    /// Of springs normal to them.
+    pub normal: f64,
+    /// Of what carries the robot.
+    pub base: f64,
+    /// Of the mount of the spindle.
+    pub mount: f64,
+    /// Of holder and tool.
+    pub tip: f64,
+    /// Of the part.
+    pub part: f64,
+}
+
+impl Yields {
+    /// At a path point with the arm in a configuration (rad); none where springs about the axes alone yield, or nothing
+    /// does.
+    fn of(problem: &Problem, placement: &Placement, (point, joints): (usize, [f64; 6])) -> Option<Self> {
+        let (robot, spindle) = (&problem.robot, &problem.spindle);
+        let frames = Frames::new(robot, &joints);
+        let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
+        let placed = problem.placed(point, placement);
+        let arm = WholeArm::new(robot, spindle, &frames, robot.compliances_at(&joints), tip);
+        let by = arm.by_origin(&placed.force, &placed.moment).map(|moved| moved.linear);
+        let rotation = problem.base_from_workpiece(point, placement).rotation;
+        let part = problem.task.part_compliance(point).map(|matrix| of_part(matrix, &rotation, &placed.force));
+        let part = part.unwrap_or_default();
+        let total = by.axes + by.normal + by.base + by.mount + by.tip + part;
+        let share = |moved: Vector3<f64>| moved.dot(&total) / total.norm_squared();
+        let of = Self {
+            axes: share(by.axes),
+            normal: share(by.normal),
+            base: share(by.base),
+            mount: share(by.mount),
+            tip: share(by.tip),
+            part: share(part),
+        };
+        let others = [by.normal, by.base, by.mount, by.tip, part].iter().any(|moved| moved.norm() > 0.0);
+        (others && of.axes.is_finite()).then_some(of)
+    }
 }
 
 /// Where a shape is in one pose of the arm.
@@ -103,6 +155,9 @@ impl Overview {
         let has_feeds = moves().next().is_some_and(|point| path.feed(point).is_some());
         let middle = stance(problem, middle(problem));
         let (shapes, hits) = shapes(problem, &middle);
+        let (point, joints) = middle.shown(&problem.robot);
+        let arm = ElasticArm::new(&problem.robot, &problem.spindle).in_gravity(problem.free_fall(point));
+        let sag = problem.spindle.carried_mass().map(|_| arm.sag(&joints).linear.norm());
         Self {
             tool_tilt: libm::acos(tool.m33.clamp(-1.0, 1.0)),
             extents,
@@ -113,6 +168,8 @@ impl Overview {
             moment: sizes(|wrench| wrench.moment.norm()),
             reach: problem.robot.geometry().reach(),
             cell_distances: cell_distances(problem),
+            yields: Yields::of(problem, &middle.placement, (point, joints)),
+            sag,
             middle,
             shapes,
             hits,
@@ -153,7 +210,8 @@ impl Overview {
                 named.join(", ")
             )
         });
-        unreached.into_iter().chain(hits).collect()
+        let sags = self.sag.and_then(plausibility::sag);
+        unreached.into_iter().chain(hits).chain(sags).collect()
     }
 }
 
@@ -267,7 +325,8 @@ fn within(robot: &Robot, wrapped: &[f64; 6]) -> Option<([f64; 6], f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_planning::testing::five_segments;
+    use stead_model::robot::PointMass;
+    use stead_planning::testing::{Beside, five_segments, with_beside};
 
     #[test]
     fn the_published_run_is_understood() {
@@ -285,6 +344,29 @@ mod tests {
         let tool = problem.robot.forward(&joints).then(&problem.spindle.flange_from_tool);
         let place = overview.middle.placement.base_from_workpiece().point(&problem.task.points()[0].position);
         assert!((tool.translation - place).norm() < 1e-9);
+    }
+
+    #[test]
+    fn what_yields_and_how_far_the_weight_moves_the_tool_is_said() {
+        assert_eq!(Overview::of(&five_segments()).yields, None);
+        let problem = with_beside(five_segments(), Beside::Everything);
+        let Yields { axes, normal, base, mount, tip, part } = Overview::of(&problem).yields.unwrap();
+        let all = [axes, normal, base, mount, tip, part];
+        assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-12 && all.iter().all(|share| *share != 0.0), "{all:?}");
+        let carrying = |mass: f64| {
+            let mut problem = five_segments();
+            problem.spindle.point_mass = Some(PointMass { mass, centre: Vector3::new(0.0, 0.0, 0.2) });
+            Overview::of(&problem)
+        };
+        let [light, heavy] = [60.0, 6e5].map(carrying);
+        let ratio = heavy.sag.unwrap() / light.sag.unwrap();
+        assert!((ratio / 1e4 - 1.0).abs() < 0.1, "{ratio}");
+        assert!(!light.notes().iter().any(|note| note.contains("sag")));
+        assert!(
+            heavy.notes().iter().any(|note| note.starts_with("the sag of the tool by the weight")),
+            "{:?}",
+            heavy.notes()
+        );
     }
 
     #[test]

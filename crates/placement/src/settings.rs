@@ -1,5 +1,6 @@
 //! How hard to search.
 
+use stead_planning::problem::Problem;
 use stead_planning::sense::Sense;
 
 /// How the posture scheme of a candidate placement is found.
@@ -51,10 +52,29 @@ impl SearchSettings {
     /// The force error of a sensitivity analysis where no other is given.
     pub const FORCE_ERROR: f64 = 0.1;
 
+    /// Checks that what is asked beside the search can be found for a problem.
+    ///
+    /// # Errors
+    /// [`Unfit`]: a sensitivity to force errors where the tool may lean.
+    pub fn check_for(&self, problem: &Problem) -> Result<(), Unfit> {
+        if self.sensitivity.is_some() && problem.lean.is_some() { Err(Unfit::Sensitivity) } else { Ok(()) }
+    }
+
     /// Whether the placement that is best in a sense is looked for.
     pub fn seeks(&self, sense: Sense) -> bool {
         sense == Sense::Min || self.worst
     }
+}
+
+/// Why settings do not go with a problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Unfit {
+    /// Force errors where the tool may lean.
+    #[error(
+        "how far force errors move the best placement is found for the tool axis of the task alone, and [lean] lets the tool \
+         lean; allowed: a run without [lean], or criterion.force_uncertainty, which covers force errors in every score"
+    )]
+    Sensitivity,
 }
 
 impl Default for SearchSettings {
@@ -71,5 +91,18 @@ impl Default for SearchSettings {
             worst: true,
             sensitivity: None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stead_planning::testing::five_segments;
+
+    #[test]
+    fn settings_of_a_problem_without_a_tool_that_leans_fit() {
+        let settings = SearchSettings { sensitivity: Some(0.1), ..SearchSettings::default() };
+        assert_eq!(settings.check_for(&five_segments()), Ok(()));
+        assert!(Unfit::Sensitivity.to_string().contains("[lean] lets the tool lean; allowed: a run without [lean]"));
     }
 }

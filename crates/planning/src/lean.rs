@@ -71,7 +71,7 @@ pub struct LeanSpace {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LeanSpaceError {
     /// Ranges for another number of points.
-    #[error("the tool may lean at {found} points; allowed: {expected}, as many as the path has")]
+    #[error("the tool may lean at {found} points, and the path has {expected}")]
     Points {
         /// Ranges.
         found: usize,
@@ -91,9 +91,7 @@ pub enum LeanSpaceError {
         error: LeanError,
     },
     /// No lean of a point is allowed.
-    #[error(
-        "point {point} allows no lean: {what}; allowed: a wider range, or a limit that leaves some of it", point = point + 1
-    )]
+    #[error("point {point} has no lean that is allowed: {what}", point = point + 1)]
     Nothing {
         /// The path point, from 0.
         point: usize,
@@ -129,28 +127,40 @@ impl LeanSpace {
             return Err(LeanSpaceError::Points { found: self.ranges.len(), expected: path.points().len() });
         }
         for (point, range) in self.ranges.iter().enumerate() {
+            let refused = |lean: Lean, error: LeanError| {
+                let (lead_deg, tilt_deg) = (lean.lead.to_degrees(), lean.tilt.to_degrees());
+                LeanSpaceError::Refused { point, lead_deg, tilt_deg, error }
+            };
+            let tilt = if range.tilt.max > -range.tilt.min { range.tilt.max } else { range.tilt.min };
+            // Whatever the largest angle is, which leaves some of the tilt.
+            if tilt != 0.0 && self.rule.end.is_flat() {
+                return Err(refused(Lean { lead: 0.0, tilt }, LeanError::FlatTilt));
+            }
             let corners = [range.lead.min, range.lead.max]
                 .into_iter()
                 .flat_map(|lead| [range.tilt.min, range.tilt.max].map(|tilt| Lean { lead, tilt }));
             for lean in corners.filter(|lean| *lean != Lean::NONE && self.is_within(lean)) {
                 let normal = path.surface_normals().map(|normals| &normals[point]);
-                self.rule.check(&path.points()[point], normal, &lean).map_err(|error| LeanSpaceError::Refused {
-                    point,
-                    lead_deg: lean.lead.to_degrees(),
-                    tilt_deg: lean.tilt.to_degrees(),
-                    error,
-                })?;
+                self.rule.check(&path.points()[point], normal, &lean).map_err(|error| refused(lean, error))?;
             }
             if range.is_none() {
                 continue;
             }
             if let Some((lean, error)) = self.through_normal(path, point) {
-                let (lead_deg, tilt_deg) = (lean.lead.to_degrees(), lean.tilt.to_degrees());
-                return Err(LeanSpaceError::Refused { point, lead_deg, tilt_deg, error });
+                return Err(refused(lean, error));
             }
             let all = self.grid(point, self.half_counts());
-            if !all.iter().any(|lean| self.is_within(lean)) {
-                return Err(LeanSpaceError::Nothing { point, what: "max_lean_deg is below the whole range" });
+            let within = || all.iter().filter(|lean| self.is_within(lean));
+            if within().next().is_none() {
+                let what = "lead and tilt together are more than max_lean_deg in the whole range";
+                return Err(LeanSpaceError::Nothing { point, what });
+            }
+            // Beyond the largest angle no corner was looked at.
+            if self.max_lean.is_some() {
+                let normal = path.surface_normals().map(|normals| &normals[point]);
+                for lean in within().filter(|lean| **lean != Lean::NONE) {
+                    self.rule.check(&path.points()[point], normal, lean).map_err(|error| refused(*lean, error))?;
+                }
             }
             if !all.iter().any(|lean| self.allows(path, point, lean)) {
                 return Err(LeanSpaceError::Nothing {

@@ -250,7 +250,18 @@ impl Problem {
         ];
         let has_moves = self.task.segments().len() > 1;
         let of_tool = self.segment_moves.tool.iter().filter(|_| has_moves).flat_map(|tool| tool.notes());
-        let matrices = plausibility::matrices(&self.robot, &self.spindle, &self.task);
+        let turns = [
+            ("redundancy.max_beta_rate_deg_per_mm", self.redundancy.max_beta_rate.map(|rate| rate * 1e-3)),
+            ("redundancy.max_spindle_turn_deg_per_mm", self.redundancy.max_spindle_turn.map(|rate| rate * 1e-3)),
+            ("redundancy.max_spindle_turn_deg_per_s", self.redundancy.max_spindle_speed),
+        ];
+        let stated = turns.into_iter().filter_map(|(key, limit)| Some((key, limit?.to_degrees())));
+        let turns = plausibility::run(&stated.collect::<Vec<_>>());
+        let matrices = plausibility::matrices(&self.robot, &self.spindle, &self.task)
+            .into_iter()
+            .chain(plausibility::softer_than_the_arm(&self.robot, &self.spindle, &self.task))
+            .chain(plausibility::carried(&self.spindle))
+            .chain(turns);
         let parts = parts.into_iter().flatten().chain(matrices).chain(plausibility::scored_arm(&self.robot));
         plausibility::arm(&self.robot).into_iter().chain(parts).chain(of_tool).collect()
     }

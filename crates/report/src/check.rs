@@ -10,7 +10,7 @@ use stead_model::robot::{Axes23, Robot};
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Warning;
 use stead_numerics::rotation::zyx_from_rotation;
-use stead_placement::overview::{Hit, Overview, Stand};
+use stead_placement::overview::{Hit, Overview, Stand, Yields};
 use stead_planning::problem::Problem;
 
 /// A run as it was understood.
@@ -84,6 +84,20 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
         "middle    {} of {} path points reached within the joint limits with the workpiece in the middle of the cell",
         middle.reached, middle.tried
     ));
+    if let Some(Yields { axes, normal, base, mount, tip, part }) = &overview.yields {
+        let shares = [
+            (axes, "joints about their axes"),
+            (normal, "joints normal to them"),
+            (base, "what carries the robot"),
+            (mount, "mount of the spindle"),
+            (tip, "holder and tool"),
+            (part, "part"),
+        ];
+        let shares = shares.into_iter().filter(|(share, _)| **share != 0.0);
+        let said: Vec<String> = shares.map(|(share, what)| format!("{what} {} %", fixed(share * 100.0, 1))).collect();
+        let at = middle.first.map_or("mid-range joints".to_owned(), |(point, _)| format!("point {point}"));
+        say(format!("yields    {} of the deflection there, at {at}", said.join(", ")));
+    }
     if !overview.shapes.is_empty() {
         let at = middle.first.map_or("mid-range joints".to_owned(), |(point, _)| format!("point {point}"));
         say(format!(

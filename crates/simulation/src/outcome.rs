@@ -5,7 +5,7 @@ use super::judgement::{Evidence, Judgement, period_variation, steps};
 use super::modes::Mode;
 use super::roughness::{Profile, Roughness};
 use super::stability::{SemiDiscretisation, Verdict};
-use super::stability_analysis::{StabilityError, linear_at, runout_note};
+use super::stability_analysis::{StabilityError, cut_notes, linear_at, runout_note};
 use nalgebra::{Vector2, Vector3};
 use serde::Serialize;
 use stead_model::plausibility;
@@ -151,7 +151,9 @@ fn notes(job: &Job<'_>, run: &Run) -> Vec<String> {
     let largest = |size: fn(&Sample) -> f64| run.samples.iter().map(size).fold(0.0, f64::max);
     let force = plausibility::force(largest(|sample| Vector3::from(sample.force).norm()));
     let deflection = plausibility::deflection(largest(|sample| Vector2::from(sample.deflection).norm()));
-    job.setup.notes().into_iter().chain(runout_note(job.cutter)).chain(force).chain(deflection).collect()
+    let of_cut = cut_notes(job.cutter, job.cut);
+    let of_setup = job.setup.notes().into_iter().chain(runout_note(job.cutter));
+    of_setup.chain(of_cut).chain(force).chain(deflection).collect()
 }
 
 /// What small motions do at two distances along the pass (m).

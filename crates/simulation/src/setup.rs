@@ -25,7 +25,8 @@ impl Setup {
     /// What looks like a wrong unit or sign though it is possible, in sentences.
     pub fn notes(&self) -> Vec<String> {
         let spindle = [plausibility::spindle(&self.spindle), plausibility::static_alone(&self.spindle)];
-        plausibility::arm(&self.robot).into_iter().chain(spindle.into_iter().flatten()).collect()
+        let carried = plausibility::carried(&self.spindle);
+        plausibility::arm(&self.robot).into_iter().chain(spindle.into_iter().flatten()).chain(carried).collect()
     }
 
     /// What makes the result another than that of the arm as its file states it.

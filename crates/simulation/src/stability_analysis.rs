@@ -9,6 +9,7 @@ use nalgebra::{Complex, Matrix3, Vector3};
 use serde::Serialize;
 use stead_model::cutting::PassCut;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
+use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Stop};
@@ -108,8 +109,22 @@ pub fn analyse(
         lobes: lobes(&plant, cutter, cut, &speeds, settings.max_depth, monitor)?,
         pass_time: cut.length / setup.motion.ramp().feed,
         warnings: setup.warnings(),
-        notes: setup.notes().into_iter().chain(runout_note(cutter)).collect(),
+        notes: setup.notes().into_iter().chain(runout_note(cutter)).chain(cut_notes(cutter, cut)).collect(),
     })
+}
+
+/// Numbers of a cutter and its cut that look wrong, by the keys of their files.
+pub(super) fn cut_notes(cutter: &Cutter, cut: &PassCut) -> Vec<String> {
+    let (diameter, coefficients) = (cutter.diameter() * 1e3, cutter.coefficients());
+    let numbers = [
+        ("tool.cutter_diameter_mm", diameter),
+        ("tool.kt_mpa", coefficients.tangential / 1e6),
+        ("tool.kr_mpa", coefficients.radial / 1e6),
+        ("tool.ka_mpa", coefficients.axial / 1e6),
+        ("cut.spindle_rpm", cut.spindle_speed / std::f64::consts::TAU * 60.0),
+        ("cut.axial_depth_mm", cut.section.axial_depth * 1e3),
+    ];
+    plausibility::cut(diameter, &numbers)
 }
 
 /// Critical depths up to `max_depth` (m), and the stability of the cut.

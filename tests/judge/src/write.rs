@@ -89,7 +89,7 @@ pub fn write(choice: &Choice, seed: u64, robots: &Path, folder: &Path) -> Answer
         choice,
         random: Random::new(seed),
         key: of("angles"),
-        run: "robot = \"robot.toml\"\ntask = \"task.csv\"\nstiffness_like = \"made up\"\n".to_owned(),
+        run: "robot = \"robot.toml\"\ntask = \"task.csv\"\n".to_owned(),
         mount: Isometry3::identity(),
         mount_table: String::new(),
         part: Vector3::zeros(),

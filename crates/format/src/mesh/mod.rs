@@ -60,10 +60,13 @@ const THINNER: &str = "at most 1000000 triangles: a mesh for collision checks ne
 /// [`InputError`] with file and line, or the number of the triangle from 1: what is no STL, OBJ or DAE, a file that is
 /// cut off, a number that is not finite, coordinates beyond 1000 m, no triangles, or none with an area.
 pub fn read_mesh(file: &Path, bytes: &[u8], unit: MeshUnit) -> Result<TriangleMesh, InputError> {
-    if FileKind::of(bytes) == Some(FileKind::Step) {
-        return Err(FileKind::Step.refused(file));
-    }
     let is = |ending: &str| file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+    match FileKind::of(bytes) {
+        Some(kind @ FileKind::Step) => return Err(kind.refused(file)),
+        // A DAE is XML, and names in an OBJ may look like words of other files.
+        _ if is("dae") || is("obj") => (),
+        _ => FileKind::expect(&[], file, bytes, "a mesh file: STL, OBJ or DAE, each with its ending")?,
+    }
     let read = if is("obj") {
         obj::read(file, bytes)?
     } else if is("dae") {

@@ -27,6 +27,10 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
             .allowed(KINDS));
     };
     if !is_binary {
+        if bytes.iter().take(HEADER).all(|byte| byte.is_ascii() && *byte != 0) {
+            let problem = "is a text that does not begin with \"solid\": no mesh";
+            return Err(InputError::new(file, problem).allowed(KINDS));
+        }
         let problem = format!("is not as long as its {count} triangles: cut off, or no STL");
         let allowed = format!("{} bytes, or an STL in ASCII, or an OBJ named so", HEADER + RECORD * count);
         return Err(InputError::new(file, problem).found(format!("{} bytes", bytes.len())).allowed(allowed));

@@ -45,7 +45,7 @@ fn what_is_no_stl_is_refused_where_it_stops_being_one() {
         (
             "some text about a part, long enough to have a count of triangles in it, as it were, in its 84 bytes"
                 .to_owned(),
-            &["not as long as its"],
+            &["is a text that does not begin with \"solid\""],
         ),
         ("solid a\nendsolid a\n".to_owned(), &["has no triangles"]),
         (changed("endsolid wedge", ""), &[":57:", "cut off", "endsolid"]),
@@ -71,6 +71,23 @@ fn what_is_no_stl_is_refused_where_it_stops_being_one() {
     bytes[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::NAN.to_le_bytes());
     let message = read("a.stl", &bytes).unwrap_err();
     assert!(message.contains("not a finite number in triangle 2, found NaN; allowed: "), "{message}");
+}
+
+#[test]
+fn a_file_of_another_kind_is_named_before_triangles_are_counted() {
+    let text = "x".repeat(200);
+    for (file, bytes, part) in [
+        ("a.stl", "robot = 'a.toml'\n[redundancy]\n", "is a run file, for `stead place`"),
+        ("a.stl", "$$ made by hand\nTOOL PATH/CONTOUR,TOOL,MILL\n", "is CLDATA of a CAM system"),
+        ("a.stl", "%\nO1000\nN10 G90 G54\n", "is G-code"),
+        ("a.stl", "<?xml version='1.0'?>\n<robot name='arm'>", "is a URDF"),
+        ("a.step", "ISO-10303-21;\nHEADER;\n", "is a STEP file"),
+        ("a.stl", text.as_str(), "is a text that does not begin with \"solid\""),
+    ] {
+        let message = read(file, bytes.as_bytes()).unwrap_err();
+        assert!(message.contains(part) && message.contains("; allowed: "), "{part} in {message}");
+        assert!(!message.contains("triangles:"), "{message}");
+    }
 }
 
 #[test]

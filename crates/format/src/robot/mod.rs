@@ -89,6 +89,16 @@ pub fn says_stiffness(file: &Path) -> Result<Option<bool>, InputError> {
     Ok(Some(file.joints.iter().all(has_stiffness)))
 }
 
+/// Angles of a robot file that look like radians, in sentences.
+///
+/// # Errors
+/// [`InputError`]: a file that cannot be read or is no TOML.
+pub fn robot_radians(file: &Path) -> Result<Vec<String>, InputError> {
+    let source = TomlFile::read(file)?;
+    let document = source.parse()?;
+    Ok(document.root().radians("robot."))
+}
+
 /// Whether a row states its stiffness.
 pub(crate) fn has_stiffness(row: &JointRow) -> bool {
     row.stiffness_mnm_per_rad.is_some() || row.compliance_urad_per_nm.is_some()
@@ -181,7 +191,7 @@ const STIFFNESS_LIKE: &str = "stiffness_like";
 ///
 /// # Errors
 /// [`InputError`] for a name that is none.
-pub fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
+fn with_stiffness_like(robot: Robot, other: Option<&str>, at: &Place<'_>) -> Result<Robot, InputError> {
     match other {
         None => Ok(robot),
         Some(name) if !name.contains(garbles) => Ok(robot.with_stiffness_like(name)),
@@ -250,6 +260,8 @@ fn locate(root: &Place<'_>, error: &RobotError) -> InputError {
         }
     };
     let row = row(joint);
+    let in_radians = row.radians("").into_iter().next();
+    let problem = in_radians.map_or(problem.clone(), |note| format!("{problem} ({note})"));
     let field = match name.strip_prefix("compensator.") {
         Some(name) => row.key(COMPENSATOR).key(key(name)),
         None if name == "compliance" && !row.key(COMPLIANCE).is_given() => row.key(STIFFNESS),

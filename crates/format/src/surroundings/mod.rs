@@ -69,6 +69,7 @@ pub fn read_scene(
     let Some(around) = surroundings(&parts, axes, &mut read.inputs)? else { return Ok(read) };
     let scene = Scene::new(robot, &spindle.flange_from_tool, around).map_err(|error| no_scene(&parts, &error))?;
     read.notes = notes::notes(&scene, robot, spindle);
+    read.notes.extend(document.iter().flat_map(|document| document.root().radians("surroundings.")));
     read.scene = Some(Arc::new(scene));
     Ok(read)
 }

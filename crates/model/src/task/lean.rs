@@ -124,6 +124,12 @@ impl CutterEnd {
         step_over.map(|step| step * step / (8.0 * self.effective_radius(lean)))
     }
 
+    /// How deep the hollow is that the end leaves in the floor of a slot as wide as the cutter, leaning from the normal
+    /// of that floor. m
+    pub fn hollow(&self, lean: &Lean) -> f64 {
+        if self.is_ball() { 0.0 } else { self.height(lean.angle()) }
+    }
+
     /// By how much the contact may leave the line that the path draws while tip and axis go evenly from one point to
     /// the next, the axis turning by `turn` and at least `angle` from the normal of the surface (rad). m
     ///
@@ -216,7 +222,7 @@ pub struct LeanRule {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LeanError {
     /// The centre of an end that is no ball.
-    #[error("the centre stays for a ball alone; allowed here: rule = \"contact\" or \"plane\"")]
+    #[error("the centre stays for a ball alone, a bull or flat cutter keeps rule = \"contact\" or \"plane\"")]
     NoCentre,
     /// A flat end that leans across the feed.
     #[error("a flat end mill leans in lead only")]
@@ -241,7 +247,7 @@ pub enum LeanError {
     NormalIntoPart,
     /// The feed is too near to the axis.
     #[error(
-        "the feed is {angle_deg:.2} deg from the tool axis that leans; allowed: at least {} deg",
+        "the feed is {angle_deg:.2} deg from the tool axis that leans, less than {} deg",
         super::MIN_FEED_TO_AXIS_DEG
     )]
     FeedAlongAxis {

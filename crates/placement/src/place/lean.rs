@@ -16,7 +16,7 @@ use super::motion::with_better_axes;
 use super::refined::Refined;
 use super::thinned::{Thinned, path_of, points_needed, spread};
 use super::{notes, stated_cases};
-use crate::outcome::{Case, Cases, Outcome, left_out};
+use crate::outcome::{Case, Cases, Outcome};
 use crate::settings::SearchSettings;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
@@ -315,9 +315,6 @@ pub(super) fn place_leaned(
     let mut notes = notes::of(&set_up, placement, plan, &cycle.feed, monitor);
     notes.extend((!settings.worst).then(notes::best_alone));
     notes.extend(notes::of_lean(&set_up, upright, plan.objective, outcome.cases.worst.is_some()));
-    if outcome.sensitivity.take().is_some() {
-        outcome.warnings.push(left_out("how far force errors move the best placement is"));
-    }
     if !outcome.sets.is_empty() {
         outcome.sets.clear();
         outcome.set_basins.clear();

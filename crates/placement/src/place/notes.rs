@@ -32,6 +32,7 @@ pub(super) fn of(
     monitor: &Monitor,
 ) -> Vec<String> {
     let large = plausibility::deflection(plan.deflection.total.max);
+    let sags = plan.sag.as_ref().and_then(|sag| plausibility::sag(sag.path.largest));
     let of_travel = [swing(plan), calmer(problem, placement, plan, monitor)].into_iter().flatten();
     let of_weight = weight(problem, plan);
     let over_head = over_head(plan);
@@ -39,6 +40,7 @@ pub(super) fn of(
         .into_iter()
         .chain(over_head)
         .chain(large)
+        .chain(sags)
         .chain(of_weight)
         .chain(slowed(feed))
         .chain(of_travel)

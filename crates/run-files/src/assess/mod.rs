@@ -42,6 +42,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let spindle = file.spindle.map(|table| table.spindle(&at.key("spindle"))).transpose()?;
     let flange_from_tool = spindle.as_ref().map_or(Pose::identity(), |spindle| spindle.flange_from_tool);
     let cutting = Cutting::of(&file.tool, &file.cut, &at)?;
+    let of_cut = cutting.as_ref().map(Cutting::notes).unwrap_or_default();
     let cut = cutting.map(|cutting| cutting.engaged_cutter()).transpose()?;
     let force_history = cut.map(|cut| cut.force_history());
     let yields = yields_from(&file.stiffness.unwrap_or_default(), &at.key("stiffness"))?;
@@ -77,7 +78,10 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
         .flat_map(|robot| plausibility::arm(robot).into_iter().chain(plausibility::springs_left_out(robot)))
         .chain(full_note(&robots))
         .chain(joints)
-        .chain(spindle_note.and_then(plausibility::spindle));
+        .chain(spindle_note.and_then(plausibility::spindle))
+        .chain(spindle.iter().flat_map(plausibility::carried))
+        .chain(of_cut)
+        .chain(at.radians(""));
     let known = range_note(&robots).into_iter().chain(requested.then(|| payload_note(&robots)).flatten());
     let borrowed = robots.len() > 1 && robots.iter().any(|robot| robot.stiffness_like().is_some());
     let ranked = borrowed.then(|| {

@@ -7,7 +7,7 @@ mod tests;
 
 pub use file::*;
 
-use crate::Word;
+use crate::{Word, at_the_top};
 use material::Material;
 use std::path::{Path, PathBuf};
 use stead_disk::input::{InputError, InputFile, input_file};
@@ -41,7 +41,7 @@ pub(crate) fn read_forces_from(source: &TomlFile) -> Result<ForcesRun, InputErro
     let at = document.root();
     let file: ForcesFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
         Some(kind @ (FileKind::RobotFile | FileKind::RunFile)) => kind.refused(source.file()),
-        _ => error,
+        _ => at_the_top::<ForcesFile>(error),
     })?;
     let reading = file.reading.unwrap_or_default();
     let named = read_path(&at.key("path"), &reading, &source.sources)?;
@@ -58,6 +58,7 @@ pub(crate) fn read_forces_from(source: &TomlFile) -> Result<ForcesRun, InputErro
     };
     let mut run = tables.run(named, source, &at)?;
     run.inputs.insert(0, source.as_config());
+    run.notes.extend(at.radians(""));
     Ok(run)
 }
 
@@ -157,7 +158,7 @@ impl RemovalTables<'_> {
             }
             None => None,
         };
-        notes.extend(unusual(&mill, &path, spindle_speed, &stock, self.stock.cell()));
+        notes.extend(unusual(self.tool, &mill, &path, spindle_speed, &stock, self.stock.cell()));
         let problem = ForcesProblem {
             stock,
             before,
@@ -176,27 +177,25 @@ impl RemovalTables<'_> {
 }
 
 /// Numbers of a cut that look like a wrong unit.
-fn unusual(mill: &EndMill, path: &ToolPath, spindle_speed: f64, stock: &Stock, cell: Option<f64>) -> Vec<String> {
-    let diameter = mill.cutter.diameter() * 1e3;
-    let k = mill.cutter.coefficients();
+fn unusual(
+    tool: &ToolTable,
+    mill: &EndMill,
+    path: &ToolPath,
+    spindle_speed: f64,
+    stock: &Stock,
+    cell: Option<f64>,
+) -> Vec<String> {
     let fastest = (0..path.points().len()).filter_map(|point| path.feed(point)).fold(0.0, f64::max);
     let per_tooth = fastest / spindle_speed / mill.cutter.teeth().len() as f64;
     let of_path = match stock {
         Stock::Path(of_path) => *of_path,
         Stock::Solid { .. } => PathStock::default(),
     };
-    let mut numbers = vec![
-        ("tool.cutter_diameter_mm", diameter),
-        ("tool.kt_mpa", k.tangential / 1e6),
-        ("tool.kr_mpa", k.radial / 1e6),
-        ("tool.kte_n_per_mm", k.tangential_edge / 1e3),
-        ("tool.kre_n_per_mm", k.radial_edge / 1e3),
-        ("cut.spindle_rpm", spindle_speed * 60.0),
-        ("feed per tooth", per_tooth * 1e3),
-    ];
+    let mut numbers = tool.numbers();
+    numbers.extend([("cut.spindle_rpm", spindle_speed * 60.0), ("feed per tooth", per_tooth * 1e3)]);
     let lengths = [("stock.cell_mm", cell), ("stock.depth_mm", of_path.depth), ("stock.layer_mm", of_path.layer)];
     numbers.extend(lengths.into_iter().filter_map(|(key, length)| Some((key, length? * 1e3))));
-    plausibility::cut(diameter, &numbers)
+    plausibility::cut(tool.cutter_diameter_mm.written(), &numbers)
 }
 
 /// Millimetres without the digits that the unit has brought in.

@@ -139,7 +139,7 @@ fn numbers_of_another_unit_are_noted() {
     for (from, to, said) in [
         ("spindle_rpm = 6000", "spindle_rpm = 60", "cut.spindle_rpm is 60.0 1/min"),
         ("kte_n_per_mm = 20", "kte_n_per_mm = 20000", "tool.kte_n_per_mm is 20000 N/mm"),
-        ("kr = 0.4", "kr = 40", "tool.kr_mpa is 32000 MPa"),
+        ("kr = 0.4", "kr = 40", "tool.kr is 40.0 times kt_mpa"),
         ("box_mm", "cell_mm = 3\nbox_mm", "stock.cell_mm is 3.00 mm"),
         ("box_mm = [80, 26, 20]\nxyz_mm = [40, 17, -10]", "depth_mm = 40", "stock.depth_mm is 40.0 mm"),
     ] {

@@ -3,10 +3,10 @@
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::ops::Bound::{Excluded, Included};
+use std::ops::Bound::{self, Excluded, Included};
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::place::Place;
-use stead_format::quantity::Quantity;
+use stead_format::quantity::{Quantity, Range};
 use stead_format::robot::{checked_to_score, robot_from};
 use stead_format::scalars::{Whole, words};
 use stead_format::units::{MmPerRad, Number, ZeroToTen, ranges};
@@ -21,6 +21,15 @@ ranges! {
     Weight: Included(0.0), Included(1000.0);
     /// Above 0 and not above 1000.
     PositiveWeight: Excluded(0.0), Included(1000.0);
+}
+
+/// From 0 to 1, as a share of a force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShareOfForce;
+
+impl Range for ShareOfForce {
+    const ENDS: (Bound<f64>, Bound<f64>) = (Included(0.0), Included(1.0));
+    const EXAMPLE: &'static str = ": 0.1 is 10 %";
 }
 
 /// What is taken for the errors of forces from the path.
@@ -54,7 +63,7 @@ pub struct CriterionTable {
     /// of the mean of their squares, `rms`, or the largest, `max`.
     pub aggregate: Option<Word<Aggregate>>,
     /// Size of an unknown error of the force, as a share of it, added in the worst direction; 0 where left out.
-    pub force_uncertainty: Option<Number<ZeroToTen>>,
+    pub force_uncertainty: Option<Number<ShareOfForce>>,
     /// In its place, beside `[stock]`: the error that the forces state of themselves, `cells`, how far the force
     /// exceeds its mean within a `turn`, or the sum of `both`.
     pub force_uncertainty_from: Option<Word<ForceErrors>>,

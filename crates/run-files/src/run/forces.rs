@@ -86,14 +86,14 @@ impl ForceTables<'_> {
         field: &Place<'_>,
         forces_at: &Place<'_>,
     ) -> Result<Task, InputError> {
-        let columns = || format!("forces come from one place only, and the task {} has force columns", file.name);
+        let columns = || format!("the task {} has force columns already: forces come from one place only", file.name);
         let wrenches = match (imported.wrenches, self.forces, self.cutting) {
             (Some(_), Some(_), _) => return Err(forces_at.error(columns(), SOURCES)),
             (Some(_), None, Some(cutting)) if !self.is_for_stability => {
                 return Err(cutting.tool_at.error(columns(), SOURCES));
             }
             (None, Some(_), Some(_)) if !self.is_for_stability => {
-                let problem = "forces come from one place only, and there are tables [tool] and [cut]";
+                let problem = "there are tables [tool] and [cut] already: forces come from one place only";
                 return Err(forces_at.error(problem, SOURCES));
             }
             (Some(wrenches), None, _) => wrenches,
@@ -180,8 +180,21 @@ mod tests {
             assert!(run.notes.iter().any(|note| note.contains(part)), "{part} in {:?}", run.notes);
         }
         for (tables, with_columns, part) in [
-            (STOCK.to_owned(), true, "stock: forces come from one place only"),
-            (format!("{FORCES}{STOCK}"), false, "forces: forces come from one place only"),
+            (
+                STOCK.to_owned(),
+                true,
+                "stock: the task task.csv has force columns already: forces come from one place only",
+            ),
+            (
+                format!("{FORCES}{STOCK}"),
+                false,
+                "forces: there is a table [stock] already: forces come from one place only",
+            ),
+            (
+                STOCK.replace("[tool]", "material = 'steel'\n[tool]"),
+                false,
+                "stock.material: is a key of the file, not of this table, found 'steel'; allowed: material at the top of the file",
+            ),
             (
                 STOCK.replace("[cut]", "[cut]\nmilling = 'climb'"),
                 false,
@@ -229,9 +242,9 @@ mod tests {
         let both = format!("{FORCES}{TOOLS}");
         for (tables, with_columns, part) in [
             ("", false, "task: has no force columns"),
-            (FORCES, true, "forces: forces come from one place only"),
-            (TOOLS, true, "tool: forces come from one place only"),
-            (&both, false, "forces: forces come from one place only"),
+            (FORCES, true, "forces: the task task.csv has force columns already: forces come"),
+            (TOOLS, true, "tool: the task task.csv has force columns already: forces come"),
+            (&both, false, "forces: there are tables [tool] and [cut] already: forces come"),
         ] {
             let message = read(tables, with_columns).unwrap_err().to_string();
             for part in ways.iter().chain([&part]) {

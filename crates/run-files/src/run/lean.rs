@@ -17,7 +17,8 @@ use stead_format::shapes::Interval;
 use stead_format::tool::ToolTable;
 use stead_format::units::{Deg, Mm, Positive, ranges};
 use stead_model::task::Task;
-use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
+use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule};
+use stead_numerics::digits::figures;
 use stead_planning::lean::{LeanRange, LeanSpace};
 use stead_planning::problem;
 
@@ -125,6 +126,11 @@ impl LeanTable {
             return Err(at.error("leans a tapered cutter", "a ball, bull nose or flat cutter with straight sides"));
         }
         let end = CutterEnd { radius, corner };
+        if let Some(word) = self.rule.filter(|word| end.is_ball() && word.0 != ContactRule::Centre) {
+            let problem = format!("is \"{}\" for a ball, which leans about its centre", word.0.word());
+            let allowed = "\"centre\", or no rule, or a smaller tool.corner_radius_mm";
+            return Err(at.key("rule").error(problem, allowed).found_if(None));
+        }
         let has_normals = task.path().surface_normals().is_some();
         let contact = match self.rule {
             Some(word) => word.0,
@@ -138,6 +144,7 @@ impl LeanTable {
         };
         let all = LeanRange { lead: interval(self.lead_deg), tilt: interval(self.tilt_deg) };
         let mut segments = vec![all; task.segments().len()];
+        let mut is_named = vec![false; segments.len()];
         for (table, number) in self.segment.iter().flatten().zip(1..) {
             let at = at.key("segment").element(number);
             let index = table.number.get() as usize - 1;
@@ -145,6 +152,9 @@ impl LeanTable {
                 let allowed = format!("1 to {}, the segments of the task", task.segments().len());
                 return Err(at.key("number").error("is no segment of the task", allowed));
             };
+            if std::mem::replace(&mut is_named[index], true) {
+                return Err(at.key("number").error("is there twice", "each segment once"));
+            }
             if let Some(lead) = table.lead_deg {
                 range.lead = interval(Some(lead));
             }
@@ -168,6 +178,7 @@ impl LeanTable {
             scallop: self.scallop_mm.map(Quantity::si),
             contact_tolerance: self.contact_tolerance_mm.map_or(TOLERANCE_MM / 1e3, Quantity::si),
         };
+        check_max_lean(&space, at)?;
         space.check(path).map_err(|error| at.error(format!("cannot be: {error}"), "leans that the cutter allows"))?;
         let [lead, tilt] = space.half_counts().map(|half| 2 * half + 1);
         let (leans, memory) = (lead * tilt, space.memory(beta_count) as f64);
@@ -204,17 +215,58 @@ impl LeanTable {
                 "the plane that the cutter touches stays where it is, not the contact, which moves towards the side to which the tool leans, {aside}"
             ));
         }
-        if space.scallop.is_none() && !space.rule.end.is_ball() {
-            notes.push(
-                "lean.scallop_mm is not stated: the ridge that a leaning bull or flat cutter leaves between passes is not bounded"
-                    .to_owned(),
-            );
-        }
+        notes.extend(hollow_note(space));
         if has_unscored {
             notes.push("points that are not scored (plunges) keep the tool axis of the task".to_owned());
         }
         notes
     }
+}
+
+/// Refuses a largest angle below the least lean of a point.
+fn check_max_lean(space: &LeanSpace, at: &Place<'_>) -> Result<(), InputError> {
+    let Some(max) = space.max_lean else { return Ok(()) };
+    let least = |range: &LeanRange| range.nearest(&Lean::NONE).angle();
+    let beyond = space.ranges.iter().map(least).zip(1..).find(|(least, _)| *least > max + 1e-9);
+    let Some((least, point)) = beyond else { return Ok(()) };
+    let least = (least.to_degrees() * 1e3).ceil() / 1e3;
+    let problem = format!("is below the least lean of point {point}, {least} deg by its ranges of lead and tilt");
+    Err(at.key("max_lean_deg").error(problem, format!("at least {least}, or ranges that come nearer to 0")))
+}
+
+/// How much of the floor a bull or flat cutter leaves or takes where it leans as far as it may.
+fn hollow_note(space: &LeanSpace) -> Option<String> {
+    let end = &space.rule.end;
+    if end.is_ball() {
+        return None;
+    }
+    let corners = |range: &LeanRange| {
+        let tilts = [range.tilt.min, range.tilt.max];
+        [range.lead.min, range.lead.max].map(|lead| tilts.map(|tilt| Lean { lead, tilt })).concat()
+    };
+    // As far as the largest angle lets it.
+    let held = |lean: Lean| {
+        let share = space.max_lean.map_or(1.0, |max| (max / lean.angle().max(max)).min(1.0));
+        Lean { lead: lean.lead * share, tilt: lean.tilt * share }
+    };
+    let leans: Vec<Lean> = space.ranges.iter().flat_map(corners).map(held).collect();
+    let largest = |of: &dyn Fn(&Lean) -> f64| leans.iter().map(of).fold(0.0, f64::max);
+    let angle = figures(largest(&|lean| lean.angle()).to_degrees());
+    let mm = |length: f64| figures(length * 1e3);
+    let slot = mm(largest(&|lean| end.hollow(lean)));
+    let of_slot = format!("leaning by up to {angle} deg, the cutter hollows the floor of a slot by up to {slot} mm");
+    let ridge = space.step_over.map(|step| {
+        let ridge = largest(&|lean| end.scallop(lean, space.step_over).unwrap_or_default());
+        format!(", and leaves ridges of up to {} mm between passes {} mm apart", mm(ridge), mm(step))
+    });
+    let bound = match (space.scallop, space.step_over) {
+        (Some(most), _) => format!("; lean.scallop_mm keeps ridges to {} mm", mm(most)),
+        (None, Some(_)) => "; lean.scallop_mm bounds that".to_owned(),
+        (None, None) => {
+            "; what it leaves between passes is not bounded without lean.step_over_mm and lean.scallop_mm".to_owned()
+        }
+    };
+    Some(format!("{of_slot}{}{bound}", ridge.unwrap_or_default()))
 }
 
 #[cfg(test)]

@@ -29,15 +29,15 @@ pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, SearchTable, TransferTable};
 
-use crate::Word;
 use crate::forces::material::Material;
 use crate::forces::{BeforeTable, ReadingTable, RemovalTables};
 use crate::stated::stated;
+use crate::{Word, at_the_top};
 use criterion::ReadSets;
 use external_axes::{check_axes, external_axes};
 use forces::ForceTables;
 use lean::{LeanTable, PointLeans};
-use notes::{direction_note, override_note, speed_note, tilt_note};
+use notes::{cutter_notes, direction_note, force_note, override_note, speed_note, tilt_note};
 use postures::check_postures;
 use redundancy::check_axis_turns;
 use removed::removed;
@@ -51,9 +51,7 @@ use stead_format::field::FieldOverrides;
 use stead_format::file_kind::FileKind;
 use stead_format::mount::MountTable;
 use stead_format::place::Place;
-use stead_format::robot::{
-    checked_to_move, checked_to_score, moving_robot_from, robot_from, robot_like, with_stiffness_like,
-};
+use stead_format::robot::{checked_to_move, checked_to_score, moving_robot_from, robot_from, robot_like};
 use stead_format::sources::Sources;
 use stead_format::spindle::SpindleTable;
 use stead_format::surroundings::{
@@ -129,8 +127,8 @@ pub struct RunFile {
     /// What stands around the robot and on it, to be kept apart: a file of the tables below, relative to the folder of
     /// this one.
     pub surroundings: Option<String>,
-    /// The arm whose joint stiffness the robot file states, where it is not its own and the file does not say so; every
-    /// result says so. Of a robot file that states none, the shipped arm whose joint stiffness it gets.
+    /// Of a robot file that states no joint stiffness, the shipped arm whose joint stiffness it gets; every result says
+    /// so.
     pub stiffness_like: Option<String>,
     /// Shapes that keep apart, beside those of `surroundings`.
     pub shape: Option<Vec<ShapeTable>>,
@@ -176,7 +174,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let at = document.root();
     let run: RunFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
         Some(kind @ (FileKind::RobotFile | FileKind::ForcesFile)) => kind.refused(source.file()),
-        _ => error,
+        _ => at_the_top::<RunFile>(error),
     })?;
     let spindle = match run.stability {
         Some(_) => run.spindle.moving_spindle(&at.key("spindle"))?,
@@ -214,7 +212,13 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
                 Some(is_orthogonal) => moving_robot_from(&robot_source, is_orthogonal),
                 None => robot_from(&robot_source),
             })?;
-            (with_stiffness_like(robot, run.stiffness_like.as_deref(), &at)?, None)
+            if like.is_some() {
+                let problem = "lends a stiffness to a robot file that states its own";
+                let allowed = "a robot file without joint stiffness, or stiffness_like in the robot file, where it says whose its \
+                               numbers are";
+                return Err(at.key("stiffness_like").error(problem, allowed).into());
+            }
+            (robot, None)
         }
     };
     if moving != Some(true) {
@@ -229,6 +233,9 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let task_file = task_field.named_file()?;
     let mut imported = source.sources.task(&task_file.file, &task_file.bytes)?;
     let mut notes: Vec<String> = source.overrides().iter().map(|(field, _)| override_note(field)).collect();
+    notes.extend(at.radians("").into_iter().chain(robot_source.parse()?.root().radians("robot.")));
+    notes.extend(run.spindle.order_note());
+    notes.extend(cutter_notes(run.tool.as_ref(), cutting.as_ref(), run.stock.is_some()));
     notes.extend([tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten());
     let mut inputs = vec![
         source.as_config(),
@@ -345,6 +352,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     notes.extend(of_sets);
     notes.extend(around.notes);
     notes.extend(direction_note(&problem.task));
+    notes.extend(force_note(&problem.task, has_columns));
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);

@@ -109,11 +109,11 @@ pub(super) fn removed(
 ) -> Result<Removed, ReadError> {
     let alone = "force columns in the task, [forces], or [stock], [tool] and [cut]: one of them";
     if imported.wrenches.is_some() {
-        let problem = format!("forces come from one place only, and the task {} has force columns", file.name);
+        let problem = format!("the task {} has force columns already: forces come from one place only", file.name);
         return Err(at.key("stock").error(problem, alone).found_if(None).into());
     }
     if at.key("forces").is_given() {
-        let problem = "forces come from one place only, and there is a table [stock]";
+        let problem = "there is a table [stock] already: forces come from one place only";
         return Err(at.key("forces").error(problem, alone).found_if(None).into());
     }
     // With the feed of the run its task still states none.

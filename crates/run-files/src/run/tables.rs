@@ -359,7 +359,11 @@ mod tests {
             ("= 7.2", "= 0.01", [":14: redundancy.beta_step_deg: ", "found 0.01;", "from 0.05 to 90"]),
             ("= 50", "= 0", [":15: redundancy.feed_mm_per_s: ", "found 0;", "above 0"]),
             ("feed_mm_per_s = 50\n", "", [":13: redundancy.feed_mm_per_s: ", "missing", "above 0"]),
-            ("[cell]", "[criterion]\nforce_uncertainty = 11\n[cell]", [":7: criterion.force", "found 11;", "to 10"]),
+            (
+                "[cell]",
+                "[criterion]\nforce_uncertainty = 10\n[cell]",
+                [":7: criterion.force", "found 10;", "to 1: 0.1 is 10 %"],
+            ),
             (
                 "[cell]",
                 "[search]\nseed = -1\n[cell]",

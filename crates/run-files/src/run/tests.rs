@@ -164,8 +164,16 @@ fn an_arm_without_stiffness_gets_that_of_the_arm_that_the_run_names() {
         assert!(message.contains(":1: stiffness_like: ") && message.contains(part), "{message}");
         assert!(message.contains("states no joint stiffness of its own"), "{message}");
     }
-    // Where the robot file states its own, the key only says whose it is.
-    std::fs::write(at("run.toml"), format!("stiffness_like = 'made up'\n{RUN}")).unwrap();
+    // A robot file that states its own says itself whose it is.
+    for name in ["made up", "kuka-kr270-r2700"] {
+        std::fs::write(at("run.toml"), format!("stiffness_like = '{name}'\n{RUN}")).unwrap();
+        let message = read_run(&at("run.toml")).unwrap_err().to_string();
+        let start = "run.toml:1: stiffness_like: lends a stiffness to a robot file that states its own, found ";
+        assert!(message.contains(start) && message.contains("; allowed: a robot file without"), "{message}");
+    }
+    let arm = std::fs::read_to_string(at("arm.toml")).unwrap();
+    std::fs::write(at("arm.toml"), format!("stiffness_like = 'made up'\n{arm}")).unwrap();
+    std::fs::write(at("run.toml"), RUN).unwrap();
     assert_eq!(read_run(&at("run.toml")).unwrap().problem.robot.stiffness_like(), Some("made up"));
 }
 

@@ -79,7 +79,11 @@ fn what_no_tool_can_do_is_refused() {
     refused(&format!("{BALL}[lean]\nlead_deg = [20, -5]\n"), None, &["lead_deg"]);
     refused(&format!("{BALL}[lean]\nlead_deg = [0, 80]\n"), None, &["lead_deg", "60"]);
     refused(&format!("{BALL}[lean]\nlead_deg = [nan, 5]\n"), None, &["lead_deg"]);
-    refused(&format!("{BALL}[lean]\nlead_deg = [10, 20]\nmax_lean_deg = 5\n"), None, &["max_lean_deg"]);
+    refused(
+        &format!("{BALL}[lean]\nlead_deg = [10, 20]\nmax_lean_deg = 5\n"),
+        None,
+        &["lean.max_lean_deg: is below the least lean of point 1, 10 deg", "found 5; allowed: at least 10, or ranges"],
+    );
     refused(
         &format!("{BALL}{LEAN}lead_step_deg = 0.2\ntilt_step_deg = 0.2\n"),
         None,
@@ -87,6 +91,52 @@ fn what_no_tool_can_do_is_refused() {
     );
     refused(&format!("{BALL}{LEAN}[[lean.segment]]\nnumber = 2\n"), None, &["is no segment of the task", "1 to 1"]);
     refused(&format!("{FLAT}[lean]\nlead_deg = [1, 5]\nscallop_mm = 0.01\n"), None, &["scallop_mm", "whole range"]);
+}
+
+#[test]
+fn a_flat_end_does_not_tilt_within_a_largest_angle() {
+    let tilts = format!("{FLAT}[lean]\nlead_deg = [1, 5]\ntilt_deg = [-4, 20]\nmax_lean_deg = 10\n");
+    refused(
+        &tilts,
+        None,
+        &["lean: cannot be: point 1, lead 0.000 deg, tilt 20.000 deg: a flat end mill leans in lead"],
+    );
+    let segment = "[[lean.segment]]\nnumber = 1\ntilt_deg = [-4, 0]\n";
+    let tilts = format!("{FLAT}[lean]\nlead_deg = [1, 5]\nmax_lean_deg = 3\n{segment}");
+    refused(&tilts, None, &["tilt -4.000 deg: a flat end mill leans in lead only"]);
+}
+
+#[test]
+fn a_lead_says_by_how_much_it_hollows_the_floor() {
+    let note = |tables: &str| {
+        let run = read(tables, None).unwrap();
+        run.notes.into_iter().find(|note| note.contains("hollows")).unwrap_or_default()
+    };
+    // A flat cutter of 16 mm, leaning by 10 deg: 8 mm sin 10 deg.
+    let flat = "[tool]\ncutter_diameter_mm = 16\n[lean]\nlead_deg = [0, 10]\n";
+    let start = "leaning by up to 10.0 deg, the cutter hollows the floor of a slot by up to 1.39 mm; what it leaves";
+    assert!(note(flat).starts_with(start), "{}", note(flat));
+    // A bull: 7.5 mm sin 20 deg + 5 mm (1 - cos 20 deg), and s^2 / (8 R') for 4 mm.
+    let bull = format!("{BULL}[lean]\nlead_deg = [0, 20]\nstep_over_mm = 4\n");
+    let said = note(&bull);
+    assert!(
+        said.contains("by up to 2.87 mm, and leaves ridges of up to 0.0743 mm between passes 4.00 mm apart"),
+        "{said}"
+    );
+    assert!(said.ends_with("lean.scallop_mm bounds that"), "{said}");
+    assert!(note(&format!("{bull}max_lean_deg = 10\n")).starts_with("leaning by up to 10.0 deg"));
+    assert_eq!(note(&format!("{BALL}{LEAN}")), "");
+}
+
+#[test]
+fn a_ball_leans_about_its_centre_and_segments_stand_once() {
+    for rule in ["contact", "plane"] {
+        let parts = ["lean.rule: is ", "for a ball, which leans about its centre; allowed: \"centre\", or no rule"];
+        refused(&format!("{BALL}{LEAN}rule = '{rule}'\n"), None, &parts);
+    }
+    assert!(read(&format!("{BALL}{LEAN}rule = 'centre'\n"), None).is_ok());
+    let segment = "[[lean.segment]]\nnumber = 1\ntilt_deg = [0, 5]\n";
+    refused(&format!("{BALL}{LEAN}{segment}{segment}"), None, &["lean.segment[2].number: is there twice"]);
 }
 
 /// A run whose task has more columns: their names, and what a row of the task has in them.
