@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_assessment::comparison::Assessment;
+use stead_numerics::message::Note;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text, write_assessment};
 use stead_report::document::Timing;
 use stead_report::{Files, Folder};
@@ -52,7 +53,7 @@ impl AssessmentRun {
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -118,7 +119,7 @@ impl Report for RobotAssessment {
         assessment_text(&self.assessment, &self.context)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 

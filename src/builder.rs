@@ -1,5 +1,6 @@
 //! Runs from code: a problem in memory in place of a run file.
 
+use crate::monitor::Note;
 use crate::{Error, Run};
 use serde_json::Value;
 use std::fmt::Display;
@@ -134,8 +135,8 @@ impl RunBuilder {
         self.options.check()?;
         self.options.check_for(&self.problem)?;
         let Self { problem, options: PlaceOptions { search, transfer, certificate, maps, page }, reference } = self;
-        let mut notes =
-            vec!["the problem comes from a program, not from files: these results name no inputs".to_owned()];
+        let text = "the problem comes from a program, not from files: these results name no inputs";
+        let mut notes = vec![Note::from(text.to_owned())];
         notes.extend(problem.notes());
         notes.extend(problem.unchecked_collisions());
         let (inputs, stated, path_stability) = (Vec::new(), Value::Null, None);

@@ -7,6 +7,7 @@ use crate::{Error, Monitor, Run};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use stead_format::robot::{robot_radians, says_stiffness};
+use stead_numerics::message::Note;
 use stead_placement::overview::Overview;
 use stead_report::check::{CheckedRun, robot_json, robot_lines, run_json, run_text};
 use stead_report::picture::{arm_alone, arm_of_run};
@@ -18,7 +19,7 @@ pub struct Checked {
     text: String,
     document: Value,
     picture: String,
-    notes: Vec<String>,
+    notes: Vec<Note>,
     warnings: Vec<Warning>,
 }
 
@@ -60,7 +61,8 @@ impl Checked {
     /// With what is to be said of the file beside what is said of its arm.
     fn of_arm(arm: &Arm, has_stiffness: bool, of_file: Vec<String>) -> Self {
         let robot = arm.robot();
-        let notes: Vec<String> = of_file.into_iter().chain(stead_model::plausibility::arm(robot)).collect();
+        let of_file = of_file.into_iter().map(Note::may_be_wrong);
+        let notes: Vec<Note> = of_file.chain(stead_model::plausibility::arm(robot)).collect();
         Self {
             text: robot_lines(robot, Some(has_stiffness)),
             document: robot_json(robot, has_stiffness, &notes, arm.inputs()),
@@ -73,9 +75,16 @@ impl Checked {
     fn of_run(run: &Run) -> Self {
         let problem = run.problem();
         let overview = Overview::of(problem);
-        let notes: Vec<String> = run.notes().iter().cloned().chain(overview.notes()).collect();
+        let notes: Vec<Note> = run.notes().iter().cloned().chain(overview.notes()).collect();
         let warnings = run.warnings().to_vec();
-        let run = CheckedRun { problem, overview: &overview, inputs: run.inputs(), notes: &notes, warnings: &warnings };
+        let run = CheckedRun {
+            problem,
+            overview: &overview,
+            cut: run.cut(),
+            inputs: run.inputs(),
+            notes: &notes,
+            warnings: &warnings,
+        };
         let (text, document, picture) = (run_text(&run), run_json(&run), arm_of_run(problem, &overview));
         Self { text, document, picture, notes, warnings }
     }
@@ -103,7 +112,7 @@ impl Report for Checked {
         self.text.clone()
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.notes
     }
 

@@ -7,6 +7,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
+use stead_numerics::message::Note;
 use stead_report::compensation::{
     compensation_files, compensation_json, compensation_text, not_compensated_json, write_compensation,
 };
@@ -43,7 +44,7 @@ impl CompensationRun {
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -88,7 +89,7 @@ impl CompensationRun {
 pub struct CompensatedPath {
     run: Arc<stead_runs::CompensateRun>,
     outcome: Outcome,
-    notes: Vec<String>,
+    notes: Vec<Note>,
     warnings: Vec<Warning>,
 }
 
@@ -116,7 +117,7 @@ impl Report for CompensatedPath {
         compensation_text(&self.run, &self.outcome)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.notes
     }
 

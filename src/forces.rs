@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_disk::Existing;
 use stead_disk::files::new::write_all_new;
+use stead_numerics::message::Note;
 use stead_report::forces::{ENDINGS, forces_files, forces_json, forces_text};
 use stead_run_files as run_files;
 
@@ -32,7 +33,7 @@ impl ForcesRun {
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -58,7 +59,7 @@ impl ForcesRun {
 pub struct PathForces {
     run: Arc<stead_runs::ForcesRun>,
     forces: RemovalForces,
-    notes: Vec<String>,
+    notes: Vec<Note>,
 }
 
 impl PathForces {
@@ -103,7 +104,7 @@ impl PathForces {
 
     /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values left at
     /// their defaults.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.notes
     }
 

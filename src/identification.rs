@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_calibration::identification::design::{Design, DesignError, design_experiment};
 use stead_calibration::identification::{Identified, IdentifyError, identify};
+use stead_numerics::message::Note;
 use stead_report::identification::plan::{keep_readings, plan_files, plan_json, plan_text, write_plan};
 use stead_report::identification::{identified_files, identify_json, identify_text, write_identified};
 use stead_report::{Files, Folder};
@@ -35,7 +36,7 @@ impl FitRun {
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -71,7 +72,7 @@ impl DesignRun {
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -143,7 +144,7 @@ impl Report for IdentifiedRobot {
         identify_text(&self.run, &self.identified)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -170,7 +171,7 @@ impl Report for MeasurementPlan {
         plan_text(&self.run, &self.design)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 

@@ -123,6 +123,6 @@ pub mod certify {
 
 pub mod monitor {
     //! How a long job tells how far it is and is stopped, and the warnings of all jobs.
-    pub use stead_numerics::message::Warning;
+    pub use stead_numerics::message::{Note, NoteGroup, Warning};
     pub use stead_numerics::monitor::{Monitor, Progress, Stop, StopHandle};
 }

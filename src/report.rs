@@ -1,6 +1,7 @@
 //! The page of a results folder.
 
 pub use stead_report::document::Timing;
+pub use stead_report::placement::{NOTES, Summary, SummaryLine, summary_line, summary_text};
 pub use stead_report::{Folder, ReportError};
 
 use crate::Error;

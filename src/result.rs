@@ -3,7 +3,7 @@
 use crate::Error;
 use serde_json::Value;
 use std::path::PathBuf;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_report::{Files, Folder};
 
 /// A result as files, as a document and as a text; [`result!`] makes the public methods of it.
@@ -21,7 +21,7 @@ pub(crate) trait Report {
     /// What the command prints.
     fn table(&self) -> String;
     /// What the result rests on.
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &[]
     }
     /// Why the result may not be what was wanted.
@@ -72,7 +72,7 @@ macro_rules! result {
 
             /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values
             /// left at their defaults.
-            pub fn notes(&self) -> &[String] {
+            pub fn notes(&self) -> &[crate::monitor::Note] {
                 crate::result::Report::notes(self)
             }
 

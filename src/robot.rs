@@ -11,6 +11,7 @@ use stead_format::catalogue::{self};
 use stead_format::robot::geometry_file;
 use stead_format::spindle::read_spindle;
 use stead_model::robot::{Robot, Spindle};
+use stead_numerics::message::Note;
 use stead_report::robot::{ArmPose, pose_json, pose_text, robots_json, robots_text};
 
 /// A robot file of which only geometry, limits and controller count: its stiffness need not be known.
@@ -98,7 +99,7 @@ impl Arm {
 #[derive(Debug, Clone)]
 pub struct PoseOfArm {
     pose: ArmPose,
-    notes: Vec<String>,
+    notes: Vec<Note>,
 }
 
 impl Report for PoseOfArm {
@@ -110,7 +111,7 @@ impl Report for PoseOfArm {
         pose_text(&self.pose)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.notes
     }
 }

@@ -12,17 +12,22 @@ use stead_certify as certify;
 use stead_certify::settings::CertificateSettings;
 use stead_certify::{self, Certificate};
 use stead_format::field::{FieldOverride, FieldOverrides};
+use stead_numerics::message::Note;
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::place::{Infeasible, setup_at};
 use stead_planning::feasibility;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::Setup;
+use stead_removal::cut::CutFigures;
 use stead_report::certificate::{
     certificate_files, certificate_json, certificate_text, has_certificate, write_certificate,
 };
 use stead_report::document::Timing;
 use stead_report::page::put_page;
-use stead_report::placement::{Context, evaluation, place_json, placement_files, placement_text, write_placement};
+use stead_report::placement::{
+    Context, Summary, evaluation, place_json, placement_files, placement_notes, placement_summary, placement_text,
+    write_placement,
+};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 use stead_study::{self as study, Placed, Scored};
@@ -86,6 +91,16 @@ impl Run {
         let settings = run.certificate.unwrap_or(CertificateSettings::new(gap));
         run.certificate = Some(CertificateSettings { gap, ..settings });
         self
+    }
+
+    /// What its path cuts of its stock, in a few figures, where it has one.
+    pub fn cut(&self) -> Option<CutFigures> {
+        self.run.removal.as_ref().and_then(|removal| removal.cut)
+    }
+
+    /// Whether it asks for a certificate.
+    pub fn is_certified(&self) -> bool {
+        self.run.certificate.is_some()
     }
 
     /// The gap of a certificate from per cent, for [`Run::with_certificate`].
@@ -155,7 +170,7 @@ impl Run {
         let problem = self.run.problem.in_setup(&setup).into_owned();
         let run = Arc::make_mut(&mut self.run);
         run.problem = problem;
-        run.notes.extend(notes);
+        run.notes.extend(notes.into_iter().map(Note::from));
         self.is_set_up = true;
         Ok((self, placement))
     }
@@ -188,7 +203,7 @@ impl Run {
     }
 
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub fn notes(&self) -> &[String] {
+    pub fn notes(&self) -> &[Note] {
         &self.run.notes
     }
 
@@ -292,9 +307,12 @@ impl Run {
         }
         let postures = feasibility::explain(self.problem(), placement, point, beta);
         let mut context = Context::new(&self.run, self.run.search);
-        context.notes.extend(study::outside_cell(&self.run, placement));
-        context.notes.extend(feasibility::standing_axes(self.problem(), point, self.is_set_up));
-        context.notes.extend(feasibility::unscored(self.problem(), point));
+        let computed = [
+            study::outside_cell(&self.run, placement),
+            feasibility::standing_axes(self.problem(), point, self.is_set_up),
+            feasibility::unscored(self.problem(), point),
+        ];
+        context.notes.extend(computed.into_iter().flatten().map(Note::from));
         Ok(Explanations { placement: *placement, point, beta, postures, context })
     }
 }
@@ -344,6 +362,16 @@ impl Placements {
         self.certificate =
             Some(certify::certify(&self.run.problem, &best.placement, best.plan.objective, worst, settings, monitor));
         self.certificate.as_ref()
+    }
+
+    /// The result in a few lines, without the certificate.
+    pub fn summary(&self) -> Summary {
+        placement_summary(&self.run.problem, &self.outcome, &self.context)
+    }
+
+    /// All that is said of it but the certificate: the lines, tables, warnings and notes of `notes.txt`.
+    pub fn notes_text(&self) -> String {
+        placement_notes(&self.run.problem, &self.outcome, &self.context)
     }
 
     /// What the command prints of the certificate, if there is one.
@@ -411,7 +439,7 @@ impl Report for Placements {
     }
 
     fn document(&self) -> Value {
-        let mut document = place_json(&self.outcome, &self.context, &self.timing);
+        let mut document = place_json(&self.run.problem, &self.outcome, &self.context, &self.timing);
         if let (Some(certificate), Value::Object(entries)) = (&self.certificate, &mut document) {
             entries.insert("certificate".to_owned(), certificate_json(certificate, &self.run.inputs));
         }
@@ -426,7 +454,7 @@ impl Report for Placements {
         }
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.context.notes
     }
 

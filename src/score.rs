@@ -6,11 +6,12 @@ use crate::{Error, Monitor};
 use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
+use stead_numerics::message::Note;
 use stead_placement::outcome::left_out;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
 use stead_planning::problem::Placement;
-use stead_report::placement::{Context, evaluation, score_files, write_score};
+use stead_report::placement::{Context, Summary, evaluation, score_files, score_notes, score_summary, write_score};
 use stead_report::{Files, Folder};
 
 /// A given placement with its best and its worst plan.
@@ -36,6 +37,16 @@ impl PlacementScore {
     /// Both plans, in SI units.
     pub fn score(&self) -> &Score {
         &self.score
+    }
+
+    /// The result in a few lines.
+    pub fn summary(&self) -> Summary {
+        score_summary(&self.run.problem, &self.score, &self.context)
+    }
+
+    /// All that is said of it: the lines, tables, warnings and notes of `notes.txt`.
+    pub fn notes_text(&self) -> String {
+        score_notes(&self.run.problem, &self.score, &self.context)
     }
 
     /// Makes the deflection map of the placement and, where the tool may lean, the map over lead and tilt, to be
@@ -82,14 +93,14 @@ impl Report for PlacementScore {
     }
 
     fn document(&self) -> Value {
-        evaluation::score_json(&self.score, &self.context)
+        evaluation::score_json(&self.run.problem, &self.score, &self.context)
     }
 
     fn table(&self) -> String {
         evaluation::score_text(&self.score, &self.context)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.context.notes
     }
 
@@ -107,7 +118,7 @@ impl Report for Explanations {
         evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.context.notes
     }
 

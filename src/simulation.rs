@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
+use stead_numerics::message::Note;
 use stead_report::simulation::{Making, simulation_files, simulation_text, timed_json, write_simulation};
 use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
 use stead_report::{Files, Folder};
@@ -187,7 +188,7 @@ impl Report for SimulatedPass {
         simulation_text(&self.run, &self.simulation, &self.making)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.simulation.notes
     }
 
@@ -213,7 +214,7 @@ impl Report for StabilityAnalysis {
         stability_text(&self.run, &self.analysis)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.analysis.notes
     }
 

@@ -18,6 +18,7 @@ use stead_certify::Certificate;
 use stead_disk::files;
 use stead_disk::input::{InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
+use stead_numerics::message::Note;
 use stead_report::certificate::write_certificate;
 use stead_report::placement::{CaseOfStudy, Context, placement_files, write_placement};
 use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
@@ -237,7 +238,7 @@ impl Report for StudyReport {
         study_text(&self.plan.name(), &self.analysis)
     }
 
-    fn notes(&self) -> &[String] {
+    fn notes(&self) -> &[Note] {
         &self.analysis.notes
     }
 }

@@ -11,7 +11,7 @@ const PLACE: [&str; 6] = ["--x-mm", "2.2", "--y-mm", "-1643.5", "--z-mm", "-556.
 fn bench() -> Bench {
     let bench = Bench::new();
     bench.write("out/best.csv", "an earlier result\n");
-    bench.write("out/notes.txt", "the user's own\n");
+    bench.write("out/own.txt", "the user's own\n");
     bench
 }
 
@@ -397,4 +397,19 @@ fn the_wrong_kind_of_file_names_the_right_command() {
     let robot = bench.stead(&["place", "configs/robots/kuka-kr270-2.toml"]);
     assert_eq!(robot.code, Some(2));
     robot.assert_says(&["kuka-kr270-2.toml: is a robot file", "stead init place --robot"]);
+}
+
+/// `notes.txt` is a name that people use: one that no manifest lists is theirs.
+#[test]
+fn notes_of_the_user_are_not_replaced_by_those_of_a_result() {
+    let bench = Bench::new();
+    bench.write("out/notes.txt", "the user's own\n");
+    let score = [&["score", RUN, "--out", "out"][..], &PLACE, &["--q4", "0.9258"]].concat();
+    for arguments in [&["place", RUN, "--out", "out"][..], &score] {
+        let ended = bench.stead(arguments);
+        assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+        ended.assert_says(&["out/notes.txt: is none of stead and is left as it is", "; allowed: another folder"]);
+    }
+    assert_eq!(bench.names("out"), ["notes.txt"]);
+    assert_eq!(bench.read("out/notes.txt"), "the user's own\n");
 }

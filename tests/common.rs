@@ -79,8 +79,16 @@ impl Bench {
         command
     }
 
-    /// Runs the command to its end; neither output is a terminal.
+    /// Runs the command to its end; neither output is a terminal. `place` and `score` are asked for all that there is
+    /// to say in place of the summary.
     pub fn stead(&self, arguments: &[&str]) -> Ended {
+        let is_asked = matches!(arguments, ["place" | "score", _, ..]) && !arguments.contains(&"--help");
+        let all: &[&str] = if is_asked { &["--notes"] } else { &[] };
+        self.stead_in_short(&[arguments, all].concat())
+    }
+
+    /// Runs the command to its end as it is given.
+    pub fn stead_in_short(&self, arguments: &[&str]) -> Ended {
         Ended::from(self.command(arguments).output().unwrap())
     }
 

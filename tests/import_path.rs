@@ -228,6 +228,7 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
         "max_spindle_turn_deg_per_mm = 0.5",
         "# kind = \"rail\"",
         "# kind = \"turntable\"",
+        "\nguesses = [\"spindle\", \"cell\", \"stock.depth_mm\", \"tool.teeth\", ",
         "z_mm = [500.0, ",
         "on \"table\" of the surroundings, 500 mm",
         "\ncutter_diameter_mm = 16.0 ",
@@ -243,8 +244,39 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     assert!(!text.contains("max_beta_rate"), "{text}");
     let small = ["--set", "search.population=12", "--set", "search.generations=1", "--set", "search.basins=1"];
     let place = [&["place", "my/run.toml", "--out", "out"][..], &small].concat();
-    run(&place);
+    let placed = bench.stead_in_short(&place);
+    assert_eq!(placed.code, Some(0), "{}", placed.stderr);
     assert!(bench.path("out/best.csv").is_file());
+    // The result is read in a few lines, in the order in which they count.
+    let lines: Vec<&str> = placed.stdout.lines().chain(placed.stderr.lines()).collect();
+    let words: usize = lines.iter().map(|line| line.split_whitespace().count()).sum();
+    assert!(
+        lines.len() <= 12 && words <= 120,
+        "{} lines, {words} words: {}{}",
+        lines.len(),
+        placed.stdout,
+        placed.stderr
+    );
+    let abouts = ["best ", "  ", "worst ", "held by ", "cut ", "RESTS ON ", "NOT CHECKED "];
+    assert!(lines.iter().zip(abouts).all(|(line, about)| line.starts_with(about)), "{}", placed.stdout);
+    assert!(lines[5].contains("stiffness of KUKA KR 270 R2700"), "{}", lines[5]);
+    assert!(lines[5].contains("guesses: spindle, cell, stock.depth_mm, tool ("), "{}", lines[5]);
+    let next = "stead export my/run.toml out/best.csv --format krl --out prog/PART";
+    assert!(lines.last().is_some_and(|last| last.starts_with("next ") && last.ends_with(next)), "{}", placed.stdout);
+    let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    let said: Vec<&str> =
+        summary["summary"].as_array().unwrap().iter().map(|line| line["text"].as_str().unwrap()).collect();
+    assert!(said.iter().zip(&lines).all(|(said, line)| line.ends_with(said)), "{said:?}");
+    let notes = bench.read("out/notes.txt");
+    for part in [
+        "RESTS ON ",
+        "\nWhat the result rests on\n- guesses: spindle, cell, stock.depth_mm",
+        "\nWhat was not checked\n",
+    ] {
+        assert!(notes.contains(part), "{part} in {notes}");
+    }
+    let long = run(&place);
+    assert!(long.stdout.contains("placements and") && long.stderr.contains("note: guesses: "), "{}", long.stderr);
     // Nothing is written over without --force.
     let kept = bench.tree("my");
     for command in [&robot[..], &path, &init] {
@@ -284,7 +316,8 @@ fn init_allows_the_spindle_what_the_tool_axis_itself_turns() {
     let init = ["init", "place", "--robot", "name:kuka-kr270-r2700", "--task", "turning.csv", "--out", "run.toml"];
     assert_eq!(bench.stead(&init).code, Some(0));
     let text = bench.read("run.toml");
-    for part in ["max_spindle_turn_deg_per_mm = 1.0 ", "guess: the tool axis alone turns by up to 0.78 along the path"]
+    for part in
+        ["max_spindle_turn_deg_per_mm = 1.0 ", "in space: the tool axis alone turns by up to 0.78 along the path"]
     {
         assert!(text.contains(part), "{part} in {text}");
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// What a placement leaves.
-pub const FILES: [&str; 20] = [
+pub const FILES: [&str; 21] = [
     "best-worst-plan.csv",
     "best.csv",
     "cell.glb",
@@ -19,6 +19,7 @@ pub const FILES: [&str; 20] = [
     "deflection-map-worst.csv",
     "deflection-map-worst.svg",
     "manifest.json",
+    "notes.txt",
     "page-data.json",
     "placements.csv",
     "refinements.csv",
@@ -340,12 +341,12 @@ fn threads_do_not_change_the_result() {
     let expected = bench.tree("out");
     let other = Bench::new();
     let text = ["place", RUN, "--out", "a/b/five", "--threads", "5", "--seed", "1"];
-    other.write("a/b/five/notes.txt", "the user's own\n");
+    other.write("a/b/five/own.txt", "the user's own\n");
     other.write("a/b/five/best.csv", "an earlier result\n");
     let five = other.stead(&text);
     assert_eq!((five.code, five.said().as_str()), (Some(0), ""));
     let mut found = other.tree("a/b/five");
-    assert_eq!(found.remove("notes.txt"), Some(Some(b"the user's own\n".to_vec())));
+    assert_eq!(found.remove("own.txt"), Some(Some(b"the user's own\n".to_vec())));
     assert_same(&found, &expected);
     for part in ["KUKA KR270-2: 105 points in 5 segments", "on 5 threads; results in a/b/five\n"] {
         assert!(five.stdout.contains(part), "{part} is not in {}", five.stdout);

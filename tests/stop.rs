@@ -9,10 +9,11 @@ const MAPS: [&str; 4] =
     ["deflection-map-best.csv", "deflection-map-best.svg", "deflection-map-worst.csv", "deflection-map-worst.svg"];
 
 /// What a score leaves, its map apart.
-const SCORE_FILES: [&str; 9] = [
+const SCORE_FILES: [&str; 10] = [
     "best-plan.csv",
     "cell.glb",
     "manifest.json",
+    "notes.txt",
     "page-data.json",
     "placement.svg",
     "report.html",
@@ -96,6 +97,7 @@ fn the_exact_placement_of_a_result_is_scored_and_written() {
         "deflection-map.csv",
         "deflection-map.svg",
         "manifest.json",
+        "notes.txt",
         "page-data.json",
         "placement.svg",
         "report.html",
@@ -254,7 +256,12 @@ mod interrupt {
         ended.assert_says(&[
             "note: out has finished results and is left as it is; those of this run are in out.interrupted",
         ]);
-        assert!(ended.stdout.contains("; results in out.interrupted\n"), "{}", ended.stdout);
+        assert!(ended.stdout.starts_with("INTERRUPTED "), "{}", ended.stdout);
+        assert!(
+            ended.stdout.contains(" out.interrupted/notes.txt") && !ended.stdout.contains("next "),
+            "{}",
+            ended.stdout
+        );
         assert_eq!(bench.tree("out"), finished);
         assert_eq!(json_in(&bench, "out.interrupted/summary.json")["interrupted"], true);
         assert_eq!(json_in(&bench, "out.interrupted/manifest.json")["results"][0]["interrupted"], true);
@@ -282,10 +289,10 @@ mod interrupt {
         assert_eq!(again(&[]).code, Some(130));
         assert_eq!(bench.tree("out"), finished);
         let ended = again(&["--keep-partial"]);
-        assert!(ended.code == Some(130) && ended.stdout.contains("; results in out\n"), "{}", ended.stdout);
+        assert!(ended.code == Some(130) && ended.stdout.contains(" out/notes.txt"), "{}", ended.stdout);
         assert_eq!(json_in(&bench, "out/summary.json")["interrupted"], true);
         // Results of an interrupted run are not finished ones.
-        assert!(again(&[]).stdout.contains("; results in out\n"));
+        assert!(again(&[]).stdout.contains(" out/notes.txt"));
     }
 
     #[test]

@@ -97,7 +97,7 @@ impl Run {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.0.notes().to_vec()
+        self.0.notes().iter().map(ToString::to_string).collect()
     }
 
     fn warnings(&self) -> Vec<(&'static str, String)> {
@@ -173,7 +173,7 @@ impl AssessmentRun {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.0.notes().to_vec()
+        self.0.notes().iter().map(ToString::to_string).collect()
     }
 
     fn assess(&self, py: Python<'_>, options: Options) -> Done {
@@ -194,7 +194,7 @@ impl FitRun {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.0.notes().to_vec()
+        self.0.notes().iter().map(ToString::to_string).collect()
     }
 
     fn fit(&self, py: Python<'_>, options: Options) -> Done {
@@ -215,7 +215,7 @@ impl DesignRun {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.0.notes().to_vec()
+        self.0.notes().iter().map(ToString::to_string).collect()
     }
 
     fn check_folder(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
@@ -248,7 +248,7 @@ impl CompensationRun {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.0.notes().to_vec()
+        self.0.notes().iter().map(ToString::to_string).collect()
     }
 
     fn compensate(&self, py: Python<'_>, all_or_nothing: bool, options: Options) -> Done {

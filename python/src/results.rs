@@ -60,7 +60,7 @@ impl Outcome {
 
     /// What the user should know about the input.
     fn notes(&self) -> Vec<String> {
-        each!(&self.0, result => result.notes().to_vec())
+        each!(&self.0, result => result.notes().iter().map(ToString::to_string).collect())
     }
 
     /// Kind and message of each warning.

@@ -29,10 +29,10 @@ pub(super) struct ExportCommand {
     /// Command points that could not be corrected as planned, instead of refusing the path
     #[arg(long, requires = "corrected")]
     pub uncorrected_as_planned: bool,
-    /// How far the tool is retracted along its axis before and after a segment, where no free way is planned; 0 for not
-    /// at all
-    #[arg(long, value_name = "D", value_parser = finite, default_value = "50", allow_hyphen_values = true)]
-    pub approach_mm: f64,
+    /// How far the tool is drawn back along its axis where no free way is planned; 0 for none [default:
+    /// transfer.retract_mm]
+    #[arg(long, value_name = "D", value_parser = finite, allow_hyphen_values = true)]
+    pub approach_mm: Option<f64>,
     /// Write moves that hit or that the arm cannot follow too, marked NOT FREE, instead of refusing the program
     #[arg(long)]
     pub allow_blocked_moves: bool,
@@ -122,6 +122,11 @@ fn corrected(options: &ExportCommand) -> Option<CorrectedPath<'_>> {
     options.corrected.as_deref().map(|file| CorrectedPath { file, is_uncorrected_as_planned })
 }
 
+/// How far the tool is retracted. m
+fn approach(options: &ExportCommand, run: &Run) -> f64 {
+    options.approach_mm.map_or(run.problem().segment_moves.retract, |length| length / 1e3)
+}
+
 fn export(options: &ExportCommand, run: &Run, terminal: &Terminal) -> Result<(), Failure> {
     let (Some(format), Some(out)) = (options.format, &options.out) else {
         return Err(Failure::Usage("--format and --out are needed to write a program".to_owned()));
@@ -129,7 +134,7 @@ fn export(options: &ExportCommand, run: &Run, terminal: &Terminal) -> Result<(),
     let name = out.file_name().unwrap_or_default().to_string_lossy();
     let requested = ExportOptions {
         corrected: corrected(options),
-        approach: options.approach_mm / 1e3,
+        approach: approach(options, run),
         blend: options.blend_mm / 1e3,
         allow_blocked_moves: options.allow_blocked_moves,
         max_moves: options.max_moves,
@@ -156,7 +161,7 @@ fn export(options: &ExportCommand, run: &Run, terminal: &Terminal) -> Result<(),
 
 fn check(options: &ExportCommand, run: &Run, program: &Path, terminal: &Terminal) -> Result<(), Failure> {
     for (option, found, most) in
-        [("--approach-mm", options.approach_mm, 1000.0), ("--blend-mm", options.blend_mm, 100.0)]
+        [("--approach-mm", approach(options, run) * 1e3, 1000.0), ("--blend-mm", options.blend_mm, 100.0)]
     {
         if !(0.0..=most).contains(&found) {
             let problem = format!("{option}: is out of range, found {found}");
@@ -165,7 +170,7 @@ fn check(options: &ExportCommand, run: &Run, program: &Path, terminal: &Terminal
     }
     let exported = ReadBackOptions {
         corrected: corrected(options),
-        approach: options.approach_mm / 1e3,
+        approach: approach(options, run),
         blend: options.blend_mm / 1e3,
     };
     let shown = terminal.show(None);

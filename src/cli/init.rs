@@ -65,7 +65,7 @@ pub(super) const MANUAL: Manual = Manual {
     ],
     remarks: "With --robot, --task and --out: one run file for files that are there, with the shapes (ROBOT-cell.toml) \
               and the cutter (TASK-tool.toml) that stead import has left beside them. With --path and --out: one \
-              forces file for that path. What they do not say is a guess, marked as one.",
+              forces file for that path. What they do not say is a guess, named in `guesses`.",
     refused: "wrong usage, or one of the files exists already (--force replaces it): nothing is written and nothing is changed",
     ..Manual::NEW
 };

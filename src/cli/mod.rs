@@ -41,6 +41,7 @@ use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use stead::monitor::Warning;
+use stead::report::{NOTES, SummaryLine, summary_line};
 use stead_report::document;
 use stead_report::output::{Folder, ReportError};
 
@@ -181,13 +182,24 @@ fn say(line: &str) {
 }
 
 /// Says what the user should know about the input.
-fn say_notes(notes: &[String]) {
+fn say_notes(notes: &[impl Display]) {
     notes.iter().for_each(|note| say(&format!("note: {note}")));
 }
 
 /// Says why a result may not be what was wanted.
 fn say_warnings(warnings: &[Warning]) {
     warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+}
+
+/// The line of a summary on what else is said, and where.
+fn more(count: usize, folder: &str) -> Option<SummaryLine> {
+    let text = match (count, folder) {
+        (0, "") => return None,
+        (0, folder) => format!("{folder}/{NOTES}"),
+        (count, "") => format!("{count} notes: --notes"),
+        (count, folder) => format!("{count} notes: {folder}/{NOTES}, --notes"),
+    };
+    Some(summary_line("more", text))
 }
 
 /// Runs a job on so many threads, or on as many as there are processors.

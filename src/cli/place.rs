@@ -4,10 +4,12 @@ use super::given::GivenRun;
 use super::manual::Manual;
 use super::progress::Terminal;
 use super::values::{gap, seed, threads};
-use super::{Failure, files_written, left_in, on_threads, out_folder, print, print_json, say, say_notes, say_warnings};
+use super::{
+    Failure, files_written, left_in, more, on_threads, out_folder, print, print_json, say, say_notes, say_warnings,
+};
 use clap::Args;
 use std::path::PathBuf;
-use stead::report::Folder;
+use stead::report::{Folder, NOTES, summary_line, summary_text};
 use stead::{Error, Placements, Run};
 
 #[derive(Debug, Args)]
@@ -36,6 +38,9 @@ pub(super) struct PlaceOptions {
     /// <DIR>.interrupted
     #[arg(long)]
     pub keep_partial: bool,
+    /// Print the tables of all cases, and say every warning and note, in place of the summary
+    #[arg(long)]
+    pub notes: bool,
     /// Number of threads; it does not change the result [default: number of processors]
     #[arg(long, value_name = "N", value_parser = threads, allow_negative_numbers = true)]
     pub threads: Option<usize>,
@@ -72,6 +77,7 @@ pub(super) const MANUAL: Manual = Manual {
             "setup.svg",
             "setup sheet of the best placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false or --no-page",
         ),
+        ("notes.txt", "the summary, the tables of all cases, every warning and every note"),
         ("summary.json", "all of it for programs, with the keys of the run file and their values"),
         (
             "report.html, cell.glb, page-data.json",
@@ -111,10 +117,14 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         run = run.without_page();
     }
     let mut out = out_folder(options.out.as_deref(), &options.run.config)?;
+    out.folder.has_no_other(NOTES).map_err(Failure::Output)?;
     out.folder = out.folder.keeping_partial(options.keep_partial);
     terminal.holds(&out.folder);
-    say_notes(run.notes());
-    say_warnings(run.warnings());
+    let is_short = !options.notes && !options.json;
+    if !is_short {
+        say_notes(run.notes());
+        say_warnings(run.warnings());
+    }
     say_warnings(run.certificate_warning().as_slice());
     say_notes(run.certificate_note().as_slice());
 
@@ -123,6 +133,10 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let was_stopped = shown.monitor.should_stop();
     drop(shown);
     let mut placements = found.inspect_err(|error| {
+        if is_short {
+            say_notes(run.notes());
+            say_warnings(run.warnings());
+        }
         if let (true, Error::Infeasible(nothing)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.
             let _ = print_json(&run.infeasible_json(nothing));
@@ -144,13 +158,19 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     // Text is shown as it comes; in JSON there is one document, shown when the certificate is in it.
     if !options.json {
         let timing = placements.timing();
-        let folder = if left.is_empty() { left } else { format!("; results in {left}") };
-        let text = format!("{placements}in {:.1} s on {} threads{folder}\n", timing.wall, timing.threads);
+        let took = format!("{:.1} s on {} threads", timing.wall, timing.threads);
+        let folder = if left.is_empty() { String::new() } else { format!("; results in {left}") };
+        let text = match is_short {
+            true => summary(options, &run, &placements, &left),
+            false => format!("{placements}in {took}{folder}\n"),
+        };
         written = written.and(print(text.as_bytes()));
     }
-    // What was read was said before.
-    say_notes(placements.notes().get(run.notes().len()..).unwrap_or_default());
-    say_warnings(placements.warnings().get(run.warnings().len()..).unwrap_or_default());
+    if !is_short {
+        // What was read was said before.
+        say_notes(placements.notes().get(run.notes().len()..).unwrap_or_default());
+        say_warnings(placements.warnings().get(run.warnings().len()..).unwrap_or_default());
+    }
 
     let shown = terminal.show(None);
     let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
@@ -180,6 +200,26 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let is_cut_short = placements.certificate().is_some_and(|certificate| certificate.is_interrupted());
     if placements.outcome().interrupted || (waits && is_cut_short) { Err(Failure::Interrupted) } else { Ok(()) }
 }
+
+/// The result in a few lines, with what to do next.
+fn summary(options: &PlaceOptions, run: &Run, placements: &Placements, left: &str) -> String {
+    let mut lines = placements.summary();
+    if !run.is_certified() {
+        lines.push(summary_line("proof", "none; --certify 1"));
+    }
+    lines.extend(more(placements.notes().len() + placements.warnings().len(), left));
+    let config = options.run.config.display();
+    let is_complete = !left.is_empty() && !placements.outcome().interrupted;
+    lines.extend(
+        is_complete.then(|| {
+            summary_line("next", format!("stead export {config} {left}/best.csv --format krl --out {PROGRAM}"))
+        }),
+    );
+    summary_text(&lines)
+}
+
+/// Where the program of the best plan goes, for an example.
+const PROGRAM: &str = "prog/PART";
 
 /// Writes all files; returns where they are, nothing where that failed.
 fn write_all(folder: &Folder, placements: &Placements) -> (Result<(), Failure>, String) {

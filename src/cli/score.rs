@@ -3,11 +3,11 @@
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
 use super::progress::Terminal;
-use super::{Failure, files_written, left_in, on_threads, print_json, say_notes, say_warnings, show};
+use super::{Failure, files_written, left_in, more, on_threads, print, print_json, say_notes, say_warnings, show};
 use clap::Args;
 use std::path::PathBuf;
 use stead::Error;
-use stead_report::Folder;
+use stead::report::{Folder, NOTES, summary_text};
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreOptions {
@@ -22,6 +22,9 @@ pub(super) struct ScoreOptions {
     /// <DIR>.interrupted
     #[arg(long, requires = "out")]
     pub keep_partial: bool,
+    /// Print the table of both plans, and say every warning and note, in place of the summary
+    #[arg(long)]
+    pub notes: bool,
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub json: bool,
@@ -55,6 +58,7 @@ pub(super) const MANUAL: Manual = Manual {
             "setup.svg",
             "setup sheet of the placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false",
         ),
+        ("notes.txt", "the summary, the table, every warning and every note"),
         ("score.json", "what --json prints, and with a setup sheet its numbers"),
         ("stability-{best,worst}-plan.csv, stability.svg", "with a table [stability]: critical depth along the path"),
     ],
@@ -71,11 +75,18 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     // Taken before the work is done.
     let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
+    out.iter().try_for_each(|out| out.has_no_other(NOTES)).map_err(Failure::Output)?;
     out.iter().for_each(|out| terminal.holds(out));
-    say_notes(run.notes());
-    say_warnings(run.warnings());
+    let is_short = !options.notes && !options.json;
     let outside_cell = run.outside_cell(&placement);
-    say_notes(outside_cell.as_slice());
+    let say_read = || {
+        say_notes(run.notes());
+        say_warnings(run.warnings());
+        say_notes(outside_cell.as_slice());
+    };
+    if !is_short {
+        say_read();
+    }
     let shown = terminal.show(None);
     let score = on_threads(None, || {
         let mut score = run.score(&placement, &shown.monitor)?;
@@ -87,18 +98,32 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     })?;
     drop(shown);
     let score = score.inspect_err(|error| {
+        if is_short {
+            say_read();
+        }
         if let (true, Error::Infeasible(nothing)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.
             let _ = print_json(&run.infeasible_json(nothing));
         }
     })?;
-    // What was known before was said then.
-    say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
-    say_warnings(score.warnings().get(run.warnings().len()..).unwrap_or_default());
-    let written = out
-        .as_ref()
-        .map_or(Ok(()), |out| files_written(score.write_in(out).inspect(|files| drop(left_in(out, files)))));
-    show(&score, options.json)?;
+    if !is_short {
+        // What was known before was said then.
+        say_notes(score.notes().get(run.notes().len() + outside_cell.iter().len()..).unwrap_or_default());
+        say_warnings(score.warnings().get(run.warnings().len()..).unwrap_or_default());
+    }
+    let mut left = String::new();
+    let written = out.as_ref().map_or(Ok(()), |out| {
+        let files = score.write_in(out);
+        left = files.as_ref().map(|files| left_in(out, files).display().to_string()).unwrap_or_default();
+        files_written(files)
+    });
+    if is_short {
+        let mut lines = score.summary();
+        lines.extend(more(score.notes().len() + score.warnings().len(), &left));
+        print(summary_text(&lines).as_bytes())?;
+    } else {
+        show(&score, options.json)?;
+    }
     written?;
     if score.score().interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }

@@ -362,8 +362,13 @@ impl Session {
             Some(Run::read_with(&self.file, [self.given.clone(), edits].concat(), monitor)?)
         };
         let run = read_again.as_ref().unwrap_or(&reading.run);
-        let options =
-            ExportOptions { mechanism: *mechanism, unit: unit.as_deref(), ..ExportOptions::new(*format, name) };
+        let approach = run.problem().segment_moves.retract;
+        let options = ExportOptions {
+            mechanism: *mechanism,
+            unit: unit.as_deref(),
+            approach,
+            ..ExportOptions::new(*format, name)
+        };
         let program = run.export(self.folder.path().join(&pin.name).join("best-plan.csv"), &options, monitor)?;
         let folder = self.folder.path().join("programs").join(&pin.name);
         let written = program.write(&folder, Existing::Kept)?;

@@ -6,7 +6,7 @@ use crate::orientation::{Quaternion, orientation_keys};
 use crate::place::Place;
 use crate::shapes::{Matrix, Vector};
 use crate::toml_file::TomlFile;
-use crate::units::{Deg, Kg, Mm, Positive};
+use crate::units::{Deg, Kg, Kw, Mm, Nm, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -50,6 +50,10 @@ pub struct SpindleTable {
     /// How holder and tool yield at the tool centre point: displacement per force, in the directions of the tool frame,
     /// in um/N.
     pub tip_um_per_n: Option<Matrix>,
+    /// Power that it gives for long; with a stock, a cut that takes more is warned of.
+    pub power_kw: Option<Kw<Positive>>,
+    /// Torque that it gives for long; with a stock, a cut that takes more is warned of.
+    pub torque_nm: Option<Nm<Positive>>,
 }
 
 /// Reads the table `[spindle]` of a file, as of a run file, whatever else is in it; with the bytes of the file.

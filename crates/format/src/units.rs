@@ -55,6 +55,8 @@ units! {
     Hertz Hz "Hz" up to 1e9, = |value| value;
     /// A duration. s
     Second S "s" up to 1e9, = |value| value;
+    /// A power. kW
+    Kilowatt Kw "kW" up to 1e3, = |value| value * 1e3;
     /// A mass. kg
     Kilogram Kg "kg" up to 1e6, = |value| value;
     /// A moment of inertia. kg m^2

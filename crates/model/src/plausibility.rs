@@ -7,6 +7,7 @@ use crate::task::{Task, ToolPath};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use stead_numerics::digits::figures;
+use stead_numerics::message::Note;
 
 /// The softest and the stiffest joint of any published arm: joints 4 to 6 of small ones, joint 2 of the largest. N
 /// m/rad
@@ -34,44 +35,51 @@ const LARGEST_DEFLECTION: f64 = 10e-3;
 
 /// What is to be said of an arm: joints of an odd stiffness, or of that of another arm, numbers that nobody has
 /// verified.
-pub fn arm(robot: &Robot) -> Vec<String> {
+pub fn arm(robot: &Robot) -> Vec<Note> {
     let borrowed = robot.stiffness_like().map(|other| {
-        format!(
+        let text = format!(
             "{}: the joint stiffness is borrowed from {other}, not measured on this arm: it compares placements of such an arm, and tells \
              neither millimetres nor how stiff this arm is",
             robot.name()
-        )
+        );
+        Note::rests_on(format!("stiffness of {other} (ranks only)"), text)
     });
-    let unverified = robot.unverified().iter().map(|what| format!("{}: not verified: {what}", robot.name()));
+    let unverified = robot.unverified().iter().map(|what| {
+        let text = format!("{}: not verified: {what}", robot.name());
+        Note::rests_on("unverified numbers of the arm", text)
+    });
     odd_stiffness(robot)
         .into_iter()
         .chain(joint_ranges(robot))
+        .chain(bearings(robot))
+        .map(Note::may_be_wrong)
         .chain(borrowed)
         .chain(axial_part(robot))
-        .chain(bearings(robot))
         .chain(unverified)
         .collect()
 }
 
 /// What is to be said of an arm by which placements are scored, beside [`arm`]: springs of its file that scores leave
 /// out, and compliances of which nobody knows what they stand for.
-pub fn scored_arm(robot: &Robot) -> Option<String> {
-    springs_left_out(robot).or_else(|| model_not_stated(robot))
+pub fn scored_arm(robot: &Robot) -> Option<Note> {
+    let left_out = || springs_left_out(robot).map(|text| Note::rests_on("springs about the joint axes alone", text));
+    left_out().or_else(|| model_not_stated(robot))
 }
 
 /// What is to be said of what the compliances of a further stiffness set stand for.
-pub fn stiffness_set(robot: &Robot) -> Option<String> {
+pub fn stiffness_set(robot: &Robot) -> Option<Note> {
     axial_part(robot).or_else(|| scored_arm(robot))
 }
 
 /// That an arm has but the part about the axes of a full set.
-fn axial_part(robot: &Robot) -> Option<String> {
+fn axial_part(robot: &Robot) -> Option<Note> {
     (robot.spring_model() == Some(SpringModel::AxialPart)).then(|| {
-        format!(
+        let text = format!(
             "{}: its stiffness is the part about the axes of a full identification (stiffness_model = \"axial_part\"): the springs \
              normal to the axes are missing, so that deflections are too small, and plans balance what is not all",
             robot.name()
-        )
+        );
+        Note::rests_on("the axial part of a full stiffness (deflections too small)", text)
     })
 }
 
@@ -89,15 +97,16 @@ pub fn springs_left_out(robot: &Robot) -> Option<String> {
 
 /// That nobody knows what the compliances of an arm stand for, where its file states no springs normal to the axes
 /// ([`springs_left_out`] is for those).
-fn model_not_stated(robot: &Robot) -> Option<String> {
+fn model_not_stated(robot: &Robot) -> Option<Note> {
     let is_open = robot.spring_model().is_none() && robot.stated_normal_springs().is_none();
     is_open.then(|| {
-        format!(
+        let text = format!(
             "{}: the robot file does not state what its stiffness stands for (stiffness_model): it is taken for a fit of springs \
              about the axes alone (\"axes\"), which absorb what links and bearings do; if it is the part about the axes of springs about \
              three directions (\"axial_part\"), a third to a half of the deflection is missing",
             robot.name()
-        )
+        );
+        Note::rests_on("stiffness of no stated kind (stiffness_model)", text)
     })
 }
 
@@ -606,6 +615,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::approx_constant, reason = "angles in radians as people type them")]
     fn angles_that_are_written_in_radians_are_noted() {
         for degrees in [3.14, -3.1416, 1.57, 1.5708, 6.283185, 0.7854, 0.785] {
             assert!(angle("spindle.abc_deg[2]", degrees).is_some(), "{degrees}");
@@ -638,10 +648,13 @@ mod tests {
         let mut compliances = kr270().constant_compliances().unwrap();
         // N m/rad written as MN m/rad.
         compliances[0] *= 1e-6;
-        let note = arm(&kr270().with_compliances(compliances).unwrap()).concat();
+        let said = |compliances: [f64; 6]| {
+            arm(&kr270().with_compliances(compliances).unwrap()).iter().map(Note::to_string).collect::<String>()
+        };
+        let note = said(compliances);
         assert!(note.contains("joint 1 with 237000 MN m/rad is a hundred times"), "{note}");
         compliances[4] = 1.0;
-        let note = arm(&kr270().with_compliances(compliances).unwrap()).concat();
+        let note = said(compliances);
         assert!(note.contains("joint 1 with 237000 MN m/rad, joint 5 with 1.00e-6 MN m/rad are"), "{note}");
         for (stiffness, is_noted) in [(9.09e8, false), (9.2e8, true), (291.0, false), (289.0, true)] {
             compliances = kr270().constant_compliances().unwrap();
@@ -665,7 +678,11 @@ mod tests {
     #[test]
     fn unverified_numbers_are_named() {
         let robot = kr270().with_unverified(vec!["joint limits: from memory".to_owned()]);
-        assert_eq!(arm(&robot), ["test: not verified: joint limits: from memory"]);
+        let notes = arm(&robot);
+        assert_eq!(
+            notes.iter().map(|note| &**note).collect::<Vec<_>>(),
+            ["test: not verified: joint limits: from memory"]
+        );
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! What a job has to say about its result beside the numbers.
 
 use serde::Serialize;
+use std::borrow::Borrow;
 use std::fmt;
+use std::ops::Deref;
 
 /// A reason why a result may not be what was wanted, though the job has not failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -22,5 +24,101 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
+    }
+}
+
+/// What a note is about, in the order in which a summary says it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum NoteGroup {
+    /// What the result rests on that nobody has measured: guesses, borrowed numbers, published ones.
+    RestsOn,
+    /// What was not looked at.
+    NotChecked,
+    /// What looks like a mistake in the input.
+    MayBeWrong,
+    /// How it was computed.
+    Computed,
+}
+
+/// What should be known about a result though nothing is wrong with it: a sentence for people, without a full stop. It
+/// reads as its text, and documents have that alone.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(into = "String")]
+pub struct Note {
+    group: NoteGroup,
+    short: String,
+    text: String,
+}
+
+impl Note {
+    /// A note of a group, with its few words for a summary.
+    pub fn new(group: NoteGroup, short: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { group, short: short.into(), text: text.into() }
+    }
+
+    /// What the result rests on.
+    pub fn rests_on(short: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::new(NoteGroup::RestsOn, short, text)
+    }
+
+    /// What was not looked at.
+    pub fn not_checked(short: impl Into<String>, text: impl Into<String>) -> Self {
+        Self::new(NoteGroup::NotChecked, short, text)
+    }
+
+    /// What looks like a mistake; its few words are its text up to the first colon.
+    pub fn may_be_wrong(text: impl Into<String>) -> Self {
+        let text = text.into();
+        let short = text.split(": ").next().unwrap_or_default().to_owned();
+        Self::new(NoteGroup::MayBeWrong, short, text)
+    }
+
+    /// What it is about.
+    pub fn group(&self) -> NoteGroup {
+        self.group
+    }
+
+    /// Its few words.
+    pub fn short(&self) -> &str {
+        &self.short
+    }
+}
+
+/// A note on how a result was computed.
+impl From<String> for Note {
+    fn from(text: String) -> Self {
+        Self::new(NoteGroup::Computed, String::new(), text)
+    }
+}
+
+impl From<Note> for String {
+    fn from(note: Note) -> Self {
+        note.text
+    }
+}
+
+impl Borrow<str> for Note {
+    fn borrow(&self) -> &str {
+        &self.text
+    }
+}
+
+impl PartialEq<&str> for Note {
+    fn eq(&self, text: &&str) -> bool {
+        self.text == *text
+    }
+}
+
+impl Deref for Note {
+    type Target = str;
+
+    fn deref(&self) -> &str {
+        &self.text
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
     }
 }

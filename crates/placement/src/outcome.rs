@@ -11,7 +11,7 @@ use stead_cell::Clearance;
 use stead_model::robot::{Posture, PostureWords};
 use stead_model::task::lean::Lean;
 use stead_numerics::mean_max::MeanAndMax;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_planning::collision::PlanClearance;
 use stead_planning::criterion::CANCELLATION;
@@ -403,7 +403,7 @@ pub struct Outcome {
     /// The refined basins of the best placement, where there are stiffness sets.
     pub set_basins: Vec<SetBasin>,
     /// What should be known about the result though nothing is wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
 }

@@ -13,6 +13,7 @@ use stead_model::stiffness::elastic::ElasticArm;
 use stead_model::stiffness::whole::{WholeArm, of_part};
 use stead_numerics::digits::figures;
 use stead_numerics::mean_max::MeanAndMax;
+use stead_numerics::message::Note;
 use stead_planning::problem::{Interval, Placement, Problem};
 use stead_planning::symmetry::is_axis_1_vertical;
 
@@ -177,7 +178,7 @@ impl Overview {
     }
 
     /// What looks wrong beyond [`Problem::notes`], in sentences.
-    pub fn notes(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<Note> {
         let Stance { tried, reached, .. } = self.middle;
         let unreached = (reached < tried).then(|| {
             format!(
@@ -211,7 +212,7 @@ impl Overview {
             )
         });
         let sags = self.sag.and_then(plausibility::sag);
-        unreached.into_iter().chain(hits).chain(sags).collect()
+        unreached.into_iter().chain(hits).chain(sags).map(Note::may_be_wrong).collect()
     }
 }
 

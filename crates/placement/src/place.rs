@@ -15,7 +15,6 @@ use super::sensitivity::{objective_by_stiffness, objective_with_force_errors};
 use super::settings::SearchSettings;
 use basins::{best_alone, choose, leading, refine_basins};
 use lean::place_leaned;
-use notes::{cancellation, interruption};
 use plan::{StatedPlans, detailed, stated};
 use refined::Refined;
 use searched::{Searched, search_cell};
@@ -84,7 +83,10 @@ pub fn place(
     } else {
         place_in_all(problem, settings, transfer, monitor)
     };
-    if problem.lean.is_some() { place_leaned(problem, settings, transfer, monitor, found) } else { found }
+    let leaned = |found| place_leaned(problem, settings, transfer, monitor, found);
+    let mut outcome = if problem.lean.is_some() { leaned(found) } else { found }?;
+    notes::say(problem, settings, &mut outcome, monitor);
+    Ok(outcome)
 }
 
 /// The job in the setup of the problem.
@@ -122,15 +124,10 @@ fn place_as_set_up(
         Some(size) if !interrupted => force_sensitivity(&without_tie_rule, &best.solution, &found, long, size, monitor),
         _ => None,
     };
-    let named = cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
-    let of_moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>());
-    let Case { placement, plan, cycle, .. } = &cases.best;
-    let mut notes = notes::of(problem, placement, plan, &cycle.feed, monitor);
-    notes.extend((!settings.worst).then(notes::best_alone));
     Ok(Outcome {
         sets: sets.outcomes(&cases.best),
         set_basins: sets.basins,
-        notes,
+        notes: Vec::new(),
         sensitivity,
         cases,
         tried_setups: Vec::new(),
@@ -146,11 +143,7 @@ fn place_as_set_up(
             * long.map_or(problem.task.points().len(), |path| path.levels.search.points)
             * problem.redundancy.beta_count,
         interrupted,
-        warnings: cancellation(problem, best.solution.objective)
-            .into_iter()
-            .chain(of_moves)
-            .chain(interrupted.then(interruption))
-            .collect(),
+        warnings: Vec::new(),
     })
 }
 

@@ -22,6 +22,7 @@ use stead_model::robot::{
     cast, point_from_tool,
 };
 use stead_model::task::{PathPoint, Task};
+use stead_numerics::message::Note;
 use stead_numerics::scalar::Scalar;
 
 /// How every statement begins that collisions are not checked.
@@ -238,7 +239,7 @@ impl Problem {
     }
 
     /// What looks like a wrong unit or sign though it is possible, in sentences.
-    pub fn notes(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<Note> {
         let parts = [
             plausibility::spindle(&self.spindle),
             plausibility::path(self.task.path()),
@@ -262,8 +263,10 @@ impl Problem {
             .chain(plausibility::softer_than_the_arm(&self.robot, &self.spindle, &self.task))
             .chain(plausibility::carried(&self.spindle))
             .chain(turns);
-        let parts = parts.into_iter().flatten().chain(matrices).chain(plausibility::scored_arm(&self.robot));
-        plausibility::arm(&self.robot).into_iter().chain(parts).chain(of_tool).collect()
+        let parts = parts.into_iter().flatten().chain(matrices).map(Note::may_be_wrong);
+        let of_tool = of_tool.map(|text| Note::not_checked("tool on moves", text));
+        let of_arm = plausibility::arm(&self.robot).into_iter();
+        of_arm.chain(parts).chain(plausibility::scored_arm(&self.robot)).chain(of_tool).collect()
     }
 
     /// The largest force along the path. N
@@ -287,16 +290,17 @@ impl Problem {
     }
 
     /// That collisions are not checked, where nothing stands around the robot, or nothing but shapes of the arm itself.
-    pub fn unchecked_collisions(&self) -> Option<String> {
+    pub fn unchecked_collisions(&self) -> Option<Note> {
+        let note = |text: String| Note::not_checked("collisions", text);
         let Some(scene) = self.scene.as_deref() else {
-            return Some(format!(
+            return Some(note(format!(
                 "{UNCHECKED}: nothing stands around the robot (surroundings, [[shape]] or [[keep_out]] of the run file)"
-            ));
+            )));
         };
         let around = scene.surroundings();
         let is_own = |shape: &Shape| matches!(shape.attached, Attachment::Link(_) | Attachment::Flange);
         (around.zones().is_empty() && around.shapes().iter().all(is_own)).then(|| {
-            format!("{UNCHECKED} but between parts of the arm: nothing else is among the shapes, and nothing stands around the robot")
+            note(format!("{UNCHECKED} but between parts of the arm: nothing else is among the shapes, and nothing stands around the robot"))
         })
     }
 

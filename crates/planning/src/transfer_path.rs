@@ -71,14 +71,14 @@ pub struct AtPoint {
     pub joints: [f64; 6],
 }
 
-/// What moves are found in: an arm among shapes, at a placement.
+/// What moves are found in: an arm at a placement, among shapes where there are some.
 #[derive(Debug, Clone, Copy)]
 pub struct Space<'a> {
     problem: &'a Problem,
     /// The shapes of the cell, for lines along the tool axis.
-    scene: &'a Scene,
+    scene: Option<&'a Scene>,
     /// The same with cutter, holder and part, for joint moves.
-    with_tool: &'a Scene,
+    with_tool: Option<&'a Scene>,
     placement: &'a Placement,
 }
 
@@ -180,6 +180,36 @@ pub fn line_ends(problem: &Problem, plan: &SegmentPlan) -> [Option<AtPoint>; 2] 
     [into, out]
 }
 
+/// A line of a program into a segment (from 0), or out of it, that ends before its length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShortEnd {
+    /// The segment.
+    pub segment: usize,
+    /// Whether the line leads out of it.
+    pub is_out: bool,
+    /// What ends it.
+    pub line: ShortLine,
+}
+
+/// The lines of a program at which [`transfer_path`] does not look and that end before the length of the run: into the
+/// first segment and out of the last, and without shapes into and out of each of them.
+pub fn short_ends(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Vec<ShortEnd> {
+    let space = Space::new(problem, placement);
+    let is_asked =
+        |segment: usize, is_out: bool| space.is_none() || segment == if is_out { plans.len() - 1 } else { 0 };
+    let space = space.unwrap_or(Space { problem, scene: None, with_tool: None, placement });
+    let ends = plans
+        .iter()
+        .enumerate()
+        .flat_map(|(segment, plan)| [(segment, false, AtPoint::first(plan)), (segment, true, AtPoint::last(plan))]);
+    ends.filter(|(segment, is_out, _)| is_asked(*segment, *is_out))
+        .filter_map(|(segment, is_out, at)| {
+            let line = space.line_end(at?, problem.segment_moves.retract)?;
+            Some(ShortEnd { segment, is_out, line })
+        })
+        .collect()
+}
+
 impl AtPoint {
     /// The end of a segment's plan.
     fn last(plan: &SegmentPlan) -> Option<Self> {
@@ -226,7 +256,7 @@ impl<'a> Space<'a> {
     pub fn new(problem: &'a Problem, placement: &'a Placement) -> Option<Self> {
         let scene = problem.scene.as_deref()?;
         let with_tool = problem.segment_moves.tool.as_deref().map_or(scene, ToolScene::scene);
-        Some(Self { problem, scene, with_tool, placement })
+        Some(Self { problem, scene: Some(scene), with_tool: Some(with_tool), placement })
     }
 
     /// What ends the line of a length (m) along the tool axis out of the cut at a path point, or into it, before its
@@ -250,7 +280,13 @@ impl<'a> Space<'a> {
         self.hit_in(self.with_tool, from, to)
     }
 
-    fn hit_in(&self, scene: &Scene, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<Arc<[String; 2]>> {
+    fn hit_in(
+        &self,
+        scene: Option<&Scene>,
+        from: (&[f64; 6], usize),
+        to: (&[f64; 6], usize),
+    ) -> Option<Arc<[String; 2]>> {
+        let scene = scene?;
         let [start, end] = [from, to].map(|(_, point)| self.problem.axis_positions(point));
         // Several axes that turn together move nothing about one axis: over such a step it is as good as that.
         let most = start.iter().zip(end).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);

@@ -240,6 +240,7 @@ impl Run {
             difference,
             removed,
             air: 0.0,
+            cut: None,
             stock,
             warnings: Vec::new(),
             notes: Vec::new(),

@@ -37,10 +37,10 @@ impl ToldBy {
     /// In words, for a comment beside the value.
     pub fn words(self) -> &'static str {
         match self {
-            Self::Levels => "guess: the path's own levels",
-            Self::Finish => "guess: what the operation before left",
-            Self::Plunge => "guess: one level, so its depth is not in the path: as high as it plunges at feed",
-            Self::Diameter => "guess: one level, so its depth is not in the path: a quarter of the diameter",
+            Self::Levels => "the path's own levels",
+            Self::Finish => "what the operation before left",
+            Self::Plunge => "one level, so its depth is not in the path: as high as it plunges at feed",
+            Self::Diameter => "one level, so its depth is not in the path: a quarter of the diameter",
         }
     }
 }

@@ -1,9 +1,10 @@
 //! What comes out: force, moment and engagement at every point of the path.
 
+use crate::cut::CutFigures;
 use crate::surface::Surface;
 use nalgebra::Vector3;
 use stead_model::task::{ToolPath, Wrench};
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 
 /// Mean load over a turn at a point of the path, at the programmed feed, and what is cut there. In the workpiece frame,
 /// moments about the tool centre point.
@@ -65,7 +66,8 @@ impl ForcesDifference {
 /// Forces along a path.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RemovalForces {
-    /// The path, with the points that were added.
+    /// The path, with the points that were added; points that cut nothing are followed and not scored, unless none
+    /// cuts.
     pub path: ToolPath,
     /// The load at each of its points.
     pub points: Vec<PointForces>,
@@ -77,12 +79,14 @@ pub struct RemovalForces {
     pub removed: f64,
     /// Length of scored path on which nothing is cut, over all of it.
     pub air: f64,
+    /// What is cut, in a few figures; nothing where no scored point cuts.
+    pub cut: Option<CutFigures>,
     /// The stock before the operation and after it, thinned.
     pub stock: [Surface; 2],
     /// What the user should see to.
     pub warnings: Vec<Warning>,
     /// What was assumed and done, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl RemovalForces {

@@ -1,12 +1,13 @@
 //! What the user should see to in forces from a path.
 
+use crate::cut::CutFigures;
 use crate::cutting::Tool;
 use crate::operation::{ForcesProblem, PathStock, Stock};
 use crate::outcome::RemovalForces;
 use crate::sums::{Event, Found, GOUGE};
 use nalgebra::Vector3;
 use stead_numerics::digits::figures;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 
 /// A place for a message.
 pub(crate) fn place(at: &Vector3<f64>) -> String {
@@ -16,6 +17,8 @@ pub(crate) fn place(at: &Vector3<f64>) -> String {
 
 /// Chips below this are rubbed rather than cut. m
 const THIN: f64 = 2e-6;
+/// A path that cuts nothing on more of its scored length may be for another stock.
+const MOSTLY_AIR: f64 = 0.3;
 /// Volumes below so many cells are none.
 const CELLS: f64 = 8.0;
 
@@ -79,13 +82,17 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
     if let Some(first) = in_air.first() {
         let at = place(&path.points()[*first].position);
         let text = format!(
-            "{} of {} scored points cut nothing, {:.1} % of the scored length: their deflection is zero; first at point {}, {at}",
+            "{} of {} scored points cut nothing, {:.1} % of the scored length: they are followed, and count for nothing; first at point \
+             {}, {at}",
             in_air.len(),
             scored.len(),
             all.air * 100.0,
             first
         );
-        all.warnings.push(Warning::new("in-air", text));
+        match all.air > MOSTLY_AIR {
+            true => all.warnings.push(Warning::new("in-air", text)),
+            false => all.notes.push(text.into()),
+        }
     }
     let thin = |point: &usize| !is_air(*point) && all.points[*point].chip_thickness < THIN;
     let thin: Vec<usize> = scored.iter().copied().filter(thin).collect();
@@ -99,6 +106,11 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
         );
         all.warnings.push(Warning::new("thin-chip", text));
     }
+    let cutting = path.scored_where(|point| !is_air(point));
+    all.cut = CutFigures::of(path, &all.points, &problem.operation, all.air);
+    let of_cut = all.cut.map(|cut| cut.warnings(path, &all.points));
+    all.warnings.extend(of_cut.into_iter().flatten());
+    all.path = cutting;
     notes(all, problem);
 }
 
@@ -106,7 +118,8 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
 fn notes(all: &mut RemovalForces, problem: &ForcesProblem) {
     let [force, moment] = [0, 1].map(|k| (all.difference.rms[k] * 100.0, all.difference.largest[k] * 100.0));
     let cell = all.cell * 1e3;
-    all.notes.push(format!(
+    let mut said = Vec::new();
+    said.push(format!(
         "forces are those of the programmed feed, from what the path removes of the stock by lines {cell:.3} mm apart; with lines \
          {:.3} mm apart the force differs by {:.2} % rms and {:.1} % at most, the moment by {:.2} % and {:.1} %, of the largest",
         2.0 * cell,
@@ -120,20 +133,24 @@ fn notes(all: &mut RemovalForces, problem: &ForcesProblem) {
         let depth = depth.map(|depth| format!("up to {} mm above its tip", mm(depth)));
         let layer = layer.map(|layer| format!("a layer of {} mm that the operation before has left", mm(layer)));
         let what = [depth, layer].into_iter().flatten().collect::<Vec<_>>().join(", and of it ");
-        all.notes.push(format!(
+        said.push(format!(
             "the stock is what the cutter passes over on its scored moves, {what}: what else stands there is not known"
         ));
     }
     let added = all.points.iter().filter(|point| point.is_added).count();
     if added > 0 {
-        all.notes.push(format!(
+        said.push(format!(
             "{added} points added, where a straight line between two misses the force by more than 10 %"
         ));
     }
+    all.notes.extend(said.into_iter().map(Note::from));
+    let unchecked = |short: &str, text: &str| Note::not_checked(short, text);
     if problem.operation.rapids.iter().all(Vec::is_empty) {
-        all.notes.push("the path has no rapid moves: that they keep out of the stock is not checked".to_owned());
+        let text = "the path has no rapid moves: that they keep out of the stock is not checked";
+        all.notes.push(unchecked("rapids", text));
     }
     if problem.operation.mill.holder.is_empty() {
-        all.notes.push("no holder is stated: that it keeps out of the stock is not checked".to_owned());
+        let text = "no holder is stated: that it keeps out of the stock is not checked";
+        all.notes.push(unchecked("holder", text));
     }
 }

@@ -3,15 +3,17 @@
 use crate::columns::line;
 use crate::document::{Document, PlacementFigures};
 use crate::figure::{AngleDeg, PlaceMm, SpeedMmPerS, each};
+use crate::forces::CutRecord;
 use crate::units::{Unit, fixed};
 use serde_json::Value;
 use stead_disk::input::InputFile;
 use stead_model::robot::{Axes23, Robot};
 use stead_numerics::mean_max::MeanAndMax;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::overview::{Hit, Overview, Stand, Yields};
 use stead_planning::problem::Problem;
+use stead_removal::cut::CutFigures;
 
 /// A run as it was understood.
 #[derive(Debug, Clone)]
@@ -20,10 +22,12 @@ pub struct CheckedRun<'a> {
     pub problem: &'a Problem,
     /// Its figures.
     pub overview: &'a Overview,
+    /// What the path cuts of a stock.
+    pub cut: Option<CutFigures>,
     /// The files that were read.
     pub inputs: &'a [InputFile],
     /// What the user should know, in sentences.
-    pub notes: &'a [String],
+    pub notes: &'a [Note],
     /// What the user should see to.
     pub warnings: &'a [Warning],
 }
@@ -63,6 +67,8 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     if overview.moment.max > 0.0 {
         say(format!("          moment about the tool centre point up to {} N m", fixed(overview.moment.max, 2)));
     }
+    let lines = run.cut.map(|cut| cut.lines());
+    lines.into_iter().flatten().zip(["cut", ""]).for_each(|(text, about)| say(format!("{about:<10}{text}")));
     say(match overview.feeds {
         None => format!("feed      {} mm/s", MM.text(problem.redundancy.feed)),
         Some(feeds) => format!(
@@ -189,6 +195,9 @@ records! {
         feeds_mm_per_s: Option<[SpeedMmPerS; 2]> = overview.feeds.map(each),
         /// Size of the moment about the tool centre point. N m
         moment_nm: MeanFigures = (&overview.moment).into(),
+        /// What the path cuts of a stock, where the run has one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        cut: Option<CutRecord> = run.cut.as_ref().map(Into::into),
         /// Least and largest distance of the cell from axis 1.
         cell_distances_mm: [PlaceMm; 2] = each(overview.cell_distances),
         /// What the arm reaches with the workpiece in the middle of the cell.
@@ -276,6 +285,6 @@ records! {
 }
 
 /// What `stead check --json` prints of a robot file.
-pub fn robot_json(robot: &Robot, has_stiffness: bool, notes: &[String], inputs: &[InputFile]) -> Value {
+pub fn robot_json(robot: &Robot, has_stiffness: bool, notes: &[Note], inputs: &[InputFile]) -> Value {
     Document::new(inputs).notes(notes).with(CheckedRobot::of(robot, has_stiffness))
 }

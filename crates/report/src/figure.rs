@@ -72,6 +72,10 @@ figures! {
     TaskMm: "mm", Unit { factor: 1e3, decimals: 6 };
     /// A removed volume.
     VolumeMm3: "mm3", Unit { factor: 1e9, decimals: 1 };
+    /// A volume that is removed in a time.
+    RateCm3PerMin: "cm3/min", Unit { factor: 6e7, decimals: 3 };
+    /// A power.
+    PowerKw: "kW", Unit { factor: 1e-3, decimals: 4 };
     /// A removed volume over a length.
     RemovalMm2: "mm3/mm", Unit { factor: 1e6, decimals: 4 };
     /// A length as controllers show it.

@@ -10,8 +10,8 @@ use crate::columns::aligned;
 use crate::csv_file::rows;
 use crate::document::{Document, bytes};
 use crate::figure::{
-    AngleDeg, Direction, ForceN, HeightUm, MomentNm, Percent, PlaceMm, RemovalMm2, SpeedMmPerS, TaskMm, VolumeMm3,
-    each, some,
+    AngleDeg, Direction, ForceN, HeightUm, MomentNm, Percent, PlaceMm, PowerKw, RateCm3PerMin, RemovalMm2, SpeedMmPerS,
+    TaskMm, VolumeMm3, each, some,
 };
 use crate::page::cards::{Axis, Chart, Series, Style};
 use crate::units::fixed;
@@ -19,6 +19,7 @@ use nalgebra::Vector3;
 use serde_json::Value;
 use std::fmt::Write;
 use stead_model::task::{PathPoint, Wrench};
+use stead_removal::cut::CutFigures;
 use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
 use stead_removal::surface::Surface;
 use stead_runs::ForcesRun;
@@ -168,6 +169,46 @@ records! {
         z_nm: MomentNm = z_nm,
     }
 
+    /// What the scored points of a path cut, in a few figures.
+    pub struct CutRecord from cut: &CutFigures {
+        let [depth, most, deepest] = cut.depths;
+    } with {
+        /// Axial depth that half of the points do not exceed.
+        depth_mm: PlaceMm = depth.into(),
+        /// Axial depth that 95 of 100 points do not exceed.
+        depth_95_mm: PlaceMm = most.into(),
+        /// Largest axial depth.
+        deepest_mm: PlaceMm = deepest.into(),
+        /// The point of it, from 0.
+        deepest_point: usize = cut.deepest,
+        /// Diameter of the cutter.
+        diameter_mm: PlaceMm = cut.diameter.into(),
+        /// Length of its flutes.
+        flutes_mm: PlaceMm = cut.flutes.into(),
+        /// Section of what is cut, across the feed, in the mean.
+        section_mm2: RemovalMm2 = cut.section.mean.into(),
+        /// The largest.
+        max_section_mm2: RemovalMm2 = cut.section.max.into(),
+        /// Share of the points at which the cutter is in a full slot.
+        full_slot_percent: Percent = cut.slot.into(),
+        /// Thickest chip that half of the points do not exceed.
+        chip_um: HeightUm = cut.chip.into(),
+        /// Mean norm of the force.
+        force_n: ForceN = cut.force.mean.into(),
+        /// The largest.
+        max_force_n: ForceN = cut.force.max.into(),
+        /// Largest moment about the axis of the spindle.
+        torque_nm: MomentNm = cut.torque.max.into(),
+        /// Mean power of the spindle.
+        power_kw: PowerKw = cut.power.mean.into(),
+        /// The largest.
+        max_power_kw: PowerKw = cut.power.max.into(),
+        /// Volume cut in a minute, in the mean.
+        removed_cm3_per_min: RateCm3PerMin = cut.rate.into(),
+        /// Share of the length of scored path on which nothing is cut.
+        air_percent: Percent = cut.air.into(),
+    }
+
     /// Forces along a path, in figures.
     pub struct ForcesFigures from forces: &RemovalForces {
         let all = || forces.points.iter().map(|point| point.at_feed(1.0));
@@ -187,6 +228,8 @@ records! {
         air_percent: Percent = forces.air.into(),
         /// Distance of the lines that the stock is held by.
         cell_mm: PlaceMm = forces.cell.into(),
+        /// What is cut; null where nothing is.
+        cut: Option<CutRecord> = forces.cut.as_ref().map(Into::into),
         /// Volume that the path removes.
         removed_mm3: VolumeMm3 = forces.removed.into(),
         /// Mean norm of the force of the scored points that cut; null where none does.
@@ -363,5 +406,9 @@ pub fn forces_text(run: &ForcesRun, forces: &RemovalForces) -> String {
         fixed(forces.air * 100.0, 1),
         fixed(forces.removed * 1e9, 0)
     );
+    let lines = forces.cut.map(|cut| cut.lines());
+    lines.into_iter().flatten().zip(["cut", ""]).for_each(|(line, about)| {
+        let _ = writeln!(text, "{about:<5}{line}");
+    });
     text
 }

@@ -7,6 +7,7 @@ use crate::units::{Unit, fixed};
 use serde_json::Value;
 use stead_disk::input::InputFile;
 use stead_model::robot::{Controller, Pose, Posture, Robot, ShippedArm, Spindle, turns::Range};
+use stead_numerics::message::Note;
 use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 
 /// An arm at given joint angles.
@@ -66,7 +67,7 @@ impl ArmPose {
     }
 
     /// That given angles are beyond a limit, a sentence for each.
-    pub fn notes(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<Note> {
         let beyond = |(joint, angle): (usize, f64)| {
             let row = &self.robot.joints()[joint];
             (angle < row.min - 1e-9 || angle > row.max + 1e-9).then(|| {
@@ -78,7 +79,7 @@ impl ArmPose {
             let [sum, min, max] = [self.robot.sum_of(&self.joints), range.min, range.max].map(f64::to_degrees);
             format!("the sum of joints 2 and 3 at {sum:.3} deg is beyond its limits, {min:.3} to {max:.3} deg")
         });
-        self.joints.into_iter().enumerate().filter_map(beyond).chain(sum).collect()
+        self.joints.into_iter().enumerate().filter_map(beyond).chain(sum).map(Note::may_be_wrong).collect()
     }
 }
 

@@ -21,6 +21,7 @@ pub mod compensate;
 pub mod forces;
 #[cfg(any(test, feature = "fuzzing"))]
 pub mod fuzzing;
+mod guesses;
 pub mod identify;
 pub mod init;
 #[cfg(test)]

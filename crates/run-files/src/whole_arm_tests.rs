@@ -72,7 +72,8 @@ fn motion_and_stability_note_matrices_and_warn_of_springs_that_the_variant_leave
     let (_folder, file) = with_all("umons-aluminium.toml", &[robot, ("[spindle]", TIP)]);
     let run = read_simulation(&file, &Overrides::default()).unwrap();
     let notes = run.setup.notes();
-    let is_static = |note: &&String| note.contains("spindle.tip_um_per_n is of static deflection alone");
+    let is_static =
+        |note: &&stead_numerics::message::Note| note.contains("spindle.tip_um_per_n is of static deflection alone");
     assert_eq!(notes.iter().filter(is_static).count(), 1, "{notes:?}");
     for variant in Variant::ALL {
         let run = read_stability(&file, &Overrides { variant: Some(variant), ..Overrides::default() }).unwrap();

@@ -5,6 +5,7 @@ use stead_assessment::published::PublishedTables;
 use stead_disk::input::InputFile;
 use stead_model::cutting::ForceHistory;
 use stead_model::published::Published;
+use stead_numerics::message::Note;
 
 /// An assessment file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,5 +21,5 @@ pub struct AssessRun {
     /// The files that were read: config, robots, reference.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }

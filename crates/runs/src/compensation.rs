@@ -2,7 +2,7 @@
 
 use stead_calibration::compensation::CompensationProblem;
 use stead_disk::input::InputFile;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_planning::problem::Placement;
 
 /// A compensation file and the files it names, read and checked.
@@ -17,7 +17,7 @@ pub struct CompensateRun {
     /// The files that were read: config, run, robot, task, plan, reality.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// What the user should see to in the run.
     pub warnings: Vec<Warning>,
 }

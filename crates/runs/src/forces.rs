@@ -2,6 +2,7 @@
 
 use crate::ReadError;
 use stead_disk::input::{InputError, InputFile};
+use stead_numerics::message::Note;
 use stead_removal::forces::ForcesError;
 use stead_removal::operation::ForcesProblem;
 
@@ -13,7 +14,7 @@ pub struct ForcesRun {
     /// The files that were read: config, path, and others that it names.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// The file with the place of the path, for errors that the job finds.
     pub places: ForcesPlaces,
 }

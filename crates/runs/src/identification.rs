@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use stead_calibration::identification::design::{DesignError, Request};
 use stead_calibration::identification::{IdentifyError, Problem};
 use stead_disk::input::{InputError, InputFile};
+use stead_numerics::message::Note;
 
 /// An identification file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +18,7 @@ pub struct IdentifyRun {
     /// The files that were read: config, robot, sheet.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// What `stead identify plan` reads.
@@ -34,7 +35,7 @@ pub struct PlanRun {
     /// The files that were read: config, robot.
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Why a job on files gave no result.

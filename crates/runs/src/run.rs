@@ -5,7 +5,7 @@ use std::sync::Arc;
 use stead_certify::settings::CertificateSettings;
 use stead_disk::input::InputFile;
 use stead_model::published::Published;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_placement::settings::SearchSettings;
 use stead_planning::problem::Problem;
 use stead_planning::transfer::TransferSettings;
@@ -38,7 +38,7 @@ pub struct Run {
     /// What the path removes of a table `[stock]`, and the forces that the task has of it.
     pub removal: Option<Arc<RemovalForces>>,
     /// What the user should know about the input though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// What the user should see to in the input.
     pub warnings: Vec<Warning>,
 }

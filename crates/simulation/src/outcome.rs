@@ -9,7 +9,7 @@ use super::stability_analysis::{StabilityError, cut_notes, linear_at, runout_not
 use nalgebra::{Vector2, Vector3};
 use serde::Serialize;
 use stead_model::plausibility;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 
 /// How a simulated pass is evaluated.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,7 +81,7 @@ pub struct Simulation {
     /// `at-the-limit`; or those of another arm than its file states: `springs-left-out`.
     pub warnings: Vec<Warning>,
     /// What the result rests on.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Why a pass cannot be simulated.
@@ -147,13 +147,13 @@ impl Simulation {
 }
 
 /// What the result rests on, and what of it looks like a wrong unit or sign.
-fn notes(job: &Job<'_>, run: &Run) -> Vec<String> {
+fn notes(job: &Job<'_>, run: &Run) -> Vec<Note> {
     let largest = |size: fn(&Sample) -> f64| run.samples.iter().map(size).fold(0.0, f64::max);
     let force = plausibility::force(largest(|sample| Vector3::from(sample.force).norm()));
     let deflection = plausibility::deflection(largest(|sample| Vector2::from(sample.deflection).norm()));
-    let of_cut = cut_notes(job.cutter, job.cut);
     let of_setup = job.setup.notes().into_iter().chain(runout_note(job.cutter));
-    of_setup.chain(of_cut).chain(force).chain(deflection).collect()
+    let wrong = cut_notes(job.cutter, job.cut).into_iter().chain(force).chain(deflection);
+    of_setup.chain(wrong.map(Note::may_be_wrong)).collect()
 }
 
 /// What small motions do at two distances along the pass (m).

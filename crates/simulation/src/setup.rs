@@ -4,7 +4,7 @@ use super::arm::{AnyArm, Arm, Missing, Variant};
 use super::motion::Motion;
 use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 
 /// An arm, how much of it is modelled, and the pass that it makes.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,10 +23,10 @@ pub struct Setup {
 
 impl Setup {
     /// What looks like a wrong unit or sign though it is possible, in sentences.
-    pub fn notes(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<Note> {
         let spindle = [plausibility::spindle(&self.spindle), plausibility::static_alone(&self.spindle)];
-        let carried = plausibility::carried(&self.spindle);
-        plausibility::arm(&self.robot).into_iter().chain(spindle.into_iter().flatten()).chain(carried).collect()
+        let spindle = spindle.into_iter().flatten().chain(plausibility::carried(&self.spindle)).map(Note::may_be_wrong);
+        plausibility::arm(&self.robot).into_iter().chain(spindle).collect()
     }
 
     /// What makes the result another than that of the arm as its file states it.

@@ -11,7 +11,7 @@ use stead_model::cutting::PassCut;
 use stead_model::cutting::{CutFrame, Cutter, EngagementError};
 use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::{Monitor, Stop};
 
 /// Settings of a stability analysis.
@@ -69,14 +69,15 @@ pub struct StabilityAnalysis {
     /// What makes it another result than that of the arm as its file states it: `springs-left-out`.
     pub warnings: Vec<Warning>,
     /// What the result rests on.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// That the analysis leaves the runout of a cutter out, where it has one.
-pub fn runout_note(cutter: &Cutter) -> Option<String> {
+pub fn runout_note(cutter: &Cutter) -> Option<Note> {
     cutter.has_runout().then(|| {
         "the stability of small motions is that of the cutter without its runout: every tooth is taken to cut, with equal radii"
             .to_owned()
+            .into()
     })
 }
 
@@ -109,7 +110,12 @@ pub fn analyse(
         lobes: lobes(&plant, cutter, cut, &speeds, settings.max_depth, monitor)?,
         pass_time: cut.length / setup.motion.ramp().feed,
         warnings: setup.warnings(),
-        notes: setup.notes().into_iter().chain(runout_note(cutter)).chain(cut_notes(cutter, cut)).collect(),
+        notes: setup
+            .notes()
+            .into_iter()
+            .chain(runout_note(cutter))
+            .chain(cut_notes(cutter, cut).into_iter().map(Note::may_be_wrong))
+            .collect(),
     })
 }
 

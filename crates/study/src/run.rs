@@ -1,7 +1,7 @@
 //! One run: a search or a given placement, and the stability of the cut along its plans.
 
 use super::PathStability;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Outcome, Plan, left_out};
 use stead_placement::place::{self, Infeasible, Score};
@@ -38,7 +38,7 @@ pub struct Scored {
     /// Critical depths along both plans, where the run file asks for them.
     pub stability: Option<PathStability>,
     /// What the user should know about the placement though it is not wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Searches for the best and the worst placement, and makes their maps unless the run file does without. A stop that
@@ -68,7 +68,7 @@ pub fn score(run: &Run, placement: &Placement, monitor: &Monitor) -> Result<Scor
     let plans = [(&setup, placement, &score.plans.best), (&setup, placement, &score.plans.worst)];
     let stability = stability(run, &plans, &mut score.warnings, monitor)?;
     score.interrupted = monitor.should_stop();
-    let notes = outside_cell(run, placement).into_iter().collect();
+    let notes = outside_cell(run, placement).map(Note::from).into_iter().collect();
     Ok(Scored { score, stability, notes })
 }
 

@@ -180,6 +180,7 @@ class Result(Record):
 class Placements(Result):
     """The best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table III."""
 
+    summary: list[Record]
     evaluations: int
     states: int
     interrupted: bool
@@ -227,6 +228,7 @@ class Placements(Result):
 class PlacementScore(Result):
     """A given placement with its best and its worst plan."""
 
+    summary: list[Record]
     placement: Placement
     placement_exact: Placement
     feasible: bool

@@ -8,7 +8,7 @@ use stead_model::plausibility;
 use stead_model::robot::{Pose, Unreachable};
 use stead_model::stiffness::Displacement;
 use stead_numerics::mean_max::MeanAndMax;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 
 /// Where the loaded tool rests, seen from the target.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -71,13 +71,13 @@ pub struct CompensatedPath {
     /// Why the path may not be what was wanted: `not-corrected` where points keep their target.
     pub warnings: Vec<Warning>,
     /// What looks like a wrong unit though it is possible, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl CompensatedPath {
     pub(super) fn new(points: Vec<CompensatedPoint>) -> Self {
         let mut path = Self { points, warnings: Vec::new(), notes: Vec::new() };
-        path.notes = plausibility::deflection(path.deflections()[0].max).into_iter().collect();
+        path.notes = plausibility::deflection(path.deflections()[0].max).map(Note::from).into_iter().collect();
         path.warnings =
             path.not_corrected().map(|not| Warning::new("not-corrected", not.summary())).into_iter().collect();
         path

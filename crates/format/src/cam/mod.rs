@@ -29,6 +29,7 @@ mod tool;
 
 pub use cldata::CamFormat;
 pub use imported::ImportedPath;
+pub use refusals::GUESSES as TOOL_GUESSES;
 pub use segments::Resampling;
 pub use tool::ProgramTool;
 pub use tool::file_beside;

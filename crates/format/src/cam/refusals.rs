@@ -205,18 +205,19 @@ pub(super) const COUNTED: [&str; 5] = [
     "points of turns of the tool in place, where there is no wall: followed, not scored",
 ];
 pub(super) const NOT_THE_SHAPE: &str = "to be stated: the shape of this cutter is not that of a run file";
-/// What no program states of its tool, with where it is from.
-pub(super) const GUESSES: [(&str, &str); 6] = [
-    ("teeth = 2", "guess"),
-    ("helix_deg = 30.0", "guess"),
-    ("kt_mpa = 800.0", "guess: cutting coefficients of an aluminium alloy; or `material` beside [stock]"),
-    ("kr = 0.4", "guess"),
-    ("kte_n_per_mm = 20.0", "guess: edge forces"),
-    ("kre_n_per_mm = 20.0", "guess"),
+/// Rows of `[tool]` that no program states, whose values are guesses, with a comment.
+pub const GUESSES: [(&str, &str); 7] = [
+    ("teeth = 2", ""),
+    ("helix_deg = 30.0", ""),
+    ("kt_mpa = 800.0", "cutting coefficients of an aluminium alloy; or `material` beside [stock]"),
+    ("kr = 0.4", ""),
+    ("ka_mpa = 100.0", ""),
+    ("kte_n_per_mm = 20.0", "edge forces"),
+    ("kre_n_per_mm = 20.0", ""),
 ];
 /// Keys in place of the stock, as comments.
 pub(super) const ONE_ENGAGEMENT: [(&str, &str); 3] = [
-    ("milling = \"climb\"", "guess; in place of [stock], one engagement for the whole path: these keys"),
-    ("radial_depth_mm = 2.0", "guess"),
-    ("axial_depth_mm = 2.0", "guess"),
+    ("milling = \"climb\"", "in place of [stock], one engagement for the whole path: these keys"),
+    ("radial_depth_mm = 2.0", ""),
+    ("axial_depth_mm = 2.0", ""),
 ];

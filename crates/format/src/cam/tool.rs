@@ -113,7 +113,7 @@ type Row<'a> = (bool, Option<String>, &'a str);
 fn lines(rows: Vec<Row<'_>>) -> String {
     let line = |(holds, text, from): Row<'_>| {
         let text = if holds { text? } else { format!("# {}", text?) };
-        Some(format!("{text:<38} # {from}\n"))
+        Some(if from.is_empty() { format!("{text}\n") } else { format!("{text:<38} # {from}\n") })
     };
     rows.into_iter().filter_map(line).collect()
 }
@@ -131,13 +131,13 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     let (flutes, flutes_from) = match (tool.length, tool.diameter) {
         (Some(length), _) if tool.is_length_of_flutes => (Some(length), STATED),
         (Some(length), _) => (Some(length), "of the CAM file, perhaps with its shank"),
-        (None, diameter) => (diameter.filter(|_| !tool.is_other_shape).map(|diameter| 3.0 * diameter), "guess"),
+        (None, diameter) => (diameter.filter(|_| !tool.is_other_shape).map(|diameter| 3.0 * diameter), ""),
     };
     let is_odd = is_known && flutes.is_none();
     let mut of_tool = vec![
         (is_known, word(true, "[tool]"), if described.is_empty() { STATED } else { &described }),
         (is_known, number("cutter_diameter_mm", tool.diameter.map(mm)), STATED),
-        (false, word(!is_known, "cutter_diameter_mm = 10.0"), "guess: the CAM file does not state it"),
+        (false, word(!is_known, "cutter_diameter_mm = 10.0"), "the CAM file does not state it"),
         (is_known, word(tool.is_counterclockwise, "rotation = \"counterclockwise\""), "seen from the spindle"),
         (is_known, number("corner_radius_mm", tool.corner_radius.map(mm)), STATED),
         (is_known, number("taper_deg", tool.taper.map(|taper| rounded(taper.to_degrees()))), STATED),
@@ -146,10 +146,10 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     ];
     of_tool.extend(GUESSES.map(|(text, from)| (is_known, word(true, text), from)));
     let speed = tool.spindle_speed.map(|speed| rounded(speed * 60.0));
-    let speed_from = if speed.is_some() { STATED } else { "guess" };
+    let speed_from = if speed.is_some() { STATED } else { "" };
     let mut of_cut = vec![(is_known, number("spindle_rpm", speed.or(Some(9000.0))), speed_from)];
     of_cut.extend(ONE_ENGAGEMENT.map(|(text, from)| (false, word(true, text), from)));
-    let (mut tooth, mut tooth_from) = (0.05, "guess".to_owned());
+    let (mut tooth, mut tooth_from) = (0.05, String::new());
     if let (Some(turns), Some(speed), Some(feed)) = (tool.spindle_speed, speed, feed) {
         let fine = |mm: f64| (mm * 1e4).round() / 1e4;
         let (turn, feed) = (fine(feed / turns * 1e3), rounded(feed * 6e4));
@@ -158,10 +158,19 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
     }
     // A path without feeds has need of it in any case.
     of_cut.push((is_known && feed.is_none(), number("feed_per_tooth_mm", Some(tooth)), &tooth_from));
+    let guessed = [
+        ("tool.flute_length_mm", tool.length.is_none() && flutes.is_some()),
+        ("cut.spindle_rpm", speed.is_none()),
+        ("cut.feed_per_tooth_mm", feed.is_none()),
+    ];
+    let guessed = guessed.into_iter().filter(|(_, is_guess)| *is_guess).map(|(key, _)| key.to_owned());
+    let of_table = GUESSES.map(|(text, _)| format!("tool.{}", text.split(" =").next().unwrap_or_default()));
+    let guesses: Vec<String> = of_table.into_iter().chain(guessed).filter(|_| is_known).collect();
     let mut text = format!(
         "# The cutter of {} as far as it is described there, by `stead import path`. `stead init place` puts\n\
-         # what follows into the run file.\n\n{}\n{}[cut]\n{}",
+         # what follows into the run file.\n\n{}{}\n{}[cut]\n{}",
         shorten(program),
+        if guesses.is_empty() { String::new() } else { format!("guesses = {guesses:?}\n\n") },
         lines(of_tool),
         if is_known { "" } else { "# " },
         lines(of_cut)

@@ -189,8 +189,8 @@ mod tests {
         assert!((narrow.min - wide.min - 0.1).abs() < 1e-15 && (wide.max - narrow.max - 0.1).abs() < 1e-15);
     }
 
-    /// The two rows of ABB's IRB 8700: A3, which its controller counts against the horizontal, from -30 deg whatever A2,
-    /// and A3 - A2, the angle between the links, up to 67 deg (RobotComponents, issue 181).
+    /// The two rows of ABB's IRB 8700: A3, which its controller counts against the horizontal, from -30 deg whatever
+    /// A2, and A3 - A2, the angle between the links, up to 67 deg (RobotComponents, issue 181).
     #[test]
     fn the_irb_8700_has_a_range_of_a3_and_one_of_a3_less_a2() {
         let counted_so = irb4400();

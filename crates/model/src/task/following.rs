@@ -39,6 +39,15 @@ impl ToolPath {
         inner.map(|point| feeds[point]).reduce(f64::max)
     }
 
+    /// The path with those of its scored points scored alone for which that holds; as it is where it holds for none.
+    pub fn scored_where(&self, holds: impl Fn(usize) -> bool) -> Self {
+        let scored: Vec<bool> = (0..self.points.len()).map(|point| self.is_scored(point) && holds(point)).collect();
+        if scored.iter().all(|is_scored| *is_scored) || !scored.contains(&true) {
+            return self.clone();
+        }
+        Self { scored: Some(scored), ..self.clone() }
+    }
+
     /// Whether a point is scored, and does not only have to be reached.
     pub fn is_scored(&self, point: usize) -> bool {
         self.scored.as_ref().is_none_or(|scored| scored[point])
@@ -99,6 +108,8 @@ mod tests {
         let path = task.path();
         assert_eq!((0..5).map(|point| path.weight(point)).collect::<Vec<_>>(), [1.0, 1.0, 0.0, 0.0, 1.0]);
         assert_eq!((path.scored_count(), path.first_unscored()), (3, Some(2)));
+        assert_eq!(path.scored_where(|point| point > 0).scored_count(), 2);
+        assert_eq!(path.scored_where(|_| false), *path);
         assert_eq!((task.wrenches()[1], task.wrenches()[2]), (force, Wrench::zero()));
         let unscored = ToolPath::partly_scored([(1, point(0.0, Vector3::z()), false)]);
         assert_eq!(unscored, Err(TaskError::NothingScored));

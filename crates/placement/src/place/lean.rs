@@ -16,7 +16,7 @@ use super::motion::with_better_axes;
 use super::refined::Refined;
 use super::thinned::{Thinned, path_of, points_needed, spread};
 use super::{notes, stated_cases};
-use crate::outcome::{Case, Cases, Outcome};
+use crate::outcome::{Cases, Outcome};
 use crate::settings::SearchSettings;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
@@ -311,23 +311,14 @@ pub(super) fn place_leaned(
     };
     outcome.cases = Cases { best: of_best.best, best_worst_plan: of_best.worst, worst };
     let set_up = problem.in_setup(&outcome.cases.best.setup);
-    let Case { placement, plan, cycle, .. } = &outcome.cases.best;
-    let mut notes = notes::of(&set_up, placement, plan, &cycle.feed, monitor);
-    notes.extend((!settings.worst).then(notes::best_alone));
-    notes.extend(notes::of_lean(&set_up, upright, plan.objective, outcome.cases.worst.is_some()));
+    let leaned = outcome.cases.best.plan.objective;
+    outcome.notes = notes::of_lean(&set_up, upright, leaned, outcome.cases.worst.is_some());
     if !outcome.sets.is_empty() {
         outcome.sets.clear();
         outcome.set_basins.clear();
-        notes.push("what each stiffness set makes of the best placement is not stated where the tool leans".to_owned());
+        let text = "what each stiffness set makes of the best placement is not stated where the tool leans";
+        outcome.notes.push(text.to_owned().into());
     }
-    outcome.notes = notes;
-    let named = outcome.cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
-    let moves = notes::moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>());
-    outcome.warnings.retain(|warning| !notes::is_of_moves(warning));
-    outcome.warnings.extend(moves);
-    if monitor.should_stop() && !outcome.interrupted {
-        outcome.interrupted = true;
-        outcome.warnings.push(notes::interruption());
-    }
+    outcome.interrupted |= monitor.should_stop();
     Ok(outcome)
 }

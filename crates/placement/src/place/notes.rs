@@ -1,18 +1,20 @@
-//! What should be known about a result.
+//! What should be known about a result, said of the cases that are stated, when they are.
 
 use super::calmer::{calmer, swing};
-use crate::outcome::{Cycle, Plan};
+use super::setups::plans_of;
+use crate::outcome::{Case, Cycle, Outcome, Plan};
+use crate::settings::SearchSettings;
 use stead_model::plausibility;
 use stead_model::robot::PostureWord;
 use stead_model::task::lean::{Lean, LeanForce};
 use stead_numerics::digits::figures;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::criterion::Criterion;
 use stead_planning::feed::CutFeed;
 use stead_planning::problem::{Placement, Problem};
-use stead_planning::transfer_path::{ShortLine, TransferPath};
+use stead_planning::transfer_path::{self, ShortLine, TransferPath};
 
 /// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
 pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
@@ -23,6 +25,21 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
     })
 }
 
+/// Adds to an outcome what should be known about its cases.
+pub(super) fn say(problem: &Problem, settings: &SearchSettings, outcome: &mut Outcome, monitor: &Monitor) {
+    let Case { placement, setup, plan, cycle, .. } = &outcome.cases.best;
+    let mut notes = of(&problem.in_setup(setup), placement, plan, &cycle.feed, monitor);
+    notes.extend((!settings.worst).then(best_alone));
+    notes.append(&mut outcome.notes);
+    let named = outcome.cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
+    let ends = short_ends(&problem.in_setup(setup), placement, "case 1", plan);
+    let moves = moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>(), ends);
+    let cancelled = cancellation(problem, plan.objective);
+    let warnings = cancelled.into_iter().chain(moves).chain(outcome.interrupted.then(interruption)).collect::<Vec<_>>();
+    outcome.warnings.extend(warnings);
+    outcome.notes = notes;
+}
+
 /// What should be known about a best plan though nothing is wrong with it.
 pub(super) fn of(
     problem: &Problem,
@@ -30,21 +47,15 @@ pub(super) fn of(
     plan: &Plan,
     feed: &CutFeed,
     monitor: &Monitor,
-) -> Vec<String> {
+) -> Vec<Note> {
     let large = plausibility::deflection(plan.deflection.total.max);
     let sags = plan.sag.as_ref().and_then(|sag| plausibility::sag(sag.path.largest));
+    let wrong = small_part(problem, plan).into_iter().chain(large).chain(sags).map(Note::may_be_wrong);
     let of_travel = [swing(plan), calmer(problem, placement, plan, monitor)].into_iter().flatten();
     let of_weight = weight(problem, plan);
     let over_head = over_head(plan);
-    small_part(problem, plan)
-        .into_iter()
-        .chain(over_head)
-        .chain(large)
-        .chain(sags)
-        .chain(of_weight)
-        .chain(slowed(feed))
-        .chain(of_travel)
-        .collect()
+    let computed = over_head.into_iter().chain(of_weight).chain(slowed(feed)).chain(of_travel).map(Note::from);
+    wrong.chain(computed).collect()
 }
 
 /// A note on segments along which the arm reaches over its head.
@@ -84,18 +95,20 @@ fn weight(problem: &Problem, plan: &Plan) -> Option<String> {
 }
 
 /// A note that there is no worst placement to compare with.
-pub(super) fn best_alone() -> String {
-    "the worst placement was not looked for: there is nothing to compare the best one with".to_owned()
+pub(super) fn best_alone() -> Note {
+    let text = "the worst placement was not looked for: there is nothing to compare the best one with";
+    Note::from(text.to_owned())
 }
 
 /// That no other plan than the best one was found.
-pub(super) fn no_worst_plan() -> String {
-    "no plan was found among those that deflect most, as in a narrow space: the best plan is stated as the worst, too"
-        .to_owned()
+pub(super) fn no_worst_plan() -> Note {
+    let text = "no plan was found among those that deflect most, as in a narrow space: the best plan is stated as the worst, \
+                too";
+    Note::from(text.to_owned())
 }
 
 /// Notes on a tool that leans: by how much, what it gains, and what was not searched.
-pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_worst: bool) -> Vec<String> {
+pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_worst: bool) -> Vec<Note> {
     let Some(space) = &problem.lean else { return Vec::new() };
     let mm = |value: f64| figures(value * 1e3);
     let mut notes = vec![match (problem.task.path().leans(), upright) {
@@ -153,12 +166,7 @@ pub(super) fn of_lean(problem: &Problem, upright: Option<f64>, leaned: f64, has_
         "lead and tilt are planned at placements that are good with the axis of the path and at the best of some drawn over the cell, and \
          refined with the placement: a place that is good only with a leaning tool may have been missed{worst}"
     ));
-    notes
-}
-
-/// Whether a warning is one of [`moves`].
-pub(super) fn is_of_moves(warning: &Warning) -> bool {
-    ["blocked-move", "short-line", "unfollowed-move"].contains(&warning.kind)
+    notes.into_iter().map(Note::from).collect()
 }
 
 /// A note that the arm does not hold the programmed feed.
@@ -199,7 +207,7 @@ pub(super) fn interruption() -> Warning {
 
 /// Moves between path points that the arm cannot follow, moves between segments that have no free way, and lines into
 /// and out of the cut that are shorter than they should be, of plans with their names.
-pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
+pub(super) fn moves(plans: &[(&str, &Cycle)], ends: Vec<String>) -> Vec<Warning> {
     let ways = |plan: &(&str, &Cycle)| {
         let found =
             plan.1.transfers.iter().filter_map(|transfer| Some((transfer.after_segment, transfer.way.clone()?)));
@@ -212,15 +220,11 @@ pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
     });
     let short = all.iter().flat_map(|(plan, (segment, way))| {
         let [out, into] = &way.short_lines;
-        let line = |line: &ShortLine, words: String| {
-            let [length, wanted] = [line.length, line.wanted].map(|length| figures(length * 1e3));
-            format!("{plan} {words}: {length} of {wanted} mm, since {}", line.end)
-        };
-        let out = out.as_ref().map(|short| line(short, format!("out of segment {segment}")));
-        let into = into.as_ref().map(|short| line(short, format!("into segment {}", segment + 1)));
+        let out = out.as_ref().map(|short| short_line(plan, short, *segment, true));
+        let into = into.as_ref().map(|short| short_line(plan, short, segment + 1, false));
         out.into_iter().chain(into)
     });
-    let (blocked, short): (Vec<String>, Vec<String>) = (blocked.collect(), short.collect());
+    let (blocked, short): (Vec<String>, Vec<String>) = (blocked.collect(), short.chain(ends).collect());
     let blocked = (!blocked.is_empty()).then(|| {
         let text = format!(
             "NOT FREE: no free way between segments was found for {}; the time stated is that of the straight joint move",
@@ -240,6 +244,19 @@ pub(super) fn moves(plans: &[(&str, &Cycle)]) -> Vec<Warning> {
     });
     let unfollowed = unfollowed_warning(&unfollowed.collect::<Vec<_>>());
     blocked.into_iter().chain(short).chain(unfollowed).collect()
+}
+
+/// A line into a segment (from 1), or out of it, that is too short.
+fn short_line(plan: &str, line: &ShortLine, segment: usize, is_out: bool) -> String {
+    let [length, wanted] = [line.length, line.wanted].map(|length| figures(length * 1e3));
+    let way = if is_out { "out of" } else { "into" };
+    format!("{plan} {way} segment {segment}: {length} of {wanted} mm, since {}", line.end)
+}
+
+/// The lines of a program at the ends of a plan that are too short, where the moves between segments do not tell them.
+pub(super) fn short_ends(problem: &Problem, placement: &Placement, name: &str, plan: &Plan) -> Vec<String> {
+    let found = transfer_path::short_ends(problem, placement, &plans_of(plan, problem));
+    found.iter().map(|end| short_line(name, &end.line, end.segment + 1, end.is_out)).collect()
 }
 
 /// Warns of straight moves from one path point to the next that the arm cannot follow.

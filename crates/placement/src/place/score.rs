@@ -7,7 +7,7 @@ use crate::lean_map::LeanMap;
 use crate::outcome::{Case, Cycle, Plan};
 use crate::refine::planned;
 use crate::setup_sheet::SetupSheet;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
@@ -32,7 +32,7 @@ pub struct Score {
     /// What a fitter needs to set it up, where that was made ([`Score::make_sheet`]).
     pub sheet: Option<SetupSheet>,
     /// What should be known about the result though nothing is wrong, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Times of both plans.
     pub cycles: BySense<Cycle>,
     /// Whether the caller asked to stop before all that was wanted was there.
@@ -96,9 +96,10 @@ pub fn score(
     let cancelled = cancellation(problem, best.objective);
     let [best, worst] = [best.plans, worst].map(|plans| stated(problem, placement, transfer, &plans));
     let (plans, cycles) = (BySense { best: best.0, worst: worst.0 }, BySense { best: best.1, worst: worst.1 });
+    let ends = notes::short_ends(problem, placement, "best plan", &plans.best);
     let warnings = cancelled
         .into_iter()
-        .chain(notes::moves(&[("best plan", &cycles.best), ("worst plan", &cycles.worst)]))
+        .chain(notes::moves(&[("best plan", &cycles.best), ("worst plan", &cycles.worst)], ends))
         .collect();
     let mut notes = notes::of(problem, placement, &plans.best, &cycles.best.feed, monitor);
     notes.extend((!has_worst).then(notes::no_worst_plan));

@@ -8,8 +8,8 @@ use super::infeasible::Infeasible;
 use super::lean::leaned_at;
 use super::motion::with_better_axes;
 use super::refined::Refined;
-use super::{notes, place_as_set_up, stated_cases};
-use crate::outcome::{Case, Outcome};
+use super::{place_as_set_up, stated_cases};
+use crate::outcome::{Case, Outcome, Plan};
 use crate::refine::{Solution, planned};
 use crate::settings::SearchSettings;
 use std::ops::Range;
@@ -74,10 +74,7 @@ pub(super) fn place_in_all(
     (outcome.evaluations, outcome.states) = (evaluations, states);
     outcome.tried_setups = tried;
     job.improve(&mut outcome);
-    if monitor.should_stop() && !outcome.interrupted {
-        outcome.interrupted = true;
-        outcome.warnings.push(notes::interruption());
-    }
+    outcome.interrupted |= monitor.should_stop();
     Ok(outcome)
 }
 
@@ -151,7 +148,7 @@ impl Job<'_> {
             _ => Solution::new(
                 &without_tie_rule,
                 outcome.cases.best.placement,
-                plans_of(&outcome.cases.best, &without_tie_rule),
+                plans_of(&outcome.cases.best.plan, &without_tie_rule),
             ),
         };
         let start = Improved { setup: without_tie_rule.setup.clone(), solution: start };
@@ -163,8 +160,6 @@ impl Job<'_> {
         let BySense { best, worst: worst_plan } =
             stated_cases(&problem, &planner, self.transfer, Sense::Min, &refined, self.monitor);
         if best.plan.objective < outcome.cases.best.plan.objective {
-            outcome.notes = notes::of(&problem, &best.placement, &best.plan, &best.cycle.feed, self.monitor);
-            outcome.notes.extend((!self.settings.worst).then(notes::best_alone));
             (outcome.cases.best, outcome.cases.best_worst_plan) = (best, worst_plan);
         }
     }
@@ -206,12 +201,12 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
     leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
 }
 
-/// The plans of a case, segment by segment.
-fn plans_of(case: &Case, problem: &Problem) -> Vec<SegmentPlan> {
-    let segments = problem.task.segments().iter().zip(&case.plan.postures);
+/// A plan segment by segment.
+pub(super) fn plans_of(plan: &Plan, problem: &Problem) -> Vec<SegmentPlan> {
+    let segments = problem.task.segments().iter().zip(&plan.postures);
     let travel = problem.travel_cost(Sense::Min);
-    let plan = |(span, posture): (&Range<usize>, &Posture)| {
-        let points = &case.plan.points[span.clone()];
+    let of_segment = |(span, posture): (&Range<usize>, &Posture)| {
+        let points = &plan.points[span.clone()];
         let costs = points.iter().map(|point| problem.point_cost(point.point, point.score));
         let joints: Vec<[f64; 6]> = points.iter().map(|point| point.joints).collect();
         SegmentPlan {
@@ -222,7 +217,7 @@ fn plans_of(case: &Case, problem: &Problem) -> Vec<SegmentPlan> {
             joints,
         }
     };
-    segments.map(plan).collect()
+    segments.map(of_segment).collect()
 }
 
 /// Angles that change by less than half a turn from one to the next. rad

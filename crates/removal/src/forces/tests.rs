@@ -273,3 +273,52 @@ fn many_points() {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     println!("{:?}", status.lines().find(|line| line.starts_with("VmHWM")));
 }
+
+#[test]
+fn what_is_cut_is_told_in_a_few_figures_and_what_no_cutter_does_is_warned_of() {
+    let slot = found(&shoulder([-30.0, 30.0], &along_x(5.0)));
+    let cut = slot.cut.unwrap();
+    assert!(cut.depths.iter().all(|depth| (depth - 5e-3).abs() < 1e-9), "{:?}", cut.depths);
+    assert!((cut.section.mean / 80e-6 - 1.0).abs() < 0.03 && cut.slot > 0.9 && cut.air < 0.05, "{cut:?}");
+    let feed = slot.path.feed(1).unwrap();
+    assert!((cut.rate / (cut.section.mean * feed) - 1.0).abs() < 1e-9);
+    let speed = shoulder([-30.0, 30.0], &along_x(5.0)).operation.spindle_speed * std::f64::consts::TAU;
+    assert!((cut.power.max / (cut.torque.max * speed) - 1.0).abs() < 1e-12 && cut.torque.max > 0.1);
+    assert!((cut.force.max - largest(&slot.points)).abs() < 1e-9);
+    assert!(
+        cut.lines()[0].starts_with("depth 5.00 mm (95 % to 5.00") && cut.lines()[1].contains("cm3/min"),
+        "{:?}",
+        cut.lines()
+    );
+    assert_eq!(cut.beyond(Some(cut.power.max * 1.01), Some(cut.torque.max * 1.01)), None);
+    let beyond = cut.beyond(Some(cut.power.max / 2.0), None).unwrap();
+    assert!(beyond.kind == "spindle-power" && beyond.message.contains("a power of up to"), "{beyond}");
+    let odd = ["deep-cut", "uneven-depth"];
+    assert!(kinds(&slot).iter().all(|kind| !odd.contains(kind)), "{:?}", slot.warnings);
+    // 26 mm of a block 20 mm high and 10 above: deeper than 1.5 diameters, in full width.
+    let mut deep = shoulder([-30.0, 30.0], &along_x(20.0));
+    deep.stock = stock([[0.0, -30.0, -20.0], [80.0, 30.0, 10.0]], &Pose::identity());
+    assert!(kinds(&found(&deep)).contains(&"deep-cut"));
+    // A ridge 9 mm high over 2 of 60 mm of a cut 2 mm deep.
+    let mut ridge = shoulder([-30.0, 30.0], &along_x(2.0));
+    ridge.stock = stock([[0.0, -30.0, -20.0], [80.0, 30.0, 0.0]], &Pose::identity());
+    let knots = [([10.0, 0.0, -2.0], UP), ([70.0, 0.0, -2.0], UP), ([70.0, 0.0, -12.0], UP), ([71.0, 0.0, -12.0], UP)];
+    ridge.operation = operation(&line(&knots, 0.5), &mill(16.0, 0.0, 0.0), &Pose::identity());
+    let uneven = found(&ridge);
+    let said = uneven.warnings.iter().find(|warning| warning.kind == "uneven-depth").unwrap();
+    assert!(said.message.contains("up to 12.0 mm where 95 % cut 2.00 mm"), "{said}");
+}
+
+/// Points that cut nothing are followed and have no part in means.
+#[test]
+fn points_in_air_weigh_nothing() {
+    let half = [([-60.0, 0.0, -5.0], UP), ([70.0, 0.0, -5.0], UP)];
+    let problem = ForcesProblem {
+        operation: operation(&line(&half, 2.0), &mill(16.0, 0.0, 0.0), &Pose::identity()),
+        ..shoulder([4.0, 30.0], &along_x(5.0))
+    };
+    let found = found(&problem);
+    let cuts = |point: usize| found.points[point].heights.is_some();
+    assert!((0..found.points.len()).all(|point| found.path.is_scored(point) == cuts(point)));
+    assert!(found.air > 0.3 && kinds(&found).contains(&"in-air"), "{}", found.air);
+}

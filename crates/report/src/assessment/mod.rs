@@ -17,6 +17,7 @@ use stead_assessment::published::{Agreement, PublishedTables};
 use stead_disk::input::InputFile;
 use stead_model::cutting::ForceHistory;
 use stead_model::published::Published;
+use stead_numerics::message::Note;
 
 /// What the reports of an assessment state besides the comparison and its result.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +25,7 @@ pub struct AssessmentContext {
     /// The files the result depends on.
     pub inputs: Vec<InputFile>,
     /// What the result rests on: assumptions made and values left at their defaults.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Where a range of compliance was replaced by one value of it: how far from its smaller to its larger end.
     pub range_share: Option<f64>,
     /// Published tables to set beside ours, and how far both agree.

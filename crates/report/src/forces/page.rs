@@ -13,9 +13,10 @@ pub(super) fn page(run: &ForcesRun, forces: &RemovalForces) -> Page {
     let force = |newtons: f64| fixed(newtons, 1);
     let lead = match figures.mean_force_n {
         Some(mean) => format!(
-            "Where the path cuts, the tool is pushed by {} N in the mean over a turn, by {} N at most.",
+            "Where the path cuts, the tool is pushed by {} N in the mean over a turn, by {} N at most. The cut: {}.",
             force(mean.0),
-            force(figures.max_force_n.0)
+            force(figures.max_force_n.0),
+            forces.cut.map(|cut| cut.lines().join("; ")).unwrap_or_default()
         ),
         None => "No scored point of the path cuts.".to_owned(),
     };

@@ -64,6 +64,20 @@ impl Folder {
         }
     }
 
+    /// Refuses a folder with a file of a name that results would replace though no manifest lists it: somebody's own.
+    ///
+    /// # Errors
+    /// [`ReportError::OtherManifest`] with that file, and for a manifest that cannot be read.
+    pub fn has_no_other(&self, name: &str) -> Result<(), ReportError> {
+        let manifest = transaction::manifest_in(&self.path)?;
+        let is_listed = manifest.results.iter().flat_map(|set| &set.files).any(|file| file.name == name);
+        let path = self.path.join(name);
+        if is_listed || !path.exists() {
+            return Ok(());
+        }
+        Err(ReportError::OtherManifest { path, problem: "no manifest.json lists it".to_owned() })
+    }
+
     /// Where the folder is.
     pub fn path(&self) -> &Path {
         &self.path

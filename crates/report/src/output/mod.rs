@@ -40,7 +40,7 @@ pub enum ReportError {
         /// The number of the other process, where it is known.
         process: Option<u32>,
     },
-    /// There is a `manifest.json` that stead has not written, and that it would have to replace.
+    /// There is a file that stead has not written, and that it would have to replace.
     #[error("{}: is none of stead and is left as it is: {problem}; allowed: another folder", path.display())]
     OtherManifest {
         /// The file.

@@ -121,7 +121,7 @@ impl<'a> LivePage<'a> {
         Ok(Answer {
             points: [count, count],
             is_whole: true,
-            document: score_json(score, context),
+            document: score_json(problem, score, context),
             plans: plans.into_iter().collect::<Result<_, _>>()?,
             moves: moves(problem, &context.transfer, &[&best, &worst]).map(|moves| value(&moves)),
             part_turn: self.part_turn(problem),

@@ -104,6 +104,7 @@ mod tests {
             difference: ForcesDifference::default(),
             removed: 1e-6,
             air: 0.0,
+            cut: None,
             stock: [stock.clone(), stock],
             warnings: Vec::new(),
             notes: Vec::new(),

@@ -1,11 +1,11 @@
 //! Reports of single evaluations: `stead score` and `stead explain`.
 
-use super::Context;
 use super::case::PlanFigures;
 use super::origins::{self, OriginFigures};
 use super::setup::{SetupFigures, lines};
 use super::sheet::SheetFigures;
 use super::text::least_room;
+use super::{Context, SummaryLine, score_summary};
 use crate::columns::{aligned, line};
 use crate::document::{PlacementExact, PlacementFigures};
 use crate::figure::{FineAngleDeg, FineDeflectionMm, Plain, each, some};
@@ -22,9 +22,12 @@ use stead_planning::sense::BySense;
 
 records! {
     /// A placement that was evaluated.
-    pub struct ScoreFigures of (score: &Score, context: &Context) {
+    pub struct ScoreFigures of (problem: &Problem, score: &Score, context: &Context) {
         let BySense { best, worst } = &score.cycles;
     } with {
+        /// The result in a few lines, in the order in which they are to be read.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        summary: Vec<SummaryLine> = score_summary(problem, score, context),
         /// The placement.
         placement: PlacementFigures = (&score.placement).into(),
         /// The placement with every digit.
@@ -73,8 +76,8 @@ records! {
 }
 
 /// What `stead score --json` prints, with the critical depths along both plans where they were requested.
-pub fn score_json(score: &Score, context: &Context) -> Value {
-    context.document().with(ScoreFigures::of(score, context))
+pub fn score_json(problem: &Problem, score: &Score, context: &Context) -> Value {
+    context.document().with(ScoreFigures::of(problem, score, context))
 }
 
 /// The same of a placement that is moved about, whose best plan alone is known, on the grid of the run and without the
@@ -89,6 +92,7 @@ pub(crate) fn preview_json(
     let mut best = PlanFigures::of(plan, cycle);
     best.cycle_s = None;
     context.document().with(ScoreFigures {
+        summary: Vec::new(),
         placement: placement.into(),
         placement_exact: placement.into(),
         feasible: true,
@@ -106,6 +110,7 @@ pub(crate) fn preview_json(
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
 pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
     context.document().with(ScoreFigures {
+        summary: Vec::new(),
         placement: (&nothing.placement).into(),
         placement_exact: (&nothing.placement).into(),
         feasible: false,

@@ -3,11 +3,11 @@
 //! Both have the cases, the refinements and the counts. The printed document adds the plans point by point and how long
 //! the computation took; the summary adds inputs and settings and has nothing that differs from run to run.
 
-use super::Context;
 use super::case::CaseFigures;
 use super::settings::SettingsFigures;
 use super::setup::TriedFigures;
 use super::sheet::SheetFigures;
+use super::{Context, SummaryLine, placement_summary};
 use crate::document::{PlacementExact, PlacementFigures, Timing};
 use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, Plain, ResidualMm, TableError, TimeS, some};
 use crate::names;
@@ -23,8 +23,8 @@ use stead_planning::problem::Problem;
 use stead_planning::symmetry::Unsupported;
 
 /// What `stead place --json` prints.
-pub fn place_json(outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
-    context.document().with(PlaceFigures::of(outcome, context, timing))
+pub fn place_json(problem: &Problem, outcome: &Outcome, context: &Context, timing: &Timing) -> Value {
+    context.document().with(PlaceFigures::of(problem, outcome, context, timing))
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs and settings.
@@ -34,8 +34,8 @@ pub fn summary_json(problem: &Problem, outcome: &Outcome, context: &Context) -> 
 
 records! {
     /// The result that `stead place --json` prints.
-    pub struct PlaceFigures of (outcome: &Outcome, context: &Context, timing: &Timing) {
-        #[serde(flatten)] search: SearchFigures = SearchFigures::of(outcome, context, true),
+    pub struct PlaceFigures of (problem: &Problem, outcome: &Outcome, context: &Context, timing: &Timing) {
+        #[serde(flatten)] search: SearchFigures = SearchFigures::of(problem, outcome, context, true),
         /// Threads used.
         threads: usize = timing.threads,
         /// Time on the clock.
@@ -48,14 +48,16 @@ records! {
     pub struct SummaryFigures of (problem: &Problem, outcome: &Outcome, context: &Context) {
         let tried = outcome.tried_setups.iter().map(|tried| TriedFigures::of(problem, tried)).collect::<Vec<_>>();
     } with {
-        #[serde(flatten)] search: SearchFigures = SearchFigures::of(outcome, context, false),
+        #[serde(flatten)] search: SearchFigures = SearchFigures::of(problem, outcome, context, false),
         #[serde(flatten)] settings: SettingsFigures = SettingsFigures::of(problem, context),
         /// The setups that were searched, where there are several.
         #[serde(skip_serializing_if = "Vec::is_empty")] setups: Vec<TriedFigures> = tried,
     }
 
     /// What a search has found.
-    pub struct SearchFigures of (outcome: &Outcome, context: &Context, with_points: bool) {
+    pub struct SearchFigures of (problem: &Problem, outcome: &Outcome, context: &Context, with_points: bool) {
+        /// The result in a few lines, in the order in which they are to be read.
+        summary: Vec<SummaryLine> = placement_summary(problem, outcome, context),
         /// The cases: the best placement under its best and its worst plan, then the worst placement likewise.
         cases: Vec<CaseFigures> =
             outcome.cases.all().into_iter().map(|case| CaseFigures::of(case, with_points)).collect(),

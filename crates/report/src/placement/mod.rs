@@ -8,12 +8,14 @@ pub(crate) mod plan_row;
 mod settings;
 pub(crate) mod setup;
 mod sheet;
+mod summary;
 pub mod tables;
 #[cfg(test)]
 mod tests;
 mod text;
 
 pub use json::{PlaceFigures, SummaryFigures, place_json, summary_json};
+pub use summary::{Summary, SummaryLine, summary_line, summary_text};
 pub use text::placement_text;
 
 use crate::document::{Document, bytes};
@@ -28,7 +30,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use stead_disk::input::InputFile;
 use stead_model::published::Published;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::place::Score;
 use stead_placement::settings::SearchSettings;
@@ -49,7 +51,7 @@ pub struct Context {
     /// What the run file states, key by key.
     pub stated: Value,
     /// What the result rests on: assumptions made and values left at their defaults.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Why the result may not be what was wanted.
     pub warnings: Vec<Warning>,
     /// How hard the search was, and its seed.
@@ -127,6 +129,28 @@ impl Context {
     }
 }
 
+/// The summary of a placement job.
+pub fn placement_summary(problem: &Problem, outcome: &Outcome, context: &Context) -> Summary {
+    summary::of_outcome(problem, outcome, context)
+}
+
+/// Everything that there is to say of a placement job: the text of `notes.txt`.
+pub fn placement_notes(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
+    let lines = placement_summary(problem, outcome, context);
+    summary::notes_text(&lines, &placement_text(problem, outcome, context), context)
+}
+
+/// The summary of a given placement.
+pub fn score_summary(problem: &Problem, score: &Score, context: &Context) -> Summary {
+    summary::of_score(problem, score, context)
+}
+
+/// Everything that there is to say of a given placement: the text of `notes.txt`.
+pub fn score_notes(problem: &Problem, score: &Score, context: &Context) -> String {
+    let lines = score_summary(problem, score, context);
+    summary::notes_text(&lines, &evaluation::score_text(score, context), context)
+}
+
 /// Where a case has the workpiece.
 fn placed(case: &Case) -> Placed<'_> {
     (&case.placement, &case.setup)
@@ -169,6 +193,9 @@ fn setup_sheet(
     Some((SETUP_SHEET, picture::setup_sheet(problem, case, sheet?, &title).into_bytes()))
 }
 
+/// Tables, warnings and notes of a result.
+pub const NOTES: &str = "notes.txt";
+
 /// The picture of the shapes of the cell.
 const SURROUNDINGS: &str = "surroundings.svg";
 
@@ -191,10 +218,10 @@ fn map_files(
 }
 
 /// Writes everything that `stead score --out` reports into a folder: `best-plan.csv`, `worst-plan.csv`, `score.json`,
-/// `placement.svg`, the setup sheet `setup.svg` where it was made, with shapes of the cell `surroundings.svg`, with the
-/// map of the placement `deflection-map.csv` and `deflection-map.svg`, with that over lead and tilt `lean-map.csv`, and
-/// where stability was requested `stability-best-plan.csv`, `stability-worst-plan.csv` and `stability.svg`; unless the
-/// run does without, `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
+/// `notes.txt`, `placement.svg`, the setup sheet `setup.svg` where it was made, with shapes of the cell
+/// `surroundings.svg`, with the map of the placement `deflection-map.csv` and `deflection-map.svg`, with that over lead
+/// and tilt `lean-map.csv`, and where stability was requested `stability-best-plan.csv`, `stability-worst-plan.csv` and
+/// `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`. Returns the paths.
 ///
 /// # Errors
 /// As [`write_placement`].
@@ -205,6 +232,7 @@ pub fn write_score(
     map: Option<&DeflectionMap>,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
+    folder.has_no_other(NOTES)?;
     let files = score_files(problem, score, map, context)?;
     let beside = folder.beside_finished(SCORE, score.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);
@@ -230,7 +258,8 @@ pub fn score_files(
     let mut files = vec![
         ("best-plan.csv", tables::plan(&best.plan, scene)?),
         ("worst-plan.csv", tables::plan(&worst.plan, scene)?),
-        ("score.json", bytes(&evaluation::score_json(score, context))),
+        ("score.json", bytes(&evaluation::score_json(problem, score, context))),
+        (NOTES, score_notes(problem, score, context).into_bytes()),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
     files.extend(setup_sheet(problem, &best, score.sheet.as_ref(), context));
@@ -258,11 +287,11 @@ pub fn score_files(
 /// Writes everything that the placement job reports into a folder: `best.csv`, `best-worst-plan.csv`, `worst.csv`,
 /// `worst-worst-plan.csv` (cases 1 to 4; without the worst placement those of it are left out), `placements.csv`,
 /// `convergence.csv`, `deflection-map-best.csv`, `deflection-map-worst.csv`, `transfers.csv`, `refinements.csv`,
-/// `summary.json`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and `cell.svg`, where the
-/// tool may lean `lean-map.csv`, the setup sheet `setup.svg` where it was made, with shapes of the cell
-/// `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv` (cases 1 and 3)
-/// and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`.
-/// Where there are no maps, those of an earlier run are removed. Returns the paths of the files written.
+/// `summary.json`, `notes.txt`, `convergence.svg`, `deflection-map-best.svg`, `deflection-map-worst.svg` and
+/// `cell.svg`, where the tool may lean `lean-map.csv`, the setup sheet `setup.svg` where it was made, with shapes of
+/// the cell `surroundings.svg`; and where stability was requested, `stability-best.csv`, `stability-worst.csv` (cases 1
+/// and 3) and `stability.svg`; unless the run does without, `page-data.json`, `report.html` and `cell.glb`. Where there
+/// are no maps, those of an earlier run are removed. Returns the paths of the files written.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
@@ -272,6 +301,7 @@ pub fn write_placement(
     outcome: &Outcome,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
+    folder.has_no_other(NOTES)?;
     let files = placement_files(problem, outcome, context)?;
     let beside = folder.beside_finished(PLACE, outcome.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);
@@ -299,6 +329,7 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         ("transfers.csv", tables::transfers(&outcome.cases, scene)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
         (SUMMARY, bytes(&summary)),
+        (NOTES, placement_notes(problem, outcome, context).into_bytes()),
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];

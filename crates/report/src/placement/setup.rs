@@ -78,6 +78,19 @@ pub(super) fn standing(axes: &[AxisPath]) -> Vec<String> {
     axes.iter().map(|axis| one_position(axis).map_or_else(String::new, |at| unit(axis.kind).text(at))).collect()
 }
 
+/// Where the external axes stand, in few words; those that move along the path by their ends.
+pub(super) fn standing_words(axes: &[AxisPath]) -> Option<String> {
+    let word = |axis: &AxisPath| {
+        let (unit, name) = (unit(axis.kind), unit_name(axis.kind));
+        let end = |of: fn(f64, f64) -> f64| unit.text(axis.positions.iter().copied().reduce(of).unwrap_or(0.0));
+        match one_position(axis) {
+            Some(at) => format!("{} {} {name}", axis.name, unit.text(at)),
+            None => format!("{} {} to {} {name}", axis.name, end(f64::min), end(f64::max)),
+        }
+    };
+    (!axes.is_empty()).then(|| axes.iter().map(word).collect::<Vec<_>>().join(", "))
+}
+
 fn one_position(axis: &AxisPath) -> Option<f64> {
     let first = *axis.positions.first()?;
     axis.positions.iter().all(|position| *position == first).then_some(first)

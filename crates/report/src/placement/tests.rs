@@ -103,10 +103,10 @@ fn what_is_known_of_errors_is_stated_and_nothing_else_changes() {
         assert_eq!(cut, without);
     }
     let timing = Timing { wall: 2.0, threads: 8 };
-    let document = place_json(&known, &context(), &timing);
+    let document = place_json(problem(), &known, &context(), &timing);
     assert_eq!(document["cases"][3]["mean_std_mm"], 0.004);
     assert_eq!(document["cases"][0]["plan"][9]["std_mm"], 0.02);
-    let bare = place_json(outcome(), &context(), &timing);
+    let bare = place_json(problem(), outcome(), &context(), &timing);
     assert!(bare["cases"][3].get("mean_std_mm").is_none() && bare["cases"][0]["plan"][9].get("std_mm").is_none());
     assert!(summary_json(problem(), outcome(), &context())["criterion"].get("confidence").is_none());
     let text = placement_text(problem(), &known, &context());
@@ -145,7 +145,7 @@ fn the_other_tables_have_their_columns() {
 #[test]
 fn json_has_the_keys_of_the_contract() {
     let timing = Timing { wall: 2.0, threads: 8 };
-    let document = place_json(outcome(), &context(), &timing);
+    let document = place_json(problem(), outcome(), &context(), &timing);
     for key in [
         "evaluations",
         "states",
@@ -255,7 +255,7 @@ fn text_fits_into_110_columns_and_states_the_published_ratios() {
 }
 
 #[test]
-fn a_placement_job_leaves_eighteen_files_and_the_same_ones_again() {
+fn a_placement_job_leaves_nineteen_files_and_the_same_ones_again() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::create(&place.path().join("out")).unwrap();
     let contents = || {
@@ -263,9 +263,9 @@ fn a_placement_job_leaves_eighteen_files_and_the_same_ones_again() {
         paths.iter().map(|path| std::fs::read(path).unwrap()).collect::<Vec<_>>()
     };
     let first = contents();
-    assert_eq!(first.len(), 18);
+    assert_eq!(first.len(), 19);
     assert!(first.iter().all(|bytes| !bytes.is_empty()));
     assert_eq!(first, contents());
     // With the manifest, and the lock as long as the folder is held.
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 20);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 21);
 }

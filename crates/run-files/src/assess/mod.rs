@@ -25,6 +25,7 @@ use stead_format::tool::Cutting;
 use stead_format::units::{Mm, Positive};
 use stead_model::plausibility;
 use stead_model::robot::{Compliance, Pose, Robot};
+use stead_numerics::message::Note;
 use stead_runs::AssessRun;
 
 /// Reads an assessment file, the keys of [`AssessmentFile`], and the robot files that it names.
@@ -75,7 +76,9 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let joints = spindle.as_ref().and_then(plausibility::joints_alone);
     let odd = robots
         .iter()
-        .flat_map(|robot| plausibility::arm(robot).into_iter().chain(plausibility::springs_left_out(robot)))
+        .flat_map(|robot| {
+            plausibility::arm(robot).into_iter().map(String::from).chain(plausibility::springs_left_out(robot))
+        })
         .chain(full_note(&robots))
         .chain(joints)
         .chain(spindle_note.and_then(plausibility::spindle))
@@ -87,7 +90,7 @@ pub fn read_assessment(file: &Path) -> Result<AssessRun, InputError> {
     let ranked = borrowed.then(|| {
         "some arms have a borrowed stiffness: the order of the robots does not rank how stiff those are".to_owned()
     });
-    let notes = known.chain(odd).chain(ranked).collect();
+    let notes = known.chain(odd).chain(ranked).map(Note::from).collect();
     let comparison = Comparison { robots, benchmark, grid, zones, elbow_names, rated_share, selection };
     Ok(AssessRun { comparison, range_share: yields.range_share, force_history, published, inputs, notes })
 }

@@ -17,6 +17,7 @@ use stead_format::toml_file::TomlFile;
 use stead_model::plausibility;
 use stead_model::robot::{MeasuredFrom, Robot, Spindle};
 use stead_numerics::digits::figures;
+use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
 use stead_runs::CompensateRun;
 use stead_runs::ReadError;
@@ -68,7 +69,8 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>, monitor: &Monitor)
         (None, None) => None,
     };
     let has_reality = real.is_some();
-    let mut notes: Vec<String> = run.problem.notes().into_iter().chain(plan.notes).collect();
+    let mut notes: Vec<Note> = run.problem.notes();
+    notes.extend(plan.notes.into_iter().map(Note::from));
     // The margin is one of the plan: a correction may use it up.
     let robot = run.problem.robot_to_its_limits();
     let reality = match real {
@@ -76,12 +78,12 @@ pub fn read_compensation(file: &Path, reality: Option<&Path>, monitor: &Monitor)
         Some((source, input)) => {
             inputs.push(input);
             let reality = reality_from(&source, &robot)?;
-            notes.extend(plausibility::springs_left_out(&reality));
-            notes.extend(base_of_reality(&reality, &robot));
+            notes.extend(plausibility::springs_left_out(&reality).map(Note::from));
+            notes.extend(base_of_reality(&reality, &robot).map(Note::from));
             reality
         }
     };
-    notes.extend(weight_note(&settings, &run.problem.spindle, [&robot, &reality]));
+    notes.extend(weight_note(&settings, &run.problem.spindle, [&robot, &reality]).map(Note::from));
     let job = CompensationProblem { robot, reality, spindle: run.problem.spindle, points: plan.points, settings };
     Ok(CompensateRun { job, placement: plan.placement, has_reality, inputs, notes, warnings: run.warnings })
 }

@@ -28,6 +28,9 @@ words!(Machine);
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForcesFile {
+    /// Keys of this file whose values are guesses (`stock.depth_mm`), or whole tables: every result says that it rests
+    /// on them.
+    pub guesses: Option<Vec<String>>,
     /// The tool path, relative to the folder of this file: CLDATA, G-code, or a task file (CSV), which has no rapid
     /// moves.
     pub path: String,

@@ -2,6 +2,7 @@
 
 use stead_format::scalars::{Words, words};
 use stead_model::cutting::Coefficients;
+use stead_numerics::message::Note;
 
 /// A material with published coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,12 +60,13 @@ impl Material {
     }
 
     /// That the coefficients are not those of the user's cutter, and whose they are.
-    pub fn note(self) -> String {
+    pub fn note(self) -> Note {
         let ([kt, kr, ka], [kte, kre], source) = self.published();
         let name = Self::words().into_iter().find(|(_, known)| *known == self).map_or("", |(word, _)| word);
-        format!(
+        let text = format!(
             "the cutting coefficients are published ones for {name} with another cutter (K_t {kt}, K_r {kr}, K_a {ka} MPa, K_te {kte}, K_re \
              {kre} N/mm; {source}): measure your own"
-        )
+        );
+        Note::rests_on(format!("coefficients published for {name}"), text)
     }
 }

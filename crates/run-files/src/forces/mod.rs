@@ -7,6 +7,7 @@ mod tests;
 
 pub use file::*;
 
+use crate::guesses::guesses;
 use crate::{Word, at_the_top};
 use material::Material;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,7 @@ use stead_format::tool::{CutTable, Cutting, ToolTable};
 use stead_model::cutting::{Coefficients, Cutter, Rotation};
 use stead_model::plausibility;
 use stead_model::task::ToolPath;
+use stead_numerics::message::Note;
 use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, PathStock, Stock};
 use stead_runs::forces::{ForcesPlaces, ForcesRun};
 
@@ -58,7 +60,9 @@ pub(crate) fn read_forces_from(source: &TomlFile) -> Result<ForcesRun, InputErro
     };
     let mut run = tables.run(named, source, &at)?;
     run.inputs.insert(0, source.as_config());
-    run.notes.extend(at.radians(""));
+    let guesses = guesses(file.guesses.as_deref().unwrap_or_default(), &at)?;
+    run.notes.splice(0..0, guesses);
+    run.notes.extend(at.radians("").into_iter().map(Note::may_be_wrong));
     Ok(run)
 }
 
@@ -96,7 +100,7 @@ impl RemovalTables<'_> {
             return Err(cut_at.key("spindle_rpm").missing("the speed of the spindle, which the path does not state"));
         };
         if stated.is_none() {
-            notes.push(format!("spindle speed {:.0} 1/min, as the path states it", spindle_speed * 60.0));
+            notes.push(format!("spindle speed {:.0} 1/min, as the path states it", spindle_speed * 60.0).into());
         }
         let mill = end_mill(self.tool, self.material, at)?;
         notes.extend(self.material.map(|material| material.0.note()));
@@ -109,7 +113,8 @@ impl RemovalTables<'_> {
             let feed = feed.si() * mill.cutter.teeth().len() as f64 * spindle_speed;
             let feeds = vec![feed; path.points().len()];
             path = path.with_feeds(feeds).map_err(|error| cut_at.error(error.to_string(), "a feed above 0"))?;
-            notes.push(format!("the path has no feeds: {:.4} mm/s everywhere, by feed_per_tooth_mm", feed * 1e3));
+            notes
+                .push(format!("the path has no feeds: {:.4} mm/s everywhere, by feed_per_tooth_mm", feed * 1e3).into());
         } else if self.cut.is_some_and(|cut| cut.feed_per_tooth_mm.is_some()) && !self.is_for_stability {
             let problem = "is given, and the path has feeds";
             return Err(cut_at.key("feed_per_tooth_mm").error(problem, "spindle_rpm alone"));
@@ -158,7 +163,8 @@ impl RemovalTables<'_> {
             }
             None => None,
         };
-        notes.extend(unusual(self.tool, &mill, &path, spindle_speed, &stock, self.stock.cell()));
+        let unusual = unusual(self.tool, &mill, &path, spindle_speed, &stock, self.stock.cell());
+        notes.extend(unusual.into_iter().map(Note::may_be_wrong));
         let problem = ForcesProblem {
             stock,
             before,
@@ -219,7 +225,7 @@ pub(crate) struct NamedPath {
     /// What a program says of its tool.
     pub tool: Option<ProgramTool>,
     pub input: InputFile,
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// Reads the path that is named here: a program of CAM, or a task file.
@@ -242,7 +248,7 @@ pub(crate) fn path_of(
         let imported = sources.task(file, bytes)?;
         let notes = imported
             .wrenches
-            .map(|_| format!("{name}: its forces are left aside, those of what is removed take their place"));
+            .map(|_| format!("{name}: its forces are left aside, those of what is removed take their place").into());
         return Ok(NamedPath {
             file: file.to_owned(),
             path: imported.path,
@@ -263,7 +269,7 @@ pub(crate) fn path_of(
         rapids: imported.rapids().iter().map(air).collect(),
         spindle_speed: imported.tool().and_then(|tool| tool.spindle_speed),
         tool: imported.tool().cloned(),
-        notes: imported.notes().iter().map(|note| format!("{name}: {}", keyed(note))).collect(),
+        notes: imported.notes().iter().map(|note| format!("{name}: {}", keyed(note)).into()).collect(),
         input,
     })
 }

@@ -27,6 +27,7 @@ use stead_format::scalars::words;
 use stead_format::toml_file::TomlFile;
 use stead_model::plausibility;
 use stead_model::robot::{Compliance, MeasuredFrom, Robot, SpringModel};
+use stead_numerics::message::Note;
 use stead_runs::IdentifyRun;
 
 words!(FitModel: "axes" => FitModel::Axes, "full" => FitModel::Full);
@@ -65,7 +66,7 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
     // What yields under the base is not in the springs where it is taken as stated.
     let measured_from = if file.base_compliance.is_some() { Some(MeasuredFrom::Base) } else { measured_from };
     let robot = stated(robot, model, fit.model.is_some(), measured_from);
-    notes.extend(told_apart(&robot, model, measured_from));
+    notes.extend(told_apart(&robot, model, measured_from).into_iter().map(Note::from));
     let sheet_file = at.key("sheet").named_file()?;
     let readings = sheet_from(&sheet_file.file, &sheet_file.bytes, &robot)?;
     if readings.is_full_pose() {
@@ -94,7 +95,8 @@ pub fn read_identification(file: &Path) -> Result<IdentifyRun, InputError> {
     };
     let largest =
         problem.sheet.configurations.iter().map(|configuration| configuration.force.norm()).fold(0.0, f64::max);
-    let odd = plausibility::arm(&problem.robot).into_iter().chain(plausibility::force(largest));
+    let odd = plausibility::arm(&problem.robot).into_iter();
+    let odd = odd.chain(plausibility::force(largest).map(Note::may_be_wrong));
     notes.extend(odd);
     Ok(IdentifyRun { problem, robot_text, sheet_file: sheet_file.file, inputs, notes })
 }
@@ -109,7 +111,7 @@ struct Shared {
     angle_tolerance: f64,
     hold: Held,
     varying: Option<(usize, Law)>,
-    notes: Vec<String>,
+    notes: Vec<Note>,
     start: Option<Matrix3<f64>>,
 }
 
@@ -150,7 +152,7 @@ impl Shared {
             angle_tolerance: fit.angle_tolerance_deg.map_or(TOLERANCE_DEG.to_radians(), Quantity::si),
             hold: hold.unwrap_or_default(),
             varying,
-            notes: note.into_iter().collect(),
+            notes: note.map(Note::from).into_iter().collect(),
             start,
         })
     }

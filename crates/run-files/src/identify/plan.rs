@@ -19,6 +19,7 @@ use stead_format::toml_file::TomlFile;
 use stead_format::units::{Deg, Mm, N, Nm, NotNegative, Percent, Positive};
 use stead_model::plausibility;
 use stead_model::robot::Robot;
+use stead_numerics::message::Note;
 use stead_runs::PlanRun;
 
 /// Which measurements to choose.
@@ -144,9 +145,10 @@ pub fn read_plan(file: &Path, seed: Option<u64>) -> Result<PlanRun, InputError> 
     let plan_at = at.key("plan");
     let plan = contents.plan.as_ref().ok_or_else(|| plan_at.missing("a table [plan]"))?;
     let inputs = vec![source.as_config(), shared.robot_input.clone()];
-    let odd = plausibility::arm(&shared.robot).into_iter().chain(plausibility::force(plan.load_n.si()));
+    let odd = plausibility::arm(&shared.robot).into_iter();
+    let odd = odd.chain(plausibility::force(plan.load_n.si()).map(Note::may_be_wrong));
     let size = plan.configurations.map(|count| count.count());
-    let notes = shared.notes.iter().cloned().chain(asked_for(shared.model, size)).chain(odd).collect();
+    let notes = shared.notes.iter().cloned().chain(asked_for(shared.model, size).map(Note::from)).chain(odd).collect();
     let mut request = plan.request(shared, noise, &plan_at)?;
     request.seed = seed.unwrap_or(request.seed);
     Ok(PlanRun {

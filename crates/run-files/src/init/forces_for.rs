@@ -1,7 +1,7 @@
 //! A forces file for a tool path that is there.
 
 use super::run_for::{relative, tool_beside};
-use super::stock::of_path;
+use super::stock::Guess;
 use crate::forces::{ReadingTable, path_of, rounded_mm};
 use std::path::Path;
 use stead_disk::files::{
@@ -9,12 +9,12 @@ use stead_disk::files::{
     read,
 };
 use stead_disk::input::InputError;
-use stead_format::cam::LengthUnit;
+use stead_format::cam::{LengthUnit, TOOL_GUESSES};
 use stead_format::sources::Sources;
 
 /// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The
 /// cutter is that of the program, or that beside a task (`NAME-tool.toml`). What is not known is filled in by a guess,
-/// and marked as one.
+/// and named in `guesses`.
 ///
 /// # Errors
 /// [`InputError`]: the path or what is beside it is wrong, or the file is there already and to be kept, or cannot be
@@ -34,33 +34,44 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
     let corner = of_program.and_then(|tool| tool.corner_radius).map(rounded_mm);
     let corner = corner.or(beside.as_ref().and_then(|tool| tool.corner_radius_mm).map(|corner| corner.written()));
     let length = of_program.and_then(|tool| tool.length).map(rounded_mm);
-    let about = |is_known: bool| if is_known { "as the program has it" } else { "guess" };
+    let about = |is_known: bool| if is_known { "as the program has it" } else { "" };
     let folder = out.parent().unwrap_or(Path::new(""));
     let quoted = |file: &Path| toml::Value::from(relative(folder, file)).to_string();
     let half = diameter.unwrap_or(10.0) / 2.0;
-    let stock = match stock {
-        Some(mesh) => format!(
+    let guess = stock.is_none().then(|| Guess::of_path(&known.path, 2.0 * half, corner.unwrap_or_default()));
+    let stock = match (stock, &guess) {
+        (Some(mesh), _) => format!(
             "mesh = {}\n# unit = \"mm\"                        # of the mesh file; or \"m\"\n\
              # xyz_mm = [0.0, 0.0, 0.0]             # where its origin is",
             quoted(mesh)
         ),
-        None => {
-            let guess = of_path(&known.path, 2.0 * half, corner.unwrap_or_default());
-            let (row, comment) =
-                guess.unwrap_or_else(|| (format!("allowance_mm = [{half:?}, {half:?}, 2.0]"), "guess"));
-            format!("{row:<38} # {comment}")
-        }
+        (None, guess) => guess.as_ref().map(Guess::row).unwrap_or_default(),
     };
-    let row = |key: String, comment: &str| format!("{key:<38} # {comment}\n");
+    let row = |key: String, comment: &str| match comment {
+        "" => format!("{key}\n"),
+        comment => format!("{key:<38} # {comment}\n"),
+    };
+    let has_feeds = known.path.feed(0).is_some();
+    let of_table = TOOL_GUESSES.iter().map(|(text, _)| format!("tool.{}", text.split(" =").next().unwrap_or_default()));
+    let guessed = [
+        ("reading".to_owned(), !has_units),
+        (guess.as_ref().map_or(String::new(), |guess| format!("stock.{}", guess.key)), guess.is_some()),
+        ("tool.cutter_diameter_mm".to_owned(), diameter.is_none()),
+        ("tool.flute_length_mm".to_owned(), length.is_none()),
+        ("cut.spindle_rpm".to_owned(), known.spindle_speed.is_none()),
+        ("cut.feed_per_tooth_mm".to_owned(), !has_feeds),
+    ];
+    let guessed = guessed.into_iter().filter(|(_, is_guess)| *is_guess).map(|(key, _)| key);
+    let guesses: Vec<String> = guessed.chain(of_table).collect();
     let mut text = format!(
-        "# Forces along a tool path from what it removes of the stock. Written by `stead init forces`. What says \"guess\" is to be replaced\n\
-         # by the figures of your cutter and stock. Run it with\n#     stead forces {} --out TASK.csv\n\npath = {}\n",
+        "# Forces along a tool path from what it removes of the stock. Written by `stead init forces`. Replace the values that `guesses`\n\
+         # names by those of your cutter and stock, and take the names out. Run it with\n#     stead forces {} --out TASK.csv\n\n\
+         guesses = {guesses:?}\npath = {}\n",
         out.display(),
         quoted(path)
     );
     if !has_units {
-        text +=
-            &row("reading = { units = \"mm\" }".to_owned(), "guess: the program does not state its unit; or \"inch\"");
+        text += &row("reading = { units = \"mm\" }".to_owned(), "the program does not state its unit; or \"inch\"");
     }
     text += &row(
         "# material = \"aluminium-7075\"".to_owned(),
@@ -74,29 +85,19 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
         Some(corner) => text += &row(format!("corner_radius_mm = {corner:?}"), about(true)),
         None => text += &row("# corner_radius_mm = 0.0".to_owned(), "half the diameter for a ball"),
     }
-    text += &row("teeth = 2".to_owned(), "guess");
     let flutes = length.unwrap_or(6.0 * half);
-    let of_length = if length.is_some() { "as the program has it, perhaps with the shank" } else { "guess" };
+    let of_length = if length.is_some() { "as the program has it, perhaps with the shank" } else { "" };
     text += &row(format!("flute_length_mm = {flutes:?}"), of_length);
-    text += &row("helix_deg = 30.0".to_owned(), "guess");
-    for (key, comment) in [
-        ("kt_mpa = 800.0", "guess: cutting coefficients of an aluminium alloy"),
-        ("kr = 0.4", "guess"),
-        ("ka_mpa = 100.0", "guess"),
-        ("kte_n_per_mm = 20.0", "guess: edge forces"),
-        ("kre_n_per_mm = 20.0", "guess"),
-    ] {
-        text += &row(key.to_owned(), comment);
-    }
+    TOOL_GUESSES.iter().for_each(|(key, comment)| text += &row((*key).to_owned(), comment));
     text += "\n[cut]\n";
     match known.spindle_speed {
         Some(speed) => {
             text += &row(format!("# spindle_rpm = {:?}", (speed * 6e4).round() / 1e3), "as the program has it")
         }
-        None => text += &row("spindle_rpm = 9000.0".to_owned(), "guess: the path states none"),
+        None => text += &row("spindle_rpm = 9000.0".to_owned(), "the path states none"),
     }
-    if known.path.feed(0).is_none() {
-        text += &row("feed_per_tooth_mm = 0.05".to_owned(), "guess: the path has no feeds");
+    if !has_feeds {
+        text += &row("feed_per_tooth_mm = 0.05".to_owned(), "the path has no feeds");
     }
     write_new(out, &text, existing)
 }

@@ -1,7 +1,7 @@
 //! A run file for a robot and a task that are there.
 
 use super::ground::{Ground, ground};
-use super::stock::of_path;
+use super::stock::Guess;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::{Component, Path, PathBuf, absolute};
@@ -19,10 +19,11 @@ use stead_model::robot::{Pose, Robot};
 use stead_model::task::ToolPath;
 
 /// Writes a run file for `stead place` that names a robot file, or a shipped arm by `name:`, and a task file. What
-/// neither says is filled in by a guess from the reach of the arm, and marked as one: spindle, cell and, for a task
-/// without forces, the forces. Shapes of the links beside the robot file (`NAME-cell.toml`) are its surroundings, and a
-/// table or a floor among them gives the height of the cell; the cutter beside the task file (`NAME-tool.toml`) is its
-/// tool. Where it states no engagement, the forces of a task without any are those of what the path removes of a stock.
+/// neither says is filled in by a guess from the reach of the arm, and named in `guesses`: spindle, cell and, for a
+/// task without forces, the forces. Shapes of the links beside the robot file (`NAME-cell.toml`) are its surroundings,
+/// and a table or a floor among them gives the height of the cell; the cutter beside the task file (`NAME-tool.toml`)
+/// is its tool. Where it states no engagement, the forces of a task without any are those of what the path removes of a
+/// stock.
 ///
 /// # Errors
 /// [`InputError`]: robot or task are wrong, or what is beside them, or the run file is there already and to be kept, or
@@ -68,6 +69,8 @@ struct Known {
 /// The tables of a cutter for a run file.
 struct Cutter {
     text: String,
+    /// Keys of it whose values are guesses.
+    guesses: Vec<String>,
     /// Half its diameter and its corner radius, where it is a table. mm
     sizes: Option<(f64, f64)>,
     /// Whether it states one engagement for the whole path.
@@ -87,6 +90,7 @@ impl Known {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CutterFile {
+    guesses: Option<Vec<String>>,
     tool: Option<ToolTable>,
     cut: Option<CutTable>,
 }
@@ -102,11 +106,11 @@ fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
     if let (None, Some(_)) = (&read.tool, &read.cut) {
         return Err(InputError::new(&file, "has [cut] without [tool]").allowed("a table [tool] beside [cut]"));
     }
-    let is_comment = |line: &&str| line.starts_with('#');
-    let head = source.text().lines().take_while(is_comment).count();
-    let lines: Vec<&str> = source.text().lines().skip(head).collect();
+    let is_head = |line: &&str| !line.trim_start_matches("# ").starts_with('[');
+    let lines: Vec<&str> = source.text().lines().skip_while(is_head).collect();
     Ok(Some(Cutter {
         text: lines.join("\n").trim().to_owned(),
+        guesses: read.guesses.unwrap_or_default(),
         sizes: read.tool.map(|tool| {
             let corner = tool.corner_radius_mm.map_or(0.0, |corner| corner.written());
             (tool.cutter_diameter_mm.written() / 2.0, corner)
@@ -181,19 +185,30 @@ fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 3], known: &Known) -> S
     let (heights, about_heights) = heights(robot, path, area[2], known);
     let (feed, about_feed) = feed(path);
     let (turn, about_turn) = spindle_turn(path);
+    let stock = known.removes().map(|(half, corner)| Guess::of_path(path, 2.0 * half, corner));
+    // A cut beside the forces of the task would be a second source of them.
+    let is_taken = |key: &&String| !(known.has_forces && key.starts_with("cut."));
+    let has_engagement = known.cutter.as_ref().is_some_and(|own| own.has_engagement);
+    let has_forces = known.has_forces || stock.is_some() || has_engagement;
+    let mut guesses = vec!["spindle".to_owned(), "cell".to_owned()];
+    guesses.extend(path.feed(0).is_none().then(|| "redundancy.feed_mm_per_s".to_owned()));
+    guesses.extend(stock.as_ref().map(|stock| format!("stock.{}", stock.key)));
+    guesses.extend(known.cutter.iter().flat_map(|own| own.guesses.iter().filter(is_taken).cloned()));
+    guesses.extend((!has_forces).then(|| "forces".to_owned()));
     let mut text = format!(
         "\
-# A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. What says \"guess\"
-# is to be replaced by the figures of your cell; `stead check` shows what was understood.
+# A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. Replace
+# the values that `guesses` names by those of your cell, and take the names out; `stead check` shows what was understood.
 
+guesses = {guesses:?}
 robot = {}{}
 task = {}
 {}{}
-[spindle]                              # guess: a spindle across the flange. The tool frame in the flange frame, as the controller
+[spindle]                              # a spindle across the flange. The tool frame in the flange frame, as the controller
 xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
 abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
 
-[cell]                                 # guess from the reach of the arm: where the workpiece origin may stand, in {}
+[cell]                                 # from the reach of the arm: where the workpiece origin may stand, in {}
 x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
 y_mm = {}
 z_mm = {:<31} # {about_heights}
@@ -233,17 +248,14 @@ max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
         rounded(0.6 * reach),
         format!("{:?}", rounded(reach / 4.0)),
     );
-    if let Some((half, corner)) = known.removes() {
-        let guess = of_path(path, 2.0 * half, corner);
-        let (row, comment) = guess.unwrap_or_else(|| (format!("allowance_mm = [{half:?}, {half:?}, 2.0]"), "guess"));
-        text.push_str(&format!("\n{STOCK}{row:<38} # {comment}\n"));
+    if let Some(stock) = &stock {
+        text.push_str(&format!("\n{STOCK}{}\n", stock.row()));
     }
     if let Some(cutter) = &known.cutter {
-        // A cut beside the forces of the task would be a second source of them.
         let end = cutter.text.find("\n[cut]").filter(|_| known.has_forces).unwrap_or(cutter.text.len());
         text.push_str(&format!("\n{}\n", cutter.text[..end].trim_end()));
     }
-    if !known.has_forces && known.removes().is_none() && !known.cutter.as_ref().is_some_and(|own| own.has_engagement) {
+    if !has_forces {
         text.push_str(FORCES);
     }
     text
@@ -263,7 +275,7 @@ fn heights(robot: &Robot, path: &ToolPath, area: [f64; 2], known: &Known) -> ([f
         return ([from, from + 0.25 * reach], about);
     }
     if let (Some(_), None) = (known.mount, ground) {
-        return (area, "guess: in front of the robot where the surroundings have it".to_owned());
+        return (area, "in front of the robot where the surroundings have it".to_owned());
     }
     // A root frame below the base of the rows is on the floor; one at the height of axis 2 is above it.
     let root = robot.controller().and_then(|controller| controller.root_from_base);
@@ -271,7 +283,7 @@ fn heights(robot: &Robot, path: &ToolPath, area: [f64; 2], known: &Known) -> ([f
         Some(floor) => (floor.height, format!("{:?} of the surroundings", floor.name)),
         None => (root.map_or(0.0, |root| -root.translation.z.max(0.0)), "the foot of the robot".to_owned()),
     };
-    let about = format!("guess: above the floor, which is taken at {} mm, {about}", rounded(floor));
+    let about = format!("above the floor, which is taken at {} mm, {about}", rounded(floor));
     ([floor + 0.15 * reach, floor + 0.4 * reach], about)
 }
 
@@ -283,7 +295,7 @@ fn feed(path: &ToolPath) -> (String, String) {
         Some([low, high]) => {
             (format!("{high:?}"), format!("the highest of the task, whose own feeds count: {low:?} to {high:?} mm/s"))
         }
-        None => ("50.0".to_owned(), "guess: the task has no feeds of its own".to_owned()),
+        None => ("50.0".to_owned(), "the task has no feeds of its own".to_owned()),
     }
 }
 
@@ -301,9 +313,8 @@ fn spindle_turn(path: &ToolPath) -> (String, String) {
         return (format!("{SPINDLE_TURN:?}"), about);
     }
     let turn = (fastest * AXIS_ROOM * 10.0).ceil() / 10.0;
-    let about = format!(
-        "how fast the spindle turns in space; guess: the tool axis alone turns by up to {fastest:.2} along the path"
-    );
+    let about =
+        format!("how fast the spindle turns in space: the tool axis alone turns by up to {fastest:.2} along the path");
     (format!("{turn:?}"), about)
 }
 
@@ -349,7 +360,7 @@ const STOCK: &str = "\
 
 /// Forces for a task that has none.
 const FORCES: &str = "
-[forces]                               # guess: the task has no forces. What the workpiece does to the tool, in the path's own frame
+[forces]                               # the task has no forces. What the workpiece does to the tool, in the path's own frame
 feed_n = -60.0                         # along the feed
 normal_n = 120.0                       # to the left of the feed: towards or away from the wall
 axis_n = 40.0                          # along the tool axis, from the work into the spindle

@@ -13,6 +13,7 @@ use stead_format::units::{MmPerRad, Number, ZeroToTen, ranges};
 use stead_model::plausibility;
 use stead_model::robot::{Joint, MeasuredFrom, Robot};
 use stead_model::task::Task;
+use stead_numerics::message::Note;
 use stead_planning::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
 use stead_removal::outcome::RemovalForces;
 
@@ -113,7 +114,7 @@ pub(super) struct ReadSets {
     /// The files that state them.
     pub inputs: Vec<InputFile>,
     /// What is to be said of them.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl CriterionTable {

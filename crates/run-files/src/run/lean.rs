@@ -19,6 +19,7 @@ use stead_format::units::{Deg, Mm, Positive, ranges};
 use stead_model::task::Task;
 use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule};
 use stead_numerics::digits::figures;
+use stead_numerics::message::Note;
 use stead_planning::lean::{LeanRange, LeanSpace};
 use stead_planning::problem;
 
@@ -193,9 +194,10 @@ impl LeanTable {
     }
 
     /// What the user should know of a tool that leans, whose forces come from a stock or not.
-    pub(super) fn notes(&self, space: &LeanSpace, is_of_stock: bool, has_unscored: bool) -> Vec<String> {
+    pub(super) fn notes(&self, space: &LeanSpace, is_of_stock: bool, has_unscored: bool) -> Vec<Note> {
         if space.is_closed() {
-            return vec!["[lean] leaves neither lead nor tilt: the tool keeps to the axis of the task".to_owned()];
+            let text = "[lean] leaves neither lead nor tilt: the tool keeps to the axis of the task";
+            return vec![text.to_owned().into()];
         }
         let mut notes = Vec::new();
         if is_of_stock && !self.computes_forces() {
@@ -219,7 +221,7 @@ impl LeanTable {
         if has_unscored {
             notes.push("points that are not scored (plunges) keep the tool axis of the task".to_owned());
         }
-        notes
+        notes.into_iter().map(Note::from).collect()
     }
 }
 

@@ -31,6 +31,7 @@ pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, 
 
 use crate::forces::material::Material;
 use crate::forces::{BeforeTable, ReadingTable, RemovalTables};
+use crate::guesses::guesses;
 use crate::stated::stated;
 use crate::{Word, at_the_top};
 use criterion::ReadSets;
@@ -51,6 +52,7 @@ use stead_format::field::FieldOverrides;
 use stead_format::file_kind::FileKind;
 use stead_format::mount::MountTable;
 use stead_format::place::Place;
+use stead_format::quantity::Quantity;
 use stead_format::robot::{checked_to_move, checked_to_score, moving_robot_from, robot_from, robot_like};
 use stead_format::sources::Sources;
 use stead_format::spindle::SpindleTable;
@@ -59,6 +61,7 @@ use stead_format::surroundings::{
 };
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, Cutting, ToolTable};
+use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::ProblemParts;
 use stead_planning::setup::Setup;
@@ -79,6 +82,9 @@ pub struct RunFile {
     pub task: String,
     /// The tool frame in the flange frame.
     pub spindle: SpindleTable,
+    /// Keys of this file whose values are guesses (`stock.depth_mm`), or whole tables: every result says that it rests
+    /// on them.
+    pub guesses: Option<Vec<String>>,
     /// Where the robot stands in its cell; with it, all that is stated in the base frame is in the cell frame.
     pub mount: Option<MountTable>,
     /// How what carries the robot yields, where that counts.
@@ -232,11 +238,13 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     let robot = on_its_base(robot, run.base_compliance.as_ref(), &at.key("base_compliance"))?;
     let task_file = task_field.named_file()?;
     let mut imported = source.sources.task(&task_file.file, &task_file.bytes)?;
-    let mut notes: Vec<String> = source.overrides().iter().map(|(field, _)| override_note(field)).collect();
-    notes.extend(at.radians("").into_iter().chain(robot_source.parse()?.root().radians("robot.")));
-    notes.extend(run.spindle.order_note());
-    notes.extend(cutter_notes(run.tool.as_ref(), cutting.as_ref(), run.stock.is_some()));
-    notes.extend([tilt_note(&imported.path, &imported.lines), speed_note(&robot)].into_iter().flatten());
+    let mut notes: Vec<Note> = source.overrides().iter().map(|(field, _)| override_note(field).into()).collect();
+    notes.extend(guesses(run.guesses.as_deref().unwrap_or_default(), &at)?);
+    let radians = at.radians("").into_iter().chain(robot_source.parse()?.root().radians("robot."));
+    let of_cutter = cutter_notes(run.tool.as_ref(), cutting.as_ref(), run.stock.is_some());
+    notes.extend(radians.chain(run.spindle.order_note()).chain(of_cutter).map(Note::may_be_wrong));
+    notes.extend(tilt_note(&imported.path, &imported.lines).map(Note::from));
+    notes.extend(speed_note(&robot));
     let mut inputs = vec![
         source.as_config(),
         input_file("robot", robot_file.name, robot_source.bytes()),
@@ -289,7 +297,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     inputs.extend(files);
     inputs.extend(lender);
     let (force_uncertainty, about) = criterion.force_errors(removed_forces, &at.key("criterion"))?;
-    notes.extend(about);
+    notes.extend(about.map(Note::from));
     let criterion = criterion.criterion(&segments, &robot, &task, force_uncertainty, sets, &at)?;
     let (cell, constraints) = (run.cell.cell(&at.key("cell"))?, run.constraints.constraints());
     let postures = run.postures.unwrap_or_default();
@@ -314,7 +322,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
             (Some(space), task)
         }
         None => {
-            notes.extend(of_points.unused());
+            notes.extend(of_points.unused().map(Note::from));
             (None, task)
         }
     };
@@ -345,20 +353,24 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
     check_path_points(&search, &problem, &at.key("search"))?;
     search_table.check_memory(&problem, &at.key("search"))?;
     inputs.extend(around.inputs);
-    notes.extend(base_note(&problem.robot));
+    notes.extend(base_note(&problem.robot).map(Note::may_be_wrong));
     notes.extend(problem.notes());
     // The robot of the run may be a set too.
-    let of_sets: Vec<String> = of_sets.into_iter().filter(|note| !notes.contains(note)).collect();
+    let of_sets: Vec<Note> = of_sets.into_iter().filter(|note| !notes.contains(note)).collect();
     notes.extend(of_sets);
-    notes.extend(around.notes);
-    notes.extend(direction_note(&problem.task));
-    notes.extend(force_note(&problem.task, has_columns));
+    notes.extend(around.notes.into_iter().map(Note::from));
+    notes.extend(
+        direction_note(&problem.task).into_iter().chain(force_note(&problem.task, has_columns)).map(Note::may_be_wrong),
+    );
     notes.extend(path_stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
     notes.extend(problem.unchecked_collisions());
     let reference = run.reference.map(ReferenceTable::reference);
     let stated = stated(&at);
     let removal = removal.map(|removal| removal.forces);
     let of_removal = removal.iter().flat_map(|removal| removal.warnings.iter().cloned());
+    let [power, torque] = [run.spindle.power_kw.map(Quantity::si), run.spindle.torque_nm.map(Quantity::si)];
+    let beyond = removal.iter().filter_map(|removal| removal.cut?.beyond(power, torque));
+    let of_removal = of_removal.chain(beyond);
     let left_out = path_stability.as_ref().and_then(|analysis| analysis.variant.left_out(&problem.robot));
     let warnings = of_removal.chain(left_out).collect();
     Ok(Run {

@@ -5,6 +5,7 @@ use stead_format::tool::{Cutting, ToolTable};
 use stead_model::plausibility;
 use stead_model::robot::Robot;
 use stead_model::task::{Task, ToolPath};
+use stead_numerics::message::Note;
 
 /// A feed that misses the plane normal to the tool axis by no more than this is normal to it. deg
 const NORMAL_FEED_DEG: f64 = 0.1;
@@ -45,15 +46,16 @@ pub(super) fn direction_note(task: &Task) -> Option<String> {
 }
 
 /// The joints whose speed is not known, where there are some.
-pub(super) fn speed_note(robot: &Robot) -> Option<String> {
+pub(super) fn speed_note(robot: &Robot) -> Option<Note> {
     let unknown = robot.joints().iter().zip(1..).filter(|(joint, _)| joint.max_speed.is_none());
     let numbers: Vec<String> = unknown.map(|(_, number): (_, usize)| number.to_string()).collect();
     (!numbers.is_empty()).then(|| {
-        format!(
+        let text = format!(
             "the robot file gives no max_speed_deg_per_s for joints {}: their steps along the path are not bounded, \
              and the times of moves between segments are not known",
             numbers.join(", ")
-        )
+        );
+        Note::not_checked("joint speeds", text)
     })
 }
 
@@ -77,10 +79,11 @@ pub(super) fn force_note(task: &Task, has_columns: bool) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use crate::testing::{RUN, folder};
+    use stead_numerics::message::Note;
     use stead_runs::Run;
 
     /// The notes of a run with pieces of its files replaced.
-    fn notes(changes: &[(&str, &str, &str)]) -> Vec<String> {
+    fn notes(changes: &[(&str, &str, &str)]) -> Vec<Note> {
         let folder = folder();
         std::fs::write(folder.path().join("run.toml"), RUN).unwrap();
         for (file, from, to) in changes {
@@ -139,7 +142,7 @@ mod tests {
         for file in files.filter(|file| std::fs::read_to_string(file).unwrap().contains("\n[redundancy]")) {
             let Run { notes, .. } = crate::read_run(&file).unwrap();
             let parts = ["usual", "ten times", "is it in degrees", "points back to the flange", "the force at point"];
-            let odd: Vec<&String> = notes.iter().filter(|note| parts.iter().any(|part| note.contains(part))).collect();
+            let odd: Vec<&Note> = notes.iter().filter(|note| parts.iter().any(|part| note.contains(part))).collect();
             assert!(odd.is_empty(), "{}: {odd:?}", file.display());
             count += 1;
         }

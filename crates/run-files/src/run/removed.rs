@@ -9,6 +9,7 @@ use stead_format::task::Imported;
 use stead_format::toml_file::TomlFile;
 use stead_model::task::lean::Lean;
 use stead_model::task::{LeanForces, PointLeanForces, Task, ToolPath};
+use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
 use stead_planning::lean::LeanSpace;
 use stead_removal::forces::{ForcesError, forces};
@@ -26,7 +27,7 @@ pub(super) struct Removed {
     pub task: Task,
     /// Files beside that of the task.
     pub inputs: Vec<InputFile>,
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     pub removal: Removal,
 }
 
@@ -142,9 +143,10 @@ pub(super) fn removed(
     let mut notes = run.notes.clone();
     notes.push(
         "the forces are those of what the path removes of [stock], and the task has the points that they add"
-            .to_owned(),
+            .to_owned()
+            .into(),
     );
-    notes.extend(section_note(tables, &outcome));
+    notes.extend(section_note(tables, &outcome).map(Note::may_be_wrong));
     notes.extend(outcome.notes.iter().cloned());
     let inputs = run.inputs.iter().skip(1).cloned().collect();
     Ok(Removed { task, inputs, notes, removal: Removal { forces: outcome, run, key } })

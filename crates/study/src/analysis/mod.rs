@@ -24,6 +24,7 @@ pub use ranking::{Ranked, Ranking, ranking};
 pub use without::{Failures, LostLevel, failures};
 
 use crate::cases::Table;
+use stead_numerics::message::Note;
 
 /// The relative difference of two figures that a search may make by itself: it ends within 0.1 % of the optimum (guide,
 /// page `validation`), so two of them differ by up to twice that.
@@ -109,7 +110,7 @@ pub struct Analysis {
     /// Up to which relative difference figures are ties.
     pub noise: f64,
     /// What it does not say, in sentences ([`Plan::notes`](crate::cases::Plan::notes)); the table alone does not tell.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 /// The cases of one task.

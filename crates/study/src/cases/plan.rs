@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_disk::input::{InputError, sha256};
+use stead_numerics::message::Note;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_runs::ReadError;
 use stead_runs::study::{AxisValue, Study, StudyCase};
@@ -30,7 +31,7 @@ pub struct Plan {
     /// The cases, in the order of their numbers.
     pub cases: Vec<PlannedCase>,
     /// What its results do not say, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
 }
 
 impl Plan {
@@ -63,7 +64,7 @@ impl Plan {
         let cases: Vec<Result<_, ReadError>> = study.cases.par_iter().map(read).collect();
         let (cases, arms): (Vec<PlannedCase>, BTreeSet<(String, bool)>) =
             cases.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
-        let notes = borrowed_stiffness(&arms).into_iter().collect();
+        let notes = borrowed_stiffness(&arms).map(Note::from).into_iter().collect();
         Ok(Self { study, cases, notes })
     }
 

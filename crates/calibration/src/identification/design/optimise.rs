@@ -21,6 +21,7 @@ use super::warnings::{unused_angles, warnings};
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use stead_model::robot::Pose;
+use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
 
 /// Chooses the configurations and loads to measure, start by start of the exchange.
@@ -73,7 +74,7 @@ fn designed<const N: usize, const P: usize>(request: &Request, monitor: &Monitor
     let weakly_observed = weakly_observed(request, &load_cases, &compliances);
     Ok(Design {
         travel: travel(&load_cases),
-        notes: unused_angles(request.model, &compliances).into_iter().collect(),
+        notes: unused_angles(request.model, &compliances).map(Note::from).into_iter().collect(),
         warnings: warnings(request, &gauge, &all_unobservable, &weakly_observed),
         weakly_observed,
         load_cases,

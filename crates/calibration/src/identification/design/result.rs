@@ -6,7 +6,7 @@ use super::candidates::Rejected;
 use super::expected::{ExpectedCompliance, ExpectedParameter};
 use super::unobservable::{Unobservable, WeaklyObserved};
 use serde::Serialize;
-use stead_numerics::message::Warning;
+use stead_numerics::message::{Note, Warning};
 
 /// A set of configurations to measure, and how well the compliances will be known from it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -41,7 +41,7 @@ pub struct Design {
     /// The largest rotation of a joint, summed over the moves from one configuration to the next. rad
     pub travel: f64,
     /// What the set leaves out on purpose, in sentences.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// Unobservable and weakly observed compliances, in sentences.
     pub warnings: Vec<Warning>,
 }

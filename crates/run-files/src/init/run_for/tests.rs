@@ -98,7 +98,7 @@ fn the_height_of_the_cell_is_that_of_a_table_or_a_floor_among_the_shapes() {
     // A foot, a link and a wall give no height.
     assert!(heights(&format!("{link}{base}{wall}")).contains("the foot of the robot"));
     let above = heights(&format!("{link}{base}{floor}"));
-    assert!(above.contains("# guess: above the floor, which is taken at -200 mm, \"slab\""), "{above}");
+    assert!(above.contains("# above the floor, which is taken at -200 mm, \"slab\""), "{above}");
     let zone = "[[keep_out]]\nname = 'below'\npoints = ['tool']\nhalf_space = { xyz_mm = [0, 0, -600], normal = [0, 0, -1] }\n";
     assert!(heights(&format!("{link}{zone}")).contains("taken at -600 mm, \"below\""));
     let on = heights(&format!("{link}{base}{wall}{floor}{table}"));

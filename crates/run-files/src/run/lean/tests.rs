@@ -110,7 +110,7 @@ fn a_flat_end_does_not_tilt_within_a_largest_angle() {
 fn a_lead_says_by_how_much_it_hollows_the_floor() {
     let note = |tables: &str| {
         let run = read(tables, None).unwrap();
-        run.notes.into_iter().find(|note| note.contains("hollows")).unwrap_or_default()
+        run.notes.into_iter().find(|note| note.contains("hollows")).map(String::from).unwrap_or_default()
     };
     // A flat cutter of 16 mm, leaning by 10 deg: 8 mm sin 10 deg.
     let flat = "[tool]\ncutter_diameter_mm = 16\n[lean]\nlead_deg = [0, 10]\n";
