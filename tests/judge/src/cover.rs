@@ -162,6 +162,12 @@ pub fn pairs() -> BTreeSet<[(usize, usize); 2]> {
     all
 }
 
+/// The pairs of values that occur in choices.
+pub fn pairs_of(choices: &[Choice]) -> BTreeSet<[(usize, usize); 2]> {
+    let all = pairs();
+    choices.iter().flat_map(|choice| gained(choice, &all).collect::<Vec<_>>()).collect()
+}
+
 /// Choices in which every possible pair of values occurs: of some tries that begin with a pair which is missing, each
 /// time the one that brings most.
 pub fn cover(seed: u64) -> Vec<Choice> {

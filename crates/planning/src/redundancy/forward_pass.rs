@@ -219,14 +219,11 @@ impl SegmentPlanner<'_> {
     /// Evaluates a path point in some posture classes, without the states in which something hits.
     pub(super) fn evaluate(&self, pass: Pass<'_>, point: usize, classes: [bool; 4], workspace: &mut Workspace) {
         let Workspace { now, forbidden, only_beta, .. } = workspace;
-        pass.evaluator.evaluate_classes(point, pass.placement, classes, now);
+        pass.evaluator.evaluate_some(point, pass.placement, classes, *only_beta, now);
         if let Some(hits) = &self.tool_hits {
             hits.apply(point, now);
         }
         forbidden.apply(point, now);
-        if let Some(only) = *only_beta {
-            now.keep_beta(only);
-        }
     }
 
     /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one

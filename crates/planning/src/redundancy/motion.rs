@@ -239,7 +239,8 @@ impl<'a> MotionPlanner<'a> {
         let classes = PostureClass::ALL
             .map(|class| Posture::ALL.iter().any(|p| p.class() == class && flips.contains(*p) && rules.allows(*p)));
         let mut links = vec![Link::default(); span.len() * 4 * number * beta_count];
-        let mut before = vec![StateGrid::new(beta_count, self.pad); number];
+        let counts_travel = self.planners[0].travel_cost(Sense::Min) > 0.0;
+        let mut before = vec![StateGrid::new(beta_count, self.pad).with_angles(counts_travel); number];
         let mut now = before.clone();
         let (mut is_start, mut unreached) = (true, 0);
         for (point, row) in span.clone().zip(links.chunks_mut(4 * number * beta_count)) {
@@ -291,7 +292,7 @@ impl<'a> MotionPlanner<'a> {
             return;
         }
         let planner = &self.planners[setting];
-        planner.evaluators[evaluator].evaluate_classes(point, placement, classes, states);
+        planner.evaluators[evaluator].evaluate_some(point, placement, classes, None, states);
         if let Some(hits) = &planner.tool_hits {
             hits.apply(point, states);
         }

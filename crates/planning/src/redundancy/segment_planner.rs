@@ -148,7 +148,7 @@ impl<'a> SegmentPlanner<'a> {
     pub fn workspace(&self) -> Workspace {
         let count = self.grid.beta_count;
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
-        let before = StateGrid::new(count, self.pad());
+        let before = StateGrid::new(count, self.pad()).with_angles(self.travel > 0.0);
         let stride = before.scores(PostureClass::ALL[0]).len();
         Workspace {
             now: before.clone(),

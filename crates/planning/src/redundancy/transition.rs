@@ -115,7 +115,8 @@ pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
 /// Turns the scores of a point into the smallest sums of costs up to it, from those of the point before; `way` takes
 /// for each beta number the step back to the predecessor. False when no state was reached.
 ///
-/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`].
+/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`], and
+/// where joint travel counts, both must keep angles (see [`StateGrid::with_angles`]).
 pub fn advance(before: &StateGrid, now: &mut StateGrid, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
     advance_by::<Right>(before, now, class, step, None, way)
 }
@@ -202,8 +203,8 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
             rules: PhantomData,
         };
         let stride = band.costs.len();
-        let (scores, directions) = now.scores_and_directions(class);
-        let joints = Joints::<R>::new(before.all_directions(class), directions, stride, step);
+        let (scores, now_joints) = now.scores_and_joints(class);
+        let joints = Joints::<R>::new(before.all_joints(class), now_joints, stride, step);
         let mut reached = false;
         for (start, way) in (0..count).step_by(lanes).zip(way.chunks_mut(lanes)) {
             let here = pad + start;
@@ -322,14 +323,19 @@ impl<R: Rules> Band<'_, R> {
     fn calmest<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>, travel: f64) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::splat(simd, f64::INFINITY);
         let mut from = Lanes::splat(simd, 0.0);
+        let angles = joints.angles(simd, here);
         for shift in self.change.shifts() {
             let there = here.wrapping_add_signed(shift);
             let cost = self.cost(simd, here, shift);
             if !cost.less(best).any() {
                 continue;
             }
-            let cost = cost + joints.distance(simd, here, there) * travel;
-            let better = cost.less(best) & joints.within(simd, here, there);
+            let cost = cost + joints.distance(simd, &angles, there) * travel;
+            let better = cost.less(best);
+            if !better.any() {
+                continue;
+            }
+            let better = better & joints.within(simd, here, there);
             best = better.select(cost, best);
             from = better.select(Lanes::splat(simd, shift as f64), from);
         }
@@ -339,9 +345,11 @@ impl<R: Rules> Band<'_, R> {
 
 /// Joint angles at the point before and at this one, and how far each joint may step.
 struct Joints<'s, R> {
-    /// See [`StateGrid::all_directions`].
+    /// See [`StateGrid::all_joints`].
     old: &'s [f64],
     new: &'s [f64],
+    old_angles: &'s [f64],
+    new_angles: &'s [f64],
     stride: usize,
     limits: [JointStep; 6],
     fold: Option<f64>,
@@ -352,7 +360,7 @@ struct Joints<'s, R> {
 
 impl<'s, R: Rules> Joints<'s, R> {
     #[inline(always)]
-    fn new(old: &'s [f64], new: &'s [f64], stride: usize, step: &Step) -> Self {
+    fn new([old, old_angles]: [&'s [f64]; 2], [new, new_angles]: [&'s [f64]; 2], stride: usize, step: &Step) -> Self {
         let joints = &step.joints;
         let (mut limits, mut chords, mut are_all) = (*joints, [0.0; 6], true);
         for j in 0..6 {
@@ -363,7 +371,8 @@ impl<'s, R: Rules> Joints<'s, R> {
                 JointStep::Around { .. } => are_all = false,
             }
         }
-        Self { old, new, stride, limits, fold: step.fold, chords: Some(chords).filter(|_| are_all), rules: PhantomData }
+        let (fold, chords) = (step.fold, Some(chords).filter(|_| are_all));
+        Self { old, new, old_angles, new_angles, stride, limits, fold, chords, rules: PhantomData }
     }
 
     /// Which of the `requested` states from `here` are too far for some joint from the predecessors `from` beside them.
@@ -384,17 +393,21 @@ impl<'s, R: Rules> Joints<'s, R> {
         }
     }
 
-    /// The joint travel to the states from `here` from those from `there`. rad
+    /// The joint angles of the states from `here`. rad
     #[inline(always)]
-    fn distance<S: Simd>(&self, simd: S, here: usize, there: usize) -> Lanes<S> {
-        let stride = self.stride;
-        let rows = self.old.chunks_exact(2 * stride).zip(self.new.chunks_exact(2 * stride));
-        rows.take(6).fold(Lanes::splat(simd, 0.0), |sum, (old, new)| {
-            let ((old_sines, old_cosines), (sines, cosines)) = (old.split_at(stride), new.split_at(stride));
-            let [s0, c0] = [Lanes::load(simd, old_sines, there), Lanes::load(simd, old_cosines, there)];
-            let [s1, c1] = [Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here)];
-            sum + (s1 * c0 - c1 * s0).atan2(c1 * c0 + s1 * s0).abs()
-        })
+    fn angles<S: Simd>(&self, simd: S, here: usize) -> [Lanes<S>; 6] {
+        std::array::from_fn(|j| Lanes::load(simd, self.new_angles, j * self.stride + here))
+    }
+
+    /// The joint travel to states of these angles from those from `there`. rad
+    #[inline(always)]
+    fn distance<S: Simd>(&self, simd: S, angles: &[Lanes<S>; 6], there: usize) -> Lanes<S> {
+        let turn = Lanes::splat(simd, TAU);
+        let travels = angles.iter().enumerate().map(|(j, angle)| {
+            let turned = (*angle - Lanes::load(simd, self.old_angles, j * self.stride + there)).abs();
+            turned.min(turn - turned)
+        });
+        travels.fold(Lanes::splat(simd, 0.0), |sum, turned| sum + turned)
     }
 
     /// Which of the states from `here` are within every joint's step of those from `there`.

@@ -30,6 +30,7 @@ use laws::Laws;
 use limit::{Limit, SumLimit};
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Simd, WithSimd};
+use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
 use stead_model::task::PathPoint;
 use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
@@ -205,11 +206,19 @@ impl<'a> BatchEvaluator<'a> {
     /// allowed when one of the postures requested is inside the limits of every joint by itself; turns, and limits that
     /// tell two postures apart, are checked by the planner.
     pub fn evaluate(&self, point: usize, placement: &Placement, states: &mut StateGrid) {
-        self.evaluate_classes(point, placement, [true; 4], states);
+        self.evaluate_some(point, placement, [true; 4], None, states);
     }
 
-    /// The same with states of some posture classes only, by their [`PostureClass::index`].
-    pub fn evaluate_classes(&self, point: usize, placement: &Placement, classes: [bool; 4], states: &mut StateGrid) {
+    /// The same with states of some posture classes only, by their [`PostureClass::index`], and on request of one number
+    /// of beta.
+    pub fn evaluate_some(
+        &self,
+        point: usize,
+        placement: &Placement,
+        classes: [bool; 4],
+        only_beta: Option<usize>,
+        states: &mut StateGrid,
+    ) {
         let geometry = self.point_geometry(point, placement);
         for class in PostureClass::ALL {
             states.clear(class);
@@ -218,7 +227,8 @@ impl<'a> BatchEvaluator<'a> {
         if min_distance > 0.0 && libm::hypot(geometry.tip.x, geometry.tip.y) < min_distance {
             return;
         }
-        let evaluation = Evaluation { evaluator: self, geometry: &geometry, classes, states };
+        let betas = only_beta.map_or(0..self.count, |only| only..only + 1);
+        let evaluation = Evaluation { evaluator: self, geometry: &geometry, classes, betas, states };
         let is_single = self.problem.criterion.weights.is_single();
         match (self.fixed.is_some(), is_single, self.is_plain(point)) {
             (false, true, true) => self.instructions.run(Variant::<true, false, 1>(evaluation)),
@@ -229,6 +239,9 @@ impl<'a> BatchEvaluator<'a> {
             (true, true, false) => self.instructions.run(Variant::<false, true, 1>(evaluation)),
             (true, false, true) => self.instructions.run(Variant::<true, true, 3>(evaluation)),
             (true, false, false) => self.instructions.run(Variant::<false, true, 3>(evaluation)),
+        }
+        if let Some(only) = only_beta {
+            states.keep_beta(only);
         }
     }
 
@@ -284,6 +297,8 @@ struct Evaluation<'k> {
     evaluator: &'k BatchEvaluator<'k>,
     geometry: &'k PointGeometry,
     classes: [bool; 4],
+    /// Numbers of beta; their neighbours in the same lanes are evaluated too.
+    betas: Span<usize>,
     states: &'k mut StateGrid,
 }
 
@@ -305,10 +320,11 @@ impl Evaluation<'_> {
     /// As [`Variant`].
     #[inline(always)]
     fn batches<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
-        let Self { evaluator, geometry, classes, states } = self;
+        let Self { evaluator, geometry, classes, betas, states } = self;
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
-        for start in (0..evaluator.count).step_by(Lanes::<S>::COUNT) {
+        let first = betas.start - betas.start % Lanes::<S>::COUNT;
+        for start in (first..betas.end).step_by(Lanes::<S>::COUNT) {
             let cosine = Lanes::load(simd, &evaluator.cosine, start);
             let sine = Lanes::load(simd, &evaluator.sine, start);
             let centre = evaluator.centre(simd, geometry, cosine, sine);

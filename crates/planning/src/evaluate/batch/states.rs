@@ -7,26 +7,35 @@ use stead_numerics::simd::{Lanes, MAX_LANES};
 /// Score and joint angles of all states of one path point: for each posture class thirteen rows over beta. The score is
 /// what the state adds to the cost of a plan.
 ///
-/// Joint angles are kept as sines and cosines. Each row is continued cyclically by `pad` values at both ends, so that a
+/// Joint angles are kept as sines and cosines, and on request as angles too. Each row is continued cyclically by `pad` values at both ends, so that a
 /// planner can look to either side of beta without taking remainders: entry `pad + k` belongs to beta number k.
 #[derive(Debug, Clone)]
 pub struct StateGrid {
     count: usize,
     pad: usize,
     stride: usize,
+    rows: usize,
     data: Vec<f64>,
     alive: [bool; 4],
 }
 
-/// Score, and sine and cosine of six joints.
+/// Score, and sine and cosine of six joints;
 const ROWS: usize = 13;
+/// and their angles.
+const ROWS_WITH_ANGLES: usize = 19;
 
 impl StateGrid {
     /// Room for `count` grid values of beta, continued by `pad` at both ends.
     pub fn new(count: usize, pad: usize) -> Self {
         // A few more, so that the last batch of lanes may run over.
         let stride = (count + 2 * pad).next_multiple_of(MAX_LANES) + MAX_LANES;
-        Self { count, pad, stride, data: vec![f64::INFINITY; 4 * ROWS * stride], alive: [false; 4] }
+        Self { count, pad, stride, rows: ROWS, data: vec![f64::INFINITY; 4 * ROWS * stride], alive: [false; 4] }
+    }
+
+    /// The same with room for joint angles, where joint travel is counted.
+    pub fn with_angles(self, are_kept: bool) -> Self {
+        let rows = if are_kept { ROWS_WITH_ANGLES } else { ROWS };
+        Self { rows, data: vec![f64::INFINITY; 4 * rows * self.stride], ..self }
     }
 
     /// Number of grid values.
@@ -89,34 +98,38 @@ impl StateGrid {
 
     /// The score row, to be overwritten by the planner with accumulated costs.
     pub fn scores_mut(&mut self, class: PostureClass) -> &mut [f64] {
-        let start = class.index() * ROWS * self.stride;
+        let start = class.index() * self.rows * self.stride;
         &mut self.data[start..start + self.stride]
     }
 
-    /// The score row, to be overwritten, beside [`StateGrid::all_directions`].
+    /// The score row, to be overwritten, beside [`StateGrid::all_joints`].
     #[inline(always)]
-    pub fn scores_and_directions(&mut self, class: PostureClass) -> (&mut [f64], &[f64]) {
-        let stride = self.stride;
-        let (scores, directions) = self.data[class.index() * ROWS * stride..][..ROWS * stride].split_at_mut(stride);
-        (scores, directions)
+    pub fn scores_and_joints(&mut self, class: PostureClass) -> (&mut [f64], [&[f64]; 2]) {
+        let (stride, size) = (self.stride, self.rows * self.stride);
+        let (scores, joints) = self.data[class.index() * size..][..size].split_at_mut(stride);
+        (scores, joints.split_at((ROWS - 1) * stride).into())
     }
 
     /// The rows of [`StateGrid::directions`] of all joints, one behind the other, each as long as
-    /// [`StateGrid::scores`].
+    /// [`StateGrid::scores`], and those of their angles, where they are kept (rad, from -pi to pi).
     #[inline(always)]
-    pub fn all_directions(&self, class: PostureClass) -> &[f64] {
-        &self.data[(class.index() * ROWS + 1) * self.stride..][..(ROWS - 1) * self.stride]
+    pub fn all_joints(&self, class: PostureClass) -> [&[f64]; 2] {
+        let (stride, size) = (self.stride, self.rows * self.stride);
+        self.data[class.index() * size + stride..][..size - stride].split_at((ROWS - 1) * stride).into()
     }
 
     /// Writes one state: beta number `beta`, its score (m) and joint angles (rad).
     pub fn set(&mut self, class: PostureClass, beta: usize, score: f64, joints: [f64; 6]) {
-        let place = class.index() * ROWS * self.stride + self.pad + beta;
+        let place = class.index() * self.rows * self.stride + self.pad + beta;
         self.alive[class.index()] = true;
         self.data[place] = score;
         for (j, angle) in joints.into_iter().enumerate() {
             let (sine, cosine) = libm::sincos(angle);
             self.data[place + (1 + 2 * j) * self.stride] = sine;
             self.data[place + (2 + 2 * j) * self.stride] = cosine;
+            if self.rows > ROWS {
+                self.data[place + (ROWS + j) * self.stride] = libm::atan2(sine, cosine);
+            }
         }
     }
 
@@ -132,25 +145,29 @@ impl StateGrid {
     ) {
         let stride = self.stride;
         self.alive[class.index()] = true;
-        let rows = &mut self.data[class.index() * ROWS * stride..][..ROWS * stride];
+        let has_angles = self.rows > ROWS;
+        let rows = &mut self.data[class.index() * self.rows * stride..][..self.rows * stride];
         let place = self.pad + beta;
         score.store(rows, place);
         for j in 0..6 {
             directions[j][0].store(rows, (1 + 2 * j) * stride + place);
             directions[j][1].store(rows, (2 + 2 * j) * stride + place);
+            if has_angles {
+                directions[j][0].atan2(directions[j][1]).store(rows, (ROWS + j) * stride + place);
+            }
         }
     }
 
     /// Continues the rows of a class cyclically after they were written.
     pub fn wrap_around(&mut self, class: PostureClass) {
-        let (count, pad) = (self.count, self.pad);
-        for row in self.data[class.index() * ROWS * self.stride..][..ROWS * self.stride].chunks_exact_mut(self.stride) {
+        let (count, pad, size) = (self.count, self.pad, self.rows * self.stride);
+        for row in self.data[class.index() * size..][..size].chunks_exact_mut(self.stride) {
             row.copy_within(count..count + pad, 0);
             row.copy_within(pad..2 * pad, count + pad);
         }
     }
 
     fn row(&self, class: PostureClass, row: usize) -> &[f64] {
-        &self.data[(class.index() * ROWS + row) * self.stride..][..self.stride]
+        &self.data[(class.index() * self.rows + row) * self.stride..][..self.stride]
     }
 }

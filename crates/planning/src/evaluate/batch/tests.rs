@@ -330,6 +330,37 @@ fn agrees_for_every_sign_of_twist_and_with_offsets() {
     }
 }
 
+#[test]
+fn one_beta_alone_is_evaluated_as_among_all() {
+    let problem = five_segments();
+    let placement = Placement::from([2.2e-3, -1.6435, -0.5564, 2.1]);
+    let count = problem.redundancy.beta_count;
+    let evaluator = BatchEvaluator::new(&problem, &problem.redundancy, Flips::of(&problem)[0]);
+    let [mut all, mut alone] = [(); 2].map(|()| StateGrid::new(count, 2).with_angles(true));
+    let mut allowed = 0;
+    for point in (0..problem.task.points().len()).step_by(7) {
+        evaluator.evaluate(point, &placement, &mut all);
+        for (only, class) in (0..count).step_by(5).flat_map(|only| PostureClass::ALL.map(|class| (only, class))) {
+            evaluator.evaluate_some(point, &placement, [true; 4], Some(only), &mut alone);
+            let expected = all.inner_scores(class)[only];
+            assert_eq!(alone.inner_scores(class)[only].to_bits(), expected.to_bits());
+            assert!((0..count).all(|beta| beta == only || alone.inner_scores(class)[beta].is_infinite()));
+            assert_eq!(alone.is_alive(class), expected.is_finite());
+            if expected.is_finite() {
+                let joints = |states: &StateGrid| -> Vec<u64> {
+                    let rows = states.all_joints(class).concat();
+                    rows.chunks_exact(states.scores(class).len())
+                        .map(|row| row[states.pad() + only].to_bits())
+                        .collect()
+                };
+                assert_eq!(joints(&alone), joints(&all));
+                allowed += 1;
+            }
+        }
+    }
+    assert!(allowed > 100, "{allowed}");
+}
+
 /// Every bit of the scores, and of the joint angles of allowed states, for some points.
 pub(super) fn bits(problem: &Problem, instructions: Instructions, poses: &[Placement]) -> Vec<u64> {
     let mut bits = Vec::new();

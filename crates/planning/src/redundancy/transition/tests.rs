@@ -76,7 +76,7 @@ impl Case {
     }
 
     fn states(&self, point: usize, wrap_around: fn(&mut StateGrid)) -> StateGrid {
-        let mut states = StateGrid::new(self.count, 6);
+        let mut states = StateGrid::new(self.count, 6).with_angles(true);
         for (beta, state) in self.points[point].iter().enumerate() {
             if let Some((score, joints)) = state {
                 states.set(CLASS, beta, *score, *joints);
