@@ -25,8 +25,7 @@ use stead_report::certificate::{
 use stead_report::document::Timing;
 use stead_report::page::put_page;
 use stead_report::placement::{
-    Context, Summary, evaluation, place_json, placement_files, placement_notes, placement_summary, placement_text,
-    write_placement,
+    Context, Summary, evaluation, place_json, placement_files, placement_summary, placement_text, write_placement,
 };
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
@@ -367,11 +366,6 @@ impl Placements {
     /// The result in a few lines, without the certificate.
     pub fn summary(&self) -> Summary {
         placement_summary(&self.run.problem, &self.outcome, &self.context)
-    }
-
-    /// All that is said of it but the certificate: the lines, tables, warnings and notes of `notes.txt`.
-    pub fn notes_text(&self) -> String {
-        placement_notes(&self.run.problem, &self.outcome, &self.context)
     }
 
     /// What the command prints of the certificate, if there is one.

@@ -11,7 +11,7 @@ use stead_placement::outcome::left_out;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
 use stead_planning::problem::Placement;
-use stead_report::placement::{Context, Summary, evaluation, score_files, score_notes, score_summary, write_score};
+use stead_report::placement::{Context, Summary, evaluation, score_files, score_summary, write_score};
 use stead_report::{Files, Folder};
 
 /// A given placement with its best and its worst plan.
@@ -42,11 +42,6 @@ impl PlacementScore {
     /// The result in a few lines.
     pub fn summary(&self) -> Summary {
         score_summary(&self.run.problem, &self.score, &self.context)
-    }
-
-    /// All that is said of it: the lines, tables, warnings and notes of `notes.txt`.
-    pub fn notes_text(&self) -> String {
-        score_notes(&self.run.problem, &self.score, &self.context)
     }
 
     /// Makes the deflection map of the placement and, where the tool may lean, the map over lead and tilt, to be

@@ -147,6 +147,11 @@ fn line_after(text: &[u8]) -> usize {
     1 + text.iter().filter(|byte| **byte == b'\n').count()
 }
 
+/// A row of a file that is written for people, with its comment in one column with those of others, and a line break.
+pub fn commented(row: &str, comment: &str) -> String {
+    if comment.is_empty() { format!("{row}\n") } else { format!("{row:<38} # {comment}\n") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -66,11 +66,9 @@ impl Note {
         Self::new(NoteGroup::NotChecked, short, text)
     }
 
-    /// What looks like a mistake; its few words are its text up to the first colon.
+    /// What looks like a mistake, which has no other words than its text.
     pub fn may_be_wrong(text: impl Into<String>) -> Self {
-        let text = text.into();
-        let short = text.split(": ").next().unwrap_or_default().to_owned();
-        Self::new(NoteGroup::MayBeWrong, short, text)
+        Self::new(NoteGroup::MayBeWrong, String::new(), text)
     }
 
     /// What it is about.
@@ -78,9 +76,15 @@ impl Note {
         self.group
     }
 
-    /// Its few words.
-    pub fn short(&self) -> &str {
-        &self.short
+    /// The few words of the notes of a group, each once, in the order of the notes.
+    pub fn shorts(notes: &[Self], group: NoteGroup) -> Vec<&str> {
+        let mut words: Vec<&str> = Vec::new();
+        for note in notes.iter().filter(|note| note.group == group) {
+            if !words.contains(&&*note.short) {
+                words.push(&note.short);
+            }
+        }
+        words
     }
 }
 
@@ -120,5 +124,19 @@ impl Deref for Note {
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_of_a_group_are_said_once_in_few_words() {
+        let note = |short: &str| Note::rests_on(short, "a sentence");
+        let notes =
+            [note("guesses: cell"), note("borrowed"), note("borrowed"), Note::not_checked("collisions", "none")];
+        assert_eq!(Note::shorts(&notes, NoteGroup::RestsOn), ["guesses: cell", "borrowed"]);
+        assert_eq!(Note::shorts(&notes, NoteGroup::NotChecked), ["collisions"]);
     }
 }

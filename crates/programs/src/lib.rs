@@ -56,7 +56,7 @@ use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::manifest::interruption_note;
 use stead_model::robot::{ControllerKind, Posture};
-use stead_numerics::message::{NoteGroup, Warning};
+use stead_numerics::message::{Note, NoteGroup, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem, UNCHECKED};
 use stead_runs::Run;
@@ -420,8 +420,8 @@ fn origin(run: &Run, inputs: &[InputFile], is_unchecked: bool, is_interrupted: b
     let mut lines = vec![format!("{} {} for", stale::MARK, env!("CARGO_PKG_VERSION"))];
     lines.push(names::comment(run.problem.robot.name(), 60));
     lines.extend(inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
-    let rests_on = run.notes.iter().filter(|note| note.group() == NoteGroup::RestsOn);
-    lines.extend(rests_on.map(|note| names::comment(&format!("rests on {}", note.short()), 100)));
+    let rests_on = Note::shorts(&run.notes, NoteGroup::RestsOn);
+    lines.extend(rests_on.iter().map(|short| names::comment(&format!("rests on {short}"), 100)));
     lines.extend(is_unchecked.then(|| UNCHECKED.to_owned()));
     lines.extend(is_interrupted.then(|| INTERRUPTED.to_owned()));
     lines

@@ -118,8 +118,7 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
 fn notes(all: &mut RemovalForces, problem: &ForcesProblem) {
     let [force, moment] = [0, 1].map(|k| (all.difference.rms[k] * 100.0, all.difference.largest[k] * 100.0));
     let cell = all.cell * 1e3;
-    let mut said = Vec::new();
-    said.push(format!(
+    let mut computed = vec![format!(
         "forces are those of the programmed feed, from what the path removes of the stock by lines {cell:.3} mm apart; with lines \
          {:.3} mm apart the force differs by {:.2} % rms and {:.1} % at most, the moment by {:.2} % and {:.1} %, of the largest",
         2.0 * cell,
@@ -127,30 +126,29 @@ fn notes(all: &mut RemovalForces, problem: &ForcesProblem) {
         force.1,
         moment.0,
         moment.1
-    ));
+    )];
     if let Stock::Path(PathStock { depth, layer }) = &problem.stock {
         let mm = |metres: f64| figures(metres * 1e3);
         let depth = depth.map(|depth| format!("up to {} mm above its tip", mm(depth)));
         let layer = layer.map(|layer| format!("a layer of {} mm that the operation before has left", mm(layer)));
         let what = [depth, layer].into_iter().flatten().collect::<Vec<_>>().join(", and of it ");
-        said.push(format!(
+        computed.push(format!(
             "the stock is what the cutter passes over on its scored moves, {what}: what else stands there is not known"
         ));
     }
     let added = all.points.iter().filter(|point| point.is_added).count();
     if added > 0 {
-        said.push(format!(
+        computed.push(format!(
             "{added} points added, where a straight line between two misses the force by more than 10 %"
         ));
     }
-    all.notes.extend(said.into_iter().map(Note::from));
-    let unchecked = |short: &str, text: &str| Note::not_checked(short, text);
+    all.notes.extend(computed.into_iter().map(Note::from));
     if problem.operation.rapids.iter().all(Vec::is_empty) {
         let text = "the path has no rapid moves: that they keep out of the stock is not checked";
-        all.notes.push(unchecked("rapids", text));
+        all.notes.push(Note::not_checked("rapids", text));
     }
     if problem.operation.mill.holder.is_empty() {
         let text = "no holder is stated: that it keeps out of the stock is not checked";
-        all.notes.push(unchecked("holder", text));
+        all.notes.push(Note::not_checked("holder", text));
     }
 }

@@ -90,6 +90,7 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
         "middle    {} of {} path points reached within the joint limits with the workpiece in the middle of the cell",
         middle.reached, middle.tried
     ));
+    let at = middle.first.map_or("mid-range joints".to_owned(), |(point, _)| format!("point {point}"));
     if let Some(Yields { axes, normal, base, mount, tip, part }) = &overview.yields {
         let shares = [
             (axes, "joints about their axes"),
@@ -101,11 +102,9 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
         ];
         let shares = shares.into_iter().filter(|(share, _)| **share != 0.0);
         let said: Vec<String> = shares.map(|(share, what)| format!("{what} {} %", fixed(share * 100.0, 1))).collect();
-        let at = middle.first.map_or("mid-range joints".to_owned(), |(point, _)| format!("point {point}"));
         say(format!("yields    {} of the deflection there, at {at}", said.join(", ")));
     }
     if !overview.shapes.is_empty() {
-        let at = middle.first.map_or("mid-range joints".to_owned(), |(point, _)| format!("point {point}"));
         say(format!(
             "shapes    with the workpiece there and the arm at {at}, in the {} frame, mm:",
             shape_frame(problem)

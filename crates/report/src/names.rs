@@ -100,6 +100,11 @@ pub fn bound(bound: &ActiveBound) -> String {
     }
 }
 
+/// Which of its ends holds.
+pub(super) fn side(bound: &ActiveBound) -> &'static str {
+    if bound.side.is_upper { "upper" } else { "lower" }
+}
+
 /// What moving a bound gains, with its unit.
 pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
     match bound.side.limit {

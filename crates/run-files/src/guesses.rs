@@ -54,14 +54,14 @@ fn few_words(names: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use crate::testing::{RUN, read_text};
-    use stead_numerics::message::NoteGroup;
+    use stead_numerics::message::{Note, NoteGroup};
 
     #[test]
     fn guesses_are_keys_of_the_file_and_results_rest_on_them() {
         let with = |guesses: &str| format!("guesses = {guesses}\n{RUN}");
         let run = read_text(&with("['spindle', 'cell.x_mm', 'cell.y_mm', 'cell.z_mm']")).unwrap();
         let note = run.notes.iter().find(|note| note.group() == NoteGroup::RestsOn).unwrap();
-        assert_eq!(note.short(), "guesses: spindle, cell (3 keys)");
+        assert_eq!(Note::shorts(&run.notes, NoteGroup::RestsOn)[0], "guesses: spindle, cell (3 keys)");
         assert!(note.starts_with("guesses: spindle, cell.x_mm, cell.y_mm, cell.z_mm; replace each"), "{note}");
         assert!(read_text(&with("[]")).unwrap().notes.iter().all(|note| !note.contains("guess")));
         for (guesses, problem) in [

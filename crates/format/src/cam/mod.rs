@@ -29,7 +29,7 @@ mod tool;
 
 pub use cldata::CamFormat;
 pub use imported::ImportedPath;
-pub use refusals::GUESSES as TOOL_GUESSES;
+pub use refusals::{GUESSES as TOOL_GUESSES, guessed_keys};
 pub use segments::Resampling;
 pub use tool::ProgramTool;
 pub use tool::file_beside;

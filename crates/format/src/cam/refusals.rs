@@ -215,6 +215,10 @@ pub const GUESSES: [(&str, &str); 7] = [
     ("kte_n_per_mm = 20.0", "edge forces"),
     ("kre_n_per_mm = 20.0", ""),
 ];
+/// The keys of the rows of `[tool]` that no program states, by which a file names them as guesses.
+pub fn guessed_keys() -> impl Iterator<Item = String> {
+    GUESSES.iter().map(|(row, _)| format!("tool.{}", row.split(" =").next().unwrap_or_default()))
+}
 /// Keys in place of the stock, as comments.
 pub(super) const ONE_ENGAGEMENT: [(&str, &str); 3] = [
     ("milling = \"climb\"", "in place of [stock], one engagement for the whole path: these keys"),

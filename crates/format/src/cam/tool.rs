@@ -1,7 +1,8 @@
 //! The cutter of a program, as far as it is described there, as tables of a run file.
 
-use super::refusals::{GUESSES, NOT_THE_SHAPE, ONE_ENGAGEMENT};
+use super::refusals::{GUESSES, NOT_THE_SHAPE, ONE_ENGAGEMENT, guessed_keys};
 use super::{Program, rounded};
+use crate::toml_file::commented;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use stead_disk::quote::shorten;
@@ -112,8 +113,8 @@ type Row<'a> = (bool, Option<String>, &'a str);
 
 fn lines(rows: Vec<Row<'_>>) -> String {
     let line = |(holds, text, from): Row<'_>| {
-        let text = if holds { text? } else { format!("# {}", text?) };
-        Some(if from.is_empty() { format!("{text}\n") } else { format!("{text:<38} # {from}\n") })
+        let text = text?;
+        Some(commented(&if holds { text } else { format!("# {text}") }, from))
     };
     rows.into_iter().filter_map(line).collect()
 }
@@ -164,8 +165,7 @@ pub(super) fn text(uses: &[Use], program: &str) -> Option<String> {
         ("cut.feed_per_tooth_mm", feed.is_none()),
     ];
     let guessed = guessed.into_iter().filter(|(_, is_guess)| *is_guess).map(|(key, _)| key.to_owned());
-    let of_table = GUESSES.map(|(text, _)| format!("tool.{}", text.split(" =").next().unwrap_or_default()));
-    let guesses: Vec<String> = of_table.into_iter().chain(guessed).filter(|_| is_known).collect();
+    let guesses: Vec<String> = guessed_keys().chain(guessed).filter(|_| is_known).collect();
     let mut text = format!(
         "# The cutter of {} as far as it is described there, by `stead import path`. `stead init place` puts\n\
          # what follows into the run file.\n\n{}{}\n{}[cut]\n{}",

@@ -28,11 +28,12 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
 /// Adds to an outcome what should be known about its cases.
 pub(super) fn say(problem: &Problem, settings: &SearchSettings, outcome: &mut Outcome, monitor: &Monitor) {
     let Case { placement, setup, plan, cycle, .. } = &outcome.cases.best;
-    let mut notes = of(&problem.in_setup(setup), placement, plan, &cycle.feed, monitor);
+    let set_up = problem.in_setup(setup);
+    let mut notes = of(&set_up, placement, plan, &cycle.feed, monitor);
     notes.extend((!settings.worst).then(best_alone));
     notes.append(&mut outcome.notes);
     let named = outcome.cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
-    let ends = short_ends(&problem.in_setup(setup), placement, "case 1", plan);
+    let ends = short_ends(&set_up, placement, "case 1", plan);
     let moves = moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>(), ends);
     let cancelled = cancellation(problem, plan.objective);
     let warnings = cancelled.into_iter().chain(moves).chain(outcome.interrupted.then(interruption)).collect::<Vec<_>>();

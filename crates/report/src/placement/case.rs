@@ -185,7 +185,7 @@ records! {
         /// The bound, by its key of the files where it has one.
         bound: String = names::bound(bound),
         /// `lower` or `upper`.
-        side: &'static str = if bound.side.is_upper { "upper" } else { "lower" },
+        side: &'static str = names::side(bound),
         /// What moving it gains.
         gain: Gain = gain.into(),
         /// The unit of the gain.

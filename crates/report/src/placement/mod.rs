@@ -15,7 +15,7 @@ mod tests;
 mod text;
 
 pub use json::{PlaceFigures, SummaryFigures, place_json, summary_json};
-pub use summary::{Summary, SummaryLine, summary_line, summary_text};
+pub use summary::{Summary, SummaryLine, placement_summary, score_summary, summary_line, summary_text};
 pub use text::placement_text;
 
 use crate::document::{Document, bytes};
@@ -129,28 +129,6 @@ impl Context {
     }
 }
 
-/// The summary of a placement job.
-pub fn placement_summary(problem: &Problem, outcome: &Outcome, context: &Context) -> Summary {
-    summary::of_outcome(problem, outcome, context)
-}
-
-/// Everything that there is to say of a placement job: the text of `notes.txt`.
-pub fn placement_notes(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
-    let lines = placement_summary(problem, outcome, context);
-    summary::notes_text(&lines, &placement_text(problem, outcome, context), context)
-}
-
-/// The summary of a given placement.
-pub fn score_summary(problem: &Problem, score: &Score, context: &Context) -> Summary {
-    summary::of_score(problem, score, context)
-}
-
-/// Everything that there is to say of a given placement: the text of `notes.txt`.
-pub fn score_notes(problem: &Problem, score: &Score, context: &Context) -> String {
-    let lines = score_summary(problem, score, context);
-    summary::notes_text(&lines, &evaluation::score_text(score, context), context)
-}
-
 /// Where a case has the workpiece.
 fn placed(case: &Case) -> Placed<'_> {
     (&case.placement, &case.setup)
@@ -259,7 +237,7 @@ pub fn score_files(
         ("best-plan.csv", tables::plan(&best.plan, scene)?),
         ("worst-plan.csv", tables::plan(&worst.plan, scene)?),
         ("score.json", bytes(&evaluation::score_json(problem, score, context))),
-        (NOTES, score_notes(problem, score, context).into_bytes()),
+        (NOTES, summary::score_notes(problem, score, context).into_bytes()),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
     files.extend(setup_sheet(problem, &best, score.sheet.as_ref(), context));
@@ -319,7 +297,7 @@ pub fn write_placement(
 /// [`ReportError::Format`]: a file cannot be made.
 pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) -> Result<Files, ReportError> {
     let Cases { best, best_worst_plan, worst } = &outcome.cases;
-    let summary = summary_json(problem, outcome, context);
+    let document = summary_json(problem, outcome, context);
     let scene = problem.scene.as_deref();
     let mut files = vec![
         ("best.csv", tables::plan(&best.plan, scene)?),
@@ -328,8 +306,8 @@ pub fn placement_files(problem: &Problem, outcome: &Outcome, context: &Context) 
         ("convergence.csv", tables::convergence(&outcome.convergence)?),
         ("transfers.csv", tables::transfers(&outcome.cases, scene)?),
         ("refinements.csv", tables::refinements(&outcome.refinements)?),
-        (SUMMARY, bytes(&summary)),
-        (NOTES, placement_notes(problem, outcome, context).into_bytes()),
+        (SUMMARY, bytes(&document)),
+        (NOTES, summary::placement_notes(problem, outcome, context).into_bytes()),
         ("convergence.svg", picture::convergence(outcome).into_bytes()),
         ("cell.svg", picture::cell(problem, outcome).into_bytes()),
     ];

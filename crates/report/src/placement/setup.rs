@@ -82,13 +82,18 @@ pub(super) fn standing(axes: &[AxisPath]) -> Vec<String> {
 pub(super) fn standing_words(axes: &[AxisPath]) -> Option<String> {
     let word = |axis: &AxisPath| {
         let (unit, name) = (unit(axis.kind), unit_name(axis.kind));
-        let end = |of: fn(f64, f64) -> f64| unit.text(axis.positions.iter().copied().reduce(of).unwrap_or(0.0));
         match one_position(axis) {
             Some(at) => format!("{} {} {name}", axis.name, unit.text(at)),
-            None => format!("{} {} to {} {name}", axis.name, end(f64::min), end(f64::max)),
+            None => format!("{} {} {name}", axis.name, ends(axis).join(" to ")),
         }
     };
     (!axes.is_empty()).then(|| axes.iter().map(word).collect::<Vec<_>>().join(", "))
+}
+
+/// The least and the largest position of an axis along the path.
+fn ends(axis: &AxisPath) -> [String; 2] {
+    let end = |of: fn(f64, f64) -> f64| axis.positions.iter().copied().reduce(of).unwrap_or(0.0);
+    [end(f64::min), end(f64::max)].map(|at| unit(axis.kind).text(at))
 }
 
 fn one_position(axis: &AxisPath) -> Option<f64> {
@@ -171,8 +176,7 @@ pub(crate) fn lines(of: &str, orientation: Option<&String>, axes: &[AxisPath]) -
         lines.push(match one_position(axis) {
             Some(at) => format!("{of} has the {kind} \"{}\" at {} {name}", axis.name, unit.text(at)),
             None => {
-                let ends = |of: fn(f64, f64) -> f64| axis.positions.iter().copied().reduce(of).unwrap_or(0.0);
-                let [least, most] = [ends(f64::min), ends(f64::max)].map(|at| unit.text(at));
+                let [least, most] = ends(axis);
                 format!("{of} has the {kind} \"{}\" between {least} and {most} {name} along the path", axis.name)
             }
         });

@@ -1,5 +1,7 @@
 //! A result in a few lines: what it is, what holds it, what it rests on, what was not checked, what looks wrong.
 
+use super::evaluation::score_text;
+use super::text::{placement_text, short_name};
 use super::{Context, setup};
 use crate::names;
 use crate::units::figures;
@@ -45,10 +47,10 @@ pub fn summary_text(lines: &[SummaryLine]) -> String {
 }
 
 /// The summary of a placement job.
-pub(super) fn of_outcome(problem: &Problem, outcome: &Outcome, context: &Context) -> Summary {
+pub fn placement_summary(problem: &Problem, outcome: &Outcome, context: &Context) -> Summary {
     let best = &outcome.cases.best;
     let mut lines: Summary = outcome.interrupted.then(interrupted).into_iter().collect();
-    lines.extend(of_case("best", problem, best));
+    lines.extend(of_plan("best", problem, (&best.placement, best.orientation.as_ref(), &best.plan)));
     let worst = outcome.cases.worst.as_ref().map(|worst| {
         let ratio =
             outcome.cases.ratio(&worst.best).map_or(String::new(), |ratio| format!(", {} times", figures(ratio)));
@@ -61,11 +63,11 @@ pub(super) fn of_outcome(problem: &Problem, outcome: &Outcome, context: &Context
 }
 
 /// The summary of a given placement.
-pub(super) fn of_score(problem: &Problem, score: &Score, context: &Context) -> Summary {
-    let BySense { best, worst } = score.cases();
+pub fn score_summary(problem: &Problem, score: &Score, context: &Context) -> Summary {
+    let BySense { best, worst } = &score.plans;
     let mut lines: Summary = score.interrupted.then(interrupted).into_iter().collect();
-    lines.extend(of_case("best plan", problem, &best));
-    lines.push(summary_line("worst plan", format!("{} mm", figures(worst.plan.mean * 1e3))));
+    lines.extend(of_plan("best plan", problem, (&score.placement, score.orientation.as_ref(), best)));
+    lines.push(summary_line("worst plan", format!("{} mm", figures(worst.mean * 1e3))));
     lines.extend(rest(context));
     lines
 }
@@ -75,15 +77,19 @@ fn interrupted() -> SummaryLine {
     summary_line("INTERRUPTED", "what was found by then, not the end")
 }
 
-/// Where a case has the workpiece, and what its plan comes to.
-fn of_case(about: &'static str, problem: &Problem, case: &Case) -> Summary {
-    let Placement { x, y, z, .. } = case.placement;
+/// Where the workpiece is and how it lies, and what a plan comes to there.
+fn of_plan(
+    about: &'static str,
+    problem: &Problem,
+    (placement, orientation, plan): (&Placement, Option<&String>, &Plan),
+) -> Summary {
+    let Placement { x, y, z, yaw } = *placement;
     let [x, y, z] = [x, y, z].map(|length| (length * 1e3).round() + 0.0);
-    let mut at = format!("x {x} y {y} z {z} mm, yaw {:.0} deg", case.placement.yaw.to_degrees());
-    at.extend(case.orientation.iter().map(|name| format!(", {name}")));
-    at.extend(setup::standing_words(&case.plan.axes).map(|axes| format!(", {axes}")));
-    at.push_str(&format!("; {}", postures(&case.plan)));
-    vec![summary_line(about, at), summary_line("", deflection(problem, &case.plan))]
+    let mut at = format!("x {x} y {y} z {z} mm, yaw {:.0} deg", yaw.to_degrees());
+    at.extend(orientation.map(|name| format!(", {name}")));
+    at.extend(setup::standing_words(&plan.axes).map(|axes| format!(", {axes}")));
+    at.push_str(&format!("; {}", postures(plan)));
+    vec![summary_line(about, at), summary_line("", deflection(problem, plan))]
 }
 
 /// The postures of a plan in words, each kind once.
@@ -126,25 +132,17 @@ fn deflection(problem: &Problem, plan: &Plan) -> String {
 /// Which bounds hold a best placement, and which springs yield.
 fn held_by(case: &Case) -> Option<SummaryLine> {
     let bounds = case.active_bounds.as_ref()?;
-    let side = |is_upper: bool| if is_upper { "upper" } else { "lower" };
-    let named =
-        bounds.iter().take(NAMED).map(|bound| format!("{} ({})", names::bound(bound), side(bound.side.is_upper)));
+    let named = bounds.iter().take(NAMED).map(|bound| format!("{} ({})", names::bound(bound), names::side(bound)));
     let held = match named.collect::<Vec<_>>() {
         none if none.is_empty() => "no bound".to_owned(),
         named => named.join(", "),
     };
     let mut slopes: Vec<_> = case.objective_by_stiffness.iter().flatten().collect();
     slopes.sort_by(|a, b| b.slope.abs().total_cmp(&a.slope.abs()));
-    let is_single = slopes.len() == 6;
     let sum: f64 = slopes.iter().map(|slope| slope.slope.abs()).sum();
     let share = |slope: f64| format!("{:.0}%", 100.0 * slope.abs() / sum);
-    let yields = slopes.iter().take(NAMED).map(|slope| {
-        let name = match slope.springs.first() {
-            Some(spring) if is_single => format!("joint {}", spring.joint + 1),
-            _ => super::text::spring_name(slope),
-        };
-        format!("{name} {}", share(slope.slope))
-    });
+    let count = slopes.len();
+    let yields = slopes.iter().take(NAMED).map(|slope| format!("{} {}", short_name(slope, count), share(slope.slope)));
     let yields: Vec<String> = yields.collect();
     let is_known = sum > 0.0 && case.plan.objective > CANCELLATION;
     let yields = if is_known { format!("; yields: {}", yields.join(", ")) } else { String::new() };
@@ -156,7 +154,7 @@ fn rest(context: &Context) -> Summary {
     let cut = context.removal.as_ref().and_then(|removal| removal.cut);
     let mut lines: Summary = cut.iter().map(|cut| summary_line("cut", cut.words())).collect();
     for (group, about) in [(NoteGroup::RestsOn, "RESTS ON"), (NoteGroup::NotChecked, "NOT CHECKED")] {
-        let words = shorts(&context.notes, group);
+        let words = Note::shorts(&context.notes, group);
         lines.extend((!words.is_empty()).then(|| summary_line(about, words.join("; "))));
     }
     let wrong = context.notes.iter().filter(|note| note.group() == NoteGroup::MayBeWrong).map(|note| &**note);
@@ -166,17 +164,6 @@ fn rest(context: &Context) -> Summary {
         lines.push(summary_line("WARNING", format!("{}{more}", few_words(first))));
     }
     lines
-}
-
-/// The few words of the notes of a group, each once.
-fn shorts(notes: &[Note], group: NoteGroup) -> Vec<&str> {
-    let mut words: Vec<&str> = Vec::new();
-    for note in notes.iter().filter(|note| note.group() == group) {
-        if !words.contains(&note.short()) {
-            words.push(note.short());
-        }
-    }
-    words
 }
 
 /// A sentence up to its first stop, or its first few words.
@@ -196,8 +183,19 @@ fn few_words(sentence: &str) -> String {
     words.join(" ")
 }
 
-/// Everything that there is to say, for `notes.txt`: the tables, then warnings and notes by their groups.
-pub(super) fn notes_text(summary: &[SummaryLine], tables: &str, context: &Context) -> String {
+/// Everything that there is to say of a placement job: the text of `notes.txt`.
+pub(super) fn placement_notes(problem: &Problem, outcome: &Outcome, context: &Context) -> String {
+    let summary = placement_summary(problem, outcome, context);
+    notes_text(&summary, &placement_text(problem, outcome, context), context)
+}
+
+/// Everything that there is to say of a given placement: the text of `notes.txt`.
+pub(super) fn score_notes(problem: &Problem, score: &Score, context: &Context) -> String {
+    notes_text(&score_summary(problem, score, context), &score_text(score, context), context)
+}
+
+/// The summary and the tables, then warnings and notes by their groups.
+fn notes_text(summary: &[SummaryLine], tables: &str, context: &Context) -> String {
     let mut text = format!("{}\n{}", summary_text(summary), tables);
     let mut part = |title: &str, sentences: Vec<&str>| {
         if !sentences.is_empty() {
@@ -231,14 +229,5 @@ mod tests {
         let long = ["word"; 30].join(" ");
         assert_eq!(few_words(&long), format!("{} ..", ["word"; WORDS].join(" ")));
         assert_eq!(few_words("short"), "short");
-    }
-
-    #[test]
-    fn notes_of_a_group_are_said_once_in_few_words() {
-        let note = |short: &str| Note::rests_on(short, "a sentence");
-        let notes =
-            [note("guesses: cell"), note("borrowed"), note("borrowed"), Note::not_checked("collisions", "none")];
-        assert_eq!(shorts(&notes, NoteGroup::RestsOn), ["guesses: cell", "borrowed"]);
-        assert_eq!(shorts(&notes, NoteGroup::NotChecked), ["collisions"]);
     }
 }

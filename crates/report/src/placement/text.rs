@@ -116,7 +116,7 @@ fn held_by(case: &Case) -> Vec<String> {
     let mut lines = vec![format!("the {word} placement is held by")];
     lines.extend(bounds.iter().take(NAMED).map(|bound| {
         let (gain, unit) = names::gain(bound);
-        let side = if bound.side.is_upper { "upper" } else { "lower" };
+        let side = names::side(bound);
         format!("  {} ({side}): {} {unit}", names::bound(bound), figures(gain))
     }));
     let others = bounds.len().saturating_sub(NAMED);
@@ -127,6 +127,14 @@ fn held_by(case: &Case) -> Vec<String> {
 /// The springs of a slope in words: `joint 5 about z with joint 4 about y`.
 pub(super) fn spring_name(slope: &SpringSlope) -> String {
     slope.springs.iter().map(ToString::to_string).collect::<Vec<_>>().join(" with ")
+}
+
+/// The joint of a slope where there is one for each, else its springs.
+pub(super) fn short_name(slope: &SpringSlope, count: usize) -> String {
+    match slope.springs.first() {
+        Some(spring) if count == 6 => format!("joint {}", spring.joint + 1),
+        _ => spring_name(slope),
+    }
 }
 
 /// How far the weight moves the tool along a plan, where that is known.
@@ -145,10 +153,7 @@ fn stiffest(case: &Case) -> Option<String> {
     let slopes = case.objective_by_stiffness.as_ref()?;
     let first = slopes.iter().max_by(|a, b| a.slope.abs().total_cmp(&b.slope.abs()))?;
     let slope = first.slope;
-    let name = match slopes.len() {
-        6 => format!("joint {}", first.springs.first().map_or(0, |spring| spring.joint + 1)),
-        _ => spring_name(first),
-    };
+    let name = short_name(first, slopes.len());
     let share = if case.plan.objective > CANCELLATION { slope / case.plan.objective } else { 0.0 };
     Some(format!(
         "{name} matters most to the best placement: 1 % more stiffness changes what is minimised by {} %",

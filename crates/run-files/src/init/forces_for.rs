@@ -9,8 +9,9 @@ use stead_disk::files::{
     read,
 };
 use stead_disk::input::InputError;
-use stead_format::cam::{LengthUnit, TOOL_GUESSES};
+use stead_format::cam::{LengthUnit, TOOL_GUESSES, guessed_keys};
 use stead_format::sources::Sources;
+use stead_format::toml_file::commented;
 
 /// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The
 /// cutter is that of the program, or that beside a task (`NAME-tool.toml`). What is not known is filled in by a guess,
@@ -42,17 +43,12 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
     let stock = match (stock, &guess) {
         (Some(mesh), _) => format!(
             "mesh = {}\n# unit = \"mm\"                        # of the mesh file; or \"m\"\n\
-             # xyz_mm = [0.0, 0.0, 0.0]             # where its origin is",
+             # xyz_mm = [0.0, 0.0, 0.0]             # where its origin is\n",
             quoted(mesh)
         ),
         (None, guess) => guess.as_ref().map(Guess::row).unwrap_or_default(),
     };
-    let row = |key: String, comment: &str| match comment {
-        "" => format!("{key}\n"),
-        comment => format!("{key:<38} # {comment}\n"),
-    };
     let has_feeds = known.path.feed(0).is_some();
-    let of_table = TOOL_GUESSES.iter().map(|(text, _)| format!("tool.{}", text.split(" =").next().unwrap_or_default()));
     let guessed = [
         ("reading".to_owned(), !has_units),
         (guess.as_ref().map_or(String::new(), |guess| format!("stock.{}", guess.key)), guess.is_some()),
@@ -62,7 +58,7 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
         ("cut.feed_per_tooth_mm".to_owned(), !has_feeds),
     ];
     let guessed = guessed.into_iter().filter(|(_, is_guess)| *is_guess).map(|(key, _)| key);
-    let guesses: Vec<String> = guessed.chain(of_table).collect();
+    let guesses: Vec<String> = guessed.chain(guessed_keys()).collect();
     let mut text = format!(
         "# Forces along a tool path from what it removes of the stock. Written by `stead init forces`. Replace the values that `guesses`\n\
          # names by those of your cutter and stock, and take the names out. Run it with\n#     stead forces {} --out TASK.csv\n\n\
@@ -71,33 +67,33 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
         quoted(path)
     );
     if !has_units {
-        text += &row("reading = { units = \"mm\" }".to_owned(), "the program does not state its unit; or \"inch\"");
+        text += &commented("reading = { units = \"mm\" }", "the program does not state its unit; or \"inch\"");
     }
-    text += &row(
-        "# material = \"aluminium-7075\"".to_owned(),
+    text += &commented(
+        "# material = \"aluminium-7075\"",
         "published cutting coefficients, in place of kt_mpa to kre_n_per_mm",
     );
     text += &format!(
-        "\n[stock]                                # the material before it is cut, in the workpiece frame\n{stock}\n\n[tool]\n"
+        "\n[stock]                                # the material before it is cut, in the workpiece frame\n{stock}\n[tool]\n"
     );
-    text += &row(format!("cutter_diameter_mm = {:?}", 2.0 * half), about(diameter.is_some()));
+    text += &commented(&format!("cutter_diameter_mm = {:?}", 2.0 * half), about(diameter.is_some()));
     match corner {
-        Some(corner) => text += &row(format!("corner_radius_mm = {corner:?}"), about(true)),
-        None => text += &row("# corner_radius_mm = 0.0".to_owned(), "half the diameter for a ball"),
+        Some(corner) => text += &commented(&format!("corner_radius_mm = {corner:?}"), about(true)),
+        None => text += &commented("# corner_radius_mm = 0.0", "half the diameter for a ball"),
     }
     let flutes = length.unwrap_or(6.0 * half);
     let of_length = if length.is_some() { "as the program has it, perhaps with the shank" } else { "" };
-    text += &row(format!("flute_length_mm = {flutes:?}"), of_length);
-    TOOL_GUESSES.iter().for_each(|(key, comment)| text += &row((*key).to_owned(), comment));
+    text += &commented(&format!("flute_length_mm = {flutes:?}"), of_length);
+    TOOL_GUESSES.iter().for_each(|(row, comment)| text += &commented(row, comment));
     text += "\n[cut]\n";
     match known.spindle_speed {
         Some(speed) => {
-            text += &row(format!("# spindle_rpm = {:?}", (speed * 6e4).round() / 1e3), "as the program has it")
+            text += &commented(&format!("# spindle_rpm = {:?}", (speed * 6e4).round() / 1e3), "as the program has it")
         }
-        None => text += &row("spindle_rpm = 9000.0".to_owned(), "the path states none"),
+        None => text += &commented("spindle_rpm = 9000.0", "the path states none"),
     }
     if !has_feeds {
-        text += &row("feed_per_tooth_mm = 0.05".to_owned(), "the path has no feeds");
+        text += &commented("feed_per_tooth_mm = 0.05", "the path has no feeds");
     }
     write_new(out, &text, existing)
 }

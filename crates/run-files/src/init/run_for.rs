@@ -189,12 +189,12 @@ fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 3], known: &Known) -> S
     // A cut beside the forces of the task would be a second source of them.
     let is_taken = |key: &&String| !(known.has_forces && key.starts_with("cut."));
     let has_engagement = known.cutter.as_ref().is_some_and(|own| own.has_engagement);
-    let has_forces = known.has_forces || stock.is_some() || has_engagement;
+    let is_loaded = known.has_forces || stock.is_some() || has_engagement;
     let mut guesses = vec!["spindle".to_owned(), "cell".to_owned()];
     guesses.extend(path.feed(0).is_none().then(|| "redundancy.feed_mm_per_s".to_owned()));
     guesses.extend(stock.as_ref().map(|stock| format!("stock.{}", stock.key)));
     guesses.extend(known.cutter.iter().flat_map(|own| own.guesses.iter().filter(is_taken).cloned()));
-    guesses.extend((!has_forces).then(|| "forces".to_owned()));
+    guesses.extend((!is_loaded).then(|| "forces".to_owned()));
     let mut text = format!(
         "\
 # A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. Replace
@@ -249,13 +249,13 @@ max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
         format!("{:?}", rounded(reach / 4.0)),
     );
     if let Some(stock) = &stock {
-        text.push_str(&format!("\n{STOCK}{}\n", stock.row()));
+        text.push_str(&format!("\n{STOCK}{}", stock.row()));
     }
     if let Some(cutter) = &known.cutter {
         let end = cutter.text.find("\n[cut]").filter(|_| known.has_forces).unwrap_or(cutter.text.len());
         text.push_str(&format!("\n{}\n", cutter.text[..end].trim_end()));
     }
-    if !has_forces {
+    if !is_loaded {
         text.push_str(FORCES);
     }
     text
