@@ -115,8 +115,8 @@ pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
 /// Turns the scores of a point into the smallest sums of costs up to it, from those of the point before; `way` takes
 /// for each beta number the step back to the predecessor. False when no state was reached.
 ///
-/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`], and
-/// where joint travel counts, both must keep angles (see [`StateGrid::with_angles`]).
+/// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`],
+/// and where joint travel counts, both must keep angles (see [`StateGrid::with_angles`]).
 pub fn advance(before: &StateGrid, now: &mut StateGrid, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
     advance_by::<Right>(before, now, class, step, None, way)
 }

@@ -209,8 +209,8 @@ impl<'a> BatchEvaluator<'a> {
         self.evaluate_some(point, placement, [true; 4], None, states);
     }
 
-    /// The same with states of some posture classes only, by their [`PostureClass::index`], and on request of one number
-    /// of beta.
+    /// The same with states of some posture classes only, by their [`PostureClass::index`], and on request of one
+    /// number of beta.
     pub fn evaluate_some(
         &self,
         point: usize,

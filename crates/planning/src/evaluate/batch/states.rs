@@ -7,8 +7,9 @@ use stead_numerics::simd::{Lanes, MAX_LANES};
 /// Score and joint angles of all states of one path point: for each posture class thirteen rows over beta. The score is
 /// what the state adds to the cost of a plan.
 ///
-/// Joint angles are kept as sines and cosines, and on request as angles too. Each row is continued cyclically by `pad` values at both ends, so that a
-/// planner can look to either side of beta without taking remainders: entry `pad + k` belongs to beta number k.
+/// Joint angles are kept as sines and cosines, and on request as angles too. Each row is continued cyclically by `pad`
+/// values at both ends, so that a planner can look to either side of beta without taking remainders: entry `pad + k`
+/// belongs to beta number k.
 #[derive(Debug, Clone)]
 pub struct StateGrid {
     count: usize,
