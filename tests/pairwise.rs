@@ -5,7 +5,6 @@ use crate::drive::{Outcome, drive};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use stead_judge::cover::{Choice, cover, pairs, pairs_of, value_of, words};
 use toml::{Table, Value};
 
@@ -182,9 +181,10 @@ fn runs_of_the_other_pairs_of_options_agree_with_the_judge() {
 /// Runs choices, the first one of a number, and holds them against the judge.
 fn agree_with_the_judge(choices: &[Choice], first: usize) {
     // Side by side, for a run alone does not keep all processors busy.
-    let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let (left, outcomes) = (Mutex::new(choices.iter().enumerate()), Mutex::new(Vec::new()));
+    let next = || left.lock().unwrap().next();
     let worker = || {
-        while let Some((number, choice)) = Some(next.fetch_add(1, Relaxed)).and_then(|n| Some((n, choices.get(n)?))) {
+        while let Some((number, choice)) = next() {
             let folder = tempfile::tempdir().unwrap();
             let outcome = drive(choice, 100_000 + (first + number) as u64 + 1, folder.path());
             outcomes.lock().unwrap().push((number, outcome));

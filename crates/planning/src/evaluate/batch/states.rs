@@ -33,10 +33,13 @@ impl StateGrid {
         Self { count, pad, stride, rows: ROWS, data: vec![f64::INFINITY; 4 * ROWS * stride], alive: [false; 4] }
     }
 
-    /// The same with room for joint angles, where joint travel is counted.
-    pub fn with_angles(self, are_kept: bool) -> Self {
-        let rows = if are_kept { ROWS_WITH_ANGLES } else { ROWS };
-        Self { rows, data: vec![f64::INFINITY; 4 * rows * self.stride], ..self }
+    /// The same before any state is written, with joint angles where they are kept, for joint travel.
+    pub fn with_angles(mut self, are_kept: bool) -> Self {
+        if are_kept {
+            self.rows = ROWS_WITH_ANGLES;
+            self.data.resize(4 * self.rows * self.stride, f64::INFINITY);
+        }
+        self
     }
 
     /// Number of grid values.
@@ -76,8 +79,10 @@ impl StateGrid {
 
     /// Marks all states but those of one number of beta as not allowed.
     pub fn keep_beta(&mut self, only: usize) {
-        for class in PostureClass::ALL.into_iter().filter(|class| self.alive[class.index()]).collect::<Vec<_>>() {
-            self.forbid(class, (0..self.count).filter(|beta| *beta != only));
+        for class in PostureClass::ALL {
+            if self.is_alive(class) {
+                self.forbid(class, (0..self.count).filter(|beta| *beta != only));
+            }
         }
     }
 
