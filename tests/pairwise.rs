@@ -160,7 +160,7 @@ fn every_key_of_the_input_files_is_stated_by_some_run_or_left_out_with_a_reason(
 }
 
 /// Runs of the first choices, which bring the most pairs.
-const FIRST: usize = 33;
+const FIRST: usize = 12;
 
 #[test]
 fn runs_of_most_pairs_of_options_agree_with_the_judge() {
@@ -168,12 +168,12 @@ fn runs_of_most_pairs_of_options_agree_with_the_judge() {
     let (first, rest) = all.split_at(FIRST);
     // What the others would add is run by `.ci/nightly`.
     let share = pairs_of(first).len() as f64 / pairs().len() as f64;
-    assert!(share > 0.7 && !rest.is_empty(), "{share}");
+    assert!(share > 0.6 && !rest.is_empty(), "{share}");
     agree_with_the_judge(first, 0);
 }
 
 #[test]
-#[ignore = "the rest of the pairs: a quarter of an hour"]
+#[ignore = "the rest of the pairs: half an hour"]
 fn runs_of_the_other_pairs_of_options_agree_with_the_judge() {
     agree_with_the_judge(&cover(1)[FIRST..], FIRST);
 }

@@ -95,6 +95,7 @@ data.robot.name = evil;
 data.inputs.forEach((input) => (input.name = evil));
 data.document.notes = [evil];
 data.document.warnings = [evil];
+data.document.summary = [{ about: evil, text: evil }];
 const named = html.replace(
   /id="data">[^]*?<\/script>/,
   () => `id="data">${JSON.stringify(data).replaceAll('<', '\\u003c')}</script>`,
@@ -102,6 +103,7 @@ const named = html.replace(
 await check('names that look like markup are text', {}, saved('names.html', named), async (page) => {
   assert.ok((await page.locator('h1').textContent()).includes(evil));
   assert.ok((await page.locator('#messages').textContent()).includes(evil));
+  assert.equal(await page.locator('#short').textContent(), evil + evil);
   assert.deepEqual(
     await page.evaluate(() => [window.owned, document.scripts.length, document.querySelectorAll('img').length]),
     [undefined, 2, 0],

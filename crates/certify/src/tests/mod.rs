@@ -68,6 +68,20 @@ impl Setting {
         Self { problem, model, whole, rotation_sign }
     }
 
+    /// Takes the tables of another setting, which are what takes long to make, where they are of the same arm.
+    pub fn take_table(&mut self, other: Option<Self>) {
+        let Some(other) = other else { return };
+        let of = |model: &Model| format!("{:?} {:?}", model.arm, model.table.grid());
+        if of(&self.model) == of(&other.model) {
+            self.model.table = other.model.table;
+            self.model.others.iter_mut().zip(other.model.others).for_each(|(mine, theirs)| {
+                if format!("{:?}", mine.arm) == format!("{:?}", theirs.arm) {
+                    mine.table = theirs.table;
+                }
+            });
+        }
+    }
+
     /// An upright tool, one from below, forces with a vertical part, an arm upside down, and one with every offset.
     pub fn all() -> Vec<(&'static str, Self)> {
         [

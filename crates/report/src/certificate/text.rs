@@ -1,7 +1,7 @@
 //! The certificate in sentences.
 
 use crate::names;
-use crate::units::{Unit, fixed};
+use crate::units::{Unit, fixed, lines_of};
 use stead_certify::{Certificate, Proof};
 use stead_planning::sense::Sense;
 
@@ -17,7 +17,7 @@ pub fn certificate_text(certificate: &Certificate) -> String {
             Ok(proof) => stated(proof),
             Err(reason) => format!("No certificate for the {name} placement: {reason}."),
         };
-        wrapped(&mut text, &paragraph);
+        text.extend(lines_of(&paragraph, WIDTH).into_iter().map(|line| line + "\n"));
     }
     text
 }
@@ -57,23 +57,4 @@ fn stated(proof: &Proof) -> String {
         }
     };
     format!("{claim} Relaxed: {}. Certified up to rounding.", proof.relaxed_words().join("; "))
-}
-
-/// A paragraph in lines.
-fn wrapped(text: &mut String, paragraph: &str) {
-    let mut width = 0;
-    for word in paragraph.split(' ') {
-        let length = word.chars().count();
-        if width > 0 && width + 1 + length > WIDTH {
-            text.push('\n');
-            width = 0;
-        }
-        if width > 0 {
-            text.push(' ');
-            width += 1;
-        }
-        text.push_str(word);
-        width += length;
-    }
-    text.push('\n');
 }

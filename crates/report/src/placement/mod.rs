@@ -167,7 +167,8 @@ fn setup_sheet(
     sheet: Option<&SetupSheet>,
     context: &Context,
 ) -> Option<(&'static str, Vec<u8>)> {
-    let title = picture::SheetTitle { inputs: &context.inputs, seed: context.search.seed };
+    let said = summary::rest(context);
+    let title = picture::SheetTitle { inputs: &context.inputs, seed: context.search.seed, said: &said };
     Some((SETUP_SHEET, picture::setup_sheet(problem, case, sheet?, &title).into_bytes()))
 }
 

@@ -7,6 +7,7 @@ use crate::names;
 use crate::units::figures;
 use schemars::JsonSchema;
 use serde::Serialize;
+use stead_model::robot::PostureWord;
 use stead_numerics::message::{Note, NoteGroup};
 use stead_placement::outcome::{Case, Outcome, Plan};
 use stead_placement::place::Score;
@@ -27,9 +28,9 @@ const INDENT: usize = 13;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct SummaryLine {
     /// What the line is about; empty where it goes on from the one before.
-    about: &'static str,
+    pub(crate) about: &'static str,
     /// What is said of it.
-    text: String,
+    pub(crate) text: String,
 }
 
 /// The summary of a result, in the order in which it is to be read.
@@ -129,7 +130,7 @@ fn deflection(problem: &Problem, plan: &Plan) -> String {
     format!("{mean} mm mean ({what}), {max} largest{place}{}", errors.unwrap_or_default())
 }
 
-/// Which bounds hold a best placement, and which springs yield.
+/// Which bounds hold a best placement, which springs yield, and whether it is over the back of the robot.
 fn held_by(case: &Case) -> Option<SummaryLine> {
     let bounds = case.active_bounds.as_ref()?;
     let named = bounds.iter().take(NAMED).map(|bound| format!("{} ({})", names::bound(bound), names::side(bound)));
@@ -146,11 +147,13 @@ fn held_by(case: &Case) -> Option<SummaryLine> {
     let yields: Vec<String> = yields.collect();
     let is_known = sum > 0.0 && case.plan.objective > CANCELLATION;
     let yields = if is_known { format!("; yields: {}", yields.join(", ")) } else { String::new() };
-    Some(summary_line("held by", format!("{held}{yields}")))
+    let is_over = case.plan.posture_words.iter().any(|words| words.has(PostureWord::Back));
+    let over = if is_over { "; over the back of the robot" } else { "" };
+    Some(summary_line("held by", format!("{held}{yields}{over}")))
 }
 
 /// What is common to all results: what is cut, what it rests on, what was not checked, and what looks wrong.
-fn rest(context: &Context) -> Summary {
+pub(super) fn rest(context: &Context) -> Summary {
     let cut = context.removal.as_ref().and_then(|removal| removal.cut);
     let mut lines: Summary = cut.iter().map(|cut| summary_line("cut", cut.words())).collect();
     for (group, about) in [(NoteGroup::RestsOn, "RESTS ON"), (NoteGroup::NotChecked, "NOT CHECKED")] {

@@ -233,6 +233,9 @@ force_uncertainty = 0.1                # the plan must also stand force errors o
 beta_step_deg = 5.0                    # grid of beta; a fraction of 360
 feed_mm_per_s = {feed:<22} # {about_feed}
 max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
+
+[postures]
+allowed = [\"front\"]                    # wrist in front of axis 1, not over the back of the robot, where cables may be in the way
 ",
         known.robot,
         if known.has_stiffness { "" } else { LIKE },

@@ -8,7 +8,8 @@ mod views;
 
 use super::canvas::{Canvas, Pixel, TextStyle, paper};
 use super::colour::{BLACK, PALE};
-use crate::units::fixed;
+use crate::placement::SummaryLine;
+use crate::units::{fixed, lines_of};
 use stead_disk::input::InputFile;
 use stead_placement::outcome::Case;
 use stead_placement::setup_sheet::{SetupSheet, SheetFrame};
@@ -21,6 +22,8 @@ pub struct SheetTitle<'a> {
     pub inputs: &'a [InputFile],
     /// Seed of its random numbers.
     pub seed: u64,
+    /// What is cut, what the result rests on, what was not checked and what looks wrong.
+    pub said: &'a [SummaryLine],
 }
 
 /// The left and the right edge of what is written.
@@ -29,6 +32,8 @@ const SIDES: [i32; 2] = [44, 796];
 const BOTTOM: i32 = 1146;
 /// From line to line of a table.
 const LINE: i32 = 16;
+/// Letters of a line of small print beside its heading.
+const LETTERS: usize = 130;
 /// Letters of tables and of small print.
 const SIZES: [f64; 2] = [11.5, 9.5];
 
@@ -69,10 +74,15 @@ fn frame_words(sheet: &SetupSheet) -> String {
     format!("Places in mm, in {frame}. Angles in deg.")
 }
 
-/// Run, robot, version and digests, in a frame at the foot of the page.
+/// Run, robot, version and digests, in a frame at the foot of the page, and what is to be known of the result.
 fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>) {
     let [left, right] = SIDES;
-    let lines = title.inputs.len() as i32;
+    let said = title.said.iter().flat_map(|line| {
+        let abouts = std::iter::once(line.about).chain(std::iter::repeat(""));
+        abouts.zip(lines_of(&line.text, LETTERS))
+    });
+    let said: Vec<(&str, String)> = said.collect();
+    let lines = (title.inputs.len() + said.len()) as i32;
     let top = BOTTOM - 12 * lines - 30;
     canvas.outline((left, top), (right, BOTTOM), BLACK);
     let small = TextStyle::new(SIZES[1]);
@@ -80,7 +90,12 @@ fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>) {
     canvas.text(problem.robot.name(), (left + 8, top + 13), TextStyle::new(SIZES[0]).bold());
     canvas.text(&version, (left + 330, top + 13), TextStyle::new(SIZES[0]));
     canvas.text("valid for these files alone (SHA-256):", (right - 8, top + 13), small.ending());
-    for (input, line) in title.inputs.iter().zip(0..) {
+    for ((about, text), line) in said.iter().zip(0..) {
+        let y = top + 30 + 12 * line;
+        canvas.text(about, (left + 8, y), small.bold());
+        canvas.text(text, (left + 80, y), small);
+    }
+    for (input, line) in title.inputs.iter().zip(said.len() as i32..) {
         let y = top + 30 + 12 * line;
         canvas.text(input.role, (left + 8, y), small);
         canvas.text(&shortened(&input.name, 52), (left + 80, y), small);

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::run::read_run;
+use stead_model::robot::PostureWord;
 
 #[test]
 fn the_run_is_read_and_names_its_files_from_its_own_folder() {
@@ -19,6 +20,10 @@ fn the_run_is_read_and_names_its_files_from_its_own_folder() {
     // The cell is in front of the arm, above the floor, within reach.
     let [x, _, z] = run.problem.cell.position;
     assert!(x.min > 1.0 && x.max < run.problem.robot.geometry().reach() && z.min > 0.0);
+    // Nor is the path reached over the back of the arm.
+    let allowed: Vec<_> =
+        run.problem.postures.allowed().map(|posture| run.problem.robot.posture_words(posture)).collect();
+    assert!(allowed.len() == 4 && allowed.iter().all(|words| words.has(PostureWord::Front)), "{allowed:?}");
     let message = init_run(Path::new("name:kuka-kr500"), &task, &out, Existing::Kept).unwrap_err().to_string();
     assert!(message.contains("run.toml: is there already"), "{message}");
 }

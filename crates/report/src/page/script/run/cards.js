@@ -1,4 +1,4 @@
-// Cards for what the run has: notes and warnings first of all, then what the search and the proofs say.
+// Cards for what the run has: the summary, warnings and notes first of all, then what the search and the proofs say.
 
 import { chartCard, legendOf } from '../draw/chart.js';
 import { card, el } from '../draw/dom.js';
@@ -15,13 +15,20 @@ import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
 
-/** Warnings stand in the open; notes can be folded. */
+/** The result in a few lines, as the terminal has it. */
+function inShort() {
+  const lines = RAW.document.summary ?? [];
+  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [el('dt', {}, about), el('dd', {}, text)]);
+  return lines.length ? [el('dl.short', { id: 'short' }, ...rows.flat())] : [];
+}
+
+/** What the result is in short and its warnings stand in the open; notes can be folded. */
 export function messages() {
   const list = (/** @type {string[]} */ said) => el('ul', {}, ...said.map((text) => el('li', {}, text)));
   const { notes, warnings } = RAW.document;
   const certificate = RAW.certificate?.warnings || [];
   const all = [...warnings, ...certificate.filter((/** @type {string} */ text) => !warnings.includes(text))];
-  const parts = [];
+  const parts = inShort();
   if (all.length)
     parts.push(
       el(
@@ -41,7 +48,7 @@ export function messages() {
     parts.push(el('details', { open: notes.length <= 3 }, summary, list(notes)));
   }
   return parts.length
-    ? el('section.card.messages', { 'aria-label': 'Notes and warnings', id: 'messages' }, ...parts)
+    ? el('section.card.messages', { 'aria-label': 'Summary, warnings and notes', id: 'messages' }, ...parts)
     : null;
 }
 
