@@ -261,7 +261,7 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     assert!(lines.iter().zip(abouts).all(|(line, about)| line.starts_with(about)), "{}", placed.stdout);
     assert!(lines[5].contains("stiffness of KUKA KR 270 R2700"), "{}", lines[5]);
     assert!(lines[5].contains("guesses: spindle, cell, stock.depth_mm, tool ("), "{}", lines[5]);
-    let next = "stead export my/run.toml out/best.csv --format krl --out prog/PART";
+    let next = "stead export my/run.toml out/best.csv --format csv --out prog/PART";
     assert!(lines.last().is_some_and(|last| last.starts_with("next ") && last.ends_with(next)), "{}", placed.stdout);
     let summary: serde_json::Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
     let said: Vec<&str> =

@@ -9,6 +9,7 @@ use super::{
 };
 use clap::Args;
 use std::path::PathBuf;
+use stead::program::ProgramFormat;
 use stead::report::{Folder, NOTES, summary_line, summary_text};
 use stead::{Error, Placements, Run};
 
@@ -210,11 +211,10 @@ fn summary(options: &PlaceOptions, run: &Run, placements: &Placements, left: &st
     lines.extend(more(placements.notes().len() + placements.warnings().len(), left));
     let config = options.run.config.display();
     let is_complete = !left.is_empty() && !placements.outcome().interrupted;
-    lines.extend(
-        is_complete.then(|| {
-            summary_line("next", format!("stead export {config} {left}/best.csv --format krl --out {PROGRAM}"))
-        }),
-    );
+    lines.extend(is_complete.then(|| {
+        let format = ProgramFormat::of_robot(&run.problem().robot).word();
+        summary_line("next", format!("stead export {config} {left}/best.csv --format {format} --out {PROGRAM}"))
+    }));
     summary_text(&lines)
 }
 

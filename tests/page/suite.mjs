@@ -52,11 +52,9 @@ async function shows(page, rows, point) {
   );
   assert.equal(await text(page, 'here'), (+row.score_mm).toFixed(3), `error at point ${point}`);
   assert.equal(await text(page, 'kappa'), (+row.inverse_condition).toFixed(3), `conditioning at point ${point}`);
+  const shown = await page.evaluate((joints) => window.stead.shownAngles(joints), [1, 2, 3, 4, 5, 6].map((j) => +row[`theta${j}_deg`]));
   for (let j = 1; j <= 6; j++) {
-    assert.ok(
-      Math.abs(parseFloat(await text(page, `joint-${j}`)) - row[`theta${j}_deg`]) < 0.051,
-      `joint ${j} at point ${point}`,
-    );
+    assert.ok(Math.abs(parseFloat(await text(page, `joint-${j}`)) - shown[j - 1]) < 0.051, `joint ${j} at point ${point}`);
   }
 }
 
@@ -83,6 +81,18 @@ export function tests(folder, others) {
       }
       assert.ok(farthest < 0.005, `${farthest} mm off`);
       return `${farthest.toFixed(4)} mm at most`;
+    },
+
+    'joint angles are those of the pendant, as the setup sheet has them': async (page) => {
+      const { setup_sheet: sheet } = JSON.parse(readFileSync(join(folder, 'summary.json'), 'utf8'));
+      assert.ok(sheet.check_points.length > 1);
+      for (const { point, controller_deg: angles } of sheet.check_points) {
+        await page.evaluate((t) => window.stead.set({ t }), point);
+        await frame(page);
+        for (let j = 1; j <= 6; j++)
+          assert.ok(Math.abs(parseFloat(await text(page, `joint-${j}`)) - angles[j - 1]) < 0.051, `A${j} at point ${point}`);
+      }
+      await page.evaluate(() => window.stead.set({ t: 0 }));
     },
 
     'the numbers of the page are those of the tables': async (page) => {

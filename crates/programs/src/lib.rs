@@ -55,7 +55,7 @@ use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::manifest::interruption_note;
-use stead_model::robot::{ControllerKind, Posture};
+use stead_model::robot::{ControllerKind, Posture, Robot};
 use stead_numerics::message::{Note, NoteGroup, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem, UNCHECKED};
@@ -88,6 +88,13 @@ impl ProgramFormat {
             Self::Fanuc => "fanuc",
             Self::Csv => "csv",
         }
+    }
+
+    /// The form that the controllers of an arm take, by the maker with which its name begins; the table for any other.
+    pub fn of_robot(robot: &Robot) -> Self {
+        let maker = robot.name().split(|letter: char| !letter.is_ascii_alphanumeric()).next().unwrap_or_default();
+        let of_maker = [("KUKA", Self::Krl), ("ABB", Self::Rapid), ("Fanuc", Self::Fanuc)];
+        of_maker.iter().find(|(name, _)| name.eq_ignore_ascii_case(maker)).map_or(Self::Csv, |(_, format)| *format)
     }
 
     /// The ending of its files.

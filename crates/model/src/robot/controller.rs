@@ -52,7 +52,7 @@ impl Controller {
     pub fn angles(&self, arm: &Robot, joints: &[f64; 6]) -> [f64; 6] {
         let mut angles = std::array::from_fn(|j| (joints[j] - self.offset[j]) * self.sign[j]);
         if self.is_level() {
-            angles[2] += self.level(arm) * angles[1];
+            angles[2] += self.a3_by_a2(arm) * angles[1];
         }
         angles
     }
@@ -62,7 +62,7 @@ impl Controller {
     pub fn joints(&self, arm: &Robot, angles: &[f64; 6]) -> [f64; 6] {
         let mut of_links = *angles;
         if self.is_level() {
-            of_links[2] -= self.level(arm) * angles[1];
+            of_links[2] -= self.a3_by_a2(arm) * angles[1];
         }
         std::array::from_fn(|j| self.sign[j] * of_links[j] + self.offset[j])
     }
@@ -72,9 +72,9 @@ impl Controller {
         self.is_j3_level.unwrap_or(self.kind == ControllerKind::Fanuc)
     }
 
-    /// How A_2 counts in an A_3 against the horizontal, beside the angle between the links: 1 or -1.
-    fn level(&self, arm: &Robot) -> f64 {
-        self.sign[1] * self.sign[2] * arm.geometry().fold
+    /// How A_2 counts in A_3: 1 or -1 where axis 3 is counted against the horizontal, else 0.
+    pub fn a3_by_a2(&self, arm: &Robot) -> f64 {
+        if self.is_level() { self.sign[1] * self.sign[2] * arm.geometry().fold } else { 0.0 }
     }
 }
 

@@ -303,3 +303,16 @@ fn zero_has_no_sign() {
         ["0.000", "-0.001", "0.000", "-12.000"]
     );
 }
+
+#[test]
+fn arms_get_the_form_of_the_controllers_of_their_maker() {
+    for (name, form) in [
+        ("kuka-kr500", ProgramFormat::Krl),
+        ("abb-irb4400-60", ProgramFormat::Rapid),
+        ("fanuc-m10ia", ProgramFormat::Fanuc),
+        ("staubli-tx200", ProgramFormat::Csv),
+    ] {
+        let robot = stead_format::robot::read_geometry(Path::new(&format!("name:{name}"))).unwrap();
+        assert_eq!(ProgramFormat::of_robot(&robot), form, "{name}");
+    }
+}

@@ -14,7 +14,7 @@ use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, each, some};
 use crate::placement::CaseOfStudy;
 use nalgebra::Vector3;
 use serde_json::Value;
-use stead_model::robot::{Axes23, Compliance, Joint};
+use stead_model::robot::{Axes23, Compliance, Controller, Joint, Robot};
 use stead_placement::outcome::Case;
 use stead_planning::criterion::Direction;
 use stead_planning::feasibility::DeflectionMap;
@@ -102,8 +102,22 @@ records! {
         /// What joins axes 2 and 3, where anything does.
         #[serde(skip_serializing_if = "Option::is_none")]
         axes_2_3: Option<AxesData> = robot.axes_2_3().map(AxesData::of),
+        /// How its controller counts the joints, where it is known.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        controller: Option<ControllerData> = robot.controller().map(|controller| ControllerData::of(robot, controller)),
         /// Its base in the cell, where it is mounted.
         mount: Option<PoseData> = robot.is_mounted().then(|| (&robot.cell_from_base()).into()),
+    }
+
+    /// The angles of a controller: its angle of each joint is at_zero_deg + sign theta, and to that of axis 3 comes
+    /// a3_by_a2 times that of axis 2.
+    pub struct ControllerData of (robot: &Robot, controller: &Controller) {
+        /// What it shows where the angles of the rows are zero, without what comes to axis 3. deg
+        at_zero_deg: [f64; 6] = std::array::from_fn(|j| -(controller.sign[j] * controller.offset[j]).to_degrees() + 0.0),
+        /// 1 where it counts in the direction of the row, else -1.
+        sign: [f64; 6] = controller.sign,
+        /// How the angle of axis 2 counts in that of axis 3: 0 but where this is against the horizontal.
+        a3_by_a2: f64 = controller.a3_by_a2(robot),
     }
 
     /// What joins axes 2 and 3.

@@ -33,7 +33,7 @@ const BOTTOM: i32 = 1146;
 /// From line to line of a table.
 const LINE: i32 = 16;
 /// Letters of a line of small print beside its heading.
-const LETTERS: usize = 130;
+const LETTERS: usize = 120;
 /// Letters of tables and of small print.
 const SIZES: [f64; 2] = [11.5, 9.5];
 
@@ -87,13 +87,13 @@ fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>) {
     canvas.outline((left, top), (right, BOTTOM), BLACK);
     let small = TextStyle::new(SIZES[1]);
     let version = format!("stead {}, seed {}", env!("CARGO_PKG_VERSION"), title.seed);
-    canvas.text(problem.robot.name(), (left + 8, top + 13), TextStyle::new(SIZES[0]).bold());
-    canvas.text(&version, (left + 330, top + 13), TextStyle::new(SIZES[0]));
+    canvas.text(&shortened(problem.robot.name(), 50), (left + 8, top + 13), TextStyle::new(SIZES[0]).bold());
+    canvas.text(&version, (left + 370, top + 13), TextStyle::new(SIZES[0]));
     canvas.text("valid for these files alone (SHA-256):", (right - 8, top + 13), small.ending());
     for ((about, text), line) in said.iter().zip(0..) {
         let y = top + 30 + 12 * line;
         canvas.text(about, (left + 8, y), small.bold());
-        canvas.text(text, (left + 80, y), small);
+        canvas.text(text, (left + 96, y), small);
     }
     for (input, line) in title.inputs.iter().zip(said.len() as i32..) {
         let y = top + 30 + 12 * line;

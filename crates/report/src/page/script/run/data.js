@@ -148,6 +148,21 @@ export const JOINED = RAW.robot.axes_2_3
   ? { linkage: RAW.robot.axes_2_3.linkage, min: RAW.robot.axes_2_3.sum_min_deg, max: RAW.robot.axes_2_3.sum_max_deg }
   : null;
 
+/** How the controller counts the joints, where it is known. @type {{ at_zero_deg: number[], sign: number[], a3_by_a2: number } | null} */
+const CONTROLLER = RAW.robot.controller ?? null;
+
+/** What joints are called where their angles are shown: by the controller, or by the rows of the robot file. */
+export const JOINT_NAMES = ROWS.map((_, j) => `${CONTROLLER ? 'A' : 'θ'}${j + 1}`);
+
+/** The angles that the controller shows, those of the rows where it is not known. deg @param {number[]} joints */
+export function shownAngles(joints) {
+  if (!CONTROLLER) return joints;
+  const { at_zero_deg: atZero, sign, a3_by_a2: level } = CONTROLLER;
+  const shown = joints.map((angle, j) => atZero[j] + sign[j] * angle);
+  shown[2] += level * shown[1];
+  return shown;
+}
+
 /** Numbers in rows of so many. @param {string} text @param {number} rows @returns {number[][]} */
 function rowsOf(text, rows) {
   const all = singlesOf(text);

@@ -5,7 +5,7 @@ import { withDownloads } from '../draw/downloads.js';
 import { furtherCards, messages } from './cards.js';
 import { casesCard } from './cases.js';
 import { chartCards } from './charts.js';
-import { CASES, MAPS, RAW } from './data.js';
+import { CASES, MAPS, RAW, shownAngles } from './data.js';
 import { axesAt, meets } from './external-axes.js';
 import { loadsCard } from './loads.js';
 import { header } from './header.js';
@@ -76,7 +76,7 @@ function main() {
   const observer = new ResizeObserver(() => set({ size: true }));
   document.querySelectorAll('.view').forEach((host) => observer.observe(host));
   // For measurements and tests: what is shown, and when it first was.
-  const of = { framesOf, jointsAt, axesAt, meets, byJointOnPlan, byJointHere, besideJoints };
+  const of = { framesOf, jointsAt, shownAngles, axesAt, meets, byJointOnPlan, byJointHere, besideJoints };
   const shown = { state, set, steps, cases: CASES, maps: MAPS, ...of, picture: viewPicture, first: 0 };
   requestAnimationFrame(() =>
     requestAnimationFrame(() => {

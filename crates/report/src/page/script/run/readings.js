@@ -4,7 +4,7 @@ import { card, el } from '../draw/dom.js';
 import { giving } from '../draw/downloads.js';
 import { clamp, fixed } from '../draw/scale.js';
 import { JOINT_COLOURS } from './colour.js';
-import { FOLD, JOINED, LIMITS, ROWS } from './data.js';
+import { FOLD, JOINED, JOINT_NAMES, LIMITS, ROWS, shownAngles } from './data.js';
 import { AXES, axesAt } from './external-axes.js';
 import { reasonText } from './map.js';
 import { SCORED } from './path-mesh.js';
@@ -57,14 +57,17 @@ export function tiles() {
 /**
  * @typedef {{
  *   name: string, low: number, high: number, unit: string, colour: string, id: string,
- *   now: () => number, used: () => number[]
- * }} Gauge something that moves within a range; `used` are its values along the path
+ *   now: () => number, used: () => number[], shown?: (value: number) => number
+ * }} Gauge something that moves within a range; `used` are its values along the path, `shown` is what is written of one
  */
+
+/** What is written of an angle of a joint, the others as they are now. @param {number} j @param {number} angle */
+const shownOf = (j, angle) => shownAngles(currentJoints().map((now, k) => (k === j ? angle : now)))[j];
 
 /** @returns {Gauge[]} the joints, and the external axes behind them */
 function gaugesOf() {
   const joints = ROWS.map((row, j) => ({
-    name: `A${j + 1}`,
+    name: JOINT_NAMES[j],
     low: row.min,
     high: row.max,
     unit: '°',
@@ -72,6 +75,7 @@ function gaugesOf() {
     id: `joint-${j + 1}`,
     now: () => currentJoints()[j],
     used: () => current().joints.map((angles) => angles[j]),
+    shown: (/** @type {number} */ angle) => shownOf(j, angle),
   }));
   const axes = AXES.map((axis, k) => ({
     name: axis.name,
@@ -84,7 +88,7 @@ function gaugesOf() {
     used: () => Array.from(current().columns[axis.column]),
   }));
   const sums = (JOINED ? [JOINED] : []).map((range) => ({
-    name: 'A2+A3',
+    name: 'θ2+θ3',
     low: range.min,
     high: range.max,
     unit: '°',
@@ -99,32 +103,45 @@ function gaugesOf() {
 export function gauges() {
   const rows = gaugesOf().map((gauge) => {
     const [range, pin, value] = [el('div.rng'), el('div.pin'), el('b', { id: gauge.id })];
+    const ends = [el('span'), el('span')];
+    const shown = gauge.shown ?? ((/** @type {number} */ number) => number);
     range.style.background = pin.style.background = `var(${gauge.colour})`;
     const host = el(
       'div.g',
       {},
       el('b', { title: gauge.name }, gauge.name),
-      el('span', {}, fixed(gauge.low, 0)),
+      ends[0],
       el('div.rail', {}, range, pin),
-      el('span', {}, fixed(gauge.high, 0)),
+      ends[1],
       value,
     );
-    const share_ = (/** @type {number} */ at) => (100 * (at - gauge.low)) / (gauge.high - gauge.low || 1);
-    return { gauge, host, range, pin, value, share_ };
+    // Upwards as it is written, which may be against the angle of the row.
+    const limits = () => [gauge.low, gauge.high].sort((a, b) => shown(a) - shown(b));
+    const share_ = (/** @type {number} */ at) => {
+      const [low, high] = limits();
+      return (100 * (at - low)) / (high - low || 1);
+    };
+    return { gauge, host, range, pin, value, share_, shown, limits, ends };
   });
   onChange(({ case: isOther }) => {
-    rows.forEach(({ gauge, range, pin, value, share_ }) => {
+    rows.forEach(({ gauge, range, pin, value, share_, shown, limits, ends }) => {
       const at = gauge.now();
       pin.style.left = `${clamp(share_(at), 0, 100)}%`;
-      value.textContent = `${fixed(at, 1)}${gauge.unit}`;
+      value.textContent = `${fixed(shown(at), 1)}${gauge.unit}`;
+      limits().forEach((end, k) => void (ends[k].textContent = fixed(shown(end), 0)));
       if (!isOther) return;
       const [least, most] = gauge.used().map(share_).reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [100, 0]);
       range.style.left = `${least}%`;
       range.style.width = `${most - least}%`;
     });
   });
-  const words = AXES.some((axis) => axis.isRail) ? 'deg, rails in mm; shaded: range over the whole path' : 'deg; shaded: range over the whole path';
+  const counted = JOINT_NAMES[0] === 'A1' ? 'as the controller counts them' : 'of the rows of the robot file';
+  const words = `deg ${counted}${AXES.some((axis) => axis.isRail) ? ', rails in mm' : ''}; shaded: range over the whole path`;
   const out = card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
-  const figures = () => rows.map(({ gauge }) => [gauge.name, gauge.low, gauge.now(), gauge.high]);
+  const figures = () =>
+    rows.map(({ gauge, shown, limits }) => {
+      const [low, high] = limits().map(shown);
+      return [gauge.name, low, shown(gauge.now()), high];
+    });
   return giving(out, { rows: () => [['axis', 'from', 'now', 'to'], ...figures()] });
 }
