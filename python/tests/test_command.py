@@ -43,9 +43,9 @@ def test_a_script_for_slurm_names_the_installed_command() -> None:
 
 
 def test_ctrl_c_ends_it_with_what_it_has(tmp_path: Path) -> None:
-    call = [str(INSTALLED), "place", "configs/caro-2013.toml", "--out", str(tmp_path / "out")]
+    call = [str(INSTALLED), "place", "configs/caro-2013.toml", "--notes", "--out", str(tmp_path / "out")]
     with subprocess.Popen(call, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        # Its progress: then it handles Ctrl-C.
+        # Its notes on what was read: then it handles Ctrl-C.
         assert process.stderr is not None and process.stderr.readline()
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)

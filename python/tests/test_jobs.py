@@ -146,7 +146,7 @@ def test_forces_of_a_stock_are_a_job_of_reading_the_run(tmp_path: Path) -> None:
     run.write_text(text + STOCK)
     told: list[tuple[str, int, int]] = []
     read = stead.Run.read(run, progress=lambda *step: told.append(step), threads=1)
-    assert [warning.kind for warning in read.warnings] == ["starts-in-stock", "above-flutes", "in-air"]
+    assert [warning.kind for warning in read.warnings] == ["starts-in-stock", "above-flutes"]
     assert told and all(0 <= done <= total for _, done, total in told)
     with pytest.raises(stead.Error, match="deadline"):
         stead.Run.read(run, time_limit_s=0.0)

@@ -15,14 +15,14 @@ import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
 
-/** The result in a few lines, as the terminal has it. */
+/** The result in a few lines, as the terminal has it; a line that is about nothing goes on with the one before. */
 function inShort() {
   const lines = RAW.document.summary ?? [];
-  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [el('dt', {}, about), el('dd', {}, text)]);
+  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => (about ? [el('dt', {}, about), el('dd', {}, text)] : [el('dd.on', {}, text)]));
   return lines.length ? [el('dl.short', { id: 'short' }, ...rows.flat())] : [];
 }
 
-/** What the result is in short and its warnings stand in the open; notes can be folded. */
+/** What the result is in short and its warnings stand in the open; notes are folded, and left to the file on paper. */
 export function messages() {
   const list = (/** @type {string[]} */ said) => el('ul', {}, ...said.map((text) => el('li', {}, text)));
   const { notes, warnings } = RAW.document;
@@ -45,7 +45,7 @@ export function messages() {
       notes.length === 1 ? '1 note' : `${notes.length} notes`,
       ' on what the result rests on',
     );
-    parts.push(el('details', { open: notes.length <= 3 }, summary, list(notes)));
+    parts.push(el('details', {}, summary, list(notes)));
   }
   return parts.length
     ? el('section.card.messages', { 'aria-label': 'Summary, warnings and notes', id: 'messages' }, ...parts)
