@@ -59,7 +59,7 @@ fn check(bench: &Bench, folder: &str, document: &str, plan: &str) -> Value {
         .map(|line| ["about", "text"].map(|key| line[key].as_str().unwrap()))
         .collect();
     let from = summary.iter().position(|[about, _]| ["cut", "RESTS ON", "NOT CHECKED", "WARNING"].contains(about));
-    let rest = &summary[from.expect("a summary with what a result rests on")..];
+    let rest = &summary[from.unwrap()..];
     for [about, text] in rest {
         let begin = all.iter().position(|of| of == about).unwrap_or_else(|| panic!("{about} is not on the sheet"));
         assert!(all[begin + 1..].join(" ").starts_with(&escaped(text)), "{text}");
