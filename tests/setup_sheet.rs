@@ -51,7 +51,7 @@ fn check(bench: &Bench, folder: &str, document: &str, plan: &str) -> Value {
     let clearance = said["cases"].get(0).map_or(&said["best"]["clearance"], |case| &case["clearance"]);
     numbers(clearance, &mut known);
     let all = texts(&svg);
-    // What is to be known of the result stands on the sheet as in the summary, above the files.
+    // What is to be known of the result is on the sheet as in the summary, above the files.
     let summary: Vec<[&str; 2]> = said["summary"]
         .as_array()
         .unwrap()

@@ -90,11 +90,10 @@ impl ProgramFormat {
         }
     }
 
-    /// The form that the controllers of an arm take, by the maker with which its name begins; the table for any other.
+    /// The form that the controller of an arm takes; the table where none is known, or one of another kind.
     pub fn of_robot(robot: &Robot) -> Self {
-        let maker = robot.name().split(|letter: char| !letter.is_ascii_alphanumeric()).next().unwrap_or_default();
-        let of_maker = [("KUKA", Self::Krl), ("ABB", Self::Rapid), ("Fanuc", Self::Fanuc)];
-        of_maker.iter().find(|(name, _)| name.eq_ignore_ascii_case(maker)).map_or(Self::Csv, |(_, format)| *format)
+        let kind = robot.controller().map(|controller| controller.kind);
+        Self::ALL.into_iter().find(|format| kind.is_some() && format.controller() == kind).unwrap_or(Self::Csv)
     }
 
     /// The ending of its files.

@@ -15,8 +15,10 @@ mod criteria;
 mod minorants;
 mod planner;
 
+use super::arm::Arm;
 use super::branch_and_bound::Keeps;
 use super::cell::whole;
+use super::compliance_table::ComplianceTable;
 use super::model::Model;
 use super::region::{Point, Region};
 use nalgebra::{Matrix6, Vector3, Vector6};
@@ -71,14 +73,16 @@ impl Setting {
     /// Takes the tables of another setting, which are what takes long to make, where they are of the same arm.
     pub fn take_table(&mut self, other: Option<Self>) {
         let Some(other) = other else { return };
-        let of = |model: &Model| format!("{:?} {:?}", model.arm, model.table.grid());
-        if of(&self.model) == of(&other.model) {
-            self.model.table = other.model.table;
-            self.model.others.iter_mut().zip(other.model.others).for_each(|(mine, theirs)| {
-                if format!("{:?}", mine.arm) == format!("{:?}", theirs.arm) {
-                    mine.table = theirs.table;
-                }
-            });
+        let take = |(arm, table): (&Arm, &mut ComplianceTable), (its, theirs): (&Arm, ComplianceTable)| {
+            let of = |arm: &Arm, table: &ComplianceTable| format!("{arm:?} {:?}", table.grid());
+            if of(arm, table) == of(its, &theirs) {
+                *table = theirs;
+            }
+        };
+        let (mine, theirs) = (&mut self.model, other.model);
+        take((&mine.arm, &mut mine.table), (&theirs.arm, theirs.table));
+        for (mine, theirs) in mine.others.iter_mut().zip(theirs.others) {
+            take((&mine.arm, &mut mine.table), (&theirs.arm, theirs.table));
         }
     }
 

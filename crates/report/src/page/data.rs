@@ -109,11 +109,11 @@ records! {
         mount: Option<PoseData> = robot.is_mounted().then(|| (&robot.cell_from_base()).into()),
     }
 
-    /// The angles of a controller: its angle of each joint is at_zero_deg + sign theta, and to that of axis 3 comes
-    /// a3_by_a2 times that of axis 2.
+    /// The angles of a controller: that of each joint is at_zero_deg + sign theta, and to that of axis 3 comes a3_by_a2
+    /// times what joint 2 gives to that of axis 2.
     pub struct ControllerData of (robot: &Robot, controller: &Controller) {
-        /// What it shows where the angles of the rows are zero, without what comes to axis 3. deg
-        at_zero_deg: [f64; 6] = std::array::from_fn(|j| -(controller.sign[j] * controller.offset[j]).to_degrees() + 0.0),
+        /// What it shows where the angles of the rows are zero. deg
+        at_zero_deg: [f64; 6] = controller.angles(robot, &[0.0; 6]).map(|angle| angle.to_degrees() + 0.0),
         /// 1 where it counts in the direction of the row, else -1.
         sign: [f64; 6] = controller.sign,
         /// How the angle of axis 2 counts in that of axis 3: 0 but where this is against the horizontal.

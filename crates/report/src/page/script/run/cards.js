@@ -18,11 +18,11 @@ import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** The result in a few lines, as the terminal has it; a line that is about nothing goes on with the one before. */
 function inShort() {
   const lines = RAW.document.summary ?? [];
-  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => (about ? [el('dt', {}, about), el('dd', {}, text)] : [el('dd.on', {}, text)]));
+  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [about ? el('dt', {}, about) : null, el('dd', {}, text)]);
   return lines.length ? [el('dl.short', { id: 'short' }, ...rows.flat())] : [];
 }
 
-/** What the result is in short and its warnings stand in the open; notes are folded, and left to the file on paper. */
+/** What the result is in short and its warnings are in the open; notes are folded, and left to the file on paper. */
 export function messages() {
   const list = (/** @type {string[]} */ said) => el('ul', {}, ...said.map((text) => el('li', {}, text)));
   const { notes, warnings } = RAW.document;

@@ -151,15 +151,19 @@ export const JOINED = RAW.robot.axes_2_3
 /** How the controller counts the joints, where it is known. @type {{ at_zero_deg: number[], sign: number[], a3_by_a2: number } | null} */
 const CONTROLLER = RAW.robot.controller ?? null;
 
-/** What joints are called where their angles are shown: by the controller, or by the rows of the robot file. */
+/** What joints are called where their angles are shown, and whose angles these are. */
 export const JOINT_NAMES = ROWS.map((_, j) => `${CONTROLLER ? 'A' : 'θ'}${j + 1}`);
+export const JOINT_ANGLES = CONTROLLER ? 'as the controller counts them' : 'of the rows of the robot file';
+
+/** The limits of joints by their rows, in the order in which the angles that are shown grow. deg */
+export const ENDS = ROWS.map(({ min, max }, j) => (CONTROLLER && CONTROLLER.sign[j] < 0 ? [max, min] : [min, max]));
 
 /** The angles that the controller shows, those of the rows where it is not known. deg @param {number[]} joints */
 export function shownAngles(joints) {
   if (!CONTROLLER) return joints;
   const { at_zero_deg: atZero, sign, a3_by_a2: level } = CONTROLLER;
   const shown = joints.map((angle, j) => atZero[j] + sign[j] * angle);
-  shown[2] += level * shown[1];
+  shown[2] += level * sign[1] * joints[1];
   return shown;
 }
 

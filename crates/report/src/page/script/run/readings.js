@@ -4,7 +4,7 @@ import { card, el } from '../draw/dom.js';
 import { giving } from '../draw/downloads.js';
 import { clamp, fixed } from '../draw/scale.js';
 import { JOINT_COLOURS } from './colour.js';
-import { FOLD, JOINED, JOINT_NAMES, LIMITS, ROWS, shownAngles } from './data.js';
+import { ENDS, FOLD, JOINED, JOINT_ANGLES, JOINT_NAMES, LIMITS, ROWS, shownAngles } from './data.js';
 import { AXES, axesAt } from './external-axes.js';
 import { reasonText } from './map.js';
 import { SCORED } from './path-mesh.js';
@@ -66,10 +66,10 @@ const shownOf = (j, angle) => shownAngles(currentJoints().map((now, k) => (k ===
 
 /** @returns {Gauge[]} the joints, and the external axes behind them */
 function gaugesOf() {
-  const joints = ROWS.map((row, j) => ({
+  const joints = ENDS.map(([low, high], j) => ({
     name: JOINT_NAMES[j],
-    low: row.min,
-    high: row.max,
+    low,
+    high,
     unit: '°',
     colour: JOINT_COLOURS[j],
     id: `joint-${j + 1}`,
@@ -115,33 +115,23 @@ export function gauges() {
       ends[1],
       value,
     );
-    // Upwards as it is written, which may be against the angle of the row.
-    const limits = () => [gauge.low, gauge.high].sort((a, b) => shown(a) - shown(b));
-    const share_ = (/** @type {number} */ at) => {
-      const [low, high] = limits();
-      return (100 * (at - low)) / (high - low || 1);
-    };
-    return { gauge, host, range, pin, value, share_, shown, limits, ends };
+    const share_ = (/** @type {number} */ at) => (100 * (at - gauge.low)) / (gauge.high - gauge.low || 1);
+    return { gauge, host, range, pin, value, share_, shown, ends };
   });
   onChange(({ case: isOther }) => {
-    rows.forEach(({ gauge, range, pin, value, share_, shown, limits, ends }) => {
+    rows.forEach(({ gauge, range, pin, value, share_, shown, ends }) => {
       const at = gauge.now();
       pin.style.left = `${clamp(share_(at), 0, 100)}%`;
       value.textContent = `${fixed(shown(at), 1)}${gauge.unit}`;
-      limits().forEach((end, k) => void (ends[k].textContent = fixed(shown(end), 0)));
+      [gauge.low, gauge.high].forEach((end, k) => void (ends[k].textContent = fixed(shown(end), 0)));
       if (!isOther) return;
       const [least, most] = gauge.used().map(share_).reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [100, 0]);
       range.style.left = `${least}%`;
       range.style.width = `${most - least}%`;
     });
   });
-  const counted = JOINT_NAMES[0] === 'A1' ? 'as the controller counts them' : 'of the rows of the robot file';
-  const words = `deg ${counted}${AXES.some((axis) => axis.isRail) ? ', rails in mm' : ''}; shaded: range over the whole path`;
+  const words = `deg ${JOINT_ANGLES}${AXES.some((axis) => axis.isRail) ? ', rails in mm' : ''}; shaded: range over the whole path`;
   const out = card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
-  const figures = () =>
-    rows.map(({ gauge, shown, limits }) => {
-      const [low, high] = limits().map(shown);
-      return [gauge.name, low, shown(gauge.now()), high];
-    });
+  const figures = () => rows.map(({ gauge, shown }) => [gauge.name, ...[gauge.low, gauge.now(), gauge.high].map(shown)]);
   return giving(out, { rows: () => [['axis', 'from', 'now', 'to'], ...figures()] });
 }
