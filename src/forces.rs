@@ -45,10 +45,10 @@ impl ForcesRun {
     /// Mean force and moment over a turn at every point of the path.
     ///
     /// # Errors
-    /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, and for cells that
-    /// take too much memory; [`Error::Stopped`] when the monitor asked to stop before the last point.
+    /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, for cells that take too
+    /// much memory, and for a file to keep them in that is none; [`Error::Stopped`] when the monitor asked to stop before the last point.
     pub fn compute(&self, monitor: &Monitor) -> Result<PathForces, Error> {
-        let forces = forces(&self.run.problem, monitor).map_err(|error| self.run.located(&error))?;
+        let forces = self.run.forces(monitor)?;
         let notes = self.run.notes.iter().chain(&forces.notes).cloned().collect();
         Ok(PathForces { run: Arc::clone(&self.run), forces, notes })
     }

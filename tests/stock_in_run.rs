@@ -54,6 +54,62 @@ fn warnings_of_forces_inside_a_run_are_those_of_the_run() {
     }
 }
 
+/// With `keep` the cut is read and gives the same bytes; another cut is computed anew, which is said, and no other file
+/// is ever replaced.
+#[test]
+fn forces_that_are_kept_are_read_to_the_last_bit_and_nothing_else_is_replaced() {
+    let bench = run_with_stock();
+    let text = bench.read(RUN);
+    let with_keep = |text: &str, name: &str| text.replace("[stock]\n", &format!("[stock]\nkeep = '{name}'\n"));
+    let lean = "[lean]\nlead_deg = [0, 5]\n";
+    let score = |out: &str| {
+        let place = ["--x-mm=0", "--y-mm=-1940", "--z-mm=-400", "--yaw-deg=0"];
+        let ended = bench.stead(&[&["score", RUN, "--out", out][..], &place].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.stderr
+    };
+    for (number, text) in [text.clone(), format!("{text}{lean}")].into_iter().enumerate() {
+        let name = format!("kept/{number}.csv");
+        bench.write(RUN, &with_keep(&text, &name));
+        let outs = ["made", "read"].map(|word| format!("out-{word}-{number}"));
+        let notes = [score(&outs[0]), score(&outs[1])];
+        assert_eq!(notes[0].replace(&outs[0], ""), notes[1].replace(&outs[1], ""));
+        assert!(!notes[1].contains("computed anew"), "{}", notes[1]);
+        let kept = bench.read(&format!("configs/{name}"));
+        assert!(kept.starts_with("stead kept forces,1,"), "{}", &kept[..100]);
+        assert_eq!(kept.contains("\nlean,"), number == 1);
+        for file in ["best.csv", "best-plan.csv", "summary.json", "report.html"] {
+            assert_eq!(bench.read(&format!("{}/{file}", outs[0])), bench.read(&format!("{}/{file}", outs[1])), "{file}");
+        }
+        // Without it there is the same plan.
+        bench.write(RUN, &text);
+        score(&format!("out-without-{number}"));
+        let plan = |out: &str| bench.read(&format!("{out}/best-plan.csv"));
+        assert_eq!(plan(&outs[0]), plan(&format!("out-without-{number}")));
+        // A number that is not that of the file's own digest is not taken.
+        bench.write(&format!("configs/{name}"), &kept.replacen("\nload,", "\nload,1", 1));
+        bench.write(RUN, &with_keep(&text, &name));
+        let torn = score(&format!("out-torn-{number}"));
+        assert!(torn.contains("the forces are computed anew and kept: those in "), "{torn}");
+        assert_eq!((plan(&outs[0]), kept), (plan(&format!("out-torn-{number}")), bench.read(&format!("configs/{name}"))));
+    }
+    // Of another cut.
+    bench.write(RUN, &with_keep(&text, "kept/0.csv").replace("kt_mpa = 800", "kt_mpa = 900"));
+    let other = bench.stead(&["check", RUN]);
+    assert!(other.code == Some(0) && other.stderr.contains("of another stock, path, cutter or program"), "{}", other.stderr);
+    // Files of others.
+    for (name, allowed) in [("mine.csv", "has no kept forces, and is left as it is"), ("folder", "cannot be read")] {
+        bench.write("configs/mine.csv", "x,y\n1,2\n");
+        bench.write("configs/folder/in.csv", "");
+        bench.write(RUN, &with_keep(&text, name));
+        let refused = bench.stead(&["check", RUN]);
+        let line = refused.stderr.lines().last().unwrap_or_default();
+        assert!(refused.code == Some(2) && line.contains("stock.keep: names a file that"), "{}", refused.stderr);
+        assert!(line.contains(allowed) && line.contains("; allowed: the name of a file that is not there yet"), "{line}");
+        assert_eq!(bench.read("configs/mine.csv"), "x,y\n1,2\n");
+    }
+}
+
 #[test]
 fn forces_inside_a_run_say_how_far_they_are_and_stop() {
     let bench = run_with_stock();

@@ -146,7 +146,27 @@ pub fn input_file(role: &'static str, name: impl Into<String>, bytes: &[u8]) -> 
 
 /// The SHA-256 digest of some bytes, in lower-case hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
+    hex(Sha256::digest(bytes).as_slice())
+}
+
+/// The same of the text by which values of the program are shown, which states every digit that counts; the text is
+/// not held.
+pub fn sha256_of(value: &impl std::fmt::Debug) -> String {
+    struct Writer(Sha256);
+    impl Write for Writer {
+        fn write_str(&mut self, text: &str) -> std::fmt::Result {
+            self.0.update(text.as_bytes());
+            Ok(())
+        }
+    }
+    let mut writer = Writer(Sha256::new());
+    // Writing to a digest cannot fail.
+    let _ = write!(writer, "{value:?}");
+    hex(writer.0.finalize().as_slice())
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::with_capacity(64), |mut hex, byte| {
         // Writing to a string cannot fail.
         let _ = write!(hex, "{byte:02x}");
         hex

@@ -166,6 +166,15 @@ impl Place<'_> {
         Ok((source, input))
     }
 
+    /// Where a file lies that is named here, relative to the folder of this one or of what put the value there.
+    pub(crate) fn path_of(&self, name: &str) -> PathBuf {
+        let set = self.value.and_then(|value| self.file.override_at(value.span().start));
+        match set.and_then(FieldOverride::folder).or(self.file.file().parent()) {
+            Some(folder) => folder.join(name),
+            None => PathBuf::from(name),
+        }
+    }
+
     /// The file named here, by a path relative to the folder of this one, or `name:` and the name of a shipped arm,
     /// read.
     ///
@@ -183,11 +192,7 @@ impl Place<'_> {
             let (file, bytes) = (PathBuf::from(&name), Arc::from(text.as_bytes()));
             return Ok(NamedFile { name, file, bytes, overrides: overrides(), sources });
         }
-        let set = self.value.and_then(|value| self.file.override_at(value.span().start));
-        let file = match set.and_then(FieldOverride::folder).or(self.file.file().parent()) {
-            Some(folder) => folder.join(&name),
-            None => PathBuf::from(&name),
-        };
+        let file = self.path_of(&name);
         let bytes = sources.read(&file).map_err(|e| {
             let problem = format!("names a file that cannot be read, {}: {e}", file.display());
             if shipped::by_name(&name).is_some() {

@@ -30,8 +30,6 @@ pub struct Tool {
     is_cylinder: bool,
 }
 
-/// Of a cutter that is not centre-cutting, over its diameter.
-const DEAD_CENTRE: f64 = 0.15;
 /// How far from the axis 1 / r is taken as it is at the mean over a cell, in cells: of a cutter that moves along its
 /// axis, whose lines stay at their radius, and of one that moves across it, whose lines pass at every radius.
 const TIP: [f64; 2] = [0.28, 0.08];
@@ -91,14 +89,13 @@ impl Tool {
         }
         let holder =
             mill.holder.iter().map(|part| Piece::cone([part.from, part.to], [part.radius, part.radius])).collect();
-        let dead_centre = if mill.is_centre_cutting { 0.0 } else { DEAD_CENTRE * mill.cutter.diameter() };
         Self {
             is_cylinder: profile.corner <= 0.0 && profile.taper == 0.0,
             pieces,
             holder,
             cutter: mill.cutter.clone(),
             flute_length: mill.flute_length,
-            dead_centre,
+            dead_centre: mill.dead_centre(),
             edge,
             starts,
             clockwise: -mill.cutter.rotation().sign(),

@@ -1,16 +1,17 @@
 //! The job: forces at every point of a path.
 
 use crate::cutting::Tool;
+use crate::kept::CutResult;
 use crate::memory;
 use crate::moves::PathMoves;
 use crate::operation::{EndMill, ForcesProblem, Operation};
 use crate::outcome::{ForcesDifference, RemovalForces};
-use crate::points::{Loads, added_points};
+use crate::points::{Loads, points_between};
 use crate::removal::Workpiece;
 use crate::solid_lines::Body;
 use crate::sums::{Found, Requested, Sums};
 use crate::surface::{Surface, surface};
-use crate::warnings::{place, warnings};
+use crate::warnings::place;
 use nalgebra::Vector3;
 use stead_cell::Solid;
 use stead_model::task::TaskError;
@@ -93,6 +94,14 @@ const UNSOUND: f64 = 1e-6;
 /// [`ForcesError`]: a stock that is not closed, one that the path does not touch, cells that are too small for the
 /// memory, a stop.
 pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForces, ForcesError> {
+    cut(problem, monitor)?.forces(problem)
+}
+
+/// What cutting along the path of an operation gives, which is what takes long of [`forces`].
+///
+/// # Errors
+/// Those of [`forces`].
+pub fn cut(problem: &ForcesProblem, monitor: &Monitor) -> Result<CutResult, ForcesError> {
     let operation = &problem.operation;
     if operation.path.feed(0).is_none() {
         return Err(ForcesError::NoFeeds(operation.name.clone()));
@@ -128,7 +137,7 @@ pub fn forces(problem: &ForcesProblem, monitor: &Monitor) -> Result<RemovalForce
         )?,
     };
     let fine = Run::new(problem, cell, Some(window), Requested::Turns, "cutting", monitor)?;
-    fine.outcome(problem, &Loads { path: &path, found: &found })
+    Ok(fine.result(operation, &Loads { path: &path, found: &found }))
 }
 
 /// Half the length of path that the load at a point is the mean of. m
@@ -145,7 +154,6 @@ pub(crate) struct Run {
     removed_before: [f64; 3],
     pub path: PathMoves,
     pub found: Found,
-    tool: Tool,
 }
 
 impl Run {
@@ -184,7 +192,7 @@ impl Run {
         if !found.sums.iter().any(|sums| sums.volume > 0.0) {
             return Err(ForcesError::Untouched);
         }
-        Ok(Self { workpiece, before, removed_before, path, found, tool })
+        Ok(Self { workpiece, before, removed_before, path, found })
     }
 
     /// The distance of lines with which forces are good: a share of the diameter, and no more than the depth of the
@@ -219,34 +227,22 @@ impl Run {
         cell.max(diameter / FINEST)
     }
 
-    fn outcome(self, problem: &ForcesProblem, coarse: &Loads<'_>) -> Result<RemovalForces, ForcesError> {
-        let operation = &problem.operation;
-        let loads = Loads { path: &self.path, found: &self.found };
-        let points = operation.path.points().len();
-        let fine: Vec<_> = (0..points).map(|point| loads.at_point(point)).collect();
-        let rough: Vec<_> = (0..points).map(|point| coarse.at_point(point)).collect();
-        let difference = ForcesDifference::between(&fine, &rough);
-        let (path, points) = added_points(&operation.path, fine, &loads)?;
+    fn result(self, operation: &Operation, coarse: &Loads<'_>) -> CutResult {
+        let fine = Loads { path: &self.path, found: &self.found };
+        let at_points = |loads: &Loads<'_>| (0..operation.path.points().len()).map(|point| loads.at_point(point)).collect();
+        let (loads, rough): (Vec<_>, Vec<_>) = (at_points(&fine), at_points(coarse));
         // By the axis along which most lines were cut: walls are thin along the others, or floors.
         let volumes = self.workpiece.removed().into_iter().zip(self.removed_before);
         let most = volumes.max_by_key(|((lines, _), _)| *lines);
-        let removed = most.map_or(0.0, |((_, volume), before)| volume - before);
-        let stock = [self.before, surface(&self.workpiece)];
-        let cell = self.workpiece.cell();
-        let mut all = RemovalForces {
-            path,
-            points,
-            cell,
-            difference,
-            removed,
-            air: 0.0,
-            cut: None,
-            stock,
-            warnings: Vec::new(),
-            notes: Vec::new(),
-        };
-        warnings(&mut all, problem, &self.found, &self.tool);
-        Ok(all)
+        CutResult {
+            cell: self.workpiece.cell(),
+            difference: ForcesDifference::between(&loads, &rough),
+            removed: most.map_or(0.0, |((_, volume), before)| volume - before),
+            added: points_between(&operation.path, &loads, &fine),
+            loads,
+            stock: [self.before, surface(&self.workpiece)],
+            events: self.found.events,
+        }
     }
 }
 

@@ -9,6 +9,7 @@ pub mod cutting;
 pub mod forces;
 pub mod guess;
 mod job;
+pub mod kept;
 pub mod lattice;
 pub mod leaning;
 mod memory;

@@ -52,7 +52,15 @@ pub struct EndMill {
     pub holder: Vec<Cylinder>,
 }
 
+/// Of a cutter that is not centre-cutting, over its diameter.
+const DEAD_CENTRE: f64 = 0.15;
+
 impl EndMill {
+    /// Radius about the axis in which the bottom does not cut. m
+    pub fn dead_centre(&self) -> f64 {
+        if self.is_centre_cutting { 0.0 } else { DEAD_CENTRE * self.cutter.diameter() }
+    }
+
     /// Its outer shape along the flutes.
     pub fn profile(&self) -> Profile {
         Profile {

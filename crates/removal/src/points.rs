@@ -101,23 +101,18 @@ impl PointForces {
 }
 
 /// A point between two of the path.
-struct Added {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Added {
     /// Number of the point after it.
-    before: usize,
+    pub before: usize,
     /// Share of the way there from the point before.
-    share: f64,
-    load: PointForces,
+    pub share: f64,
+    /// The load there.
+    pub load: PointForces,
 }
 
-/// The path and its loads with points where the force is not straight between two.
-///
-/// # Errors
-/// [`TaskError`] where they make no path.
-pub fn added_points(
-    path: &ToolPath,
-    loads: Vec<PointForces>,
-    along: &Loads<'_>,
-) -> Result<(ToolPath, Vec<PointForces>), TaskError> {
+/// Points where the force is not straight between two of the path, in order.
+pub fn points_between(path: &ToolPath, loads: &[PointForces], along: &Loads<'_>) -> Vec<Added> {
     let largest = loads.iter().map(|load| load.at_feed(1.0).force.norm()).fold(0.0, f64::max);
     let mut added = Vec::new();
     for point in 1..loads.len() {
@@ -142,10 +137,7 @@ pub fn added_points(
         refine(&between, [smooth(0), smooth(steps)], STRAIGHT, largest * SMALL, &mut kept);
         added.extend(kept.into_iter().map(|(share, _)| Added { before: point, share, load: along.at(&place(share)) }));
     }
-    if added.is_empty() {
-        return Ok((path.clone(), loads));
-    }
-    with_points(path, loads, &added)
+    added
 }
 
 /// Keeps the loads that a straight line between the ends misses most, until it misses none.
@@ -171,11 +163,18 @@ fn refine(
     refine(&between[number + 1..], [middle, b], straight, small, kept);
 }
 
-fn with_points(
+/// The path and its loads with the points that are added.
+///
+/// # Errors
+/// [`TaskError`] where they make no path.
+pub fn with_points(
     path: &ToolPath,
     loads: Vec<PointForces>,
     added: &[Added],
 ) -> Result<(ToolPath, Vec<PointForces>), TaskError> {
+    if added.is_empty() {
+        return Ok((path.clone(), loads));
+    }
     let mut points: Vec<(u32, PathPoint, bool)> = Vec::new();
     let (mut feeds, mut normals, mut all) = (Vec::new(), Vec::new(), Vec::new());
     let mut added = added.iter().peekable();

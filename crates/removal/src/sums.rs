@@ -87,6 +87,9 @@ pub enum Event {
     Gouge,
 }
 
+/// Volume (m3) by event and point of the path.
+pub type Events = BTreeMap<(Event, u32), f64>;
+
 /// What is requested of a run through the moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Requested {
@@ -105,6 +108,6 @@ pub struct Found {
     pub sums: Vec<Sums>,
     /// By node of the turns.
     pub turns: Vec<Turn>,
-    /// Volume (m3) by event and point of the path.
-    pub events: BTreeMap<(Event, u32), f64>,
+    /// What happens that should not.
+    pub events: Events,
 }

@@ -1,10 +1,9 @@
 //! What the user should see to in forces from a path.
 
 use crate::cut::CutFigures;
-use crate::cutting::Tool;
 use crate::operation::{ForcesProblem, PathStock, Stock};
 use crate::outcome::RemovalForces;
-use crate::sums::{Event, Found, GOUGE};
+use crate::sums::{Event, Events, GOUGE};
 use nalgebra::Vector3;
 use stead_numerics::digits::figures;
 use stead_numerics::message::{Note, Warning};
@@ -23,14 +22,13 @@ const MOSTLY_AIR: f64 = 0.3;
 const CELLS: f64 = 8.0;
 
 /// Adds warnings, notes and the share of the path in air.
-pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found, tool: &Tool) {
-    let original = &problem.operation.path;
+pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, events: &Events) {
+    let (original, mill) = (&problem.operation.path, &problem.operation.mill);
     let least = CELLS * all.cell.powi(3);
     // Points are told by their numbers in the results, which count those that were added.
     let numbers: Vec<usize> = (0..all.points.len()).filter(|point| !all.points[*point].is_added).collect();
     let mut warn = |event: Event, kind: &'static str, text: &dyn Fn() -> String| {
-        let met: Vec<(u32, f64)> = found
-            .events
+        let met: Vec<(u32, f64)> = events
             .iter()
             .filter(|((known, _), volume)| *known == event && **volume > least)
             .map(|((_, point), volume)| (*point, *volume))
@@ -59,11 +57,11 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, found: &Found,
         "the tool turns in place in the stock, without a feed and so without a force".to_owned()
     });
     warn(Event::AboveFlutes, "above-flutes", &|| {
-        let flutes = tool.flute_length * 1e3;
+        let flutes = mill.flute_length * 1e3;
         format!("material is cut above the flutes ({flutes} mm), reckoned as if they went on,")
     });
     warn(Event::DeadCentre, "dead-centre", &|| {
-        let radius = (tool.dead_centre * 1e6).round() / 1e3;
+        let radius = (mill.dead_centre() * 1e6).round() / 1e3;
         format!("the cutter is not centre-cutting, and its bottom cuts within {radius} mm of its axis")
     });
     warn(Event::Holder, "holder-in-stock", &|| "shank or holder are in the stock".to_owned());

@@ -1,10 +1,14 @@
 //! A cut whose forces are to be computed.
 
-use crate::ReadError;
+use crate::{KeptForces, ReadError};
 use stead_disk::input::{InputError, InputFile};
+use stead_model::task::ToolPath;
 use stead_numerics::message::Note;
-use stead_removal::forces::ForcesError;
+use stead_numerics::monitor::Monitor;
+use stead_removal::forces::{ForcesError, cut, forces};
+use stead_removal::leaning::leaning_forces;
 use stead_removal::operation::ForcesProblem;
+use stead_removal::outcome::{PointForces, RemovalForces};
 
 /// A forces file and the files that it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +19,8 @@ pub struct ForcesRun {
     pub inputs: Vec<InputFile>,
     /// What the user should know about the input though it is not wrong, in sentences.
     pub notes: Vec<Note>,
+    /// Where what takes long is kept, so that it is computed once.
+    pub keep: Option<KeptForces>,
     /// The file with the place of the path, for errors that the job finds.
     pub places: ForcesPlaces,
 }
@@ -31,6 +37,49 @@ pub struct ForcesPlaces {
 }
 
 impl ForcesRun {
+    /// Mean force and moment over a turn at every point of the path: read where they are kept, else computed.
+    ///
+    /// # Errors
+    /// [`ReadError`]: what the job finds wrong, a stop, and a file to keep them in that is none of this kind or cannot
+    /// be written.
+    pub fn forces(&self, monitor: &Monitor) -> Result<RemovalForces, ReadError> {
+        let located = |error: ForcesError| self.located(&error);
+        let Some(keep) = &self.keep else { return forces(&self.problem, monitor).map_err(located) };
+        let (known, note) = keep.known(&self.problem)?;
+        let result = match known {
+            Some(known) => known,
+            None => {
+                let result = cut(&self.problem, monitor).map_err(located)?;
+                keep.put(&self.problem, &result.rows())?;
+                result
+            }
+        };
+        let mut all = result.forces(&self.problem).map_err(located)?;
+        all.notes.splice(0..0, note);
+        Ok(all)
+    }
+
+    /// The same for paths that are that of the run with the tool leaning, one after another, from what
+    /// [`forces`](Self::forces) has found.
+    ///
+    /// # Errors
+    /// Those of [`forces`](Self::forces).
+    pub fn leaning(
+        &self,
+        known: &RemovalForces,
+        paths: &[ToolPath],
+        monitor: &Monitor,
+    ) -> Result<Vec<Vec<PointForces>>, ReadError> {
+        let made = || leaning_forces(&self.problem, known, paths, monitor).map_err(|error| self.located(&error));
+        let Some(keep) = &self.keep else { return made() };
+        if let Some(found) = keep.leaning(&self.problem, paths)? {
+            return Ok(found);
+        }
+        let made = made()?;
+        keep.put_leaning(&self.problem, paths, &made)?;
+        Ok(made)
+    }
+
     /// What the job found wrong, at its place in the file; or that it was stopped.
     pub fn located(&self, error: &ForcesError) -> ReadError {
         let at = |place: &InputError, allowed: &str| place.clone().because(error).allowed(allowed).into();

@@ -12,6 +12,7 @@ use crate::units::{Deg, Gb, Mm, NotNegative, Positive};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 use std::sync::Arc;
 use stead_cell::{Solid, TriangleMesh};
 use stead_disk::input::{InputError, InputFile};
@@ -55,6 +56,9 @@ pub struct StockTable {
     pub cell_mm: Option<Mm<Positive>>,
     /// Memory that the lines may take; 2 where left out.
     pub memory_gb: Option<Gb<Positive>>,
+    /// A file (CSV), relative to the folder of this one, in which the forces are kept: made where there is none, read
+    /// where stock, path and cutter are those it was made of, else replaced. Results are the same with and without it.
+    pub keep: Option<String>,
 }
 
 /// The part as it shall be: cuts into it are warned of.
@@ -147,6 +151,12 @@ impl StockTable {
     /// Distance of lines, where it is stated. m
     pub fn cell(&self) -> Option<f64> {
         self.cell_mm.map(Quantity::si)
+    }
+
+    /// The file in which what takes long is kept, and the place that names it.
+    pub fn keep(&self, at: &Place<'_>) -> Option<(PathBuf, InputError)> {
+        let at = at.key("keep");
+        self.keep.as_ref().map(|name| (at.path_of(name), at.error("", "")))
     }
 
     /// Memory that they may take. bytes

@@ -4,6 +4,7 @@
 mod corners;
 mod events;
 mod five_axes;
+mod kept;
 mod leaning;
 mod oracles;
 mod path_stock;

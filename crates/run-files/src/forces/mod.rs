@@ -25,6 +25,7 @@ use stead_model::plausibility;
 use stead_model::task::ToolPath;
 use stead_numerics::message::Note;
 use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, PathStock, Stock};
+use stead_runs::KeptForces;
 use stead_runs::forces::{ForcesPlaces, ForcesRun};
 
 /// Reads a forces file, the keys of [`ForcesFile`], and the files that it names.
@@ -178,7 +179,8 @@ impl RemovalTables<'_> {
             path: at.key(self.path_key).error("", ""),
             cell: stock_at.key("cell_mm").error("", ""),
         };
-        Ok(ForcesRun { problem, inputs, notes, places })
+        let keep = self.stock.keep(&stock_at).map(|(file, at)| KeptForces::new(file, at));
+        Ok(ForcesRun { problem, inputs, notes, keep, places })
     }
 }
 

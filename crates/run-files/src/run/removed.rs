@@ -8,12 +8,10 @@ use stead_format::place::Place;
 use stead_format::task::Imported;
 use stead_format::toml_file::TomlFile;
 use stead_model::task::lean::Lean;
-use stead_model::task::{LeanForces, PointLeanForces, Task, ToolPath};
+use stead_model::task::{LeanForces, PointLeanForces, Task, TaskError, ToolPath};
 use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
 use stead_planning::lean::LeanSpace;
-use stead_removal::forces::{ForcesError, forces};
-use stead_removal::leaning::leaning_forces;
 use stead_removal::outcome::RemovalForces;
 use stead_runs::ReadError;
 use stead_runs::forces::ForcesRun;
@@ -58,6 +56,7 @@ impl Removal {
         monitor: &Monitor,
     ) -> Result<Task, ReadError> {
         let key = format!("{} {space:?}", self.key);
+        let wrong = |error: TaskError| self.run.located(&error.into());
         let make = || {
             let half = space.half_counts().map(|half| half.min(LEANS));
             let leans: Vec<Vec<Lean>> = (0..task.points().len()).map(|point| space.grid(point, half)).collect();
@@ -74,9 +73,9 @@ impl Removal {
                     ways.push(way);
                 }
             }
-            let upright = Task::new(self.forces.path.clone(), self.forces.wrenches()).map_err(ForcesError::from)?;
+            let upright = Task::new(self.forces.path.clone(), self.forces.wrenches()).map_err(wrong)?;
             let paths: Vec<ToolPath> = ways.iter().map(|way| upright.leaned(&space.rule, way).path().clone()).collect();
-            let found = leaning_forces(&self.run.problem, &self.forces, &paths, monitor)?;
+            let found = self.run.leaning(&self.forces, &paths, monitor)?;
             let of_point = |point: usize| {
                 let all = || places.iter().map(|place| &found[*place][point]);
                 let tilts = 2 * half[1] + 1;
@@ -87,10 +86,10 @@ impl Removal {
                     edges: Some(all().map(|forces| forces.edge).collect()),
                 }
             };
-            Ok(LeanForces::new((0..task.points().len()).map(of_point).collect())?)
+            LeanForces::new((0..task.points().len()).map(of_point).collect()).map_err(wrong)
         };
-        let forces = source.sources.made(key, make).map_err(|error: ForcesError| self.run.located(&error))?;
-        task.with_lean_forces(forces).map_err(|error| self.run.located(&error.into()))
+        let forces = source.sources.made(key, make)?;
+        task.with_lean_forces(forces).map_err(wrong)
     }
 }
 
@@ -133,8 +132,7 @@ pub(super) fn removed(
     let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
     let others = RemovalTables { reading: tables.reading.clone(), cut: None, is_for_stability: false, ..*tables };
     let key = format!("{others:?} {cut:?} {:?} {feed:?}", run.inputs);
-    let made = source.sources.made(key.clone(), || forces(&run.problem, monitor));
-    let outcome = made.map_err(|error| run.located(&error))?;
+    let outcome = source.sources.made(key.clone(), || run.forces(monitor))?;
     let edges = outcome.points.iter().map(|point| point.edge).collect();
     let cut = outcome.path.clone();
     let task = Task::new(if is_fed { cut.without_feeds() } else { cut }, outcome.wrenches())
