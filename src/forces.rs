@@ -46,7 +46,8 @@ impl ForcesRun {
     ///
     /// # Errors
     /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, for cells that take too
-    /// much memory, and for a file to keep them in that is none; [`Error::Stopped`] when the monitor asked to stop before the last point.
+    /// much memory, and for a file to keep them in that is none; [`Error::Stopped`] when the monitor asked to stop
+    /// before the last point.
     pub fn compute(&self, monitor: &Monitor) -> Result<PathForces, Error> {
         let forces = self.run.forces(monitor)?;
         let notes = self.run.notes.iter().chain(&forces.notes).cloned().collect();

@@ -92,6 +92,19 @@ impl Run {
         self
     }
 
+    /// The same run with a certificate that ends after so many seconds, with the bound that it has by then.
+    ///
+    /// # Errors
+    /// [`Error::Argument`] where the run has no certificate.
+    pub fn with_time_limit(mut self, seconds: f64) -> Result<Self, Error> {
+        let Some(settings) = &mut Arc::make_mut(&mut self.run).certificate else {
+            let problem = "a time limit without a certificate; allowed: --certify or a table [certificate] beside it";
+            return Err(Error::Argument(problem.to_owned()));
+        };
+        settings.time_limit = Some(seconds);
+        Ok(self)
+    }
+
     /// What its path cuts of its stock, in a few figures, where it has one.
     pub fn cut(&self) -> Option<CutFigures> {
         self.run.removal.as_ref().and_then(|removal| removal.cut)

@@ -56,9 +56,15 @@ impl Live {
 
     /// Ctrl-C, and what the command said.
     #[cfg(unix)]
-    fn interrupted(mut self) -> Ended {
+    fn interrupted(self) -> Ended {
+        self.ended_by("-INT")
+    }
+
+    /// A signal, and what the command said.
+    #[cfg(unix)]
+    fn ended_by(mut self, signal: &str) -> Ended {
         let id = self.child.id().to_string();
-        assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+        assert!(std::process::Command::new("kill").args([signal, &id]).status().unwrap().success());
         let mut ended = Ended { code: self.child.wait().unwrap().code(), stdout: String::new(), stderr: String::new() };
         self.child.stderr.take().unwrap().read_to_string(&mut ended.stderr).unwrap();
         ended
@@ -102,8 +108,15 @@ fn only_who_knows_the_token_and_comes_from_the_page_is_answered() {
     assert!(!bench.path("out/live.json").exists());
     assert_eq!(ask(&[("Host", &own), ("Origin", &origin), ("X-Stead-Token", token)]).0, 200);
     assert!(bench.path("out/live.json").exists());
+    // The address with the token leads to one without it, and leaves a cookie that no script reads.
     let (status, head, page) = live.raw("GET", &format!("/?token={token}"), &[("Host", &own)], "");
-    assert_eq!(status, 200);
+    let cookie = format!("stead-{}={token}", live.port);
+    assert!(status == 303 && page.is_empty() && head.contains("Location: /\r\n"), "{status} {head}");
+    assert!(head.contains(&format!("Set-Cookie: {cookie}; HttpOnly; SameSite=Strict; Path=/\r\n")), "{head}");
+    let (status, head, page) = live.raw("GET", "/", &[("Host", &own), ("Cookie", &cookie)], "");
+    assert!(status == 200 && !page.contains(token));
+    assert_eq!(ask(&[("Host", &own), ("Cookie", &cookie)]).0, 403);
+    assert_eq!(ask(&[("Host", &own), ("Origin", &origin), ("Cookie", &cookie)]).0, 200);
     for part in ["Cache-Control: no-store", "Referrer-Policy: no-referrer", "frame-ancestors 'none'"] {
         assert!(head.contains(part), "{part} in {head}");
     }
@@ -129,6 +142,8 @@ fn a_body_that_is_wrong_is_refused_with_its_field() {
         ("{\"page\":\"a\",\"id\":1,\"x_mm\":null}", "x_mm", "is no such number, found null"),
         ("{\"page\":\"a\",\"id\":-1,\"x_mm\":0,\"y_mm\":0,\"z_mm\":0,\"yaw_deg\":0}", "id", "found -1"),
         ("{\"id\":1,\"x_mm\":0,\"y_mm\":0,\"z_mm\":0,\"yaw_deg\":0}", "page", "is no such text"),
+        ("{\"page\":\"a\\u202eb\",\"id\":1}", "page", "a mark of writing direction"),
+        ("{\"page\":\"a\\u0007b\",\"id\":1}", "page", "a control character"),
     ] {
         let (status, answer) = live.post("/preview", body);
         assert_eq!((status, &answer["field"]), (400, &field.into()), "{body}: {answer}");
@@ -157,6 +172,49 @@ fn a_folder_and_a_port_are_of_one_session() {
     let nowhere = bench.stead(&["live", "nowhere.toml", "--no-open"]);
     assert_eq!(nowhere.code, Some(2));
     assert!(!bench.path("results").exists());
+}
+
+/// Requests that announce more than there is room for, that stall, and folders that somebody else has made, do nothing
+/// to a session; it ends by SIGTERM as by Ctrl-C, whoever is still connected.
+#[test]
+#[cfg(unix)]
+fn nobody_else_stops_a_session_or_reads_beyond_its_folder() {
+    let bench = Bench::new();
+    let live = Live::start(&bench, &[]);
+    let begun = |text: &str| {
+        let mut stream = TcpStream::connect(("127.0.0.1", live.port)).unwrap();
+        stream.write_all(text.as_bytes()).unwrap();
+        stream
+    };
+    let mut large = begun("POST /job HTTP/1.1\r\nContent-Length: 60000000000\r\n\r\n");
+    let mut answer = String::new();
+    large.read_to_string(&mut answer).unwrap();
+    assert!(answer.starts_with("HTTP/1.1 413 ") && answer.contains("Connection: close"), "{answer}");
+    let token = &live.token;
+    let slow = format!(
+        "POST /whole HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nX-Stead-Token: {token}\r\nContent-Length: 90\r\n\r\n{{",
+        live.port
+    );
+    let _stalled: Vec<TcpStream> = (0..64).map(|number| begun(["GET / HT", &slow][number % 2])).collect();
+    assert_eq!(live.get("/state").0, 200);
+    let kept = |name: &str| live.get(&format!("/kept/placement-1/{name}"));
+    bench.write("out/placement-1/score.json", "{}");
+    bench.write("out/placement-1/setup.svg", "<svg/>");
+    bench.write("out/placement-1/report.html", "<p>");
+    bench.write("secret.csv", "mine");
+    std::os::unix::fs::symlink(bench.path("secret.csv"), bench.path("out/placement-1/best.csv")).unwrap();
+    std::os::unix::fs::symlink(bench.path("out/placement-1"), bench.path("out/placement-2")).unwrap();
+    assert_eq!((kept("best.csv").0, live.get("/kept/placement-2/score.json").0), (404, 404));
+    let policy = |name: &str, policy: &str| {
+        let (status, head, _) = kept(name);
+        let all: Vec<&str> = head.lines().filter(|line| line.starts_with("Content-Security-Policy: ")).collect();
+        assert!(status == 200 && all.len() == 1 && all[0].contains(policy), "{name}: {head}");
+    };
+    policy("score.json", "sandbox; default-src 'none'");
+    policy("setup.svg", "sandbox; default-src 'none'");
+    policy("report.html", "sandbox allow-scripts");
+    let ended = live.ended_by("-TERM");
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
 
 #[test]

@@ -33,8 +33,23 @@ impl GivenRun {
 
     /// Reads the run, whose forces may have to be computed, on so many threads.
     pub fn read(&self, terminal: &Terminal, threads: Option<usize>) -> Result<Run, Failure> {
+        self.read_with(None, terminal, threads)
+    }
+
+    /// The same with a certificate of a gap (relative), where one is requested, whatever the file says of one.
+    pub fn read_with(&self, gap: Option<f64>, terminal: &Terminal, threads: Option<usize>) -> Result<Run, Failure> {
         let shown = terminal.show(None);
-        Ok(on_threads(threads, || Run::read_with(&self.config, self.set.clone(), &shown.monitor))??)
+        let is_set = |key: &str| self.set.iter().any(|value| value.to_string().starts_with(key));
+        let mut values = self.set.clone();
+        if let (Some(gap), true, false) = (gap, is_set("certificate."), is_set("certificate.gap_percent=")) {
+            // The table that the values make needs one.
+            values.push(field(&format!("certificate.gap_percent={}", gap * 100.0)).map_err(Error::Argument)?);
+        }
+        let run = on_threads(threads, || Run::read_with(&self.config, values, &shown.monitor))??;
+        Ok(match gap {
+            Some(gap) => run.with_certificate(gap),
+            None => run,
+        })
     }
 }
 

@@ -3,7 +3,7 @@
 use super::given::GivenRun;
 use super::manual::Manual;
 use super::progress::Terminal;
-use super::values::{gap, seed, threads};
+use super::values::{gap, seconds, seed, threads};
 use super::{
     Failure, files_written, left_in, more, on_threads, out_folder, print, print_json, say, say_notes, say_warnings,
 };
@@ -26,6 +26,9 @@ pub(super) struct PlaceOptions {
     /// Continue until it is proved that no placement is better, or worse, by more than G per cent
     #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
     pub certify: Option<f64>,
+    /// End the proof after S seconds, with the bound that it has by then
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    pub time_limit: Option<f64>,
     /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
     #[arg(long)]
     pub sensitivity: bool,
@@ -55,7 +58,7 @@ pub(super) const MANUAL: Manual = Manual {
     examples: &[
         "stead place configs/caro-2013.toml",
         "stead place configs/caro-2013.toml --seed 7 --out results/seed-7",
-        "stead place configs/caro-2013.toml --certify 0.5 --no-worst",
+        "stead place configs/caro-2013.toml --certify 0.5 --time-limit 60 --no-worst",
         "stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8",
     ],
     files: &[
@@ -101,9 +104,9 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
-    let mut run = options.run.read(&terminal, options.threads)?;
-    if let Some(gap) = options.certify {
-        run = run.with_certificate(gap);
+    let mut run = options.run.read_with(options.certify, &terminal, options.threads)?;
+    if let Some(seconds) = options.time_limit {
+        run = run.with_time_limit(seconds)?;
     }
     if let Some(seed) = options.seed {
         run = run.with_seed(seed);

@@ -2,13 +2,14 @@
 //!
 //! [`Session`] holds a run and a folder and answers what the page asks: what a placement comes to (`evaluation`), the
 //! long jobs (`jobs`), the placements that are kept (`pins`), other values of the run file (`edits`). It knows nothing
-//! of HTTP; `requests` reads what it is asked, [`Server`] lets the page of one browser ask it.
+//! of HTTP (`http`); `requests` reads what it is asked, [`Server`] lets the page of one browser ask it.
 //!
 //! Whatever is computed is what the commands compute: a placement at rest has the figures of `stead score`, a kept one
 //! is a folder as `stead score --out` writes it.
 
 mod edits;
 mod evaluation;
+mod http;
 mod jobs;
 mod newest;
 mod pins;

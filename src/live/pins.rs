@@ -101,12 +101,15 @@ fn shown(document: &Value) -> Map<String, Value> {
     some.collect()
 }
 
-/// A file of a kept placement, by the names of folder and file; none where there is no such file.
+/// A file of a kept placement, by the names of folder and file; none where there is no such file. Links are not
+/// followed: they may lead anywhere.
 pub(super) fn file(folder: &Path, pin: &str, name: &str) -> Option<Vec<u8>> {
     let is_plain = |text: &str| {
         let is_of = |c: char| c.is_ascii_alphanumeric() || ['.', '-', '_'].contains(&c);
         !text.is_empty() && !text.starts_with('.') && text.chars().all(is_of)
     };
-    (pin.starts_with(NAME) && is_plain(pin) && is_plain(name))
-        .then(|| files::read(&folder.join(pin).join(name)).ok())?
+    let folder = folder.join(pin);
+    let is_folder = || folder.symlink_metadata().is_ok_and(|found| found.is_dir());
+    (pin.starts_with(NAME) && is_plain(pin) && is_plain(name) && is_folder())
+        .then(|| files::read_own(&folder.join(name)).ok())?
 }

@@ -3,6 +3,7 @@
 
 use super::place::{Place, shown};
 use serde_json::{Map, Value};
+use stead_disk::quote::{GARBLED, garbles};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::AxisPositions;
 
@@ -72,12 +73,16 @@ impl Body {
         })
     }
 
-    /// A text that is not empty.
+    /// A text that is not empty and that reads as it is.
     pub fn text(&self, field: &str) -> Result<&str, RequestError> {
         let value = self.value(field);
-        value.as_str().filter(|text| !text.is_empty() && text.len() <= LONGEST).ok_or_else(|| {
+        let text = value.as_str().filter(|text| !text.is_empty() && text.len() <= LONGEST).ok_or_else(|| {
             RequestError::new(field, format!("is no such text, found {value}"), format!("1 to {LONGEST} characters"))
-        })
+        })?;
+        if text.contains(garbles) {
+            return Err(RequestError::new(field, GARBLED, "letters, digits, signs and blanks"));
+        }
+        Ok(text)
     }
 
     /// A whole number that is not negative.

@@ -166,7 +166,7 @@ impl Session {
     ///
     /// # Errors
     /// [`Error::Output`]: the page cannot be made.
-    pub fn page(&self, token: &str) -> Result<Vec<u8>, Error> {
+    pub fn page(&self) -> Result<Vec<u8>, Error> {
         let (reading, place) = {
             let known = self.known();
             (Arc::clone(&known.reading), known.place.clone())
@@ -175,7 +175,6 @@ impl Session {
         let shown = self.preview_at(&reading, &place, &page)?;
         let title = self.file.file_stem().unwrap_or_default().to_string_lossy();
         let live = json!({
-            "token": token,
             "place": place.entry(reading.run.problem()),
             "orientations": reading.run.problem().orientations.iter().map(|one| &one.name).collect::<Vec<_>>(),
             "stated": reading.run.run.stated,

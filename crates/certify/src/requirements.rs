@@ -9,9 +9,11 @@ use super::leaning;
 use super::model::STEPS;
 use super::orientations;
 use super::segments;
+use stead_model::robot::Robot;
 use stead_model::stiffness::whole::yields_elsewhere;
 use stead_planning::criterion::Aggregate;
 use stead_planning::problem::Problem;
+use stead_planning::setup::Orientation;
 use stead_planning::symmetry::{
     Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_no_travel,
 };
@@ -23,39 +25,70 @@ use stead_planning::symmetry::{
 /// better: see `left_out`.
 ///
 /// # Errors
-/// The first reason why not.
+/// All reasons why not; that the tables are too large where there is no other.
 pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
+    together(reasons(problem, memory))
+}
+
+/// Reasons as one.
+fn together(mut reasons: Vec<Unsupported>) -> Result<(), Unsupported> {
+    let Some(last) = reasons.pop() else { return Ok(()) };
+    if reasons.is_empty() {
+        return Err(last);
+    }
+    reasons.push(last);
+    Err(Unsupported::Several(reasons))
+}
+
+/// The reasons of parts of a problem that are bounded by themselves, each said once.
+fn of_parts(parts: Result<Vec<Vec<Unsupported>>, Unsupported>) -> Vec<Unsupported> {
+    let mut all: Vec<Unsupported> = Vec::new();
+    for reason in parts.unwrap_or_else(|reason| vec![vec![reason]]).into_iter().flatten() {
+        if !all.contains(&reason) {
+            all.push(reason);
+        }
+    }
+    all
+}
+
+fn reasons(problem: &Problem, memory: u64) -> Vec<Unsupported> {
     if orientations::are_several(problem) {
-        return orientations::alone(problem)?.iter().try_for_each(|(orientation, one)| {
-            let named = |reason| Unsupported::Orientation { name: orientation.name.clone(), reason: Box::new(reason) };
-            certifiable(one, memory).map_err(named)
-        });
+        let named = |(orientation, one): &(&Orientation, Problem)| {
+            let name = |reason| Unsupported::Orientation { name: orientation.name.clone(), reason: Box::new(reason) };
+            reasons(one, memory).into_iter().map(name).collect()
+        };
+        return of_parts(orientations::alone(problem).map(|parts| parts.iter().map(named).collect()));
     }
-    if problem.lean.is_some() {
-        return Err(Unsupported::Lean);
+    let mut all: Vec<Unsupported> = problem.lean.is_some().then_some(Unsupported::Lean).into_iter().collect();
+    if all.is_empty() && segments::are_apart(problem) {
+        let parts = segments::alone(problem);
+        return of_parts(parts.map(|parts| parts.iter().map(|(_, one)| reasons(one, memory)).collect()));
     }
-    if segments::are_apart(problem) {
-        return segments::alone(problem)?.iter().try_for_each(|(_, one)| certifiable(one, memory));
+    let alone = without_axes(problem);
+    let rest = alone.as_ref().map_or(problem, |alone| alone);
+    let axes = tool_axes(rest);
+    all.extend(alone.as_ref().err().cloned());
+    all.extend(axes.as_ref().err().cloned());
+    all.extend(require_constant(rest, &[0, 3, 4, 5]).err());
+    all.extend(unlike_springs(rest));
+    if axes.is_ok_and(|axes| axes > 0) {
+        all.extend(not_covered_leaning(rest));
     }
-    let alone = without_axes(problem)?;
-    let problem = alone.as_ref();
-    let axes = tool_axes(problem)?;
-    require_constant(problem, &[0, 3, 4, 5])?;
-    require_covered_springs(problem)?;
-    let extent = extent(problem);
-    if let Some(needed) = needed_condition(problem, extent.radius.0) {
-        return Err(Unsupported::Conditioning { needed });
+    if alone.is_err() {
+        return all;
     }
-    if axes > 0 {
-        require_covered_leaning(problem)?;
-        let bytes = leaning::bytes(problem, axes);
-        return if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) };
+    let extent = extent(rest);
+    all.extend(needed_condition(rest, extent.radius.0).map(|needed| Unsupported::Conditioning { needed }));
+    if !all.is_empty() {
+        return all;
     }
-    let coarse = CoarseBounds::bytes(extent, STEPS, &points_of(problem));
-    let bytes = ComplianceTable::bytes(extent, STEPS)
-        .saturating_mul(problem.scored_robots().len() as u64)
-        .saturating_add(coarse);
-    if bytes > memory { Err(Unsupported::TooLarge { bytes, max: memory }) } else { Ok(()) }
+    let bytes = match tool_axes(rest) {
+        Ok(axes) if axes > 0 => leaning::bytes(rest, axes),
+        _ => ComplianceTable::bytes(extent, STEPS)
+            .saturating_mul(rest.scored_robots().len() as u64)
+            .saturating_add(CoarseBounds::bytes(extent, STEPS, &points_of(rest))),
+    };
+    (bytes > memory).then_some(Unsupported::TooLarge { bytes, max: memory }).into_iter().collect()
 }
 
 /// What a certificate of a problem costs more than others, to be said before a long search: in a sentence, where there
@@ -88,28 +121,28 @@ fn missing_to_axis_1(problem: &Problem) -> Option<f64> {
 /// absolute value of one part of the deflection.
 ///
 /// # Errors
-/// The first reason why not.
+/// All reasons why not.
 pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if orientations::are_several(problem) {
         return Err(Unsupported::Orientations);
     }
     certifiable(problem, memory)?;
-    Upright::of(problem)?;
-    require_no_travel(problem)?;
-    require_free_beta(problem)?;
-    require_certain_compliances(problem)?;
-    let beyond = |key| Err(Unsupported::NotFromAbove { key });
-    if problem.criterion.aggregate != Aggregate::Mean {
-        beyond("criterion.aggregate")
-    } else if problem.criterion.stiffness.is_some() {
-        beyond("criterion.robots")
-    } else if problem.criterion.force_uncertainty != 0.0 {
-        beyond("criterion.force_uncertainty")
-    } else if !problem.criterion.weights.is_single() {
-        beyond("criterion.direction")
-    } else {
-        Ok(())
-    }
+    let criterion = &problem.criterion;
+    let beyond = [
+        ("criterion.aggregate", criterion.aggregate != Aggregate::Mean),
+        ("criterion.robots", criterion.stiffness.is_some()),
+        ("criterion.force_uncertainty", criterion.force_uncertainty != 0.0),
+        ("criterion.direction", !criterion.weights.is_single()),
+    ];
+    let beyond = beyond.into_iter().filter(|(_, is_beyond)| *is_beyond);
+    let asked = [
+        Upright::of(problem).map(drop),
+        require_no_travel(problem),
+        require_free_beta(problem),
+        require_certain_compliances(problem),
+    ];
+    let asked = asked.into_iter().filter_map(Result::err);
+    together(asked.chain(beyond.map(|(key, _)| Unsupported::NotFromAbove { key })).collect())
 }
 
 /// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in
@@ -151,38 +184,40 @@ fn tool_axes(problem: &Problem) -> Result<usize, Unsupported> {
     }
 }
 
-/// Requires of a problem whose tool leans what bounds cover there.
-fn require_covered_leaning(problem: &Problem) -> Result<(), Unsupported> {
-    let beyond = |what| Err(Unsupported::Leaning { what });
-    if problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0) {
-        beyond("moments on the tool")
-    } else if problem.scored_robots().len() > 1 {
-        beyond("several stiffness sets (criterion.robots)")
-    } else if problem.scored_robots().iter().any(|robot| yields_elsewhere(robot, &problem.spindle)) {
-        beyond("springs normal to the axes, base, mount and tip")
-    } else {
-        Ok(())
-    }
+/// What bounds do not cover of a problem whose tool leans.
+fn not_covered_leaning(problem: &Problem) -> Vec<Unsupported> {
+    let robots = problem.scored_robots();
+    let beyond = [
+        ("moments on the tool", has_moments(problem)),
+        ("several stiffness sets (criterion.robots)", robots.len() > 1),
+        (
+            "springs normal to the axes, base, mount and tip",
+            robots.iter().any(|robot| yields_elsewhere(robot, &problem.spindle)),
+        ),
+    ];
+    beyond.into_iter().filter(|(_, is_beyond)| *is_beyond).map(|(what, _)| Unsupported::Leaning { what }).collect()
 }
 
-/// Requires that what yields beside the joints about their axes turns with the arm, the tool or the part, and does so
-/// under forces alone.
-fn require_covered_springs(problem: &Problem) -> Result<(), Unsupported> {
-    let has_moments = problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0);
-    for robot in problem.scored_robots() {
-        if !is_base_alike(robot) {
-            return Err(Unsupported::YieldsBeside {
-                what: "base and pedestal that are not alike in every direction about axis 1 ([base_compliance])",
-            });
-        }
-        if !robot.flips_yield_alike() {
-            return Err(Unsupported::UnlikeFlips);
-        }
-        if has_moments && yields_elsewhere(robot, &problem.spindle) {
-            return Err(Unsupported::YieldsBeside {
-                what: "springs normal to the axes, base or mount under moments on the tool",
-            });
-        }
-    }
-    Ok(())
+fn has_moments(problem: &Problem) -> bool {
+    problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0)
+}
+
+/// What yields beside the joints about their axes without turning with the arm, the tool or the part, or under more
+/// than forces.
+fn unlike_springs(problem: &Problem) -> Vec<Unsupported> {
+    let robots = problem.scored_robots();
+    let is_any = |yields: &dyn Fn(&Robot) -> bool| robots.iter().any(|robot| yields(robot));
+    let beside = |what| Unsupported::YieldsBeside { what };
+    let all = [
+        (
+            beside("base and pedestal that are not alike in every direction about axis 1 ([base_compliance])"),
+            is_any(&|robot| !is_base_alike(robot)),
+        ),
+        (Unsupported::UnlikeFlips, is_any(&|robot| !robot.flips_yield_alike())),
+        (
+            beside("springs normal to the axes, base or mount under moments on the tool"),
+            has_moments(problem) && is_any(&|robot| yields_elsewhere(robot, &problem.spindle)),
+        ),
+    ];
+    all.into_iter().filter(|(_, is_so)| *is_so).map(|(reason, _)| reason).collect()
 }

@@ -39,6 +39,9 @@ pub enum Unsupported {
         /// Why not.
         reason: Box<Self>,
     },
+    /// Several reasons at once, none of them such a list.
+    #[error("{}", .0.iter().map(Self::to_string).collect::<Vec<_>>().join("; "))]
+    Several(Vec<Self>),
     /// The tool may lean.
     #[error(
         "the tool may lean (lead and tilt of [lean]): no bound covers that; without [lean] the placement can be certified"

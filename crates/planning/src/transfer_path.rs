@@ -97,7 +97,7 @@ pub fn transfer_path(
     plans: [&SegmentPlan; 2],
     number: usize,
 ) -> Option<TransferPath> {
-    let space = Space::new(problem, placement)?;
+    let space = Space::among_shapes(problem, placement)?;
     let [from, to] = plans;
     let (end, start) = (AtPoint::last(from)?, AtPoint::first(to)?);
     let retract = problem.segment_moves.retract;
@@ -159,25 +159,20 @@ pub fn transfer_path(
     })
 }
 
-/// Whether the lines into and out of a segment have their whole length, in this order; also where no segment comes
-/// before or after it, and where there is no scene.
+/// Whether the lines into and out of a segment have their whole length, in this order.
 pub fn whole_lines(problem: &Problem, placement: &Placement, plan: &SegmentPlan) -> [bool; 2] {
-    let ends = line_ends(problem, plan);
-    let Some(space) = Space::new(problem, placement) else { return [true; 2] };
+    let space = Space::new(problem, placement);
     let is_whole = |at: AtPoint| space.line_end(at, problem.segment_moves.retract).is_none();
-    ends.map(|end| end.is_none_or(is_whole))
+    line_ends(problem, plan).map(|end| end.is_none_or(is_whole))
 }
 
-/// The ends of a segment's plan at which a line leads into the cut and out of it: neither before the first segment nor
-/// after the last, nor on a path of which only some points are left.
+/// The ends of a segment's plan at which a line leads into the cut and out of it; none on a path of which only some
+/// points are left.
 pub fn line_ends(problem: &Problem, plan: &SegmentPlan) -> [Option<AtPoint>; 2] {
-    if problem.scene.is_none() || problem.task.path().is_thinned() {
+    if problem.task.path().is_thinned() {
         return [None, None];
     }
-    let count = problem.task.points().len();
-    let into = (plan.points.start > 0).then(|| AtPoint::first(plan)).flatten();
-    let out = (plan.points.end < count).then(|| AtPoint::last(plan)).flatten();
-    [into, out]
+    [AtPoint::first(plan), AtPoint::last(plan)]
 }
 
 /// A line of a program into a segment (from 0), or out of it, that ends before its length.
@@ -196,8 +191,7 @@ pub struct ShortEnd {
 pub fn short_ends(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Vec<ShortEnd> {
     let space = Space::new(problem, placement);
     let is_asked =
-        |segment: usize, is_out: bool| space.is_none() || segment == if is_out { plans.len() - 1 } else { 0 };
-    let space = space.unwrap_or(Space { problem, scene: None, with_tool: None, placement });
+        |segment: usize, is_out: bool| problem.scene.is_none() || segment == if is_out { plans.len() - 1 } else { 0 };
     let ends = plans
         .iter()
         .enumerate()
@@ -253,10 +247,15 @@ impl TransferPath {
 
 impl<'a> Space<'a> {
     /// Among the shapes of a problem; `None` where there are none.
-    pub fn new(problem: &'a Problem, placement: &'a Placement) -> Option<Self> {
-        let scene = problem.scene.as_deref()?;
-        let with_tool = problem.segment_moves.tool.as_deref().map_or(scene, ToolScene::scene);
-        Some(Self { problem, scene: Some(scene), with_tool: Some(with_tool), placement })
+    pub fn among_shapes(problem: &'a Problem, placement: &'a Placement) -> Option<Self> {
+        Some(Self::new(problem, placement)).filter(|space| space.scene.is_some())
+    }
+
+    /// That of a problem at a placement; without shapes nothing hits, and limits and singular poses count alone.
+    pub fn new(problem: &'a Problem, placement: &'a Placement) -> Self {
+        let scene = problem.scene.as_deref();
+        let with_tool = scene.map(|scene| problem.segment_moves.tool.as_deref().map_or(scene, ToolScene::scene));
+        Self { problem, scene, with_tool, placement }
     }
 
     /// What ends the line of a length (m) along the tool axis out of the cut at a path point, or into it, before its

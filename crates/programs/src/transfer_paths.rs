@@ -44,7 +44,7 @@ impl TransferPaths {
         let plans: Vec<SegmentPlan> = segments.iter().map(|points| segment_plan(plan, points.clone())).collect();
         let unfollowed = plans.iter().flat_map(|segment| problem.unfollowed_moves(&plan.placement, segment)).collect();
         let known = Self { unfollowed, ..Self::default() };
-        let Some(space) = Space::new(problem, &plan.placement) else { return Ok(known) };
+        let Some(space) = Space::among_shapes(problem, &plan.placement) else { return Ok(known) };
         let at = |point: usize| {
             let row = &plan.points[point];
             AtPoint { point, beta: plan.betas[point], posture: row.posture, joints: row.joints }

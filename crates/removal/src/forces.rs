@@ -229,7 +229,8 @@ impl Run {
 
     fn result(self, operation: &Operation, coarse: &Loads<'_>) -> CutResult {
         let fine = Loads { path: &self.path, found: &self.found };
-        let at_points = |loads: &Loads<'_>| (0..operation.path.points().len()).map(|point| loads.at_point(point)).collect();
+        let at_points =
+            |loads: &Loads<'_>| (0..operation.path.points().len()).map(|point| loads.at_point(point)).collect();
         let (loads, rough): (Vec<_>, Vec<_>) = (at_points(&fine), at_points(coarse));
         // By the axis along which most lines were cut: walls are thin along the others, or floors.
         let volumes = self.workpiece.removed().into_iter().zip(self.removed_before);

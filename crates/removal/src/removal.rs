@@ -89,7 +89,6 @@ impl Workpiece {
         let mut start = 0;
         while start < moves.len() {
             monitor.go_on()?;
-            monitor.report(Progress::Steps { stage, done: start, total: moves.len() });
             let most = (start + CHUNK).min(moves.len());
             let far = moves[start].turns[0] + CHUNK_TURNS;
             let end = (start + 1..most).find(|next| moves[*next].turns[1] > far).unwrap_or(most);
@@ -129,8 +128,13 @@ impl Workpiece {
                 grid: &grid,
             };
             let jobs: Vec<(TileKey, Vec<u32>)> = jobs.into_iter().collect();
+            // A chunk of few moves may meet many tiles: of it as many moves count as done as of its tiles are.
+            let mut known = 0;
             for batch in jobs.chunks(BATCH * rayon::current_num_threads()) {
                 monitor.go_on()?;
+                let done = start + (end - start) * known / jobs.len();
+                monitor.report(Progress::Steps { stage, done, total: moves.len() });
+                known += batch.len();
                 let tiles: Vec<Option<Tile>> = batch.iter().map(|(key, _)| self.tiles.remove(key)).collect();
                 let done: Vec<(Tile, OfTile)> = batch
                     .par_iter()

@@ -46,7 +46,10 @@ impl KeptForces {
         let known = body(&text, &digest(problem)).and_then(|body| CutResult::of_rows(parts(body).0, points));
         let note = known.is_none().then(|| {
             let file = self.file.display();
-            format!("the forces are computed anew and kept: those in {file} were of another stock, path, cutter or program").into()
+            format!(
+                "the forces are computed anew and kept: those in {file} were of another stock, path, cutter or program"
+            )
+            .into()
         });
         Ok((known, note))
     }
@@ -141,4 +144,3 @@ fn leaning(text: &str, paths: &[ToolPath]) -> Option<Vec<Vec<PointForces>>> {
     };
     paths.iter().map(of_path).collect()
 }
-

@@ -3,8 +3,9 @@
 //! A plan is made, its states are looked at, those that hit are forbidden with their neighbours in beta that hit too,
 //! and the plan is made again until nothing hits (`forbid`). A plan over fewer states is never better, so the first one
 //! that is free is the best free one of its grid, but for moves from point to point: for these, states are forbidden
-//! that would do with another before them. Lines into the cut and out of it between segments count too, as far as there
-//! are states with whole ones. Both flips of the wrist count as one: a state is forbidden where that of the plan hits.
+//! that would do with another before them. Lines into the cut and out of it count too, without shapes as well, as far
+//! as there are states with whole ones. Both flips of the wrist count as one: a state is forbidden where that of the
+//! plan hits.
 
 use super::joint_turns::SegmentChoice;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace, joint_turns, off_grid};

@@ -53,7 +53,7 @@ impl Planner<'_> {
         forbidden: &mut StateSet,
     ) -> Vec<usize> {
         let problem = self.problem;
-        let Some(space) = Space::new(problem, placement) else { return Vec::new() };
+        let space = Space::new(problem, placement);
         let is_short = |at: AtPoint| space.line_end(at, problem.segment_moves.retract).is_some();
         let ends = line_ends(problem, plan).into_iter().flatten();
         let short: Vec<AtPoint> = ends.filter(|end| !waived.contains(&end.point) && is_short(*end)).collect();

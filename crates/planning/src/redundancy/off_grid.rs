@@ -113,8 +113,7 @@ pub fn refine(
             // In the turns of the plan.
             let joints = nearest_turns(&joints, &plan.joints[place]);
             let at = AtPoint { point, beta, posture: plan.posture, joints };
-            Space::new(problem, placement)
-                .is_none_or(|space| space.line_end(at, problem.segment_moves.retract).is_none())
+            Space::new(problem, placement).line_end(at, problem.segment_moves.retract).is_none()
         };
         let Watch { collisions, line, .. } = watched[place];
         ((!collisions || is_free()) && (!line || is_whole())).then_some(state)

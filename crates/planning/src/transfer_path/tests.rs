@@ -205,6 +205,41 @@ fn a_short_line_is_told_with_what_ends_it() {
     let [Some(out), None] = &found.short_lines else { panic!("{:?}", found.short_lines) };
     assert!((0.02..0.05).contains(&out.length) && out.wanted == 0.05, "{out:?}");
     assert_eq!(out.end.to_string(), "ball and lid come too near");
-    assert_eq!(whole_lines(&problem, &placement, &made[0]), [true, false]);
+    // The lid is above all of the first pocket.
+    assert_eq!(whole_lines(&problem, &placement, &made[0]), [false, false]);
     assert_eq!(whole_lines(&problem, &placement, &made[1]), [true, true]);
+}
+
+/// Without shapes too: where a line out of the cut ends at a limit of the arm, another end is taken if there is one.
+#[test]
+fn lines_are_planned_without_shapes() {
+    let (mut mended, mut kept, mut left) = (0, 0, 0);
+    let places = [-1.7, -1.9, -2.1].into_iter().flat_map(|y| [0.8, 1.1, 1.4].map(|retract| (y, retract)));
+    for (y, retract) in places {
+        let placement = Placement::from([0.1, y, -0.3, 0.3]);
+        let with = |retract: f64| {
+            let mut problem = five_segments();
+            problem.redundancy.beta_count = 60;
+            problem.segment_moves.retract = retract;
+            problem
+        };
+        let (problem, bare) = (with(retract), with(0.0));
+        let [made, without] = [&problem, &bare].map(|problem| {
+            let planner = Planner::finer(problem);
+            planner.plan_fine(&placement, Sense::Min, None, &mut planner.workspace())
+        });
+        let (Ok(made), Ok(without)) = (made, without) else { continue };
+        for (made, without) in made.iter().zip(&without) {
+            let [lines, before] = [made, without].map(|plan| whole_lines(&problem, &placement, plan));
+            if before == [true; 2] {
+                assert_eq!(made, without);
+                kept += 1;
+            } else {
+                assert!(made.cost >= without.cost * (1.0 - 1e-9));
+                mended += usize::from(lines == [true; 2]);
+                left += usize::from(lines != [true; 2]);
+            }
+        }
+    }
+    assert!(mended > 0 && kept > 0, "{mended} {kept} {left}");
 }

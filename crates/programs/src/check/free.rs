@@ -17,7 +17,7 @@ pub(super) fn hits(
     written: &[Written],
     expected: &[Expected],
 ) -> Vec<MoveHit> {
-    let Some(space) = Space::new(problem, placement) else { return Vec::new() };
+    let Some(space) = Space::among_shapes(problem, placement) else { return Vec::new() };
     let joints = |place: usize| joints_of(&problem.robot, &written[place], &expected[place]);
     let count = written.len().min(expected.len());
     let pair_at = |place: usize| {

@@ -54,7 +54,7 @@ records! {
     } with {
         /// What was minimised or maximised.
         objective_mm: DeflectionMm = plan.objective.into(),
-        /// Mean of the scores.
+        /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
         mean_mm: DeflectionMm = plan.mean.into(),
         /// Largest score.
         max_mm: DeflectionMm = plan.max.into(),
@@ -104,7 +104,7 @@ records! {
     } with {
         /// Segments that are cut slower than programmed.
         slowed_segments: usize = held.slowed,
-        /// Mean of the scores.
+        /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
         mean_mm: DeflectionMm = held.mean.into(),
         /// Largest score.
         max_mm: DeflectionMm = held.max.into(),

@@ -43,7 +43,7 @@ records! {
         postures: String = names::postures(&plan.postures),
         /// The words of each of them: front or back; elbow up or down; flip or no flip.
         posture_words: String = posture_words.join(" | "),
-        /// Mean of the scores.
+        /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
         mean_mm: DeflectionMm = plan.mean.into(),
         /// Largest score.
         max_mm: DeflectionMm = plan.max.into(),

@@ -8,7 +8,7 @@
 use super::{Improved, Job, NEAR};
 use crate::place::axes::{MOST_REFINED, planned_in, refined};
 use crate::place::thinned::{Thinned, path_of, spread};
-use crate::refine::{neighbours, solver};
+use crate::refine::{Solution, neighbours, solver};
 use rayon::prelude::*;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::Progress;
@@ -16,6 +16,7 @@ use stead_planning::lean::MOST_PLANNED_POINTS;
 use stead_planning::problem::Placement;
 use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner};
 use stead_planning::setup::Setup;
+use stead_planning::transfer_path::whole_lines;
 
 /// Rounds of placement and leans at the most.
 const ROUNDS: usize = 24;
@@ -70,7 +71,13 @@ impl Job<'_> {
             return None;
         }
         let is_better = again.solution.objective < run.solution.objective;
-        Some(if is_better { again } else { Improved { solution: run.solution, ..again } })
+        let leaning = self.problem.in_setup(&again.setup);
+        let lines = |of: &Solution| of.plans.iter().map(|plan| whole_lines(&leaning, &of.placement, plan)).collect();
+        let [whole, reached]: [Vec<[bool; 2]>; 2] = [&again.solution, &run.solution].map(lines);
+        // The gradient knows nothing of the lines into the cut and out of it.
+        let loses_lines = whole.iter().zip(reached).any(|(whole, reached)| (0..2).any(|k| whole[k] && !reached[k]));
+        let is_planned = is_better || loses_lines;
+        Some(if is_planned { again } else { Improved { solution: run.solution, ..again } })
     }
 
     /// The leans planned anew about those that are known, at the placement that is known.

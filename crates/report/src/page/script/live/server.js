@@ -1,8 +1,4 @@
-// The server that the page comes from: it is asked with the token, and it may go away.
-
-import { RAW } from '../run/data.js';
-
-const LIVE = RAW.live;
+// The server that the page comes from: the cookie that it has set says who asks, and it may go away.
 
 /** A name by which the server tells this page from others. */
 export const PAGE = Array.from(crypto.getRandomValues(new Uint8Array(9)), (byte) => byte.toString(36)).join('');
@@ -28,13 +24,13 @@ function heard(failed) {
 export class Refusal extends Error {}
 
 /** The address of a file of a kept placement. @param {string} name @param {string} file */
-export const keptFile = (name, file) => `/kept/${name}/${file}?token=${LIVE.token}`;
+export const keptFile = (name, file) => `/kept/${name}/${file}`;
 
 /** @param {string} path @param {RequestInit} [more] @returns {Promise<any>} */
 async function fetched(path, more = {}) {
   let response;
   try {
-    response = await fetch(path, { ...more, headers: { 'X-Stead-Token': LIVE.token, ...(more.body ? { 'Content-Type': 'application/json' } : {}) } });
+    response = await fetch(path, { ...more, headers: more.body ? { 'Content-Type': 'application/json' } : {} });
   } catch (error) {
     heard(true);
     throw error;

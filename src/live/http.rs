@@ -1,0 +1,421 @@
+//! HTTP as the page of one browser needs it, and no more: requests with a head of limited length, whose body is read
+//! once it is known that they may ask, on a limited number of connections, each in a limited time.
+//!
+//! Whoever sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has waited
+//! longest without having asked anything allowed gives way.
+
+use std::collections::BTreeMap;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// The longest head that is read. Bytes
+const LONGEST_HEAD: usize = 16_384;
+/// The longest body that is read: a placement whose axes move from point to point has megabytes. Bytes
+const LONGEST_BODY: usize = 16_000_000;
+/// A request is whole within this time from its first byte, and an answer is taken within it.
+const TIME_OF_REQUEST: Duration = Duration::from_secs(10);
+/// Connections on which nothing is asked stay open so long.
+const IDLE: Duration = Duration::from_secs(60);
+/// Connections that are open side by side.
+const MOST_CONNECTIONS: usize = 64;
+
+/// The head of a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Head {
+    /// The method, as it is written.
+    pub method: String,
+    /// Path and query.
+    pub url: String,
+    headers: Vec<(String, String)>,
+}
+
+/// An answer of the server.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Answer {
+    pub status: u16,
+    pub kind: &'static str,
+    /// Headers that other answers do not have.
+    pub more: Vec<(&'static str, String)>,
+    pub body: Vec<u8>,
+}
+
+/// What a connection is told of a request that is none, or that is not read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Refused(u16, &'static str);
+
+/// What answers.
+pub(super) trait Site: Send + Sync + 'static {
+    /// What a request that may not be answered is told, before its body is read.
+    fn refuses(&self, head: &Head) -> Option<Answer>;
+    /// The answer to a request that may ask.
+    fn answer(&self, head: &Head, body: &[u8]) -> Answer;
+    /// That something is not done, and why.
+    fn error(&self, status: u16, message: &str) -> Answer;
+}
+
+impl Head {
+    /// The head of a request without the empty line at its end.
+    pub fn parse(bytes: &[u8]) -> Result<Self, Refused> {
+        let wrong = |what| Refused(400, what);
+        let text = std::str::from_utf8(bytes).map_err(|_| wrong("the head is no text"))?;
+        let mut lines = text.split("\r\n");
+        let first = lines.next().unwrap_or_default();
+        let mut words = first.split(' ');
+        let (Some(method), Some(url), Some(version), None) = (words.next(), words.next(), words.next(), words.next())
+        else {
+            return Err(wrong("the first line is no method, address and version"));
+        };
+        let is_plain = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_graphic());
+        if !(is_plain(url)
+            && url.starts_with('/')
+            && !method.is_empty()
+            && method.chars().all(|c| c.is_ascii_uppercase()))
+        {
+            return Err(wrong("the first line is no method, address and version"));
+        }
+        if !["HTTP/1.0", "HTTP/1.1"].contains(&version) {
+            return Err(Refused(505, "the version is not HTTP/1.1"));
+        }
+        let mut headers = Vec::new();
+        for line in lines {
+            let (name, value) = line.split_once(':').ok_or(wrong("a header has no colon"))?;
+            let is_of_name = |c: char| c.is_ascii_alphanumeric() || ['-', '_'].contains(&c);
+            let value = value.trim_matches([' ', '\t']);
+            if name.is_empty() || !name.chars().all(is_of_name) || value.chars().any(char::is_control) {
+                return Err(wrong("a header has other characters than it may"));
+            }
+            headers.push((name.to_ascii_lowercase(), value.to_owned()));
+        }
+        let head = Self { method: method.to_owned(), url: url.to_owned(), headers };
+        for once in ["host", "origin", "content-length", "x-stead-token"] {
+            if head.headers.iter().filter(|(name, _)| name == once).count() > 1 {
+                return Err(wrong("a header is there twice"));
+            }
+        }
+        Ok(head)
+    }
+
+    /// The value of a header, by its name in small letters.
+    pub fn header(&self, name: &str) -> Option<&str> {
+        self.headers.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+
+    /// How long the body is that it announces.
+    fn body_length(&self) -> Result<usize, Refused> {
+        if self.header("transfer-encoding").is_some() {
+            return Err(Refused(501, "bodies in chunks are not read; allowed: a body with its length"));
+        }
+        let Some(length) = self.header("content-length") else { return Ok(0) };
+        let is_number = !length.is_empty() && length.chars().all(|c| c.is_ascii_digit());
+        if !is_number {
+            return Err(Refused(400, "the length of the body is no number"));
+        }
+        // A number that does not fit is too long as well.
+        let length = length.parse().unwrap_or(usize::MAX);
+        let too_long = Refused(413, "the body is too long; allowed: 16000000 bytes");
+        if length <= LONGEST_BODY { Ok(length) } else { Err(too_long) }
+    }
+
+    /// Whether the connection ends with the answer.
+    fn is_last(&self) -> bool {
+        self.header("connection").is_some_and(|value| value.to_ascii_lowercase().contains("close"))
+    }
+}
+
+impl Answer {
+    /// As it goes over the line: in one piece, since in two the second waits some 40 ms until the first is
+    /// acknowledged.
+    fn bytes(self, method: &str, is_last: bool) -> Vec<u8> {
+        let Self { status, kind, more, body } = self;
+        let reason = REASONS.iter().find(|(known, _)| *known == status).map_or("", |(_, reason)| *reason);
+        let mut head =
+            format!("HTTP/1.1 {status} {reason}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n", body.len());
+        let own = |name: &str| more.iter().any(|(known, _)| *known == name);
+        let common = HEADERS.iter().filter(|(name, _)| !own(name)).map(|(name, value)| (*name, (*value).to_owned()));
+        for (name, value) in common.chain(more.iter().cloned()) {
+            head.push_str(&format!("{name}: {value}\r\n"));
+        }
+        head.push_str(if is_last { "Connection: close\r\n\r\n" } else { "\r\n" });
+        let mut bytes = head.into_bytes();
+        if method != "HEAD" {
+            bytes.extend(body);
+        }
+        bytes
+    }
+}
+
+const REASONS: [(u16, &str); 12] = [
+    (200, "OK"),
+    (303, "See Other"),
+    (400, "Bad Request"),
+    (403, "Forbidden"),
+    (404, "Not Found"),
+    (405, "Method Not Allowed"),
+    (408, "Request Timeout"),
+    (413, "Content Too Large"),
+    (431, "Request Header Fields Too Large"),
+    (500, "Internal Server Error"),
+    (501, "Not Implemented"),
+    (505, "HTTP Version Not Supported"),
+];
+
+/// What every answer says: it is for this page alone, and not to be kept. The page itself states what it may load.
+const HEADERS: [(&str, &str); 6] = [
+    ("Cache-Control", "no-store"),
+    ("X-Content-Type-Options", "nosniff"),
+    ("Referrer-Policy", "no-referrer"),
+    ("X-Frame-Options", "DENY"),
+    ("Cross-Origin-Resource-Policy", "same-origin"),
+    ("Content-Security-Policy", "frame-ancestors 'none'"),
+];
+
+/// A connection that is open.
+#[derive(Debug)]
+struct Open {
+    stream: TcpStream,
+    /// Since when it has been waiting for a request.
+    since: Instant,
+    /// Whether a request on it was allowed.
+    is_known: bool,
+    /// Whether it is being answered.
+    is_busy: bool,
+}
+
+/// A listener with its connections.
+#[derive(Debug)]
+pub(super) struct Listener {
+    address: SocketAddr,
+    shared: Arc<Shared>,
+    accepting: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    is_closing: AtomicBool,
+    open: Mutex<BTreeMap<u64, Open>>,
+}
+
+impl Shared {
+    fn open(&self) -> MutexGuard<'_, BTreeMap<u64, Open>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes up a connection; where there are too many, one that waits is closed for it, strangers first.
+    fn enter(&self, number: u64, stream: &TcpStream) -> bool {
+        let Ok(stream) = stream.try_clone() else { return false };
+        let mut open = self.open();
+        if open.len() >= MOST_CONNECTIONS {
+            let waiting = open.iter().filter(|(_, one)| !one.is_busy);
+            let Some(number) = waiting.min_by_key(|(_, one)| (one.is_known, one.since)).map(|(number, _)| *number)
+            else {
+                return false;
+            };
+            if let Some(one) = open.remove(&number) {
+                // It is being given up.
+                let _ = one.stream.shutdown(Shutdown::Both);
+            }
+        }
+        open.insert(number, Open { stream, since: Instant::now(), is_known: false, is_busy: false });
+        true
+    }
+
+    fn set(&self, number: u64, change: impl FnOnce(&mut Open)) {
+        if let Some(one) = self.open().get_mut(&number) {
+            change(one);
+        }
+    }
+}
+
+impl Listener {
+    /// Answers what comes in.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn start(listener: TcpListener, site: impl Site) -> io::Result<Self> {
+        let address = listener.local_addr()?;
+        let (shared, site) = (Arc::<Shared>::default(), Arc::new(site));
+        let accepted = Arc::clone(&shared);
+        let accept = move || {
+            for (stream, number) in listener.incoming().zip(0..) {
+                if accepted.is_closing.load(Ordering::SeqCst) {
+                    break;
+                }
+                // A connection that has gone by now, or for which there is no room, is left alone.
+                let Ok(stream) = stream else {
+                    std::thread::sleep(Duration::from_millis(10));
+                    continue;
+                };
+                if !accepted.enter(number, &stream) {
+                    continue;
+                }
+                let (shared, site) = (Arc::clone(&accepted), Arc::clone(&site));
+                let work = move || {
+                    // It ends with the connection, however that ends.
+                    let _ = Connection { stream, shared: &shared, number, rest: Vec::new() }.serve(&*site);
+                    shared.open().remove(&number);
+                };
+                let started = std::thread::Builder::new().name("connection".to_owned()).spawn(work);
+                if started.is_err() {
+                    accepted.open().remove(&number);
+                }
+            }
+        };
+        let accepting = Some(std::thread::Builder::new().name("connections".to_owned()).spawn(accept)?);
+        Ok(Self { address, shared, accepting })
+    }
+
+    /// Closes all connections, but for answers that are being made, which are waited for as long as given.
+    pub fn close(mut self, wait: Duration) {
+        self.shared.is_closing.store(true, Ordering::SeqCst);
+        // Wakes the thread that waits for connections.
+        let _ = TcpStream::connect(self.address);
+        if let Some(accepting) = self.accepting.take() {
+            // A thread that has failed accepts nothing any more.
+            let _ = accepting.join();
+        }
+        let end = Instant::now() + wait;
+        loop {
+            let mut open = self.shared.open();
+            open.retain(|_, one| one.is_busy || one.stream.shutdown(Shutdown::Both).is_err());
+            if open.is_empty() || Instant::now() > end {
+                open.values().for_each(|one| drop(one.stream.shutdown(Shutdown::Both)));
+                return;
+            }
+            drop(open);
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+/// One connection with what was read of it and belongs to no request yet.
+struct Connection<'c> {
+    stream: TcpStream,
+    shared: &'c Shared,
+    number: u64,
+    rest: Vec<u8>,
+}
+
+impl Connection<'_> {
+    /// Answers one request after another.
+    fn serve(mut self, site: &impl Site) -> io::Result<()> {
+        self.stream.set_nodelay(true)?;
+        self.stream.set_write_timeout(Some(TIME_OF_REQUEST))?;
+        while !self.shared.is_closing.load(Ordering::SeqCst) {
+            let head = match self.head()? {
+                Some(Ok(head)) => head,
+                Some(Err(Refused(status, why))) => return self.refuse(site.error(status, why)),
+                None => return Ok(()),
+            };
+            let began = Instant::now();
+            // Without its body read, nothing more can be read of a connection.
+            let length = match head.body_length() {
+                Ok(length) => length,
+                Err(Refused(status, why)) => return self.refuse(site.error(status, why)),
+            };
+            if let Some(refusal) = site.refuses(&head) {
+                return self.refuse(refusal);
+            }
+            self.shared.set(self.number, |one| one.is_known = true);
+            if length > 0 && head.header("expect").is_some_and(|value| value.eq_ignore_ascii_case("100-continue")) {
+                self.stream.write_all(b"HTTP/1.1 100 Continue\r\n\r\n")?;
+            }
+            let Some(body) = self.body(length, began + TIME_OF_REQUEST)? else {
+                return self.refuse(site.error(408, "the request took longer than 10 s"));
+            };
+            self.shared.set(self.number, |one| one.is_busy = true);
+            let is_last = head.is_last() || self.shared.is_closing.load(Ordering::SeqCst);
+            self.stream.write_all(&site.answer(&head, &body).bytes(&head.method, is_last))?;
+            self.shared.set(self.number, |one| (one.is_busy, one.since) = (false, Instant::now()));
+            if is_last {
+                break;
+            }
+        }
+        self.stream.shutdown(Shutdown::Both)
+    }
+
+    /// The head of the next request; none where the connection ends, or nothing comes.
+    fn head(&mut self) -> io::Result<Option<Result<Head, Refused>>> {
+        let mut end = Instant::now() + if self.rest.is_empty() { IDLE } else { TIME_OF_REQUEST };
+        loop {
+            // Lines that are empty before a request are left out.
+            let blank = self.rest.iter().take_while(|byte| [b'\r', b'\n'].contains(byte)).count();
+            self.rest.drain(..blank);
+            if let Some(at) = self.rest.windows(4).position(|four| four == b"\r\n\r\n").filter(|at| *at <= LONGEST_HEAD)
+            {
+                let head = Head::parse(&self.rest[..at]);
+                self.rest.drain(..at + 4);
+                return Ok(Some(head));
+            }
+            if self.rest.len() > LONGEST_HEAD {
+                return Ok(Some(Err(Refused(431, "the head is too long; allowed: 16384 bytes"))));
+            }
+            let was_empty = self.rest.is_empty();
+            match self.more(LONGEST_HEAD, end)? {
+                0 if self.rest.is_empty() => return Ok(None),
+                0 if Instant::now() >= end => {
+                    return Ok(Some(Err(Refused(408, "the request took longer than 10 s"))));
+                }
+                0 => return Ok(None),
+                _ if was_empty => end = Instant::now() + TIME_OF_REQUEST,
+                _ => {}
+            }
+        }
+    }
+
+    /// So many bytes of a body, before a time.
+    fn body(&mut self, length: usize, end: Instant) -> io::Result<Option<Vec<u8>>> {
+        while self.rest.len() < length {
+            if self.more(length - self.rest.len(), end)? == 0 {
+                return Ok(None);
+            }
+        }
+        let later = self.rest.split_off(length);
+        Ok(Some(std::mem::replace(&mut self.rest, later)))
+    }
+
+    /// Reads some more bytes, how many: none where the connection has ended or the time is over.
+    fn more(&mut self, most: usize, end: Instant) -> io::Result<usize> {
+        let mut buffer = [0; 16_384];
+        let most = most.clamp(1, buffer.len());
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(0);
+            }
+            self.stream.set_read_timeout(Some(left))?;
+            match self.stream.read(&mut buffer[..most]) {
+                Ok(count) => {
+                    self.rest.extend_from_slice(&buffer[..count]);
+                    return Ok(count);
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if [ErrorKind::WouldBlock, ErrorKind::TimedOut].contains(&error.kind()) => return Ok(0),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Says no, and closes the connection.
+    fn refuse(mut self, answer: Answer) -> io::Result<()> {
+        self.stream.write_all(&answer.bytes("GET", true))?;
+        self.stream.shutdown(Shutdown::Write)?;
+        // What was sent meanwhile is taken for a moment, so that the system does not throw away the answer with it.
+        let end = Instant::now() + Duration::from_millis(200);
+        let mut taken = 0;
+        while taken < 4 * LONGEST_HEAD {
+            self.rest.clear();
+            match self.more(LONGEST_HEAD, end)? {
+                0 => break,
+                count => taken += count,
+            }
+        }
+        self.stream.shutdown(Shutdown::Both)
+    }
+}
+
+#[cfg(test)]
+mod tests;
