@@ -45,8 +45,8 @@ impl ForcesRun {
     /// Mean force and moment over a turn at every point of the path.
     ///
     /// # Errors
-    /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, for cells that take too
-    /// much memory, and for a file to keep them in that is none; [`Error::Stopped`] when the monitor asked to stop
+    /// [`Error::Input`] for a stock that the path does not touch or whose surface is not closed, for cells that take
+    /// too much memory, and for a file to keep them in that is none; [`Error::Stopped`] when the monitor asked to stop
     /// before the last point.
     pub fn compute(&self, monitor: &Monitor) -> Result<PathForces, Error> {
         let forces = self.run.forces(monitor)?;

@@ -142,8 +142,16 @@ fn a_body_that_is_wrong_is_refused_with_its_field() {
         ("{\"page\":\"a\",\"id\":1,\"x_mm\":null}", "x_mm", "is no such number, found null"),
         ("{\"page\":\"a\",\"id\":-1,\"x_mm\":0,\"y_mm\":0,\"z_mm\":0,\"yaw_deg\":0}", "id", "found -1"),
         ("{\"id\":1,\"x_mm\":0,\"y_mm\":0,\"z_mm\":0,\"yaw_deg\":0}", "page", "is no such text"),
-        ("{\"page\":\"a\\u202eb\",\"id\":1}", "page", "a mark of writing direction"),
-        ("{\"page\":\"a\\u0007b\",\"id\":1}", "page", "a control character"),
+        (
+            "{\"page\":\"a\\u202eb\",\"id\":1,\"x_mm\":0,\"y_mm\":0,\"z_mm\":0,\"yaw_deg\":0}",
+            "page",
+            "a mark of writing direction",
+        ),
+        (
+            "{\"page\":\"a\\u0007b\",\"id\":1,\"x_mm\":0,\"y_mm\":0,\"z_mm\":0,\"yaw_deg\":0}",
+            "page",
+            "a control character",
+        ),
     ] {
         let (status, answer) = live.post("/preview", body);
         assert_eq!((status, &answer["field"]), (400, &field.into()), "{body}: {answer}");
