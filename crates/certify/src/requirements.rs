@@ -68,7 +68,8 @@ fn reasons(problem: &Problem, memory: u64) -> Vec<Unsupported> {
     let rest = alone.as_ref().map_or(problem, |alone| alone);
     let axes = tool_axes(rest);
     all.extend(alone.as_ref().err().cloned());
-    all.extend(axes.as_ref().err().cloned());
+    // That there are axes was said.
+    all.extend(axes.as_ref().err().filter(|reason| alone.is_ok() || **reason != Unsupported::ExternalAxes).cloned());
     all.extend(require_constant(rest, &[0, 3, 4, 5]).err());
     all.extend(unlike_springs(rest));
     if axes.is_ok_and(|axes| axes > 0) {

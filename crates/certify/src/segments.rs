@@ -222,7 +222,9 @@ mod tests {
             let proof = certify(&problem, &at, least, Some(&at), settings, &silent);
             let words = proof.best.unwrap().relaxed_words();
             assert!(words.iter().any(|word| word == "that all segments have the same x, y, z and yaw"), "{words:?}");
-            assert_eq!(proof.worst, Err(NoProof::Unsupported(Unsupported::ExternalAxes)));
+            let Err(NoProof::Unsupported(Unsupported::Several(reasons))) = proof.worst else { panic!("bounded") };
+            let direction = Unsupported::NotFromAbove { key: "criterion.direction" };
+            assert!(reasons[0] == Unsupported::ExternalAxes && reasons.contains(&direction), "{reasons:?}");
         }
     }
 

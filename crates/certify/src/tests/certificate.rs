@@ -234,7 +234,8 @@ fn what_a_bound_leaves_out_of_the_objective_is_named() {
     problem.redundancy.beta = BetaPlan::Constant;
     problem.criterion.joint_travel_weight = 1e-6;
     assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
-    assert_eq!(certifiable_from_above(&problem, u64::MAX), Err(Unsupported::JointTravel));
+    let reasons = vec![Unsupported::JointTravel, Unsupported::ConstantBeta { beta: BetaPlan::Constant }];
+    assert_eq!(certifiable_from_above(&problem, u64::MAX), Err(Unsupported::Several(reasons)));
     let words = proof(&problem, true).relaxed_words();
     assert_eq!(words[words.len() - 2..], ["travel of the joints in the objective", "beta that stays along the path"]);
 }
