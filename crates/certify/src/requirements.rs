@@ -207,7 +207,7 @@ fn has_moments(problem: &Problem) -> bool {
 /// than forces.
 fn unlike_springs(problem: &Problem) -> Vec<Unsupported> {
     let robots = problem.scored_robots();
-    let is_any = |yields: &dyn Fn(&Robot) -> bool| robots.iter().any(|robot| yields(robot));
+    let is_any = |yields: &dyn Fn(&Robot) -> bool| robots.iter().any(yields);
     let beside = |what| Unsupported::YieldsBeside { what };
     let all = [
         (
