@@ -23,6 +23,7 @@ impl Described {
                 (stage, Some((done, total)), best)
             }
             Progress::Steps { stage, done, total } => (stage, Some((done, total)), String::new()),
+            Progress::Note { text } => (text, None, String::new()),
             Progress::Bound { stage, nodes: 0, .. } => (stage, None, "tables are being made".to_owned()),
             Progress::Bound { stage, value, bound, gap, open, nodes } => {
                 let reached = 100.0 * (1.0 - bound / value).abs();

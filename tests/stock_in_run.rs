@@ -95,6 +95,9 @@ fn forces_that_are_kept_are_read_to_the_last_bit_and_nothing_else_is_replaced() 
         bench.write(RUN, &with_keep(&text, &name));
         let torn = score(&format!("out-torn-{number}"));
         assert!(torn.contains("the forces are computed anew and kept: those in "), "{torn}");
+        // A result does not say what was kept before it.
+        let page = |out: &str| bench.read(&format!("{out}/report.html"));
+        assert_eq!(page(&outs[0]), page(&format!("out-torn-{number}")));
         assert_eq!(
             (plan(&outs[0]), kept),
             (plan(&format!("out-torn-{number}")), bench.read(&format!("configs/{name}")))

@@ -43,6 +43,7 @@ impl Latest {
             Progress::Search { stage, done, total, .. } | Progress::Steps { stage, done, total } => {
                 (stage, done, total)
             }
+            Progress::Note { text } => (text, 0, 1),
             // The tree still grows, and so does the total.
             Progress::Bound { stage, open, nodes, .. } => (stage, nodes, nodes + open),
         };

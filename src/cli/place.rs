@@ -3,7 +3,7 @@
 use super::given::GivenRun;
 use super::manual::Manual;
 use super::progress::Terminal;
-use super::values::{gap, seconds, seed, threads};
+use super::values::{gap, positive, seed, threads};
 use super::{
     Failure, files_written, left_in, more, on_threads, out_folder, print, print_json, say, say_notes, say_warnings,
 };
@@ -27,7 +27,7 @@ pub(super) struct PlaceOptions {
     #[arg(long, value_name = "G", value_parser = gap, allow_hyphen_values = true)]
     pub certify: Option<f64>,
     /// End the proof after S seconds, with the bound that it has by then
-    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     pub time_limit: Option<f64>,
     /// Refine the basins of the best placement once more for force errors of 10 %, and say how far it moves
     #[arg(long)]

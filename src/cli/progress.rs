@@ -79,6 +79,9 @@ impl Terminal {
             bar.enable_steady_tick(TICK);
             let (forecast, started) = (Mutex::<Forecast>::default(), Instant::now());
             let show = move |progress: &Progress| {
+                if let Progress::Note { text } = progress {
+                    return drawn.suspend(|| super::say_notes(&[text]));
+                }
                 let outlook = locked(&forecast).add(progress, started.elapsed());
                 draw(&drawn, progress, outlook);
             };
@@ -87,6 +90,9 @@ impl Terminal {
             let lines = Lines::start(LINE_EVERY, super::say);
             let (state, started) = (Arc::clone(&lines.state), Instant::now());
             let keep = move |progress: &Progress| {
+                if let Progress::Note { text } = progress {
+                    return super::say_notes(&[text]);
+                }
                 let mut state = locked(&state.0);
                 let outlook = state.forecast.add(progress, started.elapsed());
                 state.latest = Some((*progress, outlook));

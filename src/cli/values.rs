@@ -69,10 +69,6 @@ pub(super) fn controller(text: &str) -> Result<ControllerKind, String> {
 }
 
 /// Per cent in, a share out.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|seconds| *seconds > 0.0).ok_or_else(|| "allowed: a number above 0".to_owned())
-}
-
 pub(super) fn gap(text: &str) -> Result<f64, String> {
     finite(text).ok().and_then(CertificateSettings::gap).ok_or_else(|| format!("allowed: {GAPS_ALLOWED}"))
 }

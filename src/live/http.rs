@@ -1,9 +1,14 @@
 //! HTTP as the page of one browser needs it, and no more: requests with a head of limited length, whose body is read
 //! once it is known that they may ask, on a limited number of connections, each in a limited time.
 //!
-//! Whoever sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has waited
-//! longest without having asked anything allowed gives way.
+//! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has
+//! waited longest is closed, first among those without a request that was allowed.
 
+mod message;
+
+pub(super) use message::{Answer, Head};
+
+use message::Refused;
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -14,8 +19,6 @@ use std::time::{Duration, Instant};
 
 /// The longest head that is read. Bytes
 const LONGEST_HEAD: usize = 16_384;
-/// The longest body that is read: a placement whose axes move from point to point has megabytes. Bytes
-const LONGEST_BODY: usize = 16_000_000;
 /// A request is whole within this time from its first byte, and an answer is taken within it.
 const TIME_OF_REQUEST: Duration = Duration::from_secs(10);
 /// Connections on which nothing is asked stay open so long.
@@ -23,155 +26,13 @@ const IDLE: Duration = Duration::from_secs(60);
 /// Connections that are open side by side.
 const MOST_CONNECTIONS: usize = 64;
 
-/// The head of a request.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Head {
-    /// The method, as it is written.
-    pub method: String,
-    /// Path and query.
-    pub url: String,
-    headers: Vec<(String, String)>,
-}
-
-/// An answer of the server.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Answer {
-    pub status: u16,
-    pub kind: &'static str,
-    /// Headers that other answers do not have.
-    pub more: Vec<(&'static str, String)>,
-    pub body: Vec<u8>,
-}
-
-/// What a connection is told of a request that is none, or that is not read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Refused(u16, &'static str);
-
 /// What answers.
 pub(super) trait Site: Send + Sync + 'static {
     /// What a request that may not be answered is told, before its body is read.
     fn refuses(&self, head: &Head) -> Option<Answer>;
     /// The answer to a request that may ask.
     fn answer(&self, head: &Head, body: &[u8]) -> Answer;
-    /// That something is not done, and why.
-    fn error(&self, status: u16, message: &str) -> Answer;
 }
-
-impl Head {
-    /// The head of a request without the empty line at its end.
-    pub fn parse(bytes: &[u8]) -> Result<Self, Refused> {
-        let wrong = |what| Refused(400, what);
-        let text = std::str::from_utf8(bytes).map_err(|_| wrong("the head is no text"))?;
-        let mut lines = text.split("\r\n");
-        let first = lines.next().unwrap_or_default();
-        let mut words = first.split(' ');
-        let (Some(method), Some(url), Some(version), None) = (words.next(), words.next(), words.next(), words.next())
-        else {
-            return Err(wrong("the first line is no method, address and version"));
-        };
-        let is_plain = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_graphic());
-        if !(is_plain(url)
-            && url.starts_with('/')
-            && !method.is_empty()
-            && method.chars().all(|c| c.is_ascii_uppercase()))
-        {
-            return Err(wrong("the first line is no method, address and version"));
-        }
-        if !["HTTP/1.0", "HTTP/1.1"].contains(&version) {
-            return Err(Refused(505, "the version is not HTTP/1.1"));
-        }
-        let mut headers = Vec::new();
-        for line in lines {
-            let (name, value) = line.split_once(':').ok_or(wrong("a header has no colon"))?;
-            let is_of_name = |c: char| c.is_ascii_alphanumeric() || ['-', '_'].contains(&c);
-            let value = value.trim_matches([' ', '\t']);
-            if name.is_empty() || !name.chars().all(is_of_name) || value.chars().any(char::is_control) {
-                return Err(wrong("a header has other characters than it may"));
-            }
-            headers.push((name.to_ascii_lowercase(), value.to_owned()));
-        }
-        let head = Self { method: method.to_owned(), url: url.to_owned(), headers };
-        for once in ["host", "origin", "content-length", "x-stead-token"] {
-            if head.headers.iter().filter(|(name, _)| name == once).count() > 1 {
-                return Err(wrong("a header is there twice"));
-            }
-        }
-        Ok(head)
-    }
-
-    /// The value of a header, by its name in small letters.
-    pub fn header(&self, name: &str) -> Option<&str> {
-        self.headers.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
-    }
-
-    /// How long the body is that it announces.
-    fn body_length(&self) -> Result<usize, Refused> {
-        if self.header("transfer-encoding").is_some() {
-            return Err(Refused(501, "bodies in chunks are not read; allowed: a body with its length"));
-        }
-        let Some(length) = self.header("content-length") else { return Ok(0) };
-        let is_number = !length.is_empty() && length.chars().all(|c| c.is_ascii_digit());
-        if !is_number {
-            return Err(Refused(400, "the length of the body is no number"));
-        }
-        // A number that does not fit is too long as well.
-        let length = length.parse().unwrap_or(usize::MAX);
-        let too_long = Refused(413, "the body is too long; allowed: 16000000 bytes");
-        if length <= LONGEST_BODY { Ok(length) } else { Err(too_long) }
-    }
-
-    /// Whether the connection ends with the answer.
-    fn is_last(&self) -> bool {
-        self.header("connection").is_some_and(|value| value.to_ascii_lowercase().contains("close"))
-    }
-}
-
-impl Answer {
-    /// As it goes over the line: in one piece, since in two the second waits some 40 ms until the first is
-    /// acknowledged.
-    fn bytes(self, method: &str, is_last: bool) -> Vec<u8> {
-        let Self { status, kind, more, body } = self;
-        let reason = REASONS.iter().find(|(known, _)| *known == status).map_or("", |(_, reason)| *reason);
-        let mut head =
-            format!("HTTP/1.1 {status} {reason}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n", body.len());
-        let own = |name: &str| more.iter().any(|(known, _)| *known == name);
-        let common = HEADERS.iter().filter(|(name, _)| !own(name)).map(|(name, value)| (*name, (*value).to_owned()));
-        for (name, value) in common.chain(more.iter().cloned()) {
-            head.push_str(&format!("{name}: {value}\r\n"));
-        }
-        head.push_str(if is_last { "Connection: close\r\n\r\n" } else { "\r\n" });
-        let mut bytes = head.into_bytes();
-        if method != "HEAD" {
-            bytes.extend(body);
-        }
-        bytes
-    }
-}
-
-const REASONS: [(u16, &str); 12] = [
-    (200, "OK"),
-    (303, "See Other"),
-    (400, "Bad Request"),
-    (403, "Forbidden"),
-    (404, "Not Found"),
-    (405, "Method Not Allowed"),
-    (408, "Request Timeout"),
-    (413, "Content Too Large"),
-    (431, "Request Header Fields Too Large"),
-    (500, "Internal Server Error"),
-    (501, "Not Implemented"),
-    (505, "HTTP Version Not Supported"),
-];
-
-/// What every answer says: it is for this page alone, and not to be kept. The page itself states what it may load.
-const HEADERS: [(&str, &str); 6] = [
-    ("Cache-Control", "no-store"),
-    ("X-Content-Type-Options", "nosniff"),
-    ("Referrer-Policy", "no-referrer"),
-    ("X-Frame-Options", "DENY"),
-    ("Cross-Origin-Resource-Policy", "same-origin"),
-    ("Content-Security-Policy", "frame-ancestors 'none'"),
-];
 
 /// A connection that is open.
 #[derive(Debug)]
@@ -204,7 +65,7 @@ impl Shared {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes up a connection; where there are too many, one that waits is closed for it, strangers first.
+    /// Takes up a connection; where there are too many, one that waits is closed for it, as the module says.
     fn enter(&self, number: u64, stream: &TcpStream) -> bool {
         let Ok(stream) = stream.try_clone() else { return false };
         let mut open = self.open();
@@ -244,7 +105,7 @@ impl Listener {
                 if accepted.is_closing.load(Ordering::SeqCst) {
                     break;
                 }
-                // A connection that has gone by now, or for which there is no room, is left alone.
+                // A connection that has gone by now, or that is beyond the limit, is left alone.
                 let Ok(stream) = stream else {
                     std::thread::sleep(Duration::from_millis(10));
                     continue;
@@ -256,7 +117,6 @@ impl Listener {
                 let work = move || {
                     // It ends with the connection, however that ends.
                     let _ = Connection { stream, shared: &shared, number, rest: Vec::new() }.serve(&*site);
-                    shared.open().remove(&number);
                 };
                 let started = std::thread::Builder::new().name("connection".to_owned()).spawn(work);
                 if started.is_err() {
@@ -299,6 +159,13 @@ struct Connection<'c> {
     rest: Vec<u8>,
 }
 
+impl Drop for Connection<'_> {
+    /// However it ends, it is open no more.
+    fn drop(&mut self) {
+        self.shared.open().remove(&self.number);
+    }
+}
+
 impl Connection<'_> {
     /// Answers one request after another.
     fn serve(mut self, site: &impl Site) -> io::Result<()> {
@@ -307,14 +174,14 @@ impl Connection<'_> {
         while !self.shared.is_closing.load(Ordering::SeqCst) {
             let head = match self.head()? {
                 Some(Ok(head)) => head,
-                Some(Err(Refused(status, why))) => return self.refuse(site.error(status, why)),
+                Some(Err(Refused(status, why))) => return self.refuse(Answer::error(status, why)),
                 None => return Ok(()),
             };
             let began = Instant::now();
             // Without its body read, nothing more can be read of a connection.
             let length = match head.body_length() {
                 Ok(length) => length,
-                Err(Refused(status, why)) => return self.refuse(site.error(status, why)),
+                Err(Refused(status, why)) => return self.refuse(Answer::error(status, why)),
             };
             if let Some(refusal) = site.refuses(&head) {
                 return self.refuse(refusal);
@@ -324,7 +191,7 @@ impl Connection<'_> {
                 self.stream.write_all(b"HTTP/1.1 100 Continue\r\n\r\n")?;
             }
             let Some(body) = self.body(length, began + TIME_OF_REQUEST)? else {
-                return self.refuse(site.error(408, "the request took longer than 10 s"));
+                return self.refuse(Answer::error(408, "the request took longer than 10 s"));
             };
             self.shared.set(self.number, |one| one.is_busy = true);
             let is_last = head.is_last() || self.shared.is_closing.load(Ordering::SeqCst);

@@ -89,10 +89,6 @@ impl Site for Service {
     fn answer(&self, head: &Head, body: &[u8]) -> Answer {
         answer(&self.session, &self.guard, head, body)
     }
-
-    fn error(&self, status: u16, message: &str) -> Answer {
-        Answer::error(status, message)
-    }
 }
 
 /// A token that nobody guesses, in hexadecimal.

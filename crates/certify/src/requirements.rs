@@ -66,13 +66,15 @@ fn reasons(problem: &Problem, memory: u64) -> Vec<Unsupported> {
     }
     let alone = without_axes(problem);
     let rest = alone.as_ref().map_or(problem, |alone| alone);
-    let axes = tool_axes(rest);
     all.extend(alone.as_ref().err().cloned());
-    // That there are axes was said.
-    all.extend(axes.as_ref().err().filter(|reason| alone.is_ok() || **reason != Unsupported::ExternalAxes).cloned());
+    let axes = tool_axes(rest).unwrap_or_else(|reason| {
+        // That there are external axes was said.
+        all.extend(Some(reason).filter(|reason| alone.is_ok() || *reason != Unsupported::ExternalAxes));
+        0
+    });
     all.extend(require_constant(rest, &[0, 3, 4, 5]).err());
     all.extend(unlike_springs(rest));
-    if axes.is_ok_and(|axes| axes > 0) {
+    if axes > 0 {
         all.extend(not_covered_leaning(rest));
     }
     if alone.is_err() {
@@ -83,11 +85,12 @@ fn reasons(problem: &Problem, memory: u64) -> Vec<Unsupported> {
     if !all.is_empty() {
         return all;
     }
-    let bytes = match tool_axes(rest) {
-        Ok(axes) if axes > 0 => leaning::bytes(rest, axes),
-        _ => ComplianceTable::bytes(extent, STEPS)
+    let bytes = if axes > 0 {
+        leaning::bytes(rest, axes)
+    } else {
+        ComplianceTable::bytes(extent, STEPS)
             .saturating_mul(rest.scored_robots().len() as u64)
-            .saturating_add(CoarseBounds::bytes(extent, STEPS, &points_of(rest))),
+            .saturating_add(CoarseBounds::bytes(extent, STEPS, &points_of(rest)))
     };
     (bytes > memory).then_some(Unsupported::TooLarge { bytes, max: memory }).into_iter().collect()
 }
@@ -122,7 +125,7 @@ fn missing_to_axis_1(problem: &Problem) -> Option<f64> {
 /// absolute value of one part of the deflection.
 ///
 /// # Errors
-/// All reasons why not.
+/// All reasons why the best one cannot be certified; where it can, all why the worst cannot.
 pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     if orientations::are_several(problem) {
         return Err(Unsupported::Orientations);

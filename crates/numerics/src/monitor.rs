@@ -46,6 +46,11 @@ pub enum Progress {
         /// Nodes bounded so far; zero while the bounds are being prepared.
         nodes: usize,
     },
+    /// Something is done that the caller should know of, and that changes nothing of the result.
+    Note {
+        /// What, as a sentence without a full stop.
+        text: &'static str,
+    },
 }
 
 /// Why a job should end early.

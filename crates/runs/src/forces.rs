@@ -45,18 +45,16 @@ impl ForcesRun {
     pub fn forces(&self, monitor: &Monitor) -> Result<RemovalForces, ReadError> {
         let located = |error: ForcesError| self.located(&error);
         let Some(keep) = &self.keep else { return forces(&self.problem, monitor).map_err(located) };
-        let (known, note) = keep.known(&self.problem)?;
-        let result = match known {
+        let keep = keep.of(&self.problem);
+        let result = match keep.cut(monitor)? {
             Some(known) => known,
             None => {
                 let result = cut(&self.problem, monitor).map_err(located)?;
-                keep.put(&self.problem, &result.rows())?;
+                keep.put_cut(&result.rows())?;
                 result
             }
         };
-        let mut all = result.forces(&self.problem).map_err(located)?;
-        all.notes.splice(0..0, note);
-        Ok(all)
+        result.forces(&self.problem).map_err(located)
     }
 
     /// The same for paths that are that of the run with the tool leaning, one after another, from what
@@ -72,11 +70,12 @@ impl ForcesRun {
     ) -> Result<Vec<Vec<PointForces>>, ReadError> {
         let made = || leaning_forces(&self.problem, known, paths, monitor).map_err(|error| self.located(&error));
         let Some(keep) = &self.keep else { return made() };
-        if let Some(found) = keep.leaning(&self.problem, paths)? {
+        let keep = keep.of(&self.problem);
+        if let Some(found) = keep.leaning(paths)? {
             return Ok(found);
         }
         let made = made()?;
-        keep.put_leaning(&self.problem, paths, &made)?;
+        keep.put_leaning(paths, &made)?;
         Ok(made)
     }
 

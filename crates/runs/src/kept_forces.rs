@@ -1,6 +1,5 @@
 //! The file in which a run keeps the forces of its path, so that they are computed once.
 
-use crate::ReadError;
 use std::fmt::Write;
 use std::path::PathBuf;
 use stead_disk::Existing;
@@ -8,7 +7,7 @@ use stead_disk::files::new::write_new;
 use stead_disk::files::read_own;
 use stead_disk::input::{InputError, sha256, sha256_of};
 use stead_model::task::ToolPath;
-use stead_numerics::message::Note;
+use stead_numerics::monitor::{Monitor, Progress};
 use stead_removal::kept::{CutResult, load_of_row, load_rows};
 use stead_removal::operation::ForcesProblem;
 use stead_removal::outcome::PointForces;
@@ -17,6 +16,9 @@ use stead_removal::outcome::PointForces;
 const MARK: &str = "stead kept forces,1,";
 /// How the line begins that stands before the loads of a tool that leans, followed by the digest of its path.
 const LEAN: &str = "lean,";
+/// What is said where something else is kept.
+const ANEW: &str = "the forces are computed anew and kept: those in the file of [stock] keep were of another stock, path, cutter or \
+                    program";
 const ALLOWED: &str = "the name of a file that is not there yet, or of one with kept forces";
 
 /// A file with the forces of a path. Its first line has the digests of what they were computed of, the program among
@@ -35,69 +37,11 @@ impl KeptForces {
         Self { file, at }
     }
 
-    /// What is kept of the cut of a problem, where that is so; and a note where something else is kept, which is
-    /// replaced.
-    ///
-    /// # Errors
-    /// [`InputError`] where the file is none of this kind.
-    pub fn known(&self, problem: &ForcesProblem) -> Result<(Option<CutResult>, Option<Note>), InputError> {
-        let Some(text) = self.text()? else { return Ok((None, None)) };
-        let points = problem.operation.path.points().len();
-        let known = body(&text, &digest(problem)).and_then(|body| CutResult::of_rows(parts(body).0, points));
-        let note = known.is_none().then(|| {
-            let file = self.file.display();
-            format!(
-                "the forces are computed anew and kept: those in {file} were of another stock, path, cutter or program"
-            )
-            .into()
-        });
-        Ok((known, note))
-    }
-
-    /// Keeps what was computed of a problem.
-    ///
-    /// # Errors
-    /// [`InputError`] where the file cannot be written or is none of this kind.
-    pub fn put(&self, problem: &ForcesProblem, rows: &str) -> Result<(), InputError> {
-        // Looked at once more: it may be another one now.
-        self.text()?;
-        let text = format!("{MARK}{},{}\n{rows}", digest(problem), sha256(rows.as_bytes()));
-        write_new(&self.file, &text, Existing::Replaced)
-    }
-
-    /// The loads that are kept for paths on which the tool leans, where those of all are.
-    ///
-    /// # Errors
-    /// Those of [`known`](Self::known).
-    pub fn leaning(
-        &self,
-        problem: &ForcesProblem,
-        paths: &[ToolPath],
-    ) -> Result<Option<Vec<Vec<PointForces>>>, ReadError> {
-        let Some(text) = self.text()? else { return Ok(None) };
-        let found = body(&text, &digest(problem)).and_then(|body| leaning(parts(body).1, paths));
-        Ok(found)
-    }
-
-    /// Keeps the loads for paths on which the tool leans beside what is kept of the problem, in place of other ones.
-    ///
-    /// # Errors
-    /// Those of [`put`](Self::put).
-    pub fn put_leaning(
-        &self,
-        problem: &ForcesProblem,
-        paths: &[ToolPath],
-        loads: &[Vec<PointForces>],
-    ) -> Result<(), InputError> {
-        let text = self.text()?.unwrap_or_default();
-        // Somebody else keeps other forces there now.
-        let Some(body) = body(&text, &digest(problem)) else { return Ok(()) };
-        let mut rows = parts(body).0.to_owned();
-        for (path, loads) in paths.iter().zip(loads) {
-            // Writing to a string cannot fail.
-            let _ = write!(rows, "{LEAN}{}\n{}", sha256_of(path), load_rows(loads));
-        }
-        self.put(problem, &rows)
+    /// What it keeps of a problem.
+    pub(crate) fn of(&self, problem: &ForcesProblem) -> KeptOf<'_> {
+        // The memory that it may take changes nothing.
+        let all = (env!("CARGO_PKG_VERSION"), ForcesProblem { memory: 0.0, ..problem.clone() });
+        KeptOf { keep: self, digest: sha256_of(&all), points: problem.operation.path.points().len() }
     }
 
     /// The file, where it is there.
@@ -115,17 +59,76 @@ impl KeptForces {
     }
 }
 
-/// Of all that forces depend on.
-fn digest(problem: &ForcesProblem) -> String {
-    // What it may take changes nothing.
-    sha256_of(&(env!("CARGO_PKG_VERSION"), ForcesProblem { memory: 0.0, ..problem.clone() }))
+/// A file with the forces of a path, and the problem that it is used for.
+pub(crate) struct KeptOf<'k> {
+    keep: &'k KeptForces,
+    /// Of all that the forces depend on.
+    digest: String,
+    /// Points of the path.
+    points: usize,
 }
 
-/// All but the first line, where it is whole and of the problem with this digest.
-fn body<'t>(text: &'t str, digest: &str) -> Option<&'t str> {
-    let (first, body) = text.split_once('\n')?;
-    let (of_problem, of_body) = first.strip_prefix(MARK)?.split_once(',')?;
-    (of_problem == digest && of_body == sha256(body.as_bytes())).then_some(body)
+impl KeptOf<'_> {
+    /// What is kept of the cut. Where something else is, which is to be replaced, the monitor is told: a result does
+    /// not depend on what was kept, so that it says nothing of it.
+    ///
+    /// # Errors
+    /// [`InputError`] where the file is none of this kind.
+    pub fn cut(&self, monitor: &Monitor) -> Result<Option<CutResult>, InputError> {
+        let Some(text) = self.keep.text()? else { return Ok(None) };
+        let known = self.body(&text).and_then(|body| CutResult::of_rows(parts(body).0, self.points));
+        if known.is_none() {
+            monitor.report(Progress::Note { text: ANEW });
+        }
+        Ok(known)
+    }
+
+    /// Keeps the rows of a cut.
+    ///
+    /// # Errors
+    /// [`InputError`] where the file cannot be written or is none of this kind.
+    pub fn put_cut(&self, rows: &str) -> Result<(), InputError> {
+        // Looked at once more: it may be another one now.
+        self.keep.text()?;
+        self.put(rows)
+    }
+
+    /// The loads that are kept for paths on which the tool leans, where those of all are.
+    ///
+    /// # Errors
+    /// Those of [`cut`](Self::cut).
+    pub fn leaning(&self, paths: &[ToolPath]) -> Result<Option<Vec<Vec<PointForces>>>, InputError> {
+        let text = self.keep.text()?;
+        Ok(text.and_then(|text| leaning(parts(self.body(&text)?).1, paths)))
+    }
+
+    /// Keeps the loads for paths on which the tool leans beside what is kept of the cut, in place of other ones.
+    ///
+    /// # Errors
+    /// Those of [`put_cut`](Self::put_cut).
+    pub fn put_leaning(&self, paths: &[ToolPath], loads: &[Vec<PointForces>]) -> Result<(), InputError> {
+        let text = self.keep.text()?.unwrap_or_default();
+        // Somebody else keeps other forces there now.
+        let Some(body) = self.body(&text) else { return Ok(()) };
+        let mut rows = parts(body).0.to_owned();
+        for (path, loads) in paths.iter().zip(loads) {
+            // Writing to a string cannot fail.
+            let _ = write!(rows, "{LEAN}{}\n{}", sha256_of(path), load_rows(loads));
+        }
+        self.put(&rows)
+    }
+
+    fn put(&self, rows: &str) -> Result<(), InputError> {
+        let text = format!("{MARK}{},{}\n{rows}", self.digest, sha256(rows.as_bytes()));
+        write_new(&self.keep.file, &text, Existing::Replaced)
+    }
+
+    /// All but the first line, where it is whole and of this problem.
+    fn body<'t>(&self, text: &'t str) -> Option<&'t str> {
+        let (first, body) = text.split_once('\n')?;
+        let (of_problem, of_body) = first.strip_prefix(MARK)?.split_once(',')?;
+        (of_problem == self.digest && of_body == sha256(body.as_bytes())).then_some(body)
+    }
 }
 
 /// The rows of the cut, and those of leaning tools.

@@ -1,18 +1,15 @@
+use super::message::HEADERS;
 use super::*;
 
 struct Echo;
 
 impl Site for Echo {
     fn refuses(&self, head: &Head) -> Option<Answer> {
-        (head.header("x-stead-token") != Some("known")).then(|| self.error(403, "no"))
+        (head.header("x-stead-token") != Some("known")).then(|| Answer::error(403, "no"))
     }
 
     fn answer(&self, head: &Head, body: &[u8]) -> Answer {
         Answer { status: 200, kind: "text/plain", more: Vec::new(), body: [head.url.as_bytes(), b" ", body].concat() }
-    }
-
-    fn error(&self, status: u16, message: &str) -> Answer {
-        Answer { status, kind: "text/plain", more: Vec::new(), body: message.as_bytes().to_vec() }
     }
 }
 
@@ -44,7 +41,9 @@ fn requests_are_answered_one_after_another_on_a_connection() {
     assert!(first.starts_with("200 OK\r\n") && first.ends_with("\r\n\r\n/a?q xyz") && !first.contains("Connection"));
     assert!(second.ends_with("Connection: close\r\n\r\n/b ") && second.contains("Content-Length: 3\r\n"));
     assert!(HEADERS.iter().all(|(name, value)| first.contains(&format!("{name}: {value}\r\n"))));
-    let bytes = |method| Echo.error(200, "no").bytes(method, false);
+    let bytes = |method| {
+        Answer { status: 200, kind: "text/plain", more: Vec::new(), body: b"no".to_vec() }.bytes(method, false)
+    };
     assert!(bytes("GET").ends_with(b"no") && bytes("HEAD").ends_with(b"\r\n\r\n"));
     listener.close(Duration::ZERO);
 }
@@ -120,7 +119,7 @@ fn raw_bytes_never_stop_the_server() {
     listener.close(Duration::ZERO);
 }
 
-/// Whoever sends nothing, or half of a head, or a body slowly, holds no one else up.
+/// Clients that send nothing, or half of a head, or a body slowly, keep no other waiting.
 #[test]
 fn slow_connections_keep_nobody_waiting_and_do_not_outlive_the_server() {
     let listener = start();

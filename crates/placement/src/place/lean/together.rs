@@ -8,7 +8,7 @@
 use super::{Improved, Job, NEAR};
 use crate::place::axes::{MOST_REFINED, planned_in, refined};
 use crate::place::thinned::{Thinned, path_of, spread};
-use crate::refine::{Solution, neighbours, solver};
+use crate::refine::{neighbours, solver};
 use rayon::prelude::*;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::Progress;
@@ -71,12 +71,16 @@ impl Job<'_> {
             return None;
         }
         let is_better = again.solution.objective < run.solution.objective;
-        let leaning = self.problem.in_setup(&again.setup);
-        let lines = |of: &Solution| of.plans.iter().map(|plan| whole_lines(&leaning, &of.placement, plan)).collect();
-        let [whole, reached]: [Vec<[bool; 2]>; 2] = [&again.solution, &run.solution].map(lines);
         // The gradient knows nothing of the lines into the cut and out of it.
-        let loses_lines = whole.iter().zip(reached).any(|(whole, reached)| (0..2).any(|k| whole[k] && !reached[k]));
-        let is_planned = is_better || loses_lines;
+        let loses_lines = || {
+            let leaning = self.problem.in_setup(&again.setup);
+            again.solution.plans.iter().zip(&run.solution.plans).any(|(planned, reached)| {
+                let planned = whole_lines(&leaning, &again.solution.placement, planned);
+                let reached = whole_lines(&leaning, &run.solution.placement, reached);
+                (planned[0] && !reached[0]) || (planned[1] && !reached[1])
+            })
+        };
+        let is_planned = is_better || loses_lines();
         Some(if is_planned { again } else { Improved { solution: run.solution, ..again } })
     }
 
