@@ -46,7 +46,7 @@ impl Error {
     pub fn is_bad_input(&self) -> bool {
         match self {
             Self::Input(error) => !error.is_of_disk,
-            Self::Argument(_) | Self::Study(StudyError::Folder { .. } | StudyError::Locked { .. }) => true,
+            Self::Argument(_) | Self::Study(StudyError::Folder { .. }) => true,
             _ => false,
         }
     }

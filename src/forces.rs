@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_disk::Existing;
 use stead_disk::files::new::write_all_new;
+use stead_disk::input::InputFile;
 use stead_numerics::message::Note;
 use stead_report::forces::{ENDINGS, forces_files, forces_json, forces_text};
 use stead_run_files as run_files;
@@ -35,6 +36,11 @@ impl ForcesRun {
     /// What the user should know about the input though it is not wrong, in sentences.
     pub fn notes(&self) -> &[Note] {
         &self.run.notes
+    }
+
+    /// The files that it was read from.
+    pub fn inputs(&self) -> &[InputFile] {
+        &self.run.inputs
     }
 
     /// What is to be cut.
@@ -94,7 +100,7 @@ impl PathForces {
             .map(|(file, (_, bytes))| (file, String::from_utf8_lossy(&bytes).into_owned()))
             .collect();
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
-        write_all_new(&texts, existing)?;
+        write_all_new(&texts, existing, &self.run.inputs)?;
         Ok(files.into_iter().map(|(file, _)| file).collect())
     }
 

@@ -35,12 +35,14 @@ impl Described {
                 let requested = figures(100.0 * gap);
                 let outlook = match outlook {
                     Some(Outlook::Reached(left)) => {
-                        format!(", about {} s to {requested} %", figures(left.as_secs_f64()))
+                        let [least, most] = left.map(|left| figures(left.as_secs_f64()));
+                        let band = if least == most { least } else { format!("{least} to {most}") };
+                        format!(", about {band} s to {requested} %")
                     }
                     Some(Outlook::Hardly) => ", hardly closing".to_owned(),
                     None => String::new(),
                 };
-                (stage, None, format!("{reached} (asked {requested} %){outlook}, {open} boxes open, {nodes} evaluated"))
+                (stage, None, format!("{reached} (asked {requested} %), {open} boxes open{outlook}, {nodes} evaluated"))
             }
         };
         Self { stage, steps, message }

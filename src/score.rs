@@ -92,7 +92,7 @@ impl Report for PlacementScore {
     }
 
     fn table(&self) -> String {
-        evaluation::score_text(&self.score, &self.context)
+        evaluation::score_text(&self.run.problem, &self.score, &self.context)
     }
 
     fn notes(&self) -> &[Note] {

@@ -63,7 +63,7 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
     let run = AssessmentRun::read(&options.config)?
         .selecting(accuracy, options.force_n)
         .map_err(|error| Failure::at("--accuracy-mm and --force-n", error))?;
-    let out = out_folder(options.out.as_deref(), &options.config)?;
+    let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
     let shown = Terminal::start(Some(&out.folder)).show(None);
     let assessment = on_threads(options.threads, || run.assess(&shown.monitor))??;

@@ -44,6 +44,7 @@ pub(super) fn run(options: &CheckOptions) -> Result<(), Failure> {
     say_warnings(checked.warnings());
     if let Some(out) = &options.out {
         let folder = Folder::create(out).map_err(Failure::Output)?;
+        folder.has_no_other(MANUAL.file_names()).map_err(Failure::Output)?;
         files_written(checked.write_in(&folder))?;
     }
     show(&checked, options.json)

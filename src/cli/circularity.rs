@@ -48,6 +48,7 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     let mut folder = String::new();
     if let Some(out) = &options.out {
         let out = Folder::create(out).map_err(Failure::Output)?;
+        out.has_no_other(MANUAL.file_names()).map_err(Failure::Output)?;
         files_written(circularity.write_in(&out))?;
         folder = out.path().display().to_string();
     }

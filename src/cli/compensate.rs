@@ -50,7 +50,7 @@ pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let run = CompensationRun::read_with(&options.config, options.reality.as_deref(), &shown.monitor);
     drop(shown);
     let run = run?;
-    let out = out_folder(options.out.as_deref(), &options.config)?;
+    let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     terminal.holds(&out.folder);
     say_notes(run.notes());
     say_warnings(run.warnings());

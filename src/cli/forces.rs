@@ -58,7 +58,7 @@ pub(super) fn run(options: &ForcesOptions) -> Result<(), Failure> {
     let run = ForcesRun::read(&options.config)?;
     // What is there and to be kept is found out before the long work.
     let files = PathForces::files(&options.out);
-    check_all_new(&files, options.force.existing()).map_err(stead::Error::from)?;
+    check_all_new(&files, options.force.existing(), run.inputs()).map_err(stead::Error::from)?;
     say_notes(run.notes());
     let shown = Terminal::start(None).show(None);
     let forces = on_threads(options.threads, || run.compute(&shown.monitor))?;

@@ -44,8 +44,8 @@ pub(super) const MANUAL: Manual = Manual {
         ("placement-1/, placement-2/, ..", "the placements that are kept, each as `stead score --out` writes it"),
         ("live.json", "where the part stood last and which values were changed, for the next session in the folder"),
         (
-            "certificate-N.json",
-            "bounds and gaps of placements that were certified, N being the version of the run's values",
+            "certificate-1.json, ..",
+            "bounds and gaps of placements that were certified, with placement and changed values",
         ),
         ("programs/placement-1/, ..", "robot programs of placements that are kept"),
     ],
@@ -63,7 +63,7 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
     let run = options.run.read(&terminal, None)?;
-    let out = out_folder_named(options.out.as_deref(), &options.run.config, "-live")?;
+    let out = out_folder_named(options.out.as_deref(), &options.run.config, "-live", &Manual::NEW)?;
     terminal.holds(&out.folder);
     let requested = LiveOptions {
         file: options.run.config.clone(),

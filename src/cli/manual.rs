@@ -102,6 +102,12 @@ impl Manual {
         interrupted: "",
     };
 
+    /// The names of the files that it writes, those alone that are known before it has run.
+    pub fn file_names(&self) -> Vec<String> {
+        let names = self.files.iter().flat_map(|(names, _)| names.split(", "));
+        names.flat_map(expanded).filter(|name| name.contains('.') && !name.contains(['/', '<'])).collect()
+    }
+
     /// The end of the long help.
     fn text(&self) -> String {
         let heading = if self.examples.len() == 1 { "Example:" } else { "Examples:" };
@@ -178,4 +184,14 @@ pub(super) fn overview(command: &clap::Command) -> String {
         text.push_str(&format!("{question}:\n{}\n", members.map(line).collect::<String>()));
     }
     text
+}
+
+/// The names that one with alternatives in braces stands for.
+fn expanded(name: &str) -> Vec<String> {
+    let Some((before, (among, behind))) =
+        name.split_once('{').and_then(|(before, rest)| Some((before, rest.split_once('}')?)))
+    else {
+        return vec![name.to_owned()];
+    };
+    among.split(',').flat_map(|one| expanded(&format!("{before}{one}{behind}"))).collect()
 }

@@ -35,6 +35,7 @@ mod values;
 
 use arguments::{Arguments, Command};
 use clap::{CommandFactory, FromArgMatches};
+use manual::Manual;
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fmt::Display;
@@ -291,16 +292,22 @@ fn results_in(folder: String) -> String {
 
 /// The folder requested, or `results/` and the name of the config; taken before the long work, so that one that cannot
 /// be written to is found out now, and that no other run takes it.
-fn out_folder(requested: Option<&Path>, config: &Path) -> Result<OutFolder, Failure> {
-    out_folder_named(requested, config, "")
+fn out_folder(requested: Option<&Path>, config: &Path, manual: &Manual) -> Result<OutFolder, Failure> {
+    out_folder_named(requested, config, "", manual)
 }
 
 /// As [`out_folder`], with an ending to the name, for a command that shares its config with another.
-fn out_folder_named(requested: Option<&Path>, config: &Path, ending: &str) -> Result<OutFolder, Failure> {
+fn out_folder_named(
+    requested: Option<&Path>,
+    config: &Path,
+    ending: &str,
+    manual: &Manual,
+) -> Result<OutFolder, Failure> {
     let mut name = config.file_stem().unwrap_or_default().to_owned();
     name.push(ending);
     let path = requested.map_or_else(|| Path::new("results").join(name), Path::to_owned);
     let is_new = !path.exists();
     let folder = Folder::create(&path).map_err(Failure::Output)?;
+    folder.has_no_other(manual.file_names()).map_err(Failure::Output)?;
     Ok(OutFolder { folder, _made: is_new.then_some(MadeFolder(path)) })
 }

@@ -10,7 +10,7 @@ use super::{
 use clap::Args;
 use std::path::PathBuf;
 use stead::program::ProgramFormat;
-use stead::report::{Folder, NOTES, summary_line, summary_text};
+use stead::report::{Folder, summary_line, summary_text};
 use stead::{Error, Placements, Run};
 
 #[derive(Debug, Args)]
@@ -120,8 +120,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.no_page {
         run = run.without_page();
     }
-    let mut out = out_folder(options.out.as_deref(), &options.run.config)?;
-    out.folder.has_no_other(NOTES).map_err(Failure::Output)?;
+    let mut out = out_folder(options.out.as_deref(), &options.run.config, &MANUAL)?;
     out.folder = out.folder.keeping_partial(options.keep_partial);
     terminal.holds(&out.folder);
     let is_short = !options.notes && !options.json;

@@ -198,9 +198,9 @@ mod tests {
         assert_eq!(line(Some(&(steps, None)), at), "progress: refining: 1 of 8, 30 s");
         let bound =
             Progress::Bound { stage: "certifying best", value: 1.0, bound: 0.95, gap: 0.01, open: 12, nodes: 480 };
-        let outlook = Some(Outlook::Reached(Duration::from_secs(40)));
+        let outlook = Some(Outlook::Reached([40, 90].map(Duration::from_secs)));
         let said = line(Some(&(bound, outlook)), at);
-        assert!(said.contains("(asked 1.00 %), about 40.0 s to 1.00 %, 12 boxes open"), "{said}");
+        assert!(said.contains("(asked 1.00 %), 12 boxes open, about 40.0 to 90.0 s to 1.00 %"), "{said}");
     }
 
     #[test]

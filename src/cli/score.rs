@@ -7,7 +7,7 @@ use super::{Failure, files_written, left_in, more, on_threads, print, print_json
 use clap::Args;
 use std::path::PathBuf;
 use stead::Error;
-use stead::report::{Folder, NOTES, summary_text};
+use stead::report::{Folder, summary_text};
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreOptions {
@@ -75,7 +75,7 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     // Taken before the work is done.
     let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
-    out.iter().try_for_each(|out| out.has_no_other(NOTES)).map_err(Failure::Output)?;
+    out.iter().try_for_each(|out| out.has_no_other(MANUAL.file_names())).map_err(Failure::Output)?;
     out.iter().for_each(|out| terminal.holds(out));
     let is_short = !options.notes && !options.json;
     let outside_cell = run.outside_cell(&placement);

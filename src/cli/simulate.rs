@@ -49,7 +49,7 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let run = SimulationRun::read_with(&options.config, &Overrides::from(&options.model))?;
-    let out = out_folder(options.out.as_deref(), &options.config)?;
+    let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     let shown = Terminal::start(Some(&out.folder)).show(None);
     let pass = if options.fast { run.simulate_condensed(&shown.monitor) } else { run.simulate(&shown.monitor) };
     drop(shown);

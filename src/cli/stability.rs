@@ -52,7 +52,7 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
     let run = StabilityRun::read_with(&options.config, &Overrides::from(&options.model))?;
-    let out = out_folder_named(options.out.as_deref(), &options.config, "-stability")?;
+    let out = out_folder_named(options.out.as_deref(), &options.config, "-stability", &MANUAL)?;
     let shown = Terminal::start(Some(&out.folder)).show(None);
     let analysis = on_threads(options.threads, || run.analyse(&shown.monitor))?;
     drop(shown);

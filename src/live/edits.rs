@@ -15,11 +15,6 @@ use toml_edit::{DocumentMut, Item, Table, Value};
 /// The tables whose values can be changed in a session.
 const TABLES: [&str; 2] = ["cell.", "criterion."];
 
-/// A value as it was kept; none where it is not readable any more.
-pub(super) fn parsed(text: &str) -> Option<FieldOverride> {
-    FieldOverride::parse(text).ok()
-}
-
 /// A value that can be changed in a session.
 ///
 /// # Errors

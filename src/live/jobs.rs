@@ -22,6 +22,8 @@ use stead_report::certificate::{certificate_json, certificate_text};
 use stead_report::document;
 use stead_report::units::{Unit, fixed};
 
+/// What a certificate is called, with a number between.
+const CERTIFICATE: [&str; 2] = ["certificate-", ".json"];
 /// Jobs that have ended and are still told of.
 const TOLD: usize = 16;
 
@@ -340,8 +342,14 @@ impl Session {
             CertificateSettings { gap, ..reading.run.run.certificate.unwrap_or(CertificateSettings::new(gap)) };
         let objective = scored.score().plans.best.objective;
         let found = stead_certify::certify(set_up.problem(), &place.placement, objective, None, settings, monitor);
-        let name = format!("certificate-{}.json", self.known().reading.version);
-        let bytes = document::bytes(&certificate_json(&found, reading.run.inputs()));
+        let mut stated = certificate_json(&found, reading.run.inputs());
+        stated["changed_values"] = reading.edits.iter().map(ToString::to_string).collect::<Vec<_>>().into();
+        if let (Value::Object(stated), Value::Object(place)) = (&mut stated, place.entry(reading.run.problem())) {
+            stated.extend(place);
+        }
+        let [before, behind] = CERTIFICATE;
+        let (number, bytes) = (self.next_number(before, behind), document::bytes(&stated));
+        let name = format!("{before}{number}{behind}");
         let file = self.folder.write(&name, &bytes)?;
         // A paragraph for each placement; no worst one was asked for.
         let text = certificate_text(&found);

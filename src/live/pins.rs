@@ -1,16 +1,18 @@
 //! Placements that are kept: folders as `stead score --out` writes them.
 
 use super::edits;
-use super::session::{Reading, Session, strings};
+use super::kept::{Kept, numbers_in, strings};
+use super::session::{Reading, Session};
 use crate::files::FieldOverride;
 use crate::{Error, PlacementScore};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use stead_disk::files;
+use stead_disk::quote::garbles;
 use stead_report::Folder;
 
 /// What its folder is called, with a number behind.
-const NAME: &str = "placement-";
+pub(super) const NAME: &str = "placement-";
 /// The document in it.
 const DOCUMENT: &str = "score.json";
 
@@ -33,28 +35,15 @@ const SHOWN: [&str; 7] =
 
 impl Pin {
     /// Those in a folder, in the order of their numbers, with what an earlier session said of them.
-    pub fn all_in(folder: &Folder, kept: &Value) -> Vec<Self> {
-        let mut numbers: Vec<usize> = std::fs::read_dir(folder.path())
-            .into_iter()
-            .flatten()
-            .flatten()
-            .filter_map(|entry| entry.file_name().to_str()?.strip_prefix(NAME)?.parse().ok())
-            .collect();
-        numbers.sort_unstable();
-        let said = |name: &str| kept["pins"].as_array().into_iter().flatten().find(|pin| pin["name"] == name);
-        let read = |number: usize| {
+    pub fn all_in(folder: &Folder, kept: &Kept) -> Vec<Self> {
+        let read = |number: u64| {
             let name = format!("{NAME}{number}");
-            let bytes = files::read(&folder.path().join(&name).join(DOCUMENT)).ok()?;
-            let document: Value = serde_json::from_slice(&bytes).ok()?;
-            let said = said(&name).cloned().unwrap_or_default();
-            Some(Self {
-                label: said["label"].as_str().unwrap_or_default().to_owned(),
-                edits: strings(&said["edits"]),
-                document: shown(&document),
-                name,
-            })
+            let document: Value = serde_json::from_slice(&file(folder.path(), &name, DOCUMENT)?).ok()?;
+            let said = kept.pin(&name);
+            let label = said["label"].as_str().filter(|label| !label.contains(garbles)).unwrap_or_default().to_owned();
+            Some(Self { label, edits: strings(&said["edits"]), document: shown(&document), name })
         };
-        numbers.into_iter().filter_map(read).collect()
+        numbers_in(folder.path(), NAME, "").into_iter().filter_map(read).collect()
     }
 
     /// Writes a placement that was scored into a folder of its own; returns its name.
@@ -62,8 +51,7 @@ impl Pin {
     /// # Errors
     /// [`Error::Output`]: the folder cannot be written.
     pub fn write(session: &Session, reading: &Reading, score: &PlacementScore, label: &str) -> Result<String, Error> {
-        let is_taken = |name: &String| session.folder.path().join(name).exists();
-        let name = (1..).map(|number| format!("{NAME}{number}")).find(|name| !is_taken(name)).unwrap_or_default();
+        let name = format!("{NAME}{}", session.next_number(NAME, ""));
         score.write(session.folder.path().join(&name))?;
         let pin = Self {
             name: name.clone(),
@@ -92,7 +80,7 @@ impl Pin {
 
     /// The values that were changed when it was kept.
     pub fn edits(&self) -> Vec<FieldOverride> {
-        self.edits.iter().flat_map(|text| edits::parsed(text)).collect()
+        self.edits.iter().flat_map(|text| edits::allowed(text)).collect()
     }
 }
 

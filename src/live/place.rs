@@ -1,5 +1,6 @@
 //! Where the part stands, and how it and the external axes are set up: as pages ask for it and results state it.
 
+use super::requests::FARTHEST_MM;
 use serde_json::{Map, Value, json};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_planning::problem::{Placement, Problem};
@@ -26,7 +27,7 @@ impl Place {
     /// As the entry of a result states it, with every digit; none where it is none of the problem's.
     pub fn of_entry(problem: &Problem, entry: &Value) -> Option<Self> {
         let exact = &entry["placement_exact"];
-        let number = |key: &str| exact[key].as_f64().filter(|value| value.is_finite());
+        let number = |key: &str| exact[key].as_f64().filter(|value| value.abs() <= FARTHEST_MM);
         let [x, y, z] = [number("x_mm")?, number("y_mm")?, number("z_mm")?];
         let placement = Placement::from_mm_deg([x, y, z], number("yaw_deg")?);
         Some(Self { placement, setup: stead_runs::setup_in(problem, entry).ok()? })

@@ -29,7 +29,7 @@ impl RequestError {
 }
 
 /// Places farther away than this are a slip. mm
-const FARTHEST_MM: f64 = 1e6;
+pub(super) const FARTHEST_MM: f64 = 1e6;
 /// Turns of more than this are a slip. deg
 const MOST_DEG: f64 = 3.6e5;
 /// Characters of a name.

@@ -3,17 +3,17 @@
 use super::edits;
 use super::evaluation::Asked;
 use super::jobs::Jobs;
+use super::kept::Kept;
 use super::newest::{Newest, Outcome};
 use super::pins::Pin;
 use super::place::Place;
 use super::requests::{Body, RequestError};
 use crate::files::FieldOverride;
 use crate::{Error, Monitor, Run};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use stead_report::Folder;
-use stead_report::document;
 use stead_report::page::live::LivePage;
 use stead_report::placement::Context;
 
@@ -28,9 +28,6 @@ pub struct LiveOptions {
     /// the same folder where there is none, else the middle of the cell.
     pub placement_of: Option<(PathBuf, u8)>,
 }
-
-/// What is kept of a session beside its placements.
-pub(super) const KEPT: &str = "live.json";
 
 /// A run as it is read with the values that were changed last.
 #[derive(Debug)]
@@ -57,6 +54,8 @@ pub struct Session {
     pub(super) file: PathBuf,
     pub(super) given: Vec<FieldOverride>,
     pub(super) folder: Folder,
+    /// The values of the file without those that were changed in the session.
+    stated: Value,
     known: Mutex<Known>,
     pub(super) previews: Newest<Asked, Value>,
     pub(super) wholes: Newest<Asked, Value>,
@@ -71,6 +70,8 @@ pub(super) struct Known {
     /// Where the part stood at rest last.
     pub place: Place,
     pub pins: Vec<Pin>,
+    /// The last number of each kind of what was written.
+    pub numbers: Map<String, Value>,
 }
 
 impl Session {
@@ -86,8 +87,10 @@ impl Session {
             return Err(Error::Argument(format!("{told}, and the run has [lean]; allowed: {allowed}")));
         }
         let mut notes = Vec::new();
-        let kept = kept_in(&folder);
-        let edits: Vec<FieldOverride> = strings(&kept["edits"]).iter().flat_map(|text| edits::parsed(text)).collect();
+        let (kept, unreadable) = Kept::in_folder(&folder)?;
+        notes.extend(unreadable);
+        let edits = kept.edits();
+        let stated = run.run.stated.clone();
         let mut reading = Reading::new(1, run, Vec::new());
         if !edits.is_empty() {
             let shown = edits.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
@@ -105,14 +108,15 @@ impl Session {
                 let (run, placement) = reading.run.clone().set_up_as_in(results, case)?;
                 Place { placement, setup: run.problem().setup.clone() }
             }
-            None => Place::of_entry(problem, &kept["place"]).unwrap_or_else(|| Place::middle(problem)),
+            None => kept.place(problem).unwrap_or_else(|| Place::middle(problem)),
         };
         let pins = Pin::all_in(&folder, &kept);
         Ok(Self {
             file,
             given: values,
             folder,
-            known: Mutex::new(Known { reading: Arc::new(reading), place, pins }),
+            stated,
+            known: Mutex::new(Known { reading: Arc::new(reading), place, pins, numbers: kept.numbers() }),
             previews: Newest::default(),
             wholes: Newest::default(),
             jobs: Jobs::default(),
@@ -178,6 +182,7 @@ impl Session {
             "place": place.entry(reading.run.problem()),
             "orientations": reading.run.problem().orientations.iter().map(|one| &one.name).collect::<Vec<_>>(),
             "stated": reading.run.run.stated,
+            "stated_in_file": self.stated,
             "state": self.state(),
             "has_maps": reading.run.run.maps,
             "has_page": reading.run.run.page,
@@ -270,18 +275,6 @@ impl Session {
         let file = edits::save(self, &reading, body.text("name")?, place.as_ref())?;
         Ok(json!({ "file": file.display().to_string() }))
     }
-
-    /// Writes what is to be there again when the folder is opened by another session. A disk that is full is said when
-    /// a placement is kept.
-    pub(super) fn keep_state(&self) {
-        let known = self.known();
-        let kept = json!({
-            "place": known.place.entry(known.reading.run.problem()),
-            "edits": known.reading.edits.iter().map(ToString::to_string).collect::<Vec<_>>(),
-            "pins": known.pins.iter().map(Pin::kept).collect::<Vec<_>>(),
-        });
-        let _ = self.folder.write(KEPT, &document::bytes(&kept));
-    }
 }
 
 /// What became of a request.
@@ -293,15 +286,4 @@ fn received(outcome: &std::sync::mpsc::Receiver<Outcome<Value>>) -> Result<Value
             Err(RequestError::new("page", "is not answered: the session ends, or too many pages ask", "fewer pages"))
         }
     }
-}
-
-/// What an earlier session has left in a folder.
-fn kept_in(folder: &Folder) -> Value {
-    let bytes = std::fs::read(folder.path().join(KEPT)).unwrap_or_default();
-    serde_json::from_slice(&bytes).unwrap_or_default()
-}
-
-/// The texts of a list.
-pub(super) fn strings(list: &Value) -> Vec<String> {
-    list.as_array().into_iter().flatten().filter_map(|one| one.as_str().map(str::to_owned)).collect()
 }

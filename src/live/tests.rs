@@ -133,6 +133,50 @@ fn the_next_session_begins_where_the_last_one_ended() {
     assert_eq!(before["pins"][0]["label"], "first");
 }
 
+#[test]
+fn what_is_kept_is_read_with_care_and_numbers_are_not_given_again() {
+    let bench = Bench::new();
+    assert_eq!(bench.job("keep", &json!({}))["pin"], "placement-1");
+    let certified = bench.job("certify", &json!({ "gap_percent": 60 }));
+    assert!(certified["said"].to_string().contains("certificate-1.json"), "{certified}");
+    let document: Value =
+        serde_json::from_slice(&std::fs::read(bench.path("out/certificate-1.json")).unwrap()).unwrap();
+    assert_eq!((&document["changed_values"], &document["placement_exact"]["y_mm"]), (&json!([]), &json!(-1640.0)));
+    bench.session.close();
+    let next = |copy: &Path| {
+        let options = LiveOptions { file: bench.path("run.toml"), ..LiveOptions::default() };
+        let run = Run::read(&options.file).unwrap();
+        Session::new(run, options, Folder::create(copy).unwrap(), &Monitor::silent())
+    };
+    // What was there has been removed: its number stays taken.
+    let copy = bench.path("copy");
+    copy_all(&bench.path("out"), &copy);
+    std::fs::remove_dir_all(copy.join("placement-1")).unwrap();
+    std::fs::remove_file(copy.join("certificate-1.json")).unwrap();
+    let session = next(&copy).unwrap();
+    assert_eq!((session.state()["pins"].clone(), session.next_number("placement-", "")), (json!([]), 2));
+    assert_eq!(session.next_number("certificate-", ".json"), 2);
+    drop(session);
+
+    // What somebody has sent changes no file that the run names, and what is no such file is kept aside.
+    let sent = bench.path("sent");
+    std::fs::create_dir(&sent).unwrap();
+    let far = json!({ "placement_exact": { "x_mm": 1e300, "y_mm": 0, "z_mm": 0, "yaw_deg": 0 } });
+    let kept = json!({ "edits": ["robot=/etc/passwd", "cell.z_mm=[-500, -214]"], "place": far, "pins": 5 });
+    std::fs::write(sent.join("live.json"), kept.to_string()).unwrap();
+    let session = next(&sent).unwrap();
+    assert_eq!(session.state()["edits"], json!(["cell.z_mm=[-500, -214]"]));
+    assert!(session.known().place.placement.x.abs() < 1.0);
+    drop(session);
+    for (count, nonsense) in [&b"{\"edits\": ["[..], b"[1]", b"\xff\xfe", b""].into_iter().enumerate() {
+        std::fs::write(sent.join("live.json"), nonsense).unwrap();
+        let session = next(&sent).unwrap();
+        let aside = format!("live-unreadable-{}.json", count + 1);
+        assert!(session.notes()[0].contains(&aside), "{:?}", session.notes());
+        assert_eq!(std::fs::read(sent.join(aside)).unwrap(), nonsense);
+    }
+}
+
 fn copy_all(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
     for entry in std::fs::read_dir(from).unwrap().map(|entry| entry.unwrap()) {

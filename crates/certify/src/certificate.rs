@@ -13,7 +13,7 @@ use stead_numerics::digits::{figures, fixed};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_planning::constraints::{ConstraintKind, describe, relaxed};
-use stead_planning::criterion::{Aggregate, CANCELLATION, Criterion, Direction};
+use stead_planning::criterion::CANCELLATION;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::sense::Sense;
 use stead_planning::symmetry::Unsupported;
@@ -22,6 +22,9 @@ use stead_planning::symmetry::Unsupported;
 const GAP_DECIMALS: usize = 4;
 /// Bounds in mm are rounded to this many decimals, to the side where they still hold.
 pub const BOUND_DECIMALS: usize = 7;
+/// A gap up to this says that a placement is about the best, one up to the next that it is none of the poor ones. %
+const CLOSE_PERCENT: f64 = 5.0;
+const WIDE_PERCENT: f64 = 25.0;
 /// Wider gaps are none to speak of.
 pub const MAX_GAP_PERCENT: f64 = 1000.0;
 
@@ -53,7 +56,9 @@ pub struct Proof {
     pub placement: Placement,
     /// What is minimised, of the placement found with the same constraints relaxed. m
     pub found: f64,
-    /// What is minimised, in words.
+    /// The placements that it is about, in words.
+    pub scope: String,
+    /// What is minimised, in words, with all that it contains.
     pub figure: String,
     /// What no placement gets past.
     pub bound: Bound,
@@ -190,32 +195,11 @@ fn evaluated(problem: &Problem, bound: &Bound) -> Vec<ConstraintKind> {
     kinds
 }
 
-/// What a criterion minimises, in words: "mean normal deflection".
-fn figure(criterion: &Criterion) -> String {
-    let aggregate = match criterion.aggregate {
-        Aggregate::Mean => "mean",
-        Aggregate::Rms => "root mean square of the",
-        Aggregate::Max => "largest",
-    };
-    let part = match criterion.direction() {
-        Some(Direction::Wall) => "normal deflection",
-        Some(Direction::Surface) => "deflection normal to the surface",
-        Some(Direction::Axis) => "deflection along the tool axis",
-        Some(Direction::Total) => "total deflection",
-        None => "weighted deflection",
-    };
-    let errors = match criterion.force_uncertainty {
-        0.0 => String::new(),
-        share => format!(", force errors of {} % covered,", short(share * 100.0)),
-    };
-    let travel = if criterion.joint_travel_weight == 0.0 { "" } else { ", with the travel of the joints," };
-    format!("{aggregate} {part}{errors}{travel}")
-}
-
-/// A number to six digits, without zeros at its end.
-fn short(value: f64) -> String {
-    let text = fixed(value, 6);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+/// The placements that a bound is about, in words.
+fn scope(problem: &Problem) -> String {
+    let lying = if problem.orientations.len() > 1 { ", lying in any of its orientations" } else { "" };
+    let axes = if problem.external_axes.is_empty() { "" } else { ", with the external axes anywhere in their ranges" };
+    format!("in this cell{lying}{axes}")
 }
 
 impl Certificate {
@@ -232,10 +216,11 @@ impl Proof {
     /// What a bound proves of a placement found, of the score that it is compared with.
     pub fn new(problem: &Problem, sense: Sense, placement: Placement, bound: Bound) -> Self {
         let relaxed = relaxed(problem, &evaluated(problem, &bound));
-        let (placement, figure) = (bound.met.unwrap_or(placement), figure(&problem.criterion));
+        let placement = bound.met.unwrap_or(placement);
+        let (scope, figure) = (scope(problem), problem.objective_words());
         // Bounds from above are refused where they would leave something out.
         let left_out = if sense == Sense::Min { left_out(problem) } else { Vec::new() };
-        Self { sense, placement, found: bound.value, figure, bound, relaxed, left_out, parts: Vec::new() }
+        Self { sense, placement, found: bound.value, scope, figure, bound, relaxed, left_out, parts: Vec::new() }
     }
 
     /// The relaxed constraints, and what else is left out, in words.
@@ -265,8 +250,14 @@ impl Proof {
     pub fn sentence(&self) -> Option<String> {
         let is_said = self.sense == Sense::Min && self.is_of_use();
         is_said.then(|| {
+            let Self { scope, figure, .. } = self;
             let gap = self.gap_words();
-            format!("No placement in this cell, however the arm is posed, is better than yours by more than {gap} %.")
+            let none = format!("o placement {scope}, however the arm is posed, has a {figure} more than {gap} % below");
+            match self.gap_percent() {
+                gap if gap <= CLOSE_PERCENT => format!("N{none} yours."),
+                wide if wide <= WIDE_PERCENT => format!("Up to {gap} % may be left to gain: n{none} yours."),
+                _ => format!("Little is proved, and up to {gap} % may be left to gain: n{none} yours."),
+            }
         })
     }
 

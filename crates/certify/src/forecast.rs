@@ -6,16 +6,16 @@ use stead_numerics::monitor::Progress;
 /// What is to be expected of a search for a bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outlook {
-    /// The gap requested, after about so long from now.
-    Reached(Duration),
-    /// The gap has hardly become smaller while the time doubled.
+    /// The gap requested, after so long from now at the earliest and at the latest, as far as its history tells.
+    Reached([Duration; 2]),
+    /// The gap has hardly become smaller while the time doubled, nor with its last report.
     Hardly,
 }
 
 /// The gaps of a search and when they were reached.
 ///
-/// A gap falls about as a power of the time since there was one. The power is that by which it fell while the time
-/// doubled.
+/// A gap falls about as a power of the time since there was one. The power is between that by which it fell while the
+/// time doubled and that of its last two reports.
 #[derive(Debug, Clone, Default)]
 pub struct Forecast {
     stage: &'static str,
@@ -26,8 +26,10 @@ pub struct Forecast {
 
 /// Nothing is said before the first gap is this old. s
 const FIRST: f64 = 3.0;
-/// A gap that falls by a lower power of the time is hardly closing.
+/// A gap that falls by a lower power of the time is hardly closing,
 const LEAST_POWER: f64 = 0.15;
+/// unless its last report fell to this share of the one before.
+const FALLEN: f64 = 0.9;
 
 impl Forecast {
     /// What is to be expected after a report at a time on some clock; `None` where too little is known yet.
@@ -51,12 +53,25 @@ impl Forecast {
             return None;
         }
         let earlier = self.gaps.iter().rev().find(|(at, _)| *at <= 0.5 * now)?.1;
-        let power = libm::log2(earlier / gap);
-        if power < LEAST_POWER {
+        let of_law = libm::log2(earlier / gap);
+        let of_last = match self.gaps[..] {
+            [.., (at, before), (then, last)] if at > 0.0 => Some((before, last, libm::log(then / at))),
+            _ => None,
+        };
+        let has_fallen = of_last.is_some_and(|(before, last, _)| last <= FALLEN * before);
+        if of_law < LEAST_POWER && !has_fallen {
             return Some(Outlook::Hardly);
         }
-        let left = now * (libm::pow(gap / requested, 1.0 / power) - 1.0);
-        Duration::try_from_secs_f64(left).map_or(Some(Outlook::Hardly), |left| Some(Outlook::Reached(left)))
+        let of_last = of_last.map(|(before, last, times)| libm::log(before / last) / times);
+        let powers = [Some(of_law), of_last].into_iter().flatten().filter(|power| *power >= LEAST_POWER);
+        let left = powers.map(|power| now * (libm::pow(gap / requested, 1.0 / power) - 1.0));
+        let (least, most) =
+            left.fold((f64::INFINITY, 0.0_f64), |(least, most), left| (least.min(left), most.max(left)));
+        let band = [least, most].map(Duration::try_from_secs_f64);
+        match band {
+            [Ok(least), Ok(most)] => Some(Outlook::Reached([least, most])),
+            _ => Some(Outlook::Hardly),
+        }
     }
 }
 
@@ -80,8 +95,24 @@ mod tests {
             assert!(time > 2.95 || said.is_none(), "{time}");
         }
         let Some(Outlook::Reached(left)) = said else { panic!("{said:?}") };
-        assert!((left.as_secs_f64() - 216.0).abs() < 20.0, "{left:?}");
+        assert!(left.iter().all(|left| (left.as_secs_f64() - 216.0).abs() < 20.0), "{left:?}");
         assert_eq!(forecast.add(&report(0.0099), Duration::from_secs(60)), None);
+    }
+
+    #[test]
+    fn a_gap_that_falls_again_is_not_said_to_hardly_close() {
+        let mut forecast = Forecast::default();
+        let mut add = |second: u64, gap: f64| forecast.add(&report(gap), Duration::from_secs(second));
+        add(0, 0.5);
+        for second in 1..30 {
+            add(second, 0.4);
+        }
+        assert_eq!(add(30, 0.4), Some(Outlook::Hardly));
+        // By a tenth in the last report, of a gap that was the same for long.
+        assert!(matches!(add(31, 0.36), Some(Outlook::Reached(_))));
+        // By less than a tenth now: between the last two reports and what it fell by while the time doubled.
+        let Some(Outlook::Reached([least, most])) = add(32, 0.2) else { panic!() };
+        assert!(least < most, "{least:?} {most:?}");
     }
 
     #[test]

@@ -95,6 +95,27 @@ impl Cell {
         x.contains(placement.x) && y.contains(placement.y) && z.contains(placement.z) && yaw
     }
 
+    /// By how much a placement is outside the cell and in which coordinates, in words; nothing for one inside.
+    pub fn excess(&self, placement: &Placement) -> Option<String> {
+        let of = |name: &str, unit: &str, bounds: &Interval, value: f64, per_si: f64| {
+            let (by, end) =
+                if value < bounds.min { (bounds.min - value, bounds.min) } else { (value - bounds.max, bounds.max) };
+            let text = || format!("{name} by {} {unit} beyond {}", figures(by * per_si), figures(end * per_si));
+            (!bounds.contains(value)).then(text)
+        };
+        let Self { position: [x, y, z], yaw } = self;
+        let turned = if self.is_yaw_free() { yaw.min } else { self.turned_to(wrap(placement.yaw)) };
+        let degrees = 1f64.to_degrees();
+        let named = [
+            of("x", "mm", x, placement.x, 1e3),
+            of("y", "mm", y, placement.y, 1e3),
+            of("z", "mm", z, placement.z, 1e3),
+            of("yaw", "deg", yaw, turned, degrees),
+        ];
+        let words: Vec<String> = named.into_iter().flatten().collect();
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+
     /// The same yaw, within half a turn of the middle of the bounds.
     fn turned_to(&self, yaw: f64) -> f64 {
         let middle = (self.yaw.min + self.yaw.max) / 2.0;
@@ -113,6 +134,10 @@ mod tests {
         let cell = Cell { position: [wide; 3], yaw: Interval { min: 2.0, max: 4.0 } };
         let at = |yaw: f64| Placement { x: 0.0, y: 0.0, z: 0.0, yaw };
         assert!(cell.contains(&at(3.9 - TAU)) && !cell.contains(&at(0.0)));
+        assert_eq!(cell.excess(&at(3.9 - TAU)), None);
+        let far = Placement { x: -1.0302, y: 1.5, z: 0.0, yaw: 1.9 };
+        let words = "x by 30.2 mm beyond -1000, y by 500 mm beyond 1000, yaw by 5.73 deg beyond 115";
+        assert_eq!(cell.excess(&far).as_deref(), Some(words));
         assert!((cell.clamp(&at(-2.0)).yaw - 4.0).abs() < 1e-12);
         let free = Cell { yaw: Interval { min: -PI, max: PI }, ..cell };
         assert!(free.is_yaw_free() && free.contains(&at(9.0)));

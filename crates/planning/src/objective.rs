@@ -1,12 +1,19 @@
 //! The criterion applied to a problem: the directions that are scored at a path point, and the figure that the costs of
 //! plans make up.
 
-use super::criterion::{Aggregate, Over, ScoredDirections};
+use super::criterion::{Aggregate, Direction, Over, ScoredDirections, Weights};
 use super::problem::Problem;
 use nalgebra::Matrix3;
 use stead_model::robot::Robot;
 use stead_model::stiffness::whole::yields_elsewhere;
+use stead_numerics::digits::fixed;
 use stead_numerics::scalar::Scalar;
+
+/// A number to six digits, without zeros at its end.
+fn short(value: f64) -> String {
+    let text = fixed(value, 6);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
 
 impl Problem {
     /// The arm with each set of compliances that a score covers: the robot itself where no others are given.
@@ -67,6 +74,61 @@ impl Problem {
             Aggregate::Rms => libm::sqrt(cost / self.total_weight()),
             Aggregate::Max => cost,
         }
+    }
+
+    /// The part of the deflection that is scored, in words: "normal deflection".
+    pub fn scored_words(&self) -> String {
+        let criterion = &self.criterion;
+        match criterion.direction() {
+            Some(Direction::Wall) => "normal deflection".to_owned(),
+            Some(Direction::Surface) => "deflection normal to the surface".to_owned(),
+            Some(Direction::Axis) => "deflection along the tool axis".to_owned(),
+            Some(Direction::Total) => "total deflection".to_owned(),
+            None => {
+                let Weights { feed, wall, axis, surface } = criterion.weights;
+                let named = [("feed", feed), ("wall", wall), ("axis", axis), ("surface", surface)];
+                let of = |(name, weight): (&str, f64)| (weight != 0.0).then(|| format!("{name} {}", short(weight)));
+                format!("deflection weighted by {}", named.into_iter().filter_map(of).collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+
+    /// What is minimised, in words, with all that it contains: "mean normal deflection (segments weighted 1, 2)".
+    pub fn objective_words(&self) -> String {
+        let criterion = &self.criterion;
+        let aggregate = match criterion.aggregate {
+            Aggregate::Mean => "mean",
+            Aggregate::Rms => "root mean square of the",
+            Aggregate::Max => "largest",
+        };
+        let mut parts = Vec::new();
+        if self.task.path().first_unscored().is_some() {
+            parts.push("of the points that are scored".to_owned());
+        }
+        if criterion.segment_weights.iter().any(|weight| *weight != 1.0) {
+            let weights: Vec<String> = criterion.segment_weights.iter().copied().map(short).collect();
+            parts.push(format!("segments weighted {}", weights.join(", ")));
+        }
+        if let Some(sets) = &criterion.stiffness {
+            let how = if sets.over == Over::Worst { "the largest" } else { "the mean" };
+            parts.push(format!("of {} sets of stiffness {how} at every point", sets.robots.len()));
+        }
+        if criterion.force_uncertainty != 0.0 {
+            parts.push(format!("force errors of {} % covered", short(criterion.force_uncertainty * 100.0)));
+        }
+        if self.covers_compliance_errors() {
+            parts.push(format!("errors of the compliances covered to {} sigma", short(criterion.confidence)));
+        }
+        if criterion.joint_travel_weight != 0.0 {
+            parts.push("with the travel of the joints".to_owned());
+        }
+        let parts = if parts.is_empty() { String::new() } else { format!(" ({})", parts.join("; ")) };
+        format!("{aggregate} {}{parts}", self.scored_words())
+    }
+
+    /// Whether scores cover errors of the compliances, which the robot states.
+    pub fn covers_compliance_errors(&self) -> bool {
+        self.criterion.confidence != 0.0 && self.scored_robots().iter().any(|robot| robot.uncertainty().is_some())
     }
 
     /// Sum of the weights of all points.

@@ -254,9 +254,7 @@ pub fn require_free_beta(problem: &Problem) -> Result<(), Unsupported> {
 /// # Errors
 /// [`Unsupported::UncertainCompliances`] where they cover it.
 pub fn require_certain_compliances(problem: &Problem) -> Result<(), Unsupported> {
-    let is_covered = problem.criterion.confidence != 0.0
-        && problem.scored_robots().iter().any(|robot| robot.uncertainty().is_some());
-    if is_covered { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
+    if problem.covers_compliance_errors() { Err(Unsupported::UncertainCompliances) } else { Ok(()) }
 }
 
 /// Requires that the two flips of the wrist yield alike.

@@ -228,7 +228,7 @@ impl Program {
         let files: Vec<(PathBuf, &str)> =
             self.files.iter().map(|file| (folder.join(&file.name), file.text.as_str())).collect();
         let stale = StaleParts::beside(self, folder);
-        write_all_new(&files, existing)?;
+        write_all_new(&files, existing, &self.inputs)?;
         let notes = stale.remove();
         Ok(WrittenProgram { files: files.into_iter().map(|(path, _)| path).collect(), notes })
     }

@@ -12,7 +12,7 @@ use crate::csv_file::rows_or;
 use crate::document::{Document, PlacementFigures, bytes};
 use crate::figure::{DeflectionMm, Direction, FinestAngleDeg, Percent, each, some};
 use crate::placement::plan_row::JointColumns;
-use crate::units::fixed;
+use crate::units::{figures, fixed};
 use crate::word::Word;
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -254,10 +254,16 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
     text.push_str(&format!("{executed}\n\n"));
     let header = ["", "before: mean mm", "max mm", "after: mean mm", "max mm", "reduction %"];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
+    // Less than the tolerance says where the iteration ended, and nothing of the path.
+    let tolerance = run.job.settings.tolerance;
+    let remaining = |value: f64| match value {
+        value if value < tolerance => format!("< {}", figures(tolerance * 1e3)),
+        value => figures(value * 1e3),
+    };
     for (name, pair) in [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())] {
         let mut row = vec![name.to_owned()];
-        row.extend(pair.iter().flat_map(|figures| [figures.mean, figures.max]).map(|value| fixed(value * 1e3, 7)));
-        row.push(reduction(pair).map_or_else(|| "-".to_owned(), |share| fixed(share * 100.0, 3)));
+        row.extend(pair.iter().flat_map(|figures| [figures.mean, figures.max]).map(&remaining));
+        row.push(reduction(pair).map_or_else(|| "-".to_owned(), |share| fixed(share * 100.0, 1)));
         rows.push(row);
     }
     text.push_str(&aligned(&rows, &[0]));
@@ -267,5 +273,11 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
         fixed(outcome.figures(|point| Some(point.correction.angular.norm())).max.to_degrees(), 4),
         outcome.iterations()
     ));
+    text.push_str(if run.has_reality {
+        "what remains is what the model does not know of this arm\n"
+    } else {
+        "what remains is that of the iteration: on a real arm it is what the stiffness of the file does not know of it \
+         (--reality plays the path on another arm)\n"
+    });
     text
 }

@@ -84,7 +84,7 @@ impl StarterSet {
 pub fn init(set: StarterSet, folder: &Path, existing: Existing) -> Result<Vec<PathBuf>, InputError> {
     let files: Vec<(PathBuf, &str)> =
         set.files_in(folder).into_iter().map(|(name, text)| (folder.join(name), text)).collect();
-    write_all_new(&files, existing)?;
+    write_all_new(&files, existing, &[])?;
     Ok(files.into_iter().map(|(path, _)| path).collect())
 }
 

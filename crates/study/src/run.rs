@@ -68,14 +68,14 @@ pub fn score(run: &Run, placement: &Placement, monitor: &Monitor) -> Result<Scor
     let plans = [(&setup, placement, &score.plans.best), (&setup, placement, &score.plans.worst)];
     let stability = stability(run, &plans, &mut score.warnings, monitor)?;
     score.interrupted = monitor.should_stop();
-    let notes = outside_cell(run, placement).map(Note::from).into_iter().collect();
+    let notes = outside_cell(run, placement).map(Note::may_be_wrong).into_iter().collect();
     Ok(Scored { score, stability, notes })
 }
 
 /// A placement outside the cell is evaluated all the same, but not silently.
 pub fn outside_cell(run: &Run, placement: &Placement) -> Option<String> {
-    let is_outside = !run.problem.cell.contains(placement);
-    is_outside.then(|| "this placement is outside the cell of the run file".to_owned())
+    let excess = run.problem.cell.excess(placement)?;
+    Some(format!("this placement is outside the cell of the run file: {excess}"))
 }
 
 /// The critical depths along plans, where the run file asks for them; a stop leaves them out, which is then warned of.

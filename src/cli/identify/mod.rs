@@ -60,7 +60,7 @@ pub(super) fn run(command: &IdentifyCommand) -> Result<(), Failure> {
 
 fn fit(options: &IdentifyFitOptions) -> Result<(), Failure> {
     let run = FitRun::read(&options.config)?;
-    let out = out_folder(options.out.as_deref(), &options.config)?;
+    let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
     let shown = Terminal::start(Some(&out.folder)).show(None);
     let robot = run.fit(&shown.monitor);

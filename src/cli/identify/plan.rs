@@ -49,7 +49,7 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     let run = DesignRun::read_with(&options.config, options.seed)?;
-    let out = out_folder(options.out.as_deref(), &options.config)?;
+    let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     run.check_folder(out.folder.path())?;
     say_notes(run.notes());
     let shown = Terminal::start(Some(&out.folder)).show(None);

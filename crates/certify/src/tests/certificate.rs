@@ -10,7 +10,9 @@ use crate::{best, certifiable};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
 use stead_planning::constraints::ConstraintKind;
+use stead_planning::criterion::{Over, StiffnessSets};
 use stead_planning::problem::{BetaPlan, Cell, Placement};
+use stead_planning::redundancy::Planner;
 use stead_planning::sense::Sense;
 use stead_planning::setup::{AxisPositions, Setup};
 use stead_planning::symmetry::Unsupported;
@@ -275,4 +277,66 @@ fn a_cell_next_to_axis_1_says_beforehand_what_that_costs() {
     assert_eq!(crate::expected_cost(&problem), None);
     problem.cell.position[1].max += 2e-3;
     assert!(crate::expected_cost(&problem).is_some());
+}
+
+/// The sentence of a placement whose own figure, that of its best plan, is within 0.1 % of a bound; and the figure. m
+fn sentence_at(problem: &Problem, placement: &Placement) -> (String, f64) {
+    let planner = Planner::new(problem);
+    let value = planner.objective(placement, Sense::Min, None, &mut planner.workspace()).mean().unwrap();
+    let mut proof = proof(problem, true);
+    (proof.bound.value, proof.bound.bound) = (value, 0.999 * value);
+    (proof.sentence().unwrap(), value)
+}
+
+#[test]
+fn the_sentence_names_what_would_be_refuted_without_it() {
+    type Change = fn(&mut Problem);
+    fn soft(problem: &Problem) -> Vec<Robot> {
+        let mut compliances = problem.robot.compliances_at(&[0.0; 6]);
+        (compliances[0], compliances[2]) = (2.0 * compliances[0], 2.0 * compliances[2]);
+        vec![problem.robot.clone(), problem.robot.with_compliances(compliances).unwrap()]
+    }
+    let plain: Change = |_| {};
+    let mean: Change = |problem| {
+        problem.criterion.stiffness = Some(StiffnessSets { robots: soft(problem), over: Over::Mean });
+    };
+    let placement = Placement::from_mm_deg([0.03, -1640.0, -214.0], 79.0);
+    // What is added, what was there before, and the words of it.
+    let all: [(&str, Change, Change); 8] = [
+        ("total deflection", |problem| problem.criterion.weights = Weights::TOTAL, plain),
+        (
+            "deflection weighted by wall 1, axis 0.5",
+            |problem| problem.criterion.weights = Weights { wall: 1.0, axis: 0.5, ..Weights::NONE },
+            plain,
+        ),
+        ("largest normal deflection", |problem| problem.criterion.aggregate = Aggregate::Max, plain),
+        (
+            "segments weighted 1, 1, 1, 0.1, 1",
+            |problem| problem.criterion.segment_weights = vec![1.0, 1.0, 1.0, 0.1, 1.0],
+            plain,
+        ),
+        ("of 2 sets of stiffness the mean", mean, plain),
+        (
+            "of 2 sets of stiffness the largest",
+            |problem| problem.criterion.stiffness = Some(StiffnessSets { robots: soft(problem), over: Over::Worst }),
+            mean,
+        ),
+        ("force errors of 10 % covered", |problem| problem.criterion.force_uncertainty = 0.1, plain),
+        ("with the travel of the joints", |problem| problem.criterion.joint_travel_weight = 1e-4, plain),
+    ];
+    for (words, with, without) in all {
+        let [mut with_it, mut without_it] = [five_segments(), five_segments()];
+        with(&mut with_it);
+        without(&mut without_it);
+        let [(sentence, value), (other, less)] = [&with_it, &without_it].map(|of| sentence_at(of, &placement));
+        assert!(sentence.contains(words) && !other.contains(words), "{words}: {sentence} {other}");
+        assert!(less < 0.999 * value, "{words}: the placement itself would not refute it: {less} {value}");
+    }
+    // The words scale with the gap.
+    let mut proof = proof(&five_segments(), true);
+    for (bound, begins) in [(0.96, "No placement in this cell, "), (0.8, "Up to 20 % may"), (0.5, "Little is proved, ")]
+    {
+        proof.bound.bound = bound;
+        assert!(proof.sentence().unwrap().starts_with(begins), "{:?}", proof.sentence());
+    }
 }

@@ -1,7 +1,9 @@
 //! Files written whole under temporary names, to be renamed when all of them are there.
 
+use super::{Lock, TryLock, options};
+use std::fs::File;
 use std::io::{ErrorKind, Result, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 /// How the names of temporary files begin, unless the code that removes them knows its own by another name.
@@ -21,12 +23,11 @@ impl Staged {
     /// # Errors
     /// What the system says.
     pub fn write(folder: &Path, prefix: &str, bytes: &[u8]) -> Result<Self> {
-        let mut builder = Builder::new();
-        builder.prefix(prefix).suffix(SUFFIX).rand_bytes(RANDOM);
+        let mut builder = builder(prefix);
         readable(&mut builder);
-        // The name of a file in this folder has no folder of its own.
-        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-        let mut file = builder.tempfile_in(folder)?;
+        let mut file = builder.tempfile_in(named(folder))?;
+        // As long as it is open, it is that of a process that is alive; a file system without locks does not say so.
+        let _ = file.as_file().try_lock();
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
         Ok(Self(file))
@@ -64,15 +65,74 @@ impl Staged {
     }
 }
 
-/// Removes the temporary files of a process that is gone, by how their names begin. What cannot be removed stays.
+/// A file that is about to be replaced, under a temporary name.
+#[derive(Debug)]
+pub(super) struct Aside {
+    file: PathBuf,
+    temporary: PathBuf,
+    /// Says that the process is alive.
+    _lock: Option<File>,
+}
+
+impl Aside {
+    /// Takes a file aside.
+    ///
+    /// # Errors
+    /// What the system says; the file is then where it was.
+    pub fn take(file: &Path) -> Result<Self> {
+        let lock = options().read(true).open(file).ok().filter(|open| open.try_lock().is_ok());
+        let folder = named(file.parent().unwrap_or(Path::new("")));
+        let taken = builder(PREFIX).make_in(folder, |temporary| std::fs::rename(file, temporary))?;
+        let temporary = taken.into_temp_path().keep().map_err(|error| error.error)?;
+        Ok(Self { file: file.to_owned(), temporary, _lock: lock })
+    }
+
+    /// Puts it back. Where the system does not let it, it stays under its temporary name.
+    pub fn put_back(self) {
+        let _ = std::fs::rename(&self.temporary, &self.file);
+    }
+
+    /// Removes it, as it was replaced. Where the system does not let it, the next command does.
+    pub fn remove(self) {
+        let _ = std::fs::remove_file(&self.temporary);
+    }
+}
+
+/// What gives temporary names.
+fn builder(prefix: &str) -> Builder<'_, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(prefix).suffix(SUFFIX).rand_bytes(RANDOM);
+    builder
+}
+
+/// The name of a file in this folder has no folder of its own.
+fn named(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
+}
+
+/// Removes the temporary files of a process that is gone, by how their names begin, in a folder that this process alone
+/// writes to. What cannot be removed stays.
 pub fn remove_stale(folder: &Path, prefix: &str) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    for entry in entries.flatten() {
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && entry.file_name().to_str().is_some_and(|name| is_temporary(name, prefix)) {
-            let _ = std::fs::remove_file(entry.path());
+    temporary_in(folder, prefix).for_each(|path| drop(std::fs::remove_file(path)));
+}
+
+/// The same in a folder that others may write to: a file that a process has open is kept, and so is every one on a file
+/// system without locks.
+pub(super) fn remove_abandoned(folder: &Path, prefix: &str) {
+    for path in temporary_in(named(folder), prefix) {
+        if matches!(Lock::attempt(&path), Ok(TryLock::Taken(Lock { is_locked: true, .. }))) {
+            let _ = std::fs::remove_file(path);
         }
     }
+}
+
+/// The files in a folder with temporary names.
+fn temporary_in<'a>(folder: &Path, prefix: &'a str) -> impl Iterator<Item = PathBuf> + 'a {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let is_ours = |name: &std::ffi::OsStr| name.to_str().is_some_and(|name| is_temporary(name, prefix));
+    entries
+        .filter(move |entry| entry.file_type().is_ok_and(|kind| kind.is_file()) && is_ours(&entry.file_name()))
+        .map(|entry| entry.path())
 }
 
 /// Whether a name is one that [`Staged::write`] gives.

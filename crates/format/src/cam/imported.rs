@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
-use stead_disk::input::InputError;
+use stead_disk::input::{InputError, InputFile};
 use stead_disk::quote::shorten;
 use stead_model::plausibility;
 use stead_model::task::ToolPath;
@@ -28,6 +28,8 @@ pub struct ImportedPath {
     /// The tool with the longest way.
     tool: Option<ProgramTool>,
     notes: Vec<String>,
+    /// The program that it was made from.
+    pub(super) inputs: Vec<InputFile>,
 }
 
 /// More points than this are a step that is meant for another unit.
@@ -97,7 +99,7 @@ impl ImportedPath {
             ));
         }
         let (tools, format) = (program.tools, program.format);
-        Ok(Self { format, cuts, resampling, has_feeds, tools, cutter, tool, notes })
+        Ok(Self { format, cuts, resampling, has_feeds, tools, cutter, tool, notes, inputs: Vec::new() })
     }
 
     /// The task file, checked as it will be read; `file` is its name in messages.
@@ -145,7 +147,7 @@ impl ImportedPath {
     pub fn write(&self, out: &Path, existing: Existing) -> Result<Vec<PathBuf>, InputError> {
         let files = self.files(out)?;
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
-        write_all_new(&texts, existing)?;
+        write_all_new(&texts, existing, &self.inputs)?;
         Ok(files.into_iter().map(|(file, _)| file).collect())
     }
 

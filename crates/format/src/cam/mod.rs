@@ -40,7 +40,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::Path;
 use stead_disk::files;
-use stead_disk::input::InputError;
+use stead_disk::input::{InputError, input_file};
 
 /// No coordinate is larger than this: a wrong unit, or no coordinate at all. m
 const LARGEST: f64 = 100.0;
@@ -211,7 +211,10 @@ pub fn import_bytes(file: &Path, bytes: &[u8], settings: &ReadSettings) -> Resul
     if !settings.keep_links {
         links::take_out(&mut program);
     }
-    ImportedPath::new(file, program, settings.resampling)
+    let inputs = vec![input_file("program", file.display().to_string(), bytes)];
+    let mut imported = ImportedPath::new(file, program, settings.resampling)?;
+    imported.inputs = inputs;
+    Ok(imported)
 }
 
 /// CLDATA or G-code, by the first line that is of one alone.

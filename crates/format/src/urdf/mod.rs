@@ -45,7 +45,7 @@ use rows::Rows;
 use stand::Stand;
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
-use stead_disk::input::{InputError, sha256};
+use stead_disk::input::{InputError, InputFile, input_file, sha256};
 use stead_model::plausibility;
 use stead_model::robot::turns::Range;
 use stead_model::robot::{Axes23, Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
@@ -106,6 +106,8 @@ pub struct ImportedRobot {
     pub link_shapes: Option<LinkShapes>,
     /// What the links look like, as far as the URDF says it, where their shapes were requested.
     pub link_visuals: Vec<LinkVisual>,
+    /// The description that it was made from.
+    pub inputs: Vec<InputFile>,
     /// What the user should know.
     pub notes: Vec<String>,
     /// The robot file.
@@ -169,6 +171,7 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
             .chain(notes::stand(urdf, &chain, &stand, options.collision))
             .chain(plausibility::joint_ranges(&robot))
             .collect(),
+        inputs: vec![input_file("robot", urdf.file.display().to_string(), urdf.text.as_bytes())],
         controller: None,
         bodies: bodies.as_ref().ok().copied(),
         link_shapes: None,
@@ -235,7 +238,7 @@ impl ImportedRobot {
     pub fn write(&self, file: &Path, existing: Existing) -> Result<(), InputError> {
         let files = self.files(file);
         let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
-        write_all_new(&texts, existing)
+        write_all_new(&texts, existing, &self.inputs)
     }
 }
 

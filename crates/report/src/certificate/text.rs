@@ -32,9 +32,9 @@ fn stated(proof: &Proof) -> String {
     }
     let claim = match proof.sense {
         Sense::Min => format!(
-            "{}Certificate, best placement: no placement in this cell, with any posture scheme and redundancy plan, has a \
-             {figure} below {bound} mm; yours has {value} mm: none is better by more than {gap} %.",
-            proof.sentence().map_or_else(String::new, |sentence| format!("{sentence} "))
+            "{} Certificate, best placement: with any posture scheme and redundancy plan it is at least {bound} mm; yours \
+             has {value} mm.",
+            proof.sentence().unwrap_or_default()
         ),
         Sense::Max => {
             let found = Unit::DEFLECTION_MM.text(proof.found);
@@ -50,9 +50,10 @@ fn stated(proof: &Proof) -> String {
                 ),
             };
             format!(
-                "Certificate, worst placement, with the limits named below dropped: no feasible placement in this cell has \
+                "Certificate, worst placement, with the limits named below dropped: no feasible placement {} has \
                  under its best redundancy plan a {figure} above {bound} mm; {compared}. With these limits kept \
-                 this is no bound: worse ones are possible then."
+                 this is no bound: worse ones are possible then.",
+                proof.scope
             )
         }
     };

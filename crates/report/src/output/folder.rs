@@ -68,14 +68,9 @@ impl Folder {
     ///
     /// # Errors
     /// [`ReportError::OtherManifest`] with that file, and for a manifest that cannot be read.
-    pub fn has_no_other(&self, name: &str) -> Result<(), ReportError> {
+    pub fn has_no_other<N: AsRef<str>>(&self, names: impl IntoIterator<Item = N>) -> Result<(), ReportError> {
         let manifest = transaction::manifest_in(&self.path)?;
-        let is_listed = manifest.results.iter().flat_map(|set| &set.files).any(|file| file.name == name);
-        let path = self.path.join(name);
-        if is_listed || !path.exists() {
-            return Ok(());
-        }
-        Err(ReportError::OtherManifest { path, problem: "no manifest.json lists it".to_owned() })
+        names.into_iter().try_for_each(|name| transaction::check_listed(&self.path, &manifest, name.as_ref()))
     }
 
     /// Where the folder is.
@@ -102,7 +97,7 @@ impl Folder {
     /// # Errors
     /// As [`Folder::create`].
     pub fn beside_finished(&self, command: &str, is_interrupted: bool) -> Result<Option<Self>, ReportError> {
-        (is_interrupted && self.shields(command, |_| true)?).then(|| Self::create(&self.interrupted_path())).transpose()
+        (is_interrupted && self.shields(command, |_| true)?).then(|| self.interrupted()).transpose()
     }
 
     /// Whether a finished run of a command has left this file, too, among its results here, so that an interrupted run
@@ -129,7 +124,21 @@ impl Folder {
     /// # Errors
     /// As [`Folder::create`].
     pub fn beside(&self) -> Result<Self, ReportError> {
-        Self::create(&self.interrupted_path()).map(|folder| folder.keeping_partial(true))
+        self.interrupted().map(|folder| folder.keeping_partial(true))
+    }
+
+    /// The folder beside this one, unless something else has its name: a link, or a folder with files but no manifest.
+    fn interrupted(&self) -> Result<Self, ReportError> {
+        let path = self.interrupted_path();
+        let is_link = path.symlink_metadata().is_ok_and(|found| found.is_symlink());
+        let is_ours =
+            |name: &std::ffi::OsStr| name.to_str().is_some_and(|name| name == LOCK || name.starts_with(PREFIX));
+        let mut entries = std::fs::read_dir(&path).into_iter().flatten().flatten();
+        if is_link || (!path.join(MANIFEST).exists() && entries.any(|entry| !is_ours(&entry.file_name()))) {
+            let problem = "it is a link, or has files and no manifest.json".to_owned();
+            return Err(ReportError::OtherManifest { path, problem });
+        }
+        Self::create(&path)
     }
 
     /// Where [`beside_finished`](Self::beside_finished) is.

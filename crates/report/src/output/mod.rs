@@ -13,7 +13,7 @@ pub use lock::{Lock, LockError};
 pub use transaction::Transaction;
 
 use std::path::PathBuf;
-use stead_disk::files::is_full;
+use stead_disk::files::is_of_disk;
 
 /// Why a result could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -79,6 +79,6 @@ pub enum ReportError {
 impl ReportError {
     /// Whether there was no room on the disk, so that nothing is wrong with the place.
     pub fn is_of_disk(&self) -> bool {
-        matches!(self, Self::Folder { cause, .. } | Self::File { cause, .. } if is_full(cause))
+        matches!(self, Self::Folder { cause, .. } | Self::File { cause, .. } if is_of_disk(cause))
     }
 }

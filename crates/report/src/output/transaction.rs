@@ -36,6 +36,16 @@ pub(super) fn manifest_in(folder: &Path) -> Result<Manifest, ReportError> {
     }
 }
 
+/// Refuses to replace a file that no manifest lists: somebody's own.
+pub(super) fn check_listed(folder: &Path, manifest: &Manifest, name: &str) -> Result<(), ReportError> {
+    let is_listed = || manifest.results.iter().flat_map(|set| &set.files).any(|file| file.name == name);
+    let path = folder.join(name);
+    if !path.is_file() || is_listed() {
+        return Ok(());
+    }
+    Err(ReportError::OtherManifest { path, problem: "no manifest.json lists it".to_owned() })
+}
+
 /// One change of a name, the only changes from the first mark to the last.
 #[derive(Debug)]
 enum Step {
@@ -113,6 +123,7 @@ impl<'a> Transaction<'a> {
         let kept = self.kept(former_set.as_ref())?;
         let mut puts = Vec::new();
         for (name, bytes) in files {
+            check_listed(self.folder, &former, name.as_ref())?;
             puts.push(self.staged(name.as_ref(), bytes)?);
         }
         let mut set = self.set(files, kept);

@@ -127,7 +127,7 @@ pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
 
 /// The table of `stead score`; `std mm` is the standard deviation of the mean of c_i, where the robot's uncertainty is
 /// known.
-pub fn score_text(score: &Score, context: &Context) -> String {
+pub fn score_text(problem: &Problem, score: &Score, context: &Context) -> String {
     let row = |name: &str, plan: &Plan| {
         let total = plan.deflection.total;
         let mut row = vec![name.to_owned()];
@@ -166,7 +166,8 @@ pub fn score_text(score: &Score, context: &Context) -> String {
         .map(|row| format!("{row}\n"))
         .collect();
     let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
-    format!("{}\n{setup}\n{}{postures}{feed}{stability}", place_text(&score.placement), aligned(&rows, &[0, last]))
+    let (place, legend) = (place_text(&score.placement), super::text::legend(problem));
+    format!("{place}\n{setup}\n{}{legend}{postures}{feed}{stability}", aligned(&rows, &[0, last]))
 }
 
 records! {

@@ -211,7 +211,6 @@ pub fn write_score(
     map: Option<&DeflectionMap>,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    folder.has_no_other(NOTES)?;
     let files = score_files(problem, score, map, context)?;
     let beside = folder.beside_finished(SCORE, score.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);
@@ -280,7 +279,6 @@ pub fn write_placement(
     outcome: &Outcome,
     context: &Context,
 ) -> Result<Vec<PathBuf>, ReportError> {
-    folder.has_no_other(NOTES)?;
     let files = placement_files(problem, outcome, context)?;
     let beside = folder.beside_finished(PLACE, outcome.interrupted)?;
     let folder = beside.as_ref().unwrap_or(folder);

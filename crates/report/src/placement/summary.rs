@@ -194,7 +194,7 @@ pub(super) fn placement_notes(problem: &Problem, outcome: &Outcome, context: &Co
 
 /// Everything that there is to say of a given placement: the text of `notes.txt`.
 pub(super) fn score_notes(problem: &Problem, score: &Score, context: &Context) -> String {
-    notes_text(&score_summary(problem, score, context), &score_text(score, context), context)
+    notes_text(&score_summary(problem, score, context), &score_text(problem, score, context), context)
 }
 
 /// The summary and the tables, then warnings and notes by their groups.

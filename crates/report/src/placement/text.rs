@@ -267,6 +267,14 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
     rows
 }
 
+/// What the columns of deflections are, in a line.
+pub(super) fn legend(problem: &Problem) -> String {
+    let is_more = problem.criterion.force_uncertainty != 0.0 || problem.covers_compliance_errors();
+    let [with, without] = if is_more { [" with the errors covered", ", without them"] } else { [""; 2] };
+    let part = problem.scored_words();
+    format!("mean and max: {part} of the scored points{with}; total: their whole deflection{without}\n")
+}
+
 fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -> Vec<Vec<String>> {
     let mut header = vec!["case", "mean mm", "max mm", "total mm", "max total"];
     header.extend(outcome.cases.best.plan.mean_deviation.map(|_| "std mm"));

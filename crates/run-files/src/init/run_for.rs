@@ -5,8 +5,11 @@ use super::stock::Guess;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::path::{Component, Path, PathBuf, absolute};
-use stead_disk::files::new::{Existing, write_new};
-use stead_disk::input::InputError;
+use stead_disk::files::{
+    self,
+    new::{Existing, write_all_new},
+};
+use stead_disk::input::{InputError, input_file};
 use stead_format::cam::file_beside;
 use stead_format::document::Document;
 use stead_format::robot::{read_geometry, says_stiffness};
@@ -49,7 +52,10 @@ pub fn init_run(robot: &Path, task: &Path, out: &Path, existing: Existing) -> Re
         mount,
         cutter: cutter_beside(task)?,
     };
-    write_new(out, &text(&arm, &imported.path, area, &known), existing)
+    let read =
+        |file: &Path| files::read(file).ok().map(|bytes| input_file("input", file.display().to_string(), &bytes));
+    let inputs: Vec<_> = [robot, task].into_iter().filter_map(read).collect();
+    write_all_new(&[(out.to_owned(), text(&arm, &imported.path, area, &known).as_str())], existing, &inputs)
 }
 
 /// What is known of a run.

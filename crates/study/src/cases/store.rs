@@ -9,7 +9,7 @@ use super::table::{Column, ColumnKind, Table, TableCell};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use stead_disk::files::{self, Staged, is_full};
+use stead_disk::files::{self, Staged, is_of_disk};
 
 /// One of several parts of a study: the cases I, I + N, and so on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,7 +96,7 @@ impl Store {
     pub fn begin(&self, plan: &Plan) -> Result<(), StudyError> {
         let shards = self.shards();
         self.check(plan)?;
-        std::fs::create_dir_all(&shards).map_err(|cause| match is_full(&cause) {
+        std::fs::create_dir_all(&shards).map_err(|cause| match is_of_disk(&cause) {
             true => StudyError::write(&shards, cause),
             false => StudyError::Folder {
                 path: self.folder.clone(),

@@ -2,11 +2,13 @@
 
 import { card, el } from '../draw/dom.js';
 import { RAW } from '../run/data.js';
-import { chip, tell, tried } from './jobs.js';
+import { changed, chip, tell, tried } from './jobs.js';
 import { place } from './place.js';
 import { ask } from './server.js';
 
 const STATED = RAW.live.stated ?? {};
+/** The same without what was changed in the session. */
+const IN_FILE = RAW.live.stated_in_file ?? {};
 
 /** A value as TOML. @param {any} value @returns {string} */
 const toml = (value) => (Array.isArray(value) ? `[${value.map(toml).join(', ')}]` : typeof value === 'string' ? JSON.stringify(value) : String(value));
@@ -22,32 +24,32 @@ const FIELDS = [
   ['criterion.force_uncertainty', 'Force uncertainty', 'share of the force, as 0.1'],
 ];
 
-/** What is in a field at first: the value as it is read now. @param {string} key */
-function valueOf(key) {
+/** A value as text, empty where none is stated. @param {any} stated @param {string} key */
+function valueOf(stated, key) {
   const [table, name] = key.split('.');
-  const value = STATED[table]?.[name];
+  const value = stated[table]?.[name];
   return value === undefined ? '' : toml(value);
 }
 
 /** The card of the values. */
 export function editsCard() {
   const fields = FIELDS.map(([key, name, hint]) => {
-    const first = valueOf(key);
+    const first = valueOf(STATED, key);
     const field = /** @type {HTMLInputElement} */ (el('input', { type: 'text', id: `edit-${key.replace('.', '-')}`, value: first, placeholder: hint, title: `${key}: ${hint}`, spellcheck: 'false' }));
-    return { key, first, field, label: el('label.field.wide', {}, el('span', {}, name), field) };
+    return { key, field, label: el('label.field.wide', {}, el('span', {}, name), field) };
   });
   /** @type {string[]} */
   const before = RAW.live.state.edits;
-  const changed = () => {
-    const now = fields.filter(({ field, first }) => field.value.trim() !== first && field.value.trim()).map(({ key, field }) => `${key}=${field.value.trim()}`);
-    const isAgain = (/** @type {string} */ old) => now.some((one) => one.split('=')[0] === old.split('=')[0]);
-    return [...before.filter((old) => !isAgain(old)), ...now];
+  /** What differs from the file: a field that is empty has its value. */
+  const wanted = () => {
+    const now = fields.filter(({ key, field }) => !['', valueOf(IN_FILE, key)].includes(field.value.trim())).map(({ key, field }) => `${key}=${field.value.trim()}`);
+    const isHere = (/** @type {string} */ old) => fields.some(({ key }) => key === old.split('=')[0]);
+    return [...before.filter((old) => !isHere(old)), ...now];
   };
   const wrong = el('p.wrong', { id: 'edit-wrong', role: 'alert', hidden: true });
   const apply = async (/** @type {string[]} */ edits) => {
     try {
-      await ask('/edit', { edits });
-      location.reload();
+      changed((await ask('/edit', { edits })).edits);
     } catch (error) {
       wrong.hidden = false;
       wrong.textContent = error instanceof Error ? error.message : String(error);
@@ -64,7 +66,7 @@ export function editsCard() {
     before.length ? `changed: ${before.join(', ')}` : 'as the file has them',
     el('div.fields', {}, ...fields.map(({ label }) => label)),
     wrong,
-    el('div.row', {}, chip('edit-apply', 'Apply', () => void apply(changed())), ...(before.length ? [chip('edit-reset', 'As in the file', () => void apply([]))] : [])),
+    el('div.row', {}, chip('edit-apply', 'Apply', () => void apply(wanted())), ...(before.length ? [chip('edit-reset', 'Reset to the file', () => void apply([]))] : [])),
     el('div.row', {}, chip('save', 'Save as run file', () => void save()), el('label.field', {}, el('span', {}, 'name'), name), el('label.field', {}, alone, el('span', {}, 'with this placement alone'))),
   );
 }

@@ -4,6 +4,7 @@ import { card, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { CASES, RAW } from '../run/data.js';
 import { SCORED } from '../run/path-mesh.js';
+import { concerns } from './concerns.js';
 import { onAnswer, shown } from './follow.js';
 
 /** How much the view greys while there is no plan. */
@@ -57,7 +58,8 @@ export function figuresCard() {
   });
   const blocked = el('div.blocked', { id: 'live-blocked', role: 'status', hidden: true });
   const notes = el('details', { id: 'live-notes', hidden: true });
-  const out = card('This placement', '', el('div.tiles.live', {}, ...cells.map(({ tile }) => tile)), blocked, notes);
+  const chips = el('ul.concerns', { id: 'concerns', 'aria-label': 'What the figures rest on' });
+  const out = card('This placement', '', chips, el('div.tiles.live', {}, ...cells.map(({ tile }) => tile)), blocked, notes);
   /** @type {HTMLElement} */ (out.firstChild).append(state);
   let said = '';
   const list = (/** @type {string[]} */ lines) => el('ul', {}, ...lines.map((line) => el('li', {}, line)));
@@ -68,6 +70,9 @@ export function figuresCard() {
     if (best || !isFeasible) cells.forEach(({ put }) => put(best));
     state.textContent = stateWords();
     out.classList.toggle('following', shown.isFollowing);
+    const known = concerns();
+    chips.replaceChildren(...known.map(({ level, text }) => el('li', { 'data-level': level }, text)));
+    for (const framed of [out, view()]) framed?.setAttribute('data-level', known[0]?.level ?? '');
     const isBlocked = !isFeasible && reasons.length > 0;
     view()?.classList.toggle('noplan', isBlocked);
     blocked.hidden = !isBlocked;

@@ -3,11 +3,13 @@
 import { card, el } from '../draw/dom.js';
 import { RAW } from '../run/data.js';
 import { AXES } from '../run/external-axes.js';
+import { concerns } from './concerns.js';
 import { goTo, place, placeOf } from './place.js';
 import { PAGE, Refusal, ask, onLost, serverState } from './server.js';
+import { keptOver, loadAnew } from './tab.js';
 
 /** Between two looks at the server while a job runs, and while none does. ms */
-const [OFTEN_MS, SELDOM_MS] = [300, 1500];
+const [OFTEN_MS, SELDOM_MS] = [300, 800];
 
 /** @type {((state: any) => void)[]} */
 const watchers = [];
@@ -42,11 +44,17 @@ async function look() {
     // What is lost is said elsewhere; it is looked for all the same.
   }
   if (state) {
-    if (state.version !== RAW.live.state.version) return location.reload();
+    if (state.version !== RAW.live.state.version) return changed(state.edits);
     for (const job of state.jobs.ended) if (job.id > told) ended(job);
     watchers.forEach((watch) => watch(state));
   }
-  timer = window.setTimeout(look, state?.jobs.running ? OFTEN_MS : SELDOM_MS);
+  timer = window.setTimeout(look, state && !state.jobs.running ? SELDOM_MS : OFTEN_MS);
+}
+
+/** Shows the run with the values as they are now; the part, the steps back and what is compared stay. @param {string[]} edits */
+export function changed(edits) {
+  tell(`the values of the run were changed: ${edits.length ? edits.join(', ') : 'they are those of the file'}`);
+  loadAnew();
 }
 
 /** @param {any} job */
@@ -70,6 +78,8 @@ export function jobsCard() {
   const label = /** @type {HTMLInputElement} */ (el('input', { type: 'text', id: 'label', maxlength: 60, placeholder: 'name' }));
   const keep = () => {
     const text = label.value.trim();
+    const doubts = concerns().filter(({ level }) => level).map(({ text: doubt }) => `- ${doubt}`);
+    if (doubts.length && !confirm(['Pin this placement all the same?', ...doubts].join('\n'))) return;
     void begin('keep', text ? { is_labelled: true, label: text } : {});
   };
   const starts = [
@@ -82,7 +92,8 @@ export function jobsCard() {
   const bar = /** @type {HTMLProgressElement} */ (el('progress', { 'aria-label': 'Progress' }));
   const words = el('span.sub', { id: 'job-words' });
   const stop = chip('stop', 'Stop', () => void tried(() => ask('/stop')).then(look));
-  const running = el('div.row', { id: 'job', hidden: true }, bar, words, stop);
+  // Before the words, which change, so that it stays where it is.
+  const running = el('div.row', { id: 'job', hidden: true }, stop, bar, words);
   const log = el('ul');
   const logged = el('div.log', { id: 'log', role: 'log', 'aria-label': 'What jobs came to', tabindex: 0, hidden: true }, log);
   say = (text, isWrong = false) => {
@@ -90,6 +101,8 @@ export function jobsCard() {
     log.prepend(el(isWrong ? 'li.wrong' : 'li', {}, text));
     while (log.childElementCount > 30) log.lastElementChild?.remove();
   };
+  const lines = keptOver('log', () => Array.from(log.children, (line) => [line.textContent, line.className]));
+  for (const [text, kind] of (lines ?? []).reverse()) say(text, kind === 'wrong');
   onState((state) => {
     const job = state.jobs.running;
     running.hidden = !job;
@@ -112,10 +125,13 @@ export function jobsCard() {
   );
 }
 
-/** A line that says that the session has ended. */
-export function lostBanner() {
+/** A line that says that the session has ended; what would ask it is grey. @param {HTMLElement[]} asking */
+export function lostBanner(...asking) {
   const banner = el('div.warnings.lost', { id: 'lost', role: 'alert', hidden: true }, 'The session has ended, or does not answer. What is pinned is kept: start `stead live` again.');
-  onLost((isLost) => (banner.hidden = !isLost));
+  onLost((isLost) => {
+    banner.hidden = !isLost;
+    asking.forEach((part) => (part.inert = isLost));
+  });
   return banner;
 }
 

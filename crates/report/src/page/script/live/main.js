@@ -29,15 +29,17 @@ function main() {
     const isTyped = tagName === 'SELECT' || (tagName === 'INPUT' && type !== 'checkbox');
     if (isTyped && !(event.ctrlKey || event.metaKey)) event.stopPropagation();
   };
+  const right = el('div.right', {}, figuresCard(), controlsCard(), jobsCard());
+  const low = el('div.low.live', { onkeydown: typed }, pinsCard(), editsCard());
   document.body.append(
     el(
       'main.wrap',
       {},
       el('header', {}, titleOf(), el('div.tools', {}, themeButton())),
-      lostBanner(),
-      el('div.main', { onkeydown: typed }, scene, el('div.right', {}, figuresCard(), controlsCard(), jobsCard())),
+      lostBanner(right, low),
+      el('div.main', { onkeydown: typed }, scene, right),
       transport(),
-      el('div.low.live', { onkeydown: typed }, pinsCard(), editsCard()),
+      low,
       el('div.low.live', {}, el('div.right', {}, tiles(), mapCard()), gauges()),
       chartCards(),
       el('footer', {}, el('span', {}, `stead ${RAW.version}`), el('span', {}, 'This page is answered by your own machine; nothing leaves it.')),

@@ -9,6 +9,7 @@ import { onAnswer, shown } from './follow.js';
 import { begin, onState, tried } from './jobs.js';
 import { goTo, placeOf } from './place.js';
 import { ask, keptFile } from './server.js';
+import { keptOver } from './tab.js';
 
 /** @type {any[]} */
 let pins = [];
@@ -32,7 +33,8 @@ const ROWS = [
 ];
 
 /** What stands at a side: the name of a pin, or nothing for the placement that is moved. */
-const sides = { a: '', b: '' };
+/** @type {{ a: string, b: string }} */
+const sides = keptOver('sides', () => sides) ?? { a: '', b: '' };
 
 /** @param {string} name @returns {any} */
 const figuresOf = (name) => (name ? pins.find((pin) => pin.name === name) : shown.isFeasible && shown.answer?.document) || {};
@@ -85,14 +87,15 @@ export function pinsCard() {
   };
   onState((now) => {
     if (now.pins.length === pins.length && list.childElementCount) return;
-    const isNew = now.pins.length > pins.length && list.childElementCount > 0;
+    const isFirst = !list.childElementCount;
+    const isNew = now.pins.length > pins.length && !isFirst;
     pins = now.pins;
     list.replaceChildren(pinTable());
     if (isNew) sides.b = pins[pins.length - 1].name;
     refill();
     compare();
     comparison.hidden = !pins.length;
-    if (isNew) void drawCompared();
+    if (isNew || (isFirst && sides.b)) void drawCompared();
   });
   onAnswer(compare);
   return card('Pinned placements', "each a folder as 'stead score --out' writes it", list, comparison);

@@ -1,6 +1,7 @@
 // Where the part stands, and the steps that led there.
 
 import { RAW } from '../run/data.js';
+import { keptOver } from './tab.js';
 
 /**
  * @typedef {{ for_each: string, positions: number[][] }} Axes
@@ -17,7 +18,7 @@ export const placeOf = ({ placement_exact: at, orientation, external_axes: axes 
   external_axes: axes ? { for_each: axes.for_each, positions: axes.positions } : null,
 });
 
-/** Where the part stands now. @type {Place} */
+/** Where the part is now. @type {Place} */
 export const place = placeOf(RAW.live.place);
 
 /** @type {((isMoving: boolean) => void)[]} */
@@ -28,6 +29,12 @@ export const onPlace = (watch) => void watchers.push(watch);
 /** @type {{ back: Place[], ahead: Place[] }} */
 const steps = { back: [], ahead: [] };
 const STEPS = 200;
+
+const before = keptOver('place', () => ({ place, steps }));
+if (before) {
+  Object.assign(place, before.place);
+  Object.assign(steps, before.steps);
+}
 
 const copy = () => ({ ...place });
 /** @param {Place} to */

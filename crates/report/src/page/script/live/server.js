@@ -1,7 +1,9 @@
 // The server that the page comes from: the cookie that it has set says who asks, and it may go away.
 
-/** A name by which the server tells this page from others. */
-export const PAGE = Array.from(crypto.getRandomValues(new Uint8Array(9)), (byte) => byte.toString(36)).join('');
+import { keptOver } from './tab.js';
+
+/** A name by which the server tells this page from others. @type {string} */
+export const PAGE = keptOver('page', () => PAGE) ?? Array.from(crypto.getRandomValues(new Uint8Array(9)), (byte) => byte.toString(36)).join('');
 
 /** @type {((isLost: boolean) => void)[]} */
 const watchers = [];
@@ -44,5 +46,8 @@ async function fetched(path, more = {}) {
 /** Asks the server. @param {string} path @param {Record<string, any>} [body] */
 export const ask = (path, body = {}) => fetched(path, { method: 'POST', body: JSON.stringify({ page: PAGE, ...body }) });
 
-/** What has changed at the server. */
-export const serverState = () => fetched('/state');
+/** A look at the server is answered at once, however much it computes. ms */
+const ALIVE_MS = 800;
+
+/** What has changed at the server; one that says nothing in time has gone. */
+export const serverState = () => fetched('/state', { signal: AbortSignal.timeout(ALIVE_MS) });
