@@ -399,17 +399,22 @@ fn the_wrong_kind_of_file_names_the_right_command() {
     robot.assert_says(&["kuka-kr270-2.toml: is a robot file", "stead init place --robot"]);
 }
 
-/// `notes.txt` is a name that people use: one that no manifest lists is theirs.
+/// `notes.txt` is a name that people use, and so are others: what no manifest lists is theirs.
 #[test]
-fn notes_of_the_user_are_not_replaced_by_those_of_a_result() {
-    let bench = Bench::new();
-    bench.write("out/notes.txt", "the user's own\n");
-    let score = [&["score", RUN, "--out", "out"][..], &PLACE, &["--q4", "0.9258"]].concat();
-    for arguments in [&["place", RUN, "--out", "out"][..], &score] {
-        let ended = bench.stead(arguments);
-        assert_eq!(ended.code, Some(2), "{}", ended.stderr);
-        ended.assert_says(&["out/notes.txt: is none of stead and is left as it is", "; allowed: another folder"]);
+fn files_of_the_user_are_not_replaced_by_those_of_a_result() {
+    for own in ["notes.txt", "setup.svg", "cell.glb"] {
+        let bench = Bench::new();
+        bench.write(&format!("out/{own}"), "the user's own\n");
+        let score = [&["score", RUN, "--out", "out"][..], &PLACE, &["--q4", "0.9258"]].concat();
+        for arguments in [&["place", RUN, "--out", "out"][..], &score] {
+            let ended = bench.stead(arguments);
+            assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+            ended.assert_says(&[
+                &format!("out/{own}: is none of stead and is left as it is"),
+                "; allowed: another folder",
+            ]);
+        }
+        assert_eq!(bench.names("out"), [own]);
+        assert_eq!(bench.read(&format!("out/{own}")), "the user's own\n");
     }
-    assert_eq!(bench.names("out"), ["notes.txt"]);
-    assert_eq!(bench.read("out/notes.txt"), "the user's own\n");
 }

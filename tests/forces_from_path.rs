@@ -63,6 +63,17 @@ fn a_slot_has_its_force_in_a_task_that_other_commands_read() {
     assert_eq!(bench.tree("my"), kept);
     assert_eq!(bench.stead(&["forces", "my/forces.toml", "--out", "my/out.csv", "--force"]).code, Some(0));
     assert_eq!(bench.tree("my"), kept);
+    // What is read, and what somebody else has made, is not replaced.
+    bench.write("my/own.csv", "mine");
+    for (out, part) in [
+        ("my/part.nc", "my/part.nc: is read by this command"),
+        ("my/own.csv", "my/own.csv: was not written by this command"),
+    ] {
+        let ended = bench.stead(&["forces", "my/forces.toml", "--out", out, "--force"]);
+        assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+        ended.assert_says(&[part, "; allowed: another name"]);
+    }
+    assert_eq!((bench.read("my/own.csv"), bench.read("my/part.nc")), ("mine".to_owned(), NC.to_owned()));
 }
 
 #[test]

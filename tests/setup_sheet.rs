@@ -144,6 +144,32 @@ fn the_sheet_of_a_run_states_what_its_files_do_in_the_frame_of_the_pendant() {
         }
     }
     assert!(bench.read("r/report.html").contains("Setup sheet"));
+    // The rows end at the wrist centre; the tool is stated on the mounting flange, 230 mm beyond it, as programs do.
+    let run: toml::Table = bench.read(RUN).parse().unwrap();
+    let stated = |k: usize| {
+        let entry = &run["spindle"]["xyz_mm"][k];
+        entry.as_float().unwrap_or_else(|| entry.as_integer().unwrap() as f64)
+    };
+    let on_flange = triple(&sheet["tool_on_flange"]["xyz_mm"]);
+    assert_eq!(on_flange, [stated(0), stated(1), stated(2) - 230.0]);
+    let export = ["export", RUN, "r/best.csv", "--format", "krl", "--out", "p/PART"];
+    assert_eq!(bench.stead(&export).code, Some(0));
+    let tool = bench.read("p/PART.src");
+    let line = tool.lines().find(|line| line.starts_with("$TOOL=")).unwrap();
+    assert!(
+        decimals(&line.replace(',', " ")).iter().any(|(z, _)| (z - on_flange[2]).abs() < 1e-3),
+        "{line} {on_flange:?}"
+    );
+    assert_eq!(bench.stead(&["export", RUN, "r/best.csv", "--format", "krl", "--check", "p/PART.src"]).code, Some(0));
+    // Each check point has the frame of the tool, status and turn; without shapes nothing is said to be free.
+    for check in sheet["check_points"].as_array().unwrap() {
+        assert_eq!(
+            (check["abc_deg"].as_array().unwrap().len(), check["status_and_turn"].as_array().unwrap().len()),
+            (3, 2)
+        );
+    }
+    assert_eq!((sheet["ways"].as_str(), &sheet["collisions_checked"]), (Some("not-checked"), &Value::Bool(false)));
+    assert!(texts(&bench.read("r/setup.svg")).join(" ").contains("COLLISIONS WERE NOT CHECKED"));
 }
 
 #[test]
@@ -164,7 +190,7 @@ fn mounted_robots_rails_and_tables_have_a_sheet_and_a_run_without_a_page_has_non
     assert_eq!((sheet["frame"].as_str(), &sheet["part"]["abc_deg"][2]), (Some("cell"), &serde_json::json!(90.0)));
     // What the pendant shows is turned with the robot.
     for check in sheet["check_points"].as_array().unwrap() {
-        let [in_cell, in_root] = ["xyz_mm", "root_xyz_mm"].map(|key| triple(&check[key]));
+        let [in_cell, in_root] = [&check["xyz_mm"], &check["in_root"]["xyz_mm"]].map(triple);
         assert!((in_cell[2] - 2500.0 - in_root[1]).abs() < 2e-4 && (in_cell[0] - in_root[0]).abs() < 2e-4, "{check}");
     }
     let bench = placed(|bench| {
@@ -178,7 +204,7 @@ fn mounted_robots_rails_and_tables_have_a_sheet_and_a_run_without_a_page_has_non
     let at = axis["positions"][0].as_f64().unwrap();
     assert!((triple(&sheet["robot"]["xyz_mm"])[0] - at).abs() < 2e-4, "{sheet}");
     for check in sheet["check_points"].as_array().unwrap() {
-        let [in_cell, in_root] = ["xyz_mm", "root_xyz_mm"].map(|key| triple(&check[key]));
+        let [in_cell, in_root] = [&check["xyz_mm"], &check["in_root"]["xyz_mm"]].map(triple);
         assert!((in_cell[0] - in_root[0] - at).abs() < 2e-4, "{check}");
     }
     let bench = placed(|bench| {

@@ -8,7 +8,6 @@ use super::{Failure, on_threads, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::forces::{ForcesRun, PathForces};
-use stead_disk::files::new::check_all_new;
 
 #[derive(Debug, Args)]
 pub(super) struct ForcesOptions {
@@ -57,8 +56,7 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &ForcesOptions) -> Result<(), Failure> {
     let run = ForcesRun::read(&options.config)?;
     // What is there and to be kept is found out before the long work.
-    let files = PathForces::files(&options.out);
-    check_all_new(&files, options.force.existing(), run.inputs()).map_err(stead::Error::from)?;
+    PathForces::check_files(&run, &options.out, options.force.existing())?;
     say_notes(run.notes());
     let shown = Terminal::start(None).show(None);
     let forces = on_threads(options.threads, || run.compute(&shown.monitor))?;

@@ -62,11 +62,13 @@ pub struct SegmentMoves {
     pub retract: f64,
     /// The shapes with cutter, holder and part; without them the shapes alone are kept free of.
     pub tool: Option<Arc<ToolScene>>,
+    /// Diameter of the cutter, where it is stated, with shapes or without. m
+    pub cutter_diameter: Option<f64>,
 }
 
 impl Default for SegmentMoves {
     fn default() -> Self {
-        Self { retract: 0.05, tool: None }
+        Self { retract: 0.05, tool: None, cutter_diameter: None }
     }
 }
 

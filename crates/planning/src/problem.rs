@@ -232,6 +232,13 @@ impl Problem {
         Cow::Owned(Self { parts: ProblemParts { postures, ..self.parts.clone() } })
     }
 
+    /// The same problem with the arm's own joint limits.
+    #[must_use]
+    pub fn to_its_limits(&self) -> Self {
+        let constraints = Constraints { joint_margin: 0.0, ..self.constraints };
+        Self { parts: ProblemParts { robot: self.robot_to_its_limits(), constraints, ..self.parts.clone() } }
+    }
+
     /// The arm with its own joint limits, without the margin that plans keep from them.
     pub fn robot_to_its_limits(&self) -> Robot {
         // An arm that could be narrowed can be widened again.

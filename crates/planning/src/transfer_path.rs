@@ -55,6 +55,8 @@ const AXIS_STEP: f64 = 0.1;
 const MAX_STATES: usize = 1500;
 /// The longest edge of a tree. rad
 const EDGE: f64 = 0.35;
+/// Between two poses at which the room on a move is measured. rad
+pub const ROOM_STEP: f64 = 0.02;
 /// Tries to shorten a way by going straight between two places of it.
 const SHORTCUTS: usize = 60;
 
@@ -277,6 +279,20 @@ impl<'a> Space<'a> {
     /// from where they stand at one path point to where they stand at another.
     pub fn hit(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<Arc<[String; 2]>> {
         self.hit_in(self.with_tool, from, to)
+    }
+
+    /// The least room on such a move (m) and the pair that has it, at poses that no joint changes more between than by
+    /// [`ROOM_STEP`].
+    pub fn least_room(&self, from: (&[f64; 6], usize), to: (&[f64; 6], usize)) -> Option<(f64, Arc<[String; 2]>)> {
+        let scene = self.with_tool?;
+        let most = (0..6).map(|j| (to.0[j] - from.0[j]).abs()).fold(0.0, f64::max);
+        let steps = (most / ROOM_STEP).ceil().max(1.0);
+        let at = |step: usize| {
+            let (_, poses) = self.problem.by_joints(scene, self.placement, [from, to], step as f64 / steps);
+            scene.clearance(&poses, &PairKind::ALL)
+        };
+        let least = (0..=steps as usize).filter_map(at).min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        Some((least.distance, scene.pair(least.pair)?.names.clone()))
     }
 
     fn hit_in(

@@ -4,8 +4,7 @@ use super::carrier::Carrier;
 use super::layout::{Layout, Lines, ProgramFile};
 use super::motion::{Move, MoveKind};
 use super::names::number;
-use super::status::{status, turn};
-use stead_model::robot::Pose;
+use stead_model::robot::{Pose, kuka_status_and_turn};
 use stead_numerics::rotation::zyx_from_rotation;
 
 /// A frame as X, Y, Z in mm and A, B, C in deg, `Rz(A) Ry(B) Rx(C)`.
@@ -106,7 +105,7 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
 
 fn joint(lines: &mut Lines, layout: &Layout<'_>, step: &Move) {
     let angles = step.angles.unwrap_or(step.joints);
-    let (s, t) = (status(step.posture, layout.sign_3, angles[4]), turn(&angles));
+    let [s, t] = kuka_status_and_turn(step.posture, layout.sign_3, &angles);
     lines.line(format_args!("; start: {},S {s},T {t}", frame(&step.workpiece_from_tool, POSE_DECIMALS)));
     let axes =
         angles.iter().zip(1..).map(|(angle, axis)| format!("A{axis} {}", number(angle.to_degrees(), AXIS_DECIMALS)));

@@ -52,7 +52,7 @@ use motion::{Frames, Move, MoveKind, Target};
 use stale::StaleParts;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use stead_disk::files::new::{Existing, write_all_new};
+use stead_disk::files::new::{Existing, foreign, write_all_new};
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::manifest::interruption_note;
 use stead_model::robot::{ControllerKind, Posture, Robot};
@@ -228,6 +228,13 @@ impl Program {
         let files: Vec<(PathBuf, &str)> =
             self.files.iter().map(|file| (folder.join(&file.name), file.text.as_str())).collect();
         let stale = StaleParts::beside(self, folder);
+        if existing == Existing::Replaced && self.format != ProgramFormat::Csv {
+            let is_foreign =
+                |file: &&ProgramFile| folder.join(&file.name).is_file() && !stale::is_own(folder, &file.name);
+            if let Some(file) = self.files.iter().find(is_foreign) {
+                return Err(foreign(&folder.join(&file.name)));
+            }
+        }
         write_all_new(&files, existing, &self.inputs)?;
         let notes = stale.remove();
         Ok(WrittenProgram { files: files.into_iter().map(|(path, _)| path).collect(), notes })

@@ -138,7 +138,7 @@ pub(super) fn frames(
     let root_from_cell = problem.robot.controller_root_from_cell()?;
     Some(Frames {
         root_from_workpiece: root_from_cell.then(cell_from_workpiece),
-        flange_from_tool: problem.spindle.flange_from_tool,
+        flange_from_tool: problem.robot.on_flange(&problem.spindle.flange_from_tool),
         root_from_table,
     })
 }

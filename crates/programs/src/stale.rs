@@ -60,6 +60,11 @@ impl StaleParts {
     }
 }
 
+/// Whether a plain file says that an export has written it.
+pub(super) fn is_own(folder: &Path, name: &str) -> bool {
+    own_text(folder, name).is_some()
+}
+
 /// The text of a plain file that says that an export has written it.
 fn own_text(folder: &Path, name: &str) -> Option<String> {
     let file = folder.join(name);

@@ -4,6 +4,7 @@ use crate::columns::line;
 use crate::document::{Document, PlacementFigures};
 use crate::figure::{AngleDeg, PlaceMm, SpeedMmPerS, each};
 use crate::forces::CutRecord;
+use crate::names;
 use crate::units::{Unit, fixed};
 use serde_json::Value;
 use stead_disk::input::InputFile;
@@ -44,10 +45,10 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     let CheckedRun { problem, overview, .. } = run;
     let mut text = robot_lines(&problem.robot, None);
     let mut say = |words: String| line(&mut text, &words);
-    let tool = &problem.spindle.flange_from_tool;
+    let tool = &problem.robot.on_flange(&problem.spindle.flange_from_tool);
     let [x, y, z] = [0, 1, 2].map(|axis| MM.text(tool.translation[axis]));
     let [ax, ay, az] = [0, 1, 2].map(|axis| fixed(tool.rotation.column(2)[axis], 4));
-    say(format!("spindle   tool centre point in the flange frame: {x}, {y}, {z} mm"));
+    say(format!("spindle   tool centre point on the flange: {x}, {y}, {z} mm"));
     say(format!(
         "          tool axis (z of the tool frame) there: {ax}, {ay}, {az}; {} deg from the flange axis",
         DEG.text(overview.tool_tilt)
@@ -79,7 +80,7 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     });
     let [x, y, z] = problem.cell.position.map(|bounds| interval(MM, [bounds.min, bounds.max]));
     let yaw = interval(DEG, [problem.cell.yaw.min, problem.cell.yaw.max]);
-    let frame = if problem.robot.is_mounted() { "cell" } else { "base" };
+    let frame = names::place_frame(problem);
     say(format!("cell      workpiece origin in the {frame} frame x {x}, y {y}, z {z} mm, yaw {yaw} deg"));
     if let Some(mount) = mount_line(problem) {
         say(mount);

@@ -5,6 +5,7 @@ use stead_model::robot::{Posture, PostureWords};
 use stead_placement::outcome::{Plan, RefinementStatus};
 use stead_planning::constraints::{ConstraintKind, describe};
 use stead_planning::limit::{ActiveBound, Limit};
+use stead_planning::problem::Problem;
 use stead_planning::sense::Sense;
 
 /// `best` or `worst`.
@@ -126,6 +127,11 @@ pub fn gain(bound: &ActiveBound) -> (f64, &'static str) {
         Limit::JointStep(_) | Limit::SpindleSpeed => (bound.gain * 1e3 * 1_f64.to_radians(), "mm per deg/s"),
         Limit::Conditioning => (bound.gain * 1e3 * 0.01, "mm per 0.01"),
     }
+}
+
+/// The frame in which placements are: that of the cell, of a mounted robot, else the base frame of the rows.
+pub fn place_frame(problem: &Problem) -> &'static str {
+    if problem.robot.is_mounted() { "cell" } else { "base" }
 }
 
 #[cfg(test)]

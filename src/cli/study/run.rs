@@ -47,8 +47,8 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
               share; the last one writes the table. The bytes of study.csv and study.parquet depend on neither threads \
               nor shards.",
     done: "done; cases without a placement are rows with their reason",
-    failed: "a file could not be written; finished cases are kept",
-    refused: "wrong usage, bad input, the folder of another study, or a shard that another process works on",
+    failed: "a file could not be written, or another process works on the shard; finished cases are kept",
+    refused: "wrong usage, bad input, or the folder of another study",
     interrupted: "Ctrl-C ended it; finished cases are kept",
     ..Manual::NEW
 };

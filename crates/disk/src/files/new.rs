@@ -107,6 +107,12 @@ impl Drop for MadeFolders {
     }
 }
 
+/// That a file was made by somebody else, so that it is not replaced.
+pub fn foreign(file: &Path) -> InputError {
+    InputError::new(file, "was not written by this command, and is not replaced")
+        .allowed("another name, or no such file")
+}
+
 fn cannot(file: &Path, cause: &std::io::Error) -> InputError {
     let error = InputError::new(file, format!("cannot be written: {cause}"));
     if is_of_disk(cause) { error.of_disk() } else { error.allowed(ALLOWED) }

@@ -37,6 +37,9 @@ pub struct RobotFile {
     pub working_radius_mm: Option<Mm<Positive>>,
     /// Price.
     pub price_eur: Option<Eur<Positive>>,
+    /// How far the mounting flange is beyond the last row along axis 6, where the rows end before it: setup sheet and
+    /// programs state the tool on it. Tool frames of run files stay in the frame of the last row.
+    pub flange_mm: Option<Mm<NotNegative>>,
     /// How the controller counts joint angles; needed for programs.
     pub controller: Option<ControllerTable>,
     /// Where the base frame of the rows is in the controller's robot root; needed for programs.

@@ -172,6 +172,7 @@ fn made(
     let robot = robot.map_err(|error| locate(at, &error))?;
     let robot = with_stiffness_like(robot, file.stiffness_like.as_deref(), at)?;
     let robot = robot.with_unverified(file.unverified.as_ref().map_or_else(Vec::new, |list| list.0.clone()));
+    let robot = robot.with_flange(file.flange_mm.map_or(0.0, Quantity::si));
     let robot = with_controller(robot, file, at)?;
     let robot = with_springs(robot, file, at)?;
     let robot = match dynamics_from(joints, &rows)? {

@@ -1,6 +1,6 @@
 //! How the robot's controller counts joint angles, and where its root frame is.
 
-use super::{Pose, Robot};
+use super::{Pose, Posture, Robot};
 
 /// Whose controller it is: it decides the words and conventions of programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,6 +89,32 @@ impl Robot {
         self.controller = Some(Box::new(controller));
         self
     }
+}
+
+/// S and T of a pose, by which KUKA's controllers tell postures and turns apart, as Beckhoff describes them for its CNC
+/// (TF5200, "Status & Turn"): from its posture, the direction in which the controller counts axis 3 (1 where it is that
+/// of the row, else -1), and its joint angles as the controller counts them (rad).
+pub fn kuka_status_and_turn(posture: Posture, sign_3: f64, angles: &[f64; 6]) -> [u8; 2] {
+    [status(posture, sign_3, angles[4]), turn(angles)]
+}
+
+/// S of a KUKA pose: bit 0 the wrist centre behind axis 1 ("overhead"), bit 1 the forearm beyond the stretched arm (A3
+/// above the A3 at which wrist centre, axis 3 and axis 2 are in line), bit 2 A5 below zero. By the geometry of the arm,
+/// which the bits of a posture state: `sign_3` is 1 where A3 counts in the direction of the row. Bit 3 is not used; bit
+/// 4 marks poses taught by an absolutely accurate robot.
+fn status(posture: Posture, sign_3: f64, a5: f64) -> u8 {
+    u8::from(posture.is_back()) + 2 * u8::from(is_beyond(posture, sign_3)) + 4 * u8::from(a5 < 0.0)
+}
+
+/// Whether the controller's third axis is beyond where wrist centre, axis 3 and axis 2 are in line, in its own
+/// direction.
+fn is_beyond(posture: Posture, sign_3: f64) -> bool {
+    posture.is_delta_negative() != (sign_3 > 0.0)
+}
+
+/// T of a KUKA pose: bit i - 1 is set where A_i is below zero.
+fn turn(angles: &[f64; 6]) -> u8 {
+    angles.iter().rev().fold(0, |bits, angle| 2 * bits + u8::from(*angle < 0.0))
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ mod uncertainty;
 
 pub use axes_2_3::Axes23;
 pub use compliance::{Compensator, Compliance};
-pub use controller::{Controller, ControllerKind};
+pub use controller::{Controller, ControllerKind, kuka_status_and_turn};
 pub use data_sheet::DataSheet;
 pub use dynamics::{JointDynamics, Orthogonal};
 pub use forward::Frames;
@@ -107,6 +107,7 @@ pub struct Robot {
     rows: [Pose<f64>; 6],
     /// Pose of the base frame of the rows in the cell frame, where that is another.
     mount: Option<Pose<f64>>,
+    flange: f64,
     data_sheet: DataSheet,
     uncertainty: Option<Uncertainty>,
     /// Springs beside those about the axes.
@@ -238,6 +239,7 @@ impl Robot {
             joints,
             geometry,
             mount: None,
+            flange: 0.0,
             data_sheet: DataSheet::default(),
             uncertainty: None,
             springs: Box::default(),

@@ -6,6 +6,7 @@
 
 use super::Robot;
 use super::pose::Pose;
+use nalgebra::Vector3;
 use stead_numerics::scalar::Scalar;
 
 impl Robot {
@@ -29,6 +30,18 @@ impl Robot {
     /// Whether the base frame of the rows is not the cell frame.
     pub fn is_mounted(&self) -> bool {
         self.mount.is_some()
+    }
+
+    /// The same arm with its mounting flange so far (m) beyond the last frame along axis 6. What the tool frame of a
+    /// spindle is stated in stays the last frame.
+    pub fn with_flange(self, flange: f64) -> Self {
+        Self { flange, ..self }
+    }
+
+    /// A frame that is given in the last frame, in that of the mounting flange, as a fitter measures it and a controller
+    /// states a tool.
+    pub fn on_flange(&self, of_last: &Pose<f64>) -> Pose<f64> {
+        Pose { translation: of_last.translation - Vector3::z() * self.flange, ..*of_last }
     }
 
     /// Pose of the cell frame in the root of the controller (`$ROBROOT`, base), where that is known: what programs are

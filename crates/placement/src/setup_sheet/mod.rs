@@ -7,13 +7,17 @@ pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances
 
 use crate::outcome::{Case, Plan, left_out};
 use nalgebra::Vector3;
+use std::sync::Arc;
 use stead_cell::{Attachment, Solid};
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried};
-use stead_model::robot::Pose;
 use stead_model::robot::turns::Range;
+use stead_model::robot::{ControllerKind, Pose, kuka_status_and_turn};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Placement, Problem};
+use stead_planning::redundancy::SegmentPlan;
+use stead_planning::transfer::Transfer;
+use stead_planning::transfer_path::{Space, transfer_path};
 use tolerance::tolerances;
 
 /// The frame in which a sheet states places.
@@ -51,16 +55,41 @@ pub struct AxisSetup {
 pub struct CheckPoint {
     /// The path point, from 0.
     pub point: usize,
-    /// Where the tool centre point is, in the frame of the sheet. m
-    pub place: Vector3<f64>,
+    /// The tool frame in the frame of the sheet. m
+    pub tool: Pose<f64>,
     /// The same in the root of the controller as the robot stands, where that is known and another frame. m
-    pub in_root: Option<Vector3<f64>>,
+    pub in_root: Option<Pose<f64>>,
     /// Joint angles of the rows. rad
     pub joints: [f64; 6],
     /// Joint angles as the controller counts them, where that is known. rad
     pub controller: Option<[f64; 6]>,
+    /// Status and turn of a KUKA controller.
+    pub status_and_turn: Option<[u8; 2]>,
     /// Positions of the external axes. m or rad
     pub axes: Vec<f64>,
+}
+
+/// What is known of the ways between check points, one after the other: out along the tool axis, a joint move, and in
+/// again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ways {
+    /// There is one point alone.
+    None,
+    /// Nothing is known: there are no shapes.
+    NotChecked,
+    /// They hit nothing.
+    Free,
+    /// In no order of the points do they hit nothing.
+    Blocked,
+}
+
+/// The least room of something, and the pair of shapes that has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Room {
+    /// How far they are apart. m
+    pub distance: f64,
+    /// Their names.
+    pub names: Arc<[String; 2]>,
 }
 
 /// How near a plan comes to a limit of a joint.
@@ -88,7 +117,7 @@ pub struct SetupSheet {
     pub robot: Pose<f64>,
     /// Whether that is the root of the controller.
     pub is_root: bool,
-    /// The tool frame on the flange.
+    /// The tool frame on the mounting flange.
     pub flange_from_tool: Pose<f64>,
     /// Diameter of the cutter, where the run states it. m
     pub cutter_diameter: Option<f64>,
@@ -96,8 +125,15 @@ pub struct SetupSheet {
     pub floor: Option<f64>,
     /// External axes.
     pub axes: Vec<AxisSetup>,
-    /// Three points that are far from each other, two where the path is straight, one where it is a point.
+    /// Three points that are far from each other, two where the path is straight, one where it is a point: in an order
+    /// whose ways are free, where there is one.
     pub check_points: Vec<CheckPoint>,
+    /// What is known of the ways between them.
+    pub ways: Ways,
+    /// The least room on joint moves between segments, where there are shapes and such moves.
+    pub room_on_moves: Option<Room>,
+    /// Whether there are shapes, by which collisions are looked for.
+    pub has_shapes: bool,
     /// How near the plan comes to a limit of a joint.
     pub nearest_limit: Option<NearestLimit>,
     /// By how much the part may be off, or why that is not known.
@@ -122,10 +158,7 @@ impl SetupSheet {
     /// The sheet of a case of a problem, whatever its setup.
     pub fn new(problem: &Problem, case: &Case, monitor: &Monitor) -> Self {
         let problem = &*problem.in_setup(&case.setup);
-        Self::of_plan(problem, &case.placement, &case.plan, monitor)
-    }
-
-    fn of_plan(problem: &Problem, placement: &Placement, plan: &Plan, monitor: &Monitor) -> Self {
+        let (placement, plan) = (&case.placement, &case.plan);
         let robot = &problem.robot;
         let root_from_base = robot.controller().and_then(|controller| controller.root_from_base);
         let is_carried = problem.external_axes.iter().any(|axis| axis.carries == Carried::Robot);
@@ -148,37 +181,39 @@ impl SetupSheet {
         let check = |point: &usize| {
             let of = plan.points.get(*point)?;
             // With a mounted robot positions are in the cell frame, as it is with all axes at zero.
-            let in_cell = cell_from_base(of.point).point(&of.position);
+            let tool = robot.forward(&of.joints).then(&problem.spindle.flange_from_tool);
             let in_root = robot.controller_root_from_cell().filter(|_| frame != SheetFrame::Root);
+            let counted = robot.controller().map(|controller| (controller, controller.angles(robot, &of.joints)));
+            let kuka = counted.filter(|(controller, _)| controller.kind == ControllerKind::Kuka);
             Some(CheckPoint {
                 point: of.point,
-                place: sheet_from_cell.point(&in_cell),
-                in_root: in_root.map(|root| root.point(&of.position)),
+                tool: sheet_from_cell.then(&cell_from_base(of.point)).then(&tool),
+                in_root: in_root.map(|root| root.then(&tool)),
                 joints: of.joints,
-                controller: robot.controller().map(|controller| controller.angles(robot, &of.joints)),
+                controller: counted.map(|(_, angles)| angles),
+                status_and_turn: kuka
+                    .map(|(controller, angles)| kuka_status_and_turn(of.posture, controller.sign[2], &angles)),
                 axes: problem.axis_positions(of.point).to_vec(),
             })
         };
         let tolerances = match monitor.should_stop() {
             true => Err(INTERRUPTED.to_owned()),
-            false => tolerances(
-                problem,
-                placement,
-                (&plan.postures, plan.objective),
-                sheet_from_cell.rotation.transpose(),
-                monitor,
-            ),
+            false => tolerances(problem, case, sheet_from_cell.rotation.transpose(), monitor),
         };
+        let (order, ways) = in_order(problem, placement, plan, spread(problem));
         Self {
             frame,
             part: sheet_from_cell.then(&part),
             robot: sheet_from_cell.then(&stands),
             is_root: root_from_base.is_some(),
-            flange_from_tool: problem.spindle.flange_from_tool,
-            cutter_diameter: problem.segment_moves.tool.as_ref().and_then(|of| Some(2.0 * of.tool().cutter?.radius)),
+            flange_from_tool: robot.on_flange(&problem.spindle.flange_from_tool),
+            cutter_diameter: problem.segment_moves.cutter_diameter,
             floor: floor(problem).map(|height| sheet_from_cell.point(&Vector3::new(0.0, 0.0, height)).z),
             axes: axes(problem, plan, &sheet_from_cell),
-            check_points: spread(problem).iter().filter_map(check).collect(),
+            check_points: order.iter().filter_map(check).collect(),
+            ways,
+            room_on_moves: room_on_moves(problem, case),
+            has_shapes: problem.scene.is_some(),
             nearest_limit: nearest_limit(problem, plan),
             tolerances,
             sheet_from_cell,
@@ -240,6 +275,61 @@ fn spread(problem: &Problem) -> Vec<usize> {
     }
     chosen.sort_unstable();
     chosen
+}
+
+/// Points of a plan in an order in which the tool can be driven from one to the next: out along its axis, by a joint
+/// move, and in again.
+fn in_order(problem: &Problem, placement: &Placement, plan: &Plan, points: Vec<usize>) -> (Vec<usize>, Ways) {
+    if points.len() < 2 {
+        return (points, Ways::None);
+    }
+    let at = |point: usize| {
+        let of = plan.points.get(point)?;
+        let (betas, joints) = (vec![of.beta], vec![of.joints]);
+        Some(SegmentPlan { points: point..point + 1, posture: of.posture, betas, joints, cost: 0.0 })
+    };
+    let is_free = |pair: &[usize]| {
+        let way = transfer_path(problem, placement, [&at(pair[0])?, &at(pair[1])?], 0)?;
+        let joint_moves = (1..way.joints.len()).filter(|place| !way.is_along_axis(*place)).count();
+        Some(way.blocked_by.is_none() && joint_moves == 1)
+    };
+    if problem.scene.is_none() {
+        return (points, Ways::NotChecked);
+    }
+    // The same way back is as free, so that of three points the one in the middle decides.
+    let orders = (0..points.len()).map(|middle| {
+        let mut order = points.clone();
+        let of_middle = order.remove(middle);
+        order.insert(1, of_middle);
+        order
+    });
+    let free = orders.into_iter().find(|order| order.windows(2).all(|pair| is_free(pair) == Some(true)));
+    free.map_or((points, Ways::Blocked), |order| (order, Ways::Free))
+}
+
+/// The least room on the joint moves between segments.
+fn room_on_moves(problem: &Problem, case: &Case) -> Option<Room> {
+    let space = Space::among_shapes(problem, &case.placement)?;
+    let rooms = joint_moves(problem, case).into_iter().filter_map(|[from, to]| space.least_room(from, to));
+    let (distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(Room { distance, names })
+}
+
+/// A move between two segments that is straight in joint space, from one joint pose to another, with the path points at
+/// which the external axes are as they are there.
+type JointMove<'a> = [(&'a [f64; 6], usize); 2];
+
+/// These moves of a case, without the lines along the tool axis.
+fn joint_moves<'a>(problem: &Problem, case: &'a Case) -> Vec<JointMove<'a>> {
+    let spans = problem.task.segments();
+    let of = |transfer: &'a Transfer| {
+        let way = transfer.way.as_ref()?;
+        let (from, to) = (spans.get(transfer.after_segment - 1)?, spans.get(transfer.after_segment)?);
+        let at = move |place: usize| (&way.joints[place], if place < way.axes_from { from.end - 1 } else { to.start });
+        let places = (1..way.joints.len()).filter(|place| !way.is_along_axis(*place));
+        Some(places.map(move |place| [at(place - 1), at(place)]).collect::<Vec<_>>())
+    };
+    case.cycle.transfers.iter().filter_map(of).flatten().collect()
 }
 
 /// The state of a plan that is nearest to a limit of a joint, of the arm itself without the margin of the run.

@@ -1,10 +1,7 @@
-use super::tolerance::tolerances;
 use super::*;
 use crate::place::score;
-use crate::refine::planned;
-use nalgebra::Matrix3;
+use stead_model::robot::Robot;
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
-use stead_planning::redundancy::Planner;
 use stead_planning::testing::five_segments;
 use stead_planning::transfer::TransferSettings;
 
@@ -25,18 +22,23 @@ fn path_through(places: &[[f64; 3]]) -> Problem {
     five_segments().with(|parts| parts.task = Task::new(path, wrenches).unwrap())
 }
 
-/// At every offset that is stated a plan as fine as those of results keeps the rise, and a quarter farther it does not.
+/// At every offset that is stated the program keeps the rise, and a quarter farther it does not.
 #[test]
 fn stated_offsets_keep_the_rise_and_those_a_quarter_farther_do_not() {
     let problem = five_segments();
-    let found = sheet(&problem, &Monitor::silent()).tolerances.unwrap();
-    let planner = Planner::finer(&problem);
+    let scored = score(&problem, &near_the_best(), &TransferSettings::default(), &Monitor::silent()).unwrap();
+    let case = &scored.cases().best;
+    let found = SetupSheet::new(&problem, case, &Monitor::silent()).tolerances.unwrap();
     let placed = near_the_best();
+    // The same free angles and postures, with the part elsewhere.
     let objective = |placement: &Placement| {
-        planned(&planner, placement, None, &mut planner.workspace()).map_or(f64::INFINITY, |found| found.objective)
+        let score = |of: &crate::outcome::PlanPoint| {
+            problem.at(placement).state(of.point, of.beta, of.posture).map_or(f64::INFINITY, |state| state.score())
+        };
+        case.plan.points.iter().map(score).sum::<f64>() / case.plan.points.len() as f64
     };
     let here = objective(&placed);
-    assert!((found.nominal / here - 1.0).abs() < 1e-3, "{} {here}", found.nominal);
+    assert!((found.nominal / here - 1.0).abs() < 1e-9 && (found.nominal / case.plan.objective - 1.0).abs() < 1e-6);
     assert_eq!((found.directions.len(), found.points), (8, [105, 105]));
     let mut met = 0;
     for of in &found.directions {
@@ -46,16 +48,16 @@ fn stated_offsets_keep_the_rise_and_those_a_quarter_farther_do_not() {
             objective(&placement) / here - 1.0
         };
         for (allowed, rise) in of.rises.iter().zip(RISES) {
-            assert!(off(allowed.offset) < rise + 1e-3, "{}: {}", of.direction, allowed.offset);
-            if !allowed.is_more {
+            assert!(off(allowed.offset) <= rise + 1e-9, "{}: {}", of.direction, allowed.offset);
+            let is_stopped = of.blocked.as_ref().is_some_and(|blocked| blocked.offset <= 1.25 * allowed.offset + 1e-4);
+            if !allowed.is_more && !is_stopped {
                 met += 1;
-                // Other postures may do better than those of the plan, hence the half.
-                assert!(off(1.25 * allowed.offset) > 0.5 * rise, "{}: {}", of.direction, allowed.offset);
+                assert!(off(1.25 * allowed.offset + 1e-4) > rise, "{}: {}", of.direction, allowed.offset);
             }
         }
         assert!(of.rises[0].offset <= of.rises[1].offset);
     }
-    assert!(met >= 6, "{met}");
+    assert!(met >= 4, "{met}");
 }
 
 #[test]
@@ -69,15 +71,54 @@ fn the_limit_that_is_met_first_is_named() {
     };
     let least = nearest(&free) - 3e-3;
     let problem = free.with(|parts| parts.constraints.min_base_distance = least);
-    let plan = score(&problem, &placement, &TransferSettings::default(), &Monitor::silent()).unwrap().plans.best;
-    let scheme = (&plan.postures[..], plan.objective);
-    let found = tolerances(&problem, &placement, scheme, Matrix3::identity(), &Monitor::silent()).unwrap();
+    let found = sheet(&problem, &Monitor::silent()).tolerances.unwrap();
     // Towards the robot.
     let of = &found.directions[2];
     assert_eq!(of.direction.to_string(), "+y");
     let blocked = of.blocked.as_ref().unwrap();
-    assert_eq!(blocked.by, "distance of the path from axis 1");
+    assert!(blocked.by.starts_with("distance of the path from axis 1 at point "), "{}", blocked.by);
     assert!(blocked.offset < 6e-3 && of.rises[1].offset < 3.2e-3 && !of.rises[1].is_more, "{of:?}");
+}
+
+#[test]
+fn what_the_arm_cannot_do_with_the_part_elsewhere_is_found_by_its_own_limits() {
+    // The arm may turn joint 5 by a hundredth of a degree beyond what the plan needs, in either direction.
+    let problem = five_segments();
+    let scored = score(&problem, &near_the_best(), &TransferSettings::default(), &Monitor::silent()).unwrap();
+    let angles = scored.plans.best.points.iter().map(|of| of.joints[1]);
+    let [least, most] = [angles.clone().fold(f64::INFINITY, f64::min), angles.fold(f64::NEG_INFINITY, f64::max)];
+    let room = 1e-2_f64.to_radians();
+    let mut case = scored.cases().best;
+    let narrow = |margin: f64| {
+        let mut joints = problem.robot.joints().clone();
+        (joints[1].min, joints[1].max) = (least - margin, most + margin);
+        let narrowed = Robot::new("narrow", joints).unwrap();
+        problem.clone().with(|parts| parts.robot = narrowed)
+    };
+    let found = SetupSheet::new(&narrow(room), &case, &Monitor::silent()).tolerances.unwrap();
+    for of in found.directions.iter().filter(|of| !of.direction.is_turn()) {
+        let by = of.blocked.as_ref().map(|blocked| blocked.by.clone()).unwrap_or_default();
+        let is_met = by.starts_with("limits of joint 2 at point ") && of.rises[1].offset < 2e-3;
+        assert!(is_met || of.direction.axis == 3, "{}: {by} {:?}", of.direction, of.rises);
+    }
+    // A plan that does not keep its own limits has no tolerances, and says why.
+    case.plan.points[3].beta += 3.0;
+    let why = SetupSheet::new(&narrow(room), &case, &Monitor::silent()).tolerances.unwrap_err();
+    assert!(why.starts_with("the plan itself does not keep "), "{why}");
+}
+
+#[test]
+fn places_on_the_flange_are_from_the_mounting_flange() {
+    let problem = five_segments();
+    let beyond = problem.clone().with(|parts| parts.robot = parts.robot.clone().with_flange(0.23));
+    let [here, there] = [&problem, &beyond].map(|of| sheet(of, &Monitor::silent()));
+    let apart = here.flange_from_tool.translation - there.flange_from_tool.translation;
+    assert_eq!(
+        (<[f64; 3]>::from(apart), here.flange_from_tool.rotation),
+        ([0.0, 0.0, 0.23], there.flange_from_tool.rotation)
+    );
+    // All else is the same.
+    assert_eq!(SetupSheet { flange_from_tool: here.flange_from_tool, ..there }, here);
 }
 
 #[test]

@@ -1,25 +1,19 @@
-//! By how much a part may stand off its place before the objective grows: at every trial the best plan is made anew, in
-//! the postures of the plan that the sheet is of.
-//!
-//! Trials are planned on the grid of beta of the run, and off it as far as such a growth needs: with the published case
-//! sixty of them take a tenth of the time of the whole search when they are planned as finely as what is stated.
+//! By how much a part may be off its place before the program of its plan no longer runs, or deflects more: the base is
+//! measured anew, so that the program moves with the part, every point with its free angle and its posture. Joint moves
+//! between segments stay, as their joint angles do.
 
+use super::{JointMove, joint_moves};
+use crate::outcome::{Case, PlanPoint};
 use crate::path_subset::PathSubset;
-use crate::refine::planned;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
-use std::borrow::Cow;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use stead_model::robot::Posture;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::constraints::{Measured, describe};
+use stead_planning::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
 use stead_planning::criterion::CANCELLATION;
-use stead_planning::feasibility::diagnose;
 use stead_planning::problem::{Placement, Problem};
-use stead_planning::redundancy::Planner;
-use stead_planning::redundancy::off_grid::Spacing;
-use stead_planning::sense::Sense;
+use stead_planning::transfer_path::{AtPoint, LineEnd, Space};
 
 /// Shares by which the objective may grow, the smaller first.
 pub const RISES: [f64; 2] = [0.01, 0.05];
@@ -29,18 +23,11 @@ const TRIALS: [[f64; 3]; 2] = [[5e-3, 0.1, 5e-5], [PI / 360.0, PI / 18.0, PI / 3
 const GROWTH: f64 = 5.0;
 /// An offset is found to this share of itself, on the safe side.
 const FINENESS: f64 = 0.2;
-/// Where beta is narrowed down off the grid, it is to this: the objective is then off by less than a thousandth. rad
-const LAST: f64 = 1e-3;
-/// Most plans for a direction.
+/// Most trials for a direction.
 const MOST: usize = 14;
-/// Where the objective on the grid of the run is farther above the stated one than this (relative), trials are planned
-/// on the finer grid.
-const AGREEMENT: f64 = 2e-3;
-/// Path points that stand for a long path, beside one for every segment; paths of fewer than twice as many are planned
-/// whole.
-const POINTS: usize = 180;
-/// Most blocked points whose reason is looked for.
-const DIAGNOSED: usize = 3;
+/// Path points that stand for a long path, beside one for every segment; of paths of fewer than twice as many all are
+/// looked at.
+const POINTS: usize = 1000;
 
 /// A way in which a part can stand off its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,10 +67,10 @@ pub struct Allowed {
     pub is_more: bool,
 }
 
-/// What makes a placement infeasible on the way.
+/// What the program cannot keep on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocked {
-    /// The nearest trial without a plan. m or rad
+    /// The nearest trial at which it cannot. m or rad
     pub offset: f64,
     /// The limit that it breaks, or the two shapes that come too near, in words.
     pub by: String,
@@ -96,71 +83,53 @@ pub struct Tolerance {
     pub direction: OffDirection,
     /// Until the objective has grown by each of [`RISES`].
     pub rises: [Allowed; 2],
-    /// What no plan can keep, where it is met before the larger rise.
+    /// What the program cannot keep, where it is met before the larger rise.
     pub blocked: Option<Blocked>,
 }
 
 /// How far a part may be off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerances {
-    /// The objective of the best plan where the part stands as stated, by which rises are measured: planned as all
-    /// trials are, on the points below. m
+    /// The objective where the part is as stated, by which rises are measured: on the points below, and without the
+    /// travel of the joints. m
     pub nominal: f64,
-    /// Points of the path that are planned, of all; fewer for a long path.
+    /// Points of the path that are looked at, of all; fewer for a long path.
     pub points: [usize; 2],
-    /// Plans made.
-    pub plans: usize,
     /// By direction.
     pub directions: Vec<Tolerance>,
 }
 
-/// Trials of placements around one.
+/// A program with the part off its place.
 struct Trials<'a> {
-    planner: Planner<'a>,
+    /// The problem with the arm's own limits, and on the points that are looked at.
+    problem: Problem,
+    sampled: Problem,
     placement: Placement,
-    /// The posture of each segment.
-    scheme: &'a [Posture],
+    /// The plan at these points.
+    points: Vec<&'a PlanPoint>,
+    moves: Vec<JointMove<'a>>,
+    /// Ends of segments whose lines along the tool axis have their whole length.
+    lines: Vec<&'a PlanPoint>,
     /// From the frame of the sheet to that of placements.
     rotation: Matrix3<f64>,
 }
 
-/// How far a part may be off a placement; a part that stands on external axes with all of them at zero. `rotation`
-/// turns the frame of the sheet, in which directions are, into that of placements; their z axes are parallel. `scheme`
-/// are the postures of the segments, and `stated` the objective of their plan (m).
+/// How far a part may be off the placement of a case; a part that external axes carry with all of them at zero.
+/// `rotation` turns the frame of the sheet, in which directions are, into that of placements; their z axes are parallel.
 ///
 /// # Errors
 /// A sentence: why it is not known.
 pub(super) fn tolerances(
     problem: &Problem,
-    placement: &Placement,
-    (scheme, stated): (&[Posture], f64),
+    case: &Case,
     rotation: Matrix3<f64>,
     monitor: &Monitor,
 ) -> Result<Tolerances, String> {
-    let problem = problem.without_tie_rule();
-    let task = &problem.task;
-    let (all, count) = (task.points().len(), POINTS + task.segments().len());
-    let problem = match all < 2 * count {
-        true => problem,
-        false => Cow::Owned(PathSubset::new(task, count).of(&problem)),
-    };
-    let of = |planner: &Planner<'_>| planned(planner, placement, Some(scheme), &mut planner.workspace());
-    let rough = spaced(Planner::new(&problem));
-    let agrees = |objective: f64| problem.task.path().is_thinned() || objective <= stated * (1.0 + AGREEMENT);
-    let found = of(&rough).map(|found| found.objective).filter(|objective| agrees(*objective));
-    let (planner, nominal) = match found {
-        Some(objective) => (rough, Some(objective)),
-        None => {
-            let finer = spaced(Planner::finer(&problem));
-            let found = of(&finer).map(|found| found.objective);
-            (finer, found)
-        }
-    };
-    let nominal = nominal.ok_or("the placement has no plan when it is planned anew in its postures")?;
+    let trials = Trials::new(problem, case, rotation);
+    let nominal = trials.at(&trials.placement).map_err(|by| format!("the plan itself does not keep {by}"))?;
     if nominal <= CANCELLATION {
         return Err("the best plan cancels the deflection: any offset is many times as much".to_owned());
     }
-    let trials = Trials { planner, placement: *placement, scheme, rotation };
     let (done, directions) = (AtomicUsize::new(0), OffDirection::all().collect::<Vec<_>>());
     let report = |done| monitor.report(Progress::Steps { stage: "tolerances", done, total: directions.len() });
     report(0);
@@ -169,42 +138,60 @@ pub(super) fn tolerances(
         report(done.fetch_add(1, Ordering::Relaxed) + 1);
         found
     };
-    let found: Option<Vec<(Tolerance, usize)>> = directions.par_iter().map(one).collect();
-    let (directions, plans): (Vec<_>, Vec<usize>) = found.ok_or(super::INTERRUPTED)?.into_iter().unzip();
-    let points = [problem.task.points().len(), all];
-    Ok(Tolerances { nominal, points, plans: 1 + plans.iter().sum::<usize>(), directions })
+    let found: Option<Vec<Tolerance>> = directions.par_iter().map(one).collect();
+    let points = [trials.points.len(), problem.task.points().len()];
+    Ok(Tolerances { nominal, points, directions: found.ok_or(super::INTERRUPTED)? })
 }
 
-/// A planner that narrows beta down as far as a trial needs.
-fn spaced(planner: Planner<'_>) -> Planner<'_> {
-    let spacing = Spacing { last: LAST, ..Spacing::full(planner.grid()) };
-    planner.with_spacing(spacing)
+/// A trial: how far off, and the objective there or what is not kept.
+type Trial = (f64, Result<f64, String>);
+
+/// How many of the first trials keep a limit.
+fn kept(trials: &[Trial], limit: f64) -> usize {
+    trials.iter().take_while(|trial| trial.1.as_ref().is_ok_and(|objective| *objective <= limit)).count()
 }
 
-/// A trial: how far off, and the objective there.
-type Trial = (f64, Option<f64>);
-
-/// The last of the trials up to which all keep a limit, and the next, where there is one.
-fn bracket(trials: &[Trial], limit: f64) -> (Trial, Option<Trial>) {
-    let keeps = |trial: &&Trial| trial.1.is_some_and(|objective| objective <= limit);
-    let kept = trials.iter().take_while(keeps).count();
-    (kept.checked_sub(1).map_or((0.0, None), |last| trials[last]), trials.get(kept).copied())
+/// The last of them, and the next, where there is one.
+fn bracket(trials: &[Trial], limit: f64) -> Option<(&Trial, &Trial)> {
+    let count = kept(trials, limit);
+    Some((trials.get(count.checked_sub(1)?)?, trials.get(count)?))
 }
 
 /// Where the limit may be met between two trials.
-fn between(low: Trial, high: Trial, limit: f64, bisects: bool) -> f64 {
-    let width = high.0 - low.0;
-    let share = match (low.1, high.1) {
-        (Some(below), Some(above)) if !bisects && above > below => {
+fn between(low: &Trial, high: &Trial, limit: f64, bisects: bool) -> f64 {
+    let share = match (&low.1, &high.1) {
+        (Ok(below), Ok(above)) if !bisects && above > below => {
             // Between what a kink and what a smooth minimum would have.
             libm::pow(((limit - below) / (above - below)).max(0.0), 0.75)
         }
         _ => 0.5,
     };
-    low.0 + width * share.clamp(0.1, 0.9)
+    low.0 + (high.0 - low.0) * share.clamp(0.1, 0.9)
 }
 
-impl Trials<'_> {
+impl<'a> Trials<'a> {
+    fn new(problem: &Problem, case: &'a Case, rotation: Matrix3<f64>) -> Self {
+        let problem = problem.to_its_limits();
+        let (task, plan) = (&problem.task, &case.plan);
+        let subset = PathSubset::new(
+            task,
+            match task.points().len() {
+                all if all < 2 * POINTS => all,
+                _ => POINTS + task.segments().len(),
+            },
+        );
+        let points: Vec<&PlanPoint> = subset.points().iter().filter_map(|point| plan.points.get(*point)).collect();
+        let sampled = if points.len() < task.points().len() { subset.of(&problem) } else { problem.clone() };
+        let moves = joint_moves(&problem, case);
+        let space = Space::new(&problem, &case.placement);
+        let ends = task.segments().iter().flat_map(|span| [span.start, span.end - 1]);
+        let ends = ends.filter_map(|point| plan.points.get(point));
+        let is_whole =
+            |of: &&PlanPoint| space.line_end(at_point(of, of.joints), problem.segment_moves.retract).is_none();
+        let lines = ends.filter(is_whole).collect();
+        Self { placement: case.placement, sampled, points, moves, lines, rotation, problem }
+    }
+
     /// The placement with the part off by so much. m or rad
     fn off(&self, direction: OffDirection, offset: f64) -> Placement {
         let offset = if direction.is_negative { -offset } else { offset };
@@ -218,14 +205,12 @@ impl Trials<'_> {
         placement
     }
 
-    /// How far the part may be off in a direction, and the number of plans made; `None` once the caller asks to stop.
-    fn along(&self, direction: OffDirection, nominal: f64, monitor: &Monitor) -> Option<(Tolerance, usize)> {
+    /// How far the part may be off in a direction; `None` once the caller asks to stop.
+    fn along(&self, direction: OffDirection, nominal: f64, monitor: &Monitor) -> Option<Tolerance> {
         let [first, farthest, nearest] = TRIALS[usize::from(direction.is_turn())];
-        let mut workspace = self.planner.workspace();
-        let mut trials: Vec<Trial> = vec![(0.0, Some(nominal))];
-        let mut attempt = |trials: &mut Vec<Trial>, offset: f64| {
-            let found = planned(&self.planner, &self.off(direction, offset), Some(self.scheme), &mut workspace);
-            let trial = (offset, found.map(|found| found.objective));
+        let mut trials: Vec<Trial> = vec![(0.0, Ok(nominal))];
+        let attempt = |trials: &mut Vec<Trial>, offset: f64| {
+            let trial = (offset, self.at(&self.off(direction, offset)));
             trials.insert(trials.partition_point(|known| known.0 < offset), trial);
         };
         let limits = RISES.map(|rise| nominal * (1.0 + rise));
@@ -235,65 +220,83 @@ impl Trials<'_> {
                 return None;
             }
             attempt(&mut trials, offset);
-            if bracket(&trials, limits[1]).1.is_some() || offset >= farthest {
+            if kept(&trials, limits[1]) < trials.len() || offset >= farthest {
                 break;
             }
             offset = (offset * GROWTH).min(farthest);
         }
         for limit in limits.into_iter().rev() {
             let mut bisects = false;
-            while let (low, Some(high)) = bracket(&trials, limit)
-                && high.0 - low.0 > nearest.max(FINENESS * low.0)
-                && trials.len() <= MOST
-            {
+            while let Some((low, high)) = bracket(&trials, limit) {
+                if high.0 - low.0 <= nearest.max(FINENESS * low.0) || trials.len() > MOST {
+                    break;
+                }
                 if monitor.should_stop() {
                     return None;
                 }
-                attempt(&mut trials, between(low, high, limit, bisects));
+                let next = between(low, high, limit, bisects);
+                attempt(&mut trials, next);
                 bisects = !bisects;
             }
         }
         let rises = limits.map(|limit| {
-            let (low, high) = bracket(&trials, limit);
-            Allowed { offset: low.0, is_more: high.is_none() }
+            let count = kept(&trials, limit);
+            Allowed { offset: trials[count - 1].0, is_more: count == trials.len() }
         });
-        let blocked = trials.iter().find(|trial| trial.1.is_none());
-        let blocked = blocked.map(|trial| Blocked { offset: trial.0, by: self.blocker(&self.off(direction, trial.0)) });
-        Some((Tolerance { direction, rises, blocked }, trials.len() - 1))
+        let blocked = trials.into_iter().find_map(|(offset, found)| Some(Blocked { offset, by: found.err()? }));
+        Some(Tolerance { direction, rises, blocked })
     }
 
-    /// What a placement without a plan breaks, in words.
-    fn blocker(&self, placement: &Placement) -> String {
-        let problem = self.planner.problem();
-        let unnamed = || "limits that no plan keeps together".to_owned();
-        let Err(mut none) = self.planner.plan(placement, Sense::Min, Some(self.scheme), &mut self.planner.workspace())
-        else {
-            return unnamed();
-        };
-        let pair = none.collisions.keys().next().and_then(|pair| problem.scene.as_deref()?.pair(*pair));
-        if let Some(pair) = pair {
-            let [a, b] = &*pair.names;
-            return format!("{a} and {b}");
-        }
-        none.blocked_points.truncate(DIAGNOSED);
-        none.broken_segments.truncate(1);
-        let findings = diagnose(problem, placement, Some(self.scheme), &none);
-        let worst = findings.iter().find_map(|finding| {
-            let violations = &finding.nearest.as_ref()?.violations;
-            violations.iter().max_by(|a, b| a.severity().total_cmp(&b.severity())).map(Measured::kind)
-        });
-        match (worst, findings.first()) {
-            (Some(kind), _) => describe(&[kind]).join(", "),
-            (None, Some(finding)) => {
-                let kinds: Vec<_> = finding.stopped_by.first().cloned().unwrap_or_default();
-                let words = if kinds.is_empty() {
-                    "limits and turns of the joints".to_owned()
-                } else {
-                    describe(&kinds).join(", ")
-                };
-                format!("{words}, in segment {}", finding.segment)
+    /// The objective of the program with the part at a placement (m).
+    ///
+    /// # Errors
+    /// What it cannot keep there, in words.
+    fn at(&self, placement: &Placement) -> Result<f64, String> {
+        let problem = &self.sampled;
+        let mut costs = vec![0.0; self.problem.task.segments().len()];
+        for (point, of) in self.points.iter().enumerate() {
+            let kept = |kind: ConstraintKind| format!("{} at point {}", describe(&[kind]).join(", "), of.point);
+            let state = problem.at(placement).state(point, of.beta, of.posture);
+            let mut state = state.map_err(|_| kept(ConstraintKind::Reach))?;
+            state.joints = turned_to(&state.joints, &of.joints);
+            let measured = on_joints(problem, &state.joints).chain(on_state(problem, &state));
+            if let Some(broken) = measured.into_iter().find(|measured| !measured.holds()) {
+                return Err(kept(broken.kind()));
             }
-            (None, None) => unnamed(),
+            if let Some(Measured::Clearance { names, .. }) =
+                problem.clearance_constraint(point, placement, &state.joints).filter(|measured| !measured.holds())
+            {
+                return Err(format!("{} and {} at point {}", names[0], names[1], of.point));
+            }
+            let cost = &mut costs[of.segment - 1];
+            *cost = problem.criterion.aggregate.join(*cost, problem.point_cost(point, state.score()));
         }
+        let space = Space::new(&self.problem, placement);
+        for [from, to] in &self.moves {
+            if let Some(names) = space.hit(*from, *to) {
+                return Err(format!("{} and {} on the way to the next segment", names[0], names[1]));
+            }
+        }
+        for of in &self.lines {
+            let state = self.problem.at(placement).state(of.point, of.beta, of.posture);
+            let joints = state.map(|state| turned_to(&state.joints, &of.joints)).unwrap_or(of.joints);
+            if let Some(short) = space.line_end(at_point(of, joints), self.problem.segment_moves.retract) {
+                return Err(match short.end {
+                    LineEnd::Hit(names) => format!("{} and {} on the line to point {}", names[0], names[1], of.point),
+                    _ => format!("limits of the joints on the line to point {}", of.point),
+                });
+            }
+        }
+        Ok(problem.objective(costs))
     }
+}
+
+/// A point of a plan with other joint angles.
+fn at_point(of: &PlanPoint, joints: [f64; 6]) -> AtPoint {
+    AtPoint { point: of.point, beta: of.beta, posture: of.posture, joints }
+}
+
+/// Joint angles in the turns of others.
+fn turned_to(joints: &[f64; 6], near: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|j| joints[j] + TAU * ((near[j] - joints[j]) / TAU).round())
 }

@@ -198,6 +198,7 @@ pub fn check(
         robot,
         controller: robot.controller(),
         mounted: frame(&problem.spindle.flange_from_tool),
+        on_flange: frame(&robot.on_flange(&problem.spindle.flange_from_tool)),
         stand: frame(&robot.cell_from_base()),
         placed: workpiece(&plan.placement).of(&frame(&lying)),
         axes: &problem.external_axes,
@@ -238,6 +239,8 @@ struct Arm<'a> {
     controller: Option<&'a Controller>,
     /// The tool on the flange, as the run has it.
     mounted: Frame,
+    /// The same on the mounting flange, as programs state it.
+    on_flange: Frame,
     /// The base frame of the rows in the cell frame.
     stand: Frame,
     /// The workpiece of the task file in the cell frame, with all external axes at zero.
@@ -377,7 +380,7 @@ impl Arm<'_> {
                         seen(self.axes, &one.external).of(&table).of(base)
                     }
                 };
-                Ok(vec![base.of(tool).of(&mounted.inverted()).of(&self.mounted)])
+                Ok(vec![base.of(tool).of(&mounted.inverted()).of(&self.on_flange)])
             }
         }
     }

@@ -1,6 +1,6 @@
 //! S and T by their geometry, on random postures.
 
-use super::super::status::{fanuc_config, status, turn};
+use super::super::status::fanuc_config;
 use super::bench::Bench;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use std::path::Path;
 use stead_format::robot::geometry_from;
 use stead_format::toml_file::TomlFile;
-use stead_model::robot::{Controller, ControllerKind, Frames, Pose, Posture, Robot};
+use stead_model::robot::{Controller, ControllerKind, Frames, Pose, Posture, Robot, kuka_status_and_turn};
 use stead_numerics::rotation::{rotation_from_zyx, rotation_vector};
 
 /// The distance of the wrist centre from axis 2.
@@ -64,7 +64,7 @@ fn s_and_t_are_those_of_the_geometry() {
             let angles: [f64; 6] = std::array::from_fn(|_| random.random_range(-3.1..3.1));
             let joints = controller.joints(&robot, &angles);
             let posture = Posture::of(&robot, &joints);
-            let s = status(posture, controller.sign[2], angles[4]);
+            let [s, _] = kuka_status_and_turn(posture, controller.sign[2], &angles);
             // Bit 0: the wrist centre in the frame that turns with axis 1.
             let frames = Frames::new(&robot, &joints);
             let (sine, cosine) = libm::sincos(joints[0]);
@@ -79,7 +79,7 @@ fn s_and_t_are_those_of_the_geometry() {
             assert_eq!(s, expected, "{} at {angles:?}", robot.name());
             seen[usize::from(s)] += 1;
             let bits: u8 = (0..6).map(|axis| u8::from(angles[axis] < 0.0) << axis).sum();
-            assert_eq!(turn(&angles), bits);
+            assert_eq!(kuka_status_and_turn(Posture::ALL[0], 1.0, &angles)[1], bits);
         }
         assert!(seen.iter().all(|count| *count > 100), "{seen:?}");
     }
@@ -120,7 +120,7 @@ fn s_and_t_are_those_of_the_published_definition() {
     ] {
         let angles = angles.map(f64::to_radians);
         let posture = Posture::of(&robot, &controller.joints(&robot, &angles));
-        assert_eq!((status(posture, controller.sign[2], angles[4]), turn(&angles)), (s, t), "{angles:?}");
+        assert_eq!(kuka_status_and_turn(posture, controller.sign[2], &angles), [s, t], "{angles:?}");
     }
 }
 

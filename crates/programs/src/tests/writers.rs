@@ -248,6 +248,10 @@ fn files_that_are_there_are_left_as_they_are() {
     let message = program.write(&bench.path("p"), Existing::Kept).unwrap_err().to_string();
     assert!(message.contains("PART_01.src: is there already"), "{message}");
     assert!(!bench.path("p/PART.src").exists());
+    // Nor replaced: it is no work of an export.
+    let message = program.write(&bench.path("p"), Existing::Replaced).unwrap_err().to_string();
+    assert!(message.contains("PART_01.src: was not written by this command"), "{message}");
+    assert!(!bench.path("p/PART.src").exists());
     assert_eq!(std::fs::read_to_string(bench.path("p/PART_01.src")).unwrap(), "mine");
 }
 

@@ -64,12 +64,14 @@ impl Folder {
         }
     }
 
-    /// Refuses a folder with a file of a name that results would replace though no manifest lists it: somebody's own.
+    /// Refuses a folder with a file of a name that results would replace though no manifest lists it, or with somebody's
+    /// own in place of the folder for interrupted results: to be called before the long work.
     ///
     /// # Errors
     /// [`ReportError::OtherManifest`] with that file, and for a manifest that cannot be read.
     pub fn has_no_other<N: AsRef<str>>(&self, names: impl IntoIterator<Item = N>) -> Result<(), ReportError> {
         let manifest = transaction::manifest_in(&self.path)?;
+        self.check_interrupted()?;
         names.into_iter().try_for_each(|name| transaction::check_listed(&self.path, &manifest, name.as_ref()))
     }
 
@@ -127,8 +129,13 @@ impl Folder {
         self.interrupted().map(|folder| folder.keeping_partial(true))
     }
 
-    /// The folder beside this one, unless something else has its name: a link, or a folder with files but no manifest.
     fn interrupted(&self) -> Result<Self, ReportError> {
+        self.check_interrupted()?;
+        Self::create(&self.interrupted_path())
+    }
+
+    /// Refuses something else in place of the folder beside this one: a link, or a folder with files but no manifest.
+    fn check_interrupted(&self) -> Result<(), ReportError> {
         let path = self.interrupted_path();
         let is_link = path.symlink_metadata().is_ok_and(|found| found.is_symlink());
         let is_ours =
@@ -138,7 +145,7 @@ impl Folder {
             let problem = "it is a link, or has files and no manifest.json".to_owned();
             return Err(ReportError::OtherManifest { path, problem });
         }
-        Self::create(&path)
+        Ok(())
     }
 
     /// Where [`beside_finished`](Self::beside_finished) is.
@@ -258,5 +265,43 @@ mod tests {
         assert!(matches!(error, ReportError::OtherManifest { .. }), "{error}");
         assert!(error.to_string().contains("manifest.json: is none of stead and is left as it is: "), "{error}");
         assert_eq!(names(place.path()), [MANIFEST]);
+    }
+
+    #[test]
+    fn interrupted_results_go_to_no_folder_of_somebody_else() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::create(&place.path().join("out")).unwrap();
+        let beside = place.path().join("out.interrupted");
+        std::fs::create_dir(&beside).unwrap();
+        drop(folder.beside().unwrap());
+        std::fs::write(beside.join("mine.txt"), "mine").unwrap();
+        let message = folder.beside().unwrap_err().to_string();
+        assert!(message.contains("out.interrupted: is none of stead and is left as it is"), "{message}");
+        std::fs::write(beside.join(MANIFEST), "{\"format\": 1, \"results\": []}").unwrap();
+        drop(folder.beside().unwrap());
+        #[cfg(unix)]
+        {
+            std::fs::rename(&beside, place.path().join("elsewhere")).unwrap();
+            std::os::unix::fs::symlink(place.path().join("elsewhere"), &beside).unwrap();
+            assert!(folder.beside().is_err());
+        }
+        assert_eq!(
+            names(&place.path().join(if cfg!(unix) { "elsewhere" } else { "out.interrupted" })),
+            [MANIFEST, "mine.txt"]
+        );
+    }
+
+    #[test]
+    fn files_that_no_manifest_lists_are_not_replaced() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::create(place.path()).unwrap();
+        folder.results("place", &[]).write(&[("best.csv", b"1".to_vec())]).unwrap();
+        std::fs::write(place.path().join("cell.svg"), "mine").unwrap();
+        let both = [("best.csv", b"2".to_vec()), ("cell.svg", b"2".to_vec())];
+        let message = folder.results("place", &[]).write(&both).unwrap_err().to_string();
+        assert!(message.contains("cell.svg: is none of stead"), "{message}");
+        let texts = ["best.csv", "cell.svg"].map(|name| std::fs::read_to_string(place.path().join(name)).unwrap());
+        assert_eq!(texts, ["1", "mine"]);
+        assert!(folder.has_no_other(["best.csv"]).is_ok() && folder.has_no_other(["best.csv", "cell.svg"]).is_err());
     }
 }

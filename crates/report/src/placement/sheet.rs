@@ -8,7 +8,7 @@ use stead_model::external_axis::{AxisKind, Carried};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::setup_sheet::{
-    Allowed, AxisSetup, CheckPoint, NearestLimit, RISES, SetupSheet, SheetFrame, Tolerance, Tolerances,
+    Allowed, AxisSetup, CheckPoint, NearestLimit, RISES, Room, SetupSheet, SheetFrame, Tolerance, Tolerances, Ways,
 };
 
 /// The word for a frame in documents.
@@ -17,6 +17,16 @@ fn frame_word(frame: SheetFrame) -> &'static str {
         SheetFrame::Root => "root",
         SheetFrame::Base => "base",
         SheetFrame::Cell => "cell",
+    }
+}
+
+/// The word for what is known of ways in documents.
+fn ways_word(ways: Ways) -> Option<&'static str> {
+    match ways {
+        Ways::None => None,
+        Ways::NotChecked => Some("not-checked"),
+        Ways::Free => Some("free"),
+        Ways::Blocked => Some("blocked"),
     }
 }
 
@@ -30,6 +40,8 @@ records! {
         frame: &'static str = frame_word(sheet.frame),
         /// The part as its task file has it, all external axes at zero: its origin is the datum.
         part: PlacedFrame = (&sheet.part).into(),
+        /// The same in the frame of placements, as page and terminal have it.
+        part_in_base: PlacedFrame = (&sheet.sheet_from_cell.inverse().then(&sheet.part)).into(),
         /// What `robot` is: `root` or `base`.
         robot_frame: &'static str = if sheet.is_root { "root" } else { "base" },
         /// The robot's own frame, where it stands at the first point of the path.
@@ -46,6 +58,14 @@ records! {
         axes: Vec<AxisSetupFigures> = sheet.axes.iter().map(Into::into).collect(),
         /// Path points far from each other, to which the tool is driven to check the setup.
         check_points: Vec<CheckFigures> = sheet.check_points.iter().map(|point| CheckFigures::of(point, sheet)).collect(),
+        /// What is known of the ways from one check point to the next, out along the tool axis, by a joint move and in
+        /// again: `free`, `blocked` in every order of the points, or `not-checked` without shapes; null for one point.
+        ways: Option<&'static str> = ways_word(sheet.ways),
+        /// Whether there are shapes, by which collisions were looked for.
+        collisions_checked: bool = sheet.has_shapes,
+        /// The least room on the joint moves between segments, at poses 0.02 rad apart.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        room_on_moves: Option<RoomFigures> = sheet.room_on_moves.as_ref().map(Into::into),
         /// How near the plan comes to a limit of a joint.
         nearest_limit: Option<NearestLimitFigures> = sheet.nearest_limit.as_ref().map(Into::into),
         /// By how much the part may be off; null where that is not known.
@@ -61,6 +81,14 @@ records! {
         xyz_mm: [PlaceMm; 3] = each(pose.translation.into()),
         /// Its rotation Rz(A) Ry(B) Rx(C): A, B, C.
         abc_deg: [AngleDeg; 3] = each(zyx_from_rotation(&pose.rotation)),
+    }
+
+    /// The least room of something.
+    pub struct RoomFigures from room: &Room {
+        /// How far the two shapes are apart.
+        distance_mm: PlaceMm = room.distance.into(),
+        /// Their names.
+        pair: [String; 2] = (*room.names).clone(),
     }
 
     /// An external axis as it is set up.
@@ -91,10 +119,14 @@ records! {
         /// The path point, from 0.
         point: usize = check.point,
         /// The tool centre point.
-        xyz_mm: [PlaceMm; 3] = each(check.place.into()),
-        /// The same in the root of the controller as the robot stands, where that is known and another frame.
-        #[serde(skip_serializing_if = "Option::is_none")] root_xyz_mm: Option<[PlaceMm; 3]> =
-            check.in_root.map(|place| each(place.into())),
+        xyz_mm: [PlaceMm; 3] = each(check.tool.translation.into()),
+        /// The rotation Rz(A) Ry(B) Rx(C) of the tool frame: A, B, C.
+        abc_deg: [AngleDeg; 3] = each(zyx_from_rotation(&check.tool.rotation)),
+        /// Both in the root of the controller as the robot stands, where that is known and another frame.
+        #[serde(skip_serializing_if = "Option::is_none")] in_root: Option<PlacedFrame> =
+            check.in_root.as_ref().map(Into::into),
+        /// Status and turn of a KUKA controller, S and T.
+        #[serde(skip_serializing_if = "Option::is_none")] status_and_turn: Option<[u8; 2]> = check.status_and_turn,
         /// Joint angles of the rows.
         joints_deg: [AngleDeg; 6] = each(check.joints),
         /// Joint angles as the controller counts them; null without `[controller]`.
@@ -116,19 +148,16 @@ records! {
         distance_deg: AngleDeg = limit.distance.into(),
     }
 
-    /// By how much the part may be off before the objective grows; at every trial the best plan is made anew in its
-    /// postures.
+    /// By how much the part may be off, its base measured anew, before the program cannot run or its objective grows.
     pub struct ToleranceFigures from found: &Tolerances {
         let [points, all_points] = found.points;
     } with {
-        /// The objective where the part stands as stated, by which rises are measured.
+        /// The objective where the part is as stated, by which rises are measured.
         objective_mm: DeflectionMm = found.nominal.into(),
-        /// Path points that are planned; fewer than all for a long path.
+        /// Path points that are looked at; fewer than all for a long path.
         points: usize = points,
         /// All path points.
         all_points: usize = all_points,
-        /// Plans made.
-        plans: usize = found.plans,
         /// The rises, in per cent of the objective.
         rises: [Percent; 2] = each(RISES),
         /// How far the part may be off along the axes of the frame and turned about its z axis in the datum.
@@ -147,7 +176,7 @@ records! {
         unit: &'static str = if is_turn { unit_name(AxisKind::Turntable) } else { unit_name(AxisKind::Rail) },
         /// Until the objective has grown by each of the rises.
         rises: [AllowedFigures; 2] = [allowed(&found.rises[0]), allowed(&found.rises[1])],
-        /// The nearest trial at which nothing can be planned, where one was met.
+        /// The nearest trial at which the program cannot run, where one was met.
         #[serde(skip_serializing_if = "Option::is_none")]
         blocked_at: Option<Offset> = found.blocked.as_ref().map(|of| offset(of.offset)),
         /// The limit that is broken there, or the two shapes that come too near.

@@ -86,7 +86,8 @@ fn of_plan(
 ) -> Summary {
     let Placement { x, y, z, yaw } = *placement;
     let [x, y, z] = [x, y, z].map(|length| (length * 1e3).round() + 0.0);
-    let mut at = format!("x {x} y {y} z {z} mm, yaw {:.0} deg", yaw.to_degrees());
+    let frame = names::place_frame(problem);
+    let mut at = format!("x {x} y {y} z {z} mm, yaw {:.0} deg ({frame} frame)", yaw.to_degrees());
     at.extend(orientation.map(|name| format!(", {name}")));
     at.extend(setup::standing_words(&plan.axes).map(|axes| format!(", {axes}")));
     at.push_str(&format!("; {}", postures(plan)));

@@ -268,11 +268,13 @@ impl TransferTable {
         tool: Option<&ToolTable>,
         at: &Place<'_>,
     ) -> Result<SegmentMoves, InputError> {
+        let cutter_diameter = tool.map(|tool| tool.cutter_diameter_mm.si());
         let body = tool.map(ToolTable::body).unwrap_or_default();
         let joined = scene.map(|scene| ToolScene::new(robot, &spindle.flange_from_tool, scene, path, body)).transpose();
         let tool = joined.map_err(|error| at.error(error.to_string(), "a tool with room around it").found_if(None))?;
         let default = SegmentMoves::default();
-        Ok(SegmentMoves { retract: self.retract_mm.map_or(default.retract, Quantity::si), tool: tool.map(Arc::new) })
+        let retract = self.retract_mm.map_or(default.retract, Quantity::si);
+        Ok(SegmentMoves { retract, tool: tool.map(Arc::new), cutter_diameter })
     }
 }
 

@@ -32,8 +32,9 @@ const SIDES: [i32; 2] = [44, 796];
 const BOTTOM: i32 = 1146;
 /// From line to line of a table.
 const LINE: i32 = 16;
-/// Letters of a line of small print beside its heading.
-const LETTERS: usize = 120;
+/// Letters of a line of small print, and of one beside its heading: with the widest letters that a viewer may take.
+const WIDEST: usize = 124;
+const LETTERS: usize = 108;
 /// Letters of tables and of small print.
 const SIZES: [f64; 2] = [11.5, 9.5];
 
@@ -48,14 +49,45 @@ pub fn setup_sheet(problem: &Problem, case: &Case, sheet: &SetupSheet, title: &S
         canvas.text("Date, name:", (right - 250, 55), TextStyle::new(SIZES[0]));
         canvas.line(&[(right - 175, 62), (right, 62)], BLACK, 1);
         canvas.text(&frame_words(sheet), (left, 80), TextStyle::new(SIZES[0]));
-        views::draw(canvas, problem, case, sheet, 98);
-        let mut table = Table { canvas, y: 528 };
-        rows::places(&mut table, sheet);
-        rows::checks(&mut table, sheet);
-        rows::tolerances(&mut table, sheet);
-        rows::limits(&mut table, case, sheet);
-        title_block(canvas, problem, title);
+        // The views have the height that tables and title block leave.
+        let mut below = 0;
+        paper(|scratch| below = tables(scratch, case, sheet, 0));
+        let top = BOTTOM - title_height(title);
+        let height = (top - below - VIEWS - UNDER_VIEWS).clamp(LEAST_VIEW, MOST_VIEW);
+        views::draw(canvas, problem, case, sheet, (VIEWS, height));
+        let end = tables(canvas, case, sheet, VIEWS + height + UNDER_VIEWS);
+        title_block(canvas, problem, title, end.max(top));
     })
+}
+
+/// The upper edge of the views, what is between them and the tables, and the least and the largest height of a view.
+const VIEWS: i32 = 98;
+const UNDER_VIEWS: i32 = 42;
+const LEAST_VIEW: i32 = 180;
+const MOST_VIEW: i32 = 388;
+
+/// The tables from a height on; returns where they end.
+fn tables(canvas: &mut Canvas, case: &Case, sheet: &SetupSheet, y: i32) -> i32 {
+    let mut table = Table { canvas, y };
+    rows::places(&mut table, sheet);
+    rows::checks(&mut table, sheet);
+    rows::tolerances(&mut table, sheet);
+    rows::limits(&mut table, case, sheet);
+    table.y
+}
+
+/// The height of the title block with all of its lines.
+fn title_height(title: &SheetTitle<'_>) -> i32 {
+    12 * (title.inputs.len() + said(title).len()) as i32 + 30
+}
+
+/// What is to be known of the result, in lines with what they are about.
+fn said<'a>(title: &SheetTitle<'a>) -> Vec<(&'a str, String)> {
+    let lines = title.said.iter().flat_map(|line| {
+        let abouts = std::iter::once(line.about).chain(std::iter::repeat(""));
+        abouts.zip(lines_of(&line.text, LETTERS))
+    });
+    lines.collect()
 }
 
 /// Which frame the places are in.
@@ -75,15 +107,15 @@ fn frame_words(sheet: &SetupSheet) -> String {
 }
 
 /// Run, robot, version and digests, in a frame at the foot of the page, and what is to be known of the result.
-fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>) {
+fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>, top: i32) {
     let [left, right] = SIDES;
-    let said = title.said.iter().flat_map(|line| {
-        let abouts = std::iter::once(line.about).chain(std::iter::repeat(""));
-        abouts.zip(lines_of(&line.text, LETTERS))
-    });
-    let said: Vec<(&str, String)> = said.collect();
-    let lines = (title.inputs.len() + said.len()) as i32;
-    let top = BOTTOM - 12 * lines - 30;
+    let mut said = said(title);
+    // A sheet without room for all of it says where the rest is.
+    let room = ((BOTTOM - top - 30) / 12 - title.inputs.len() as i32).max(1) as usize;
+    if said.len() > room {
+        said.truncate(room - 1);
+        said.push(("", "and more: see notes.txt beside this sheet".to_owned()));
+    }
     canvas.outline((left, top), (right, BOTTOM), BLACK);
     let small = TextStyle::new(SIZES[1]);
     let version = format!("stead {}, seed {}", env!("CARGO_PKG_VERSION"), title.seed);
@@ -149,10 +181,21 @@ impl Table<'_> {
         self.y += LINE;
     }
 
-    /// Small print.
+    /// Small print, in as many lines as it takes.
     fn remark(&mut self, text: &str) {
-        self.canvas.text(text, (SIDES[0], self.y - 2), TextStyle::new(SIZES[1]));
-        self.y += 12;
+        self.small(text, TextStyle::new(SIZES[1]));
+    }
+
+    /// The same, to be seen first.
+    fn warn(&mut self, text: &str) {
+        self.small(text, TextStyle::new(SIZES[1]).bold());
+    }
+
+    fn small(&mut self, text: &str, style: TextStyle) {
+        for line in lines_of(text, WIDEST) {
+            self.canvas.text(&line, (SIDES[0], self.y - 2), style);
+            self.y += 12;
+        }
     }
 
     /// A thin line between rows.

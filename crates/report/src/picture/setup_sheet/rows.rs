@@ -7,7 +7,7 @@ use stead_model::external_axis::{AxisKind, Carried};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::outcome::Case;
-use stead_placement::setup_sheet::{Allowed, AxisSetup, RISES, SetupSheet, SheetFrame};
+use stead_placement::setup_sheet::{Allowed, AxisSetup, RISES, SetupSheet, SheetFrame, Ways};
 
 /// Right edges of the columns of x, y, z, A, B and C.
 const POSE: [i32; 6] = [-310, -385, -460, -535, -605, -675];
@@ -27,19 +27,17 @@ pub(super) fn places(table: &mut Table<'_>, sheet: &SetupSheet) {
     table.heading("Where things stand");
     let heads = ["x", "y", "z", "A", "B", "C"];
     table.row(POSE.into_iter().zip(heads), true);
-    let mut pose = |name: &str, pose: &Pose<f64>| {
-        let cells = pose.translation.iter().map(|of| mm(*of));
-        let cells: Vec<String> = cells.chain(zyx_from_rotation(&pose.rotation).map(deg)).collect();
-        let figures = POSE.into_iter().zip(cells.iter().map(String::as_str));
-        table.row([(0, name)].into_iter().chain(figures), false);
-    };
     let at_zero = if sheet.axes.is_empty() { "" } else { ", axes at zero" };
-    pose(&format!("Part: datum (task origin){at_zero}"), &sheet.part);
+    table.pose(&format!("Part: datum (task origin){at_zero}"), &sheet.part, "");
+    if sheet.frame == SheetFrame::Root {
+        let in_base = sheet.sheet_from_cell.inverse().then(&sheet.part);
+        table.pose("  in the base frame, as page and terminal", &in_base, "");
+    }
     if sheet.frame != SheetFrame::Root {
         let name = if sheet.is_root { "Robot: root of its controller" } else { "Robot: base frame of its rows" };
-        pose(name, &sheet.robot);
+        table.pose(name, &sheet.robot, "");
     }
-    pose("Tool centre point on the flange", &sheet.flange_from_tool);
+    table.pose("Tool centre point on the flange", &sheet.flange_from_tool, "");
     for axis in &sheet.axes {
         let carries = match axis.carries {
             Carried::Robot => "robot",
@@ -61,6 +59,16 @@ pub(super) fn places(table: &mut Table<'_>, sheet: &SetupSheet) {
     );
     table.remark(&format!("{floor} {cutter}"));
     table.remark("Rotations are Rz(A) Ry(B) Rx(C), as KUKA states them; as Fanuc states them W = C, P = B, R = A.");
+}
+
+impl Table<'_> {
+    /// A frame with its name and what is behind it.
+    fn pose(&mut self, name: &str, pose: &Pose<f64>, behind: &str) {
+        let cells = pose.translation.iter().map(|of| mm(*of));
+        let cells: Vec<String> = cells.chain(zyx_from_rotation(&pose.rotation).map(deg)).collect();
+        let figures = POSE.into_iter().zip(cells.iter().map(String::as_str));
+        self.row([(0, name)].into_iter().chain(figures).chain([(700, behind)]), false);
+    }
 }
 
 /// Where an axis stands.
@@ -94,36 +102,41 @@ fn capital(word: &str) -> String {
 pub(super) fn checks(table: &mut Table<'_>, sheet: &SetupSheet) {
     let controller = sheet.check_points.iter().all(|point| point.controller.is_some());
     table.heading("Check points: drive the tool centre point there, with this tool on the flange");
-    const PLACE: [i32; 3] = [-170, -235, -300];
-    const JOINTS: [i32; 6] = [-375, -445, -515, -585, -655, -725];
-    let heads = PLACE.into_iter().zip(["x", "y", "z"]).chain(JOINTS.into_iter().zip(match controller {
-        true => ["A1", "A2", "A3", "A4", "A5", "A6"],
-        false => ["joint 1", "joint 2", "joint 3", "joint 4", "joint 5", "joint 6"],
-    }));
-    table.row(heads, true);
+    let heads = ["x", "y", "z", "A", "B", "C"];
+    let status = if sheet.check_points.iter().all(|point| point.status_and_turn.is_some()) { "S, T" } else { "" };
+    table.row(POSE.into_iter().zip(heads).chain([(700, status)]), true);
     for (number, point) in (1..).zip(&sheet.check_points) {
-        let name = format!("{number}: path point {}", point.point);
-        let place = point.place.map(mm);
-        let joints = point.controller.unwrap_or(point.joints).map(deg);
-        let cells = PLACE.into_iter().zip(place.iter().map(String::as_str));
-        let cells = cells.chain(JOINTS.into_iter().zip(joints.iter().map(String::as_str)));
-        table.row([(0, name.as_str())].into_iter().chain(cells), false);
-        let axes = sheet.axes.iter().zip(&point.axes);
-        let mut more: Vec<String> = axes.map(|(of, at)| format!("{} at {}", of.name, position(of.kind, *at))).collect();
-        more.extend(point.in_root.map(|place| {
-            format!("in the controller's root {}", place.iter().map(|of| mm(*of)).collect::<Vec<_>>().join(", "))
-        }));
-        if !more.is_empty() {
-            let text = more.join("; ");
-            table.row([(62, text.as_str())], false);
+        let status = point.status_and_turn.map_or_else(String::new, |[s, t]| format!("{s}, {t}"));
+        table.pose(&format!("{number}: path point {}", point.point), &point.tool, &status);
+        if let Some(in_root) = &point.in_root {
+            table.pose("    in the controller's root", in_root, "");
         }
+        let names = if controller { "A" } else { "joint " };
+        let joints = (1..).zip(point.controller.unwrap_or(point.joints));
+        let joints = joints.map(|(joint, angle)| format!("{names}{joint} {}", deg(angle)));
+        let axes = sheet.axes.iter().zip(&point.axes);
+        let axes = axes.map(|(of, at)| format!("{} at {}", of.name, position(of.kind, *at)));
+        let text = joints.chain(axes).collect::<Vec<_>>().join(", ");
+        table.remark(&format!("    {text}"));
     }
     table.remark(match controller {
         true => "Joint angles as the controller counts them ([controller] of the robot file), of the best plan.",
         false => {
-            "Joint angles of the robot file's rows, of the best plan: the file has no [controller], so the pendant may count otherwise."
+            "Joint angles of the robot file's rows, of the best plan: the file has no [controller], so the pendant may count \
+             otherwise."
         }
     });
+    match sheet.ways {
+        Ways::None => {}
+        Ways::NotChecked => table.remark("Collisions were not checked, on the ways between these points neither."),
+        Ways::Free => table.remark(
+            "In this order nothing is hit: out along the tool axis, a joint move over the next point, in along the axis.",
+        ),
+        Ways::Blocked => table.warn(
+            "WARNING: in no order of these points does a joint move from over one to over the next keep free of the shapes: go \
+             around by hand.",
+        ),
+    }
 }
 
 /// By how much the part may be off.
@@ -151,14 +164,12 @@ pub(super) fn tolerances(table: &mut Table<'_>, sheet: &SetupSheet) {
     }
     let [points, all] = found.points;
     let subset = if points < all { format!(" By {points} of {all} path points.") } else { String::new() };
+    let shapes = if sheet.has_shapes { "" } else { " COLLISIONS WERE NOT CHECKED." };
     table.remark(&format!(
-        "Growth of what is minimised, from {} mm, with the plan made anew in its postures for the part where it is; one direction \
-         at a time, along the axes",
+        "For this program with its base measured anew: until what is minimised has grown, from {} mm, or a limit or the clearance is \
+         reached, joint moves between segments included; one direction at a time along the axes of the frame, rz about its z axis in \
+         the datum. External axes stay, bounds of the cell do not count. Offsets are up to a fifth too small.{subset}{shapes}",
         fixed(found.nominal * 1e3, 4)
-    ));
-    table.remark(&format!(
-        "of the frame, rz about its z axis in the datum; external axes stay, and bounds of the cell do not count. Offsets are up to \
-         a fifth too small, never too large.{subset}"
     ));
 }
 
@@ -175,10 +186,15 @@ pub(super) fn limits(table: &mut Table<'_>, case: &Case, sheet: &SetupSheet) {
     });
     let clearance = case.plan.clearance.as_ref().map(|near| {
         let [a, b] = &*near.names;
-        format!("Least clearance: {} mm, {a} and {b} (point {}).", mm(near.distance), near.point)
+        format!("Least clearance in the cut: {} mm, {a} and {b} (point {}).", mm(near.distance), near.point)
     });
+    let on_moves = sheet
+        .room_on_moves
+        .as_ref()
+        .map(|room| format!("On joint moves: {} mm, {} and {}.", mm(room.distance), room.names[0], room.names[1]));
+    let unchecked = (!sheet.has_shapes).then(|| "Collisions were not checked: no shapes are in the files.".to_owned());
     table.y += 4;
     table.rule();
-    let all: Vec<String> = joint.into_iter().chain(clearance).collect();
+    let all: Vec<String> = joint.into_iter().chain(clearance).chain(on_moves).chain(unchecked).collect();
     table.remark(&all.join("  "));
 }

@@ -14,8 +14,8 @@ use stead_placement::outcome::Case;
 use stead_placement::setup_sheet::{SetupSheet, SheetFrame};
 use stead_planning::problem::Problem;
 
-/// Width and height of a view.
-const SIZE: [i32; 2] = [368, 388];
+/// Width of a view.
+const WIDTH: i32 = 368;
 /// What dimension lines take to the left and below.
 const MARGIN: i32 = 46;
 /// What a view keeps free elsewhere.
@@ -35,8 +35,9 @@ struct Line {
     is_outline: bool,
 }
 
-/// Both views.
-pub(super) fn draw(canvas: &mut Canvas, problem: &Problem, case: &Case, sheet: &SetupSheet, top: i32) {
+/// Both views, from a height on and so high.
+pub(super) fn draw(canvas: &mut Canvas, problem: &Problem, case: &Case, sheet: &SetupSheet, (top, height): (i32, i32)) {
+    let size = [WIDTH, height];
     let datum = sheet.part.translation;
     // The elevation shows the direction in which the part is farther away.
     let aside = if datum.y.abs() > datum.x.abs() { 1 } else { 0 };
@@ -47,7 +48,7 @@ pub(super) fn draw(canvas: &mut Canvas, problem: &Problem, case: &Case, sheet: &
     let windows = axes.map(extent);
     let fits = |scale: f64| {
         windows.iter().all(|[low, high]| {
-            let room = [SIZE[0] - MARGIN - FREE, SIZE[1] - MARGIN - FREE].map(f64::from);
+            let room = size.map(|side| f64::from(side - MARGIN - FREE));
             (0..2).all(|k| (high[k] - low[k]) * PIXELS / scale <= room[k])
         })
     };
@@ -58,17 +59,17 @@ pub(super) fn draw(canvas: &mut Canvas, problem: &Problem, case: &Case, sheet: &
         format!("Elevation, {} to the right and z upwards, 1 : {scale}", names[aside]),
     ];
     for (k, (window, axes)) in windows.into_iter().zip(axes).enumerate() {
-        let left = SIDES[0] + k as i32 * (SIDES[1] - SIDES[0] - SIZE[0]);
+        let left = SIDES[0] + k as i32 * (SIDES[1] - SIDES[0] - size[0]);
         canvas.text(&titles[k], (left, top + 6), TextStyle::new(12.5).bold());
         if k == 0 {
             let [a, b, c] = zyx_from_rotation(&sheet.part.rotation).map(deg);
             let words = format!("part turned: A {a}, B {b}, C {c}");
-            canvas.text(&words, (left + SIZE[0], top + 6), TextStyle::new(SIZES[1]).ending());
+            canvas.text(&words, (left + size[0], top + 6), TextStyle::new(SIZES[1]).ending());
         }
-        let view = View { corner: (left, top + 18), axes, window, scale };
+        let view = View { corner: (left, top + 18), size, axes, window, scale };
         view.draw(canvas, &lines, sheet);
         view.check_points(canvas, problem, sheet);
-        canvas.outline((left, top + 18), (left + SIZE[0], top + 18 + SIZE[1]), BLACK);
+        canvas.outline((left, top + 18), (left + size[0], top + 18 + size[1]), BLACK);
     }
     let mut legend = vec!["thick: part", "dashed: extent of the path", "1 2 3: check points"];
     legend.push(if sheet.axes.is_empty() {
@@ -86,7 +87,7 @@ pub(super) fn draw(canvas: &mut Canvas, problem: &Problem, case: &Case, sheet: &
     if problem.scene.is_some() {
         legend.push("thin: surroundings, cut at the edge");
     }
-    canvas.text(&legend.join("; "), (SIDES[0], top + 18 + SIZE[1] + 10), TextStyle::new(SIZES[1]));
+    canvas.text(&legend.join("; "), (SIDES[0], top + 18 + size[1] + 10), TextStyle::new(SIZES[1]));
 }
 
 /// What must be in view: origin, datum, robot, path, and what carries the part.
@@ -152,6 +153,8 @@ fn stands(problem: &Problem, sheet: &SetupSheet, shape: &Shape) -> Option<(Pose<
 /// A view along an axis.
 struct View {
     corner: Pixel,
+    /// Width and height.
+    size: [i32; 2],
     /// Which axes go to the right and upwards.
     axes: [usize; 2],
     /// The extent of what must be in view. m
@@ -164,7 +167,7 @@ impl View {
         let factor = PIXELS / self.scale;
         let [low, high] = self.window;
         let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
-        let (width, height) = (f64::from(SIZE[0] - MARGIN - FREE), f64::from(SIZE[1] - MARGIN - FREE));
+        let (width, height) = (f64::from(self.size[0] - MARGIN - FREE), f64::from(self.size[1] - MARGIN - FREE));
         (
             f64::from(self.corner.0 + MARGIN) + width / 2.0 + (point[self.axes[0]] - middle[0]) * factor,
             f64::from(self.corner.1 + FREE) + height / 2.0 - (point[self.axes[1]] - middle[1]) * factor,
@@ -207,7 +210,7 @@ impl View {
     /// The part of a straight line inside the view (Liang and Barsky 1984).
     fn cut(&self, [from, to]: [Place; 2]) -> Option<[Place; 2]> {
         let (left, top) = exact(self.corner);
-        let (right, bottom) = (left + f64::from(SIZE[0]), top + f64::from(SIZE[1]));
+        let (right, bottom) = (left + f64::from(self.size[0]), top + f64::from(self.size[1]));
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let (mut start, mut end) = (0.0_f64, 1.0_f64);
         for (step, room) in [(-dx, from.0 - left), (dx, right - from.0), (-dy, from.1 - top), (dy, bottom - from.1)] {
@@ -297,7 +300,7 @@ impl View {
         let (origin, datum) = (self.place(&Vector3::zeros()), self.place(&sheet.part.translation));
         let style = TextStyle::new(SIZES[0]);
         let [across, up] = self.axes.map(|axis| (["x", "y", "z"][axis], sheet.part.translation[axis]));
-        let y = f64::from(self.corner.1 + SIZE[1] - 26);
+        let y = f64::from(self.corner.1 + self.size[1] - 26);
         let x = f64::from(self.corner.0 + 26);
         for end in [origin, datum] {
             self.thin(canvas, (end.0, end.1 + 8.0), (end.0, y + 5.0));

@@ -5,7 +5,7 @@ import { shown } from './follow.js';
 /** @typedef {{ level: '' | 'stale' | 'doubt' | 'bad', text: string }} Concern of the first level what is common to all placements */
 
 /** What a line of the summary is about, and how much it weighs. @type {Record<string, Concern['level']>} */
-const LEVELS = { WARNING: 'bad', INTERRUPTED: 'doubt', 'NOT CHECKED': 'doubt', 'RESTS ON': '' };
+const LEVELS = { WARNING: 'doubt', INTERRUPTED: 'doubt', 'NOT CHECKED': 'doubt', 'RESTS ON': '' };
 /** @type {Concern['level'][]} */
 const WORST_FIRST = ['bad', 'doubt', 'stale', ''];
 
