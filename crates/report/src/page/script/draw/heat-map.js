@@ -3,20 +3,32 @@
 import { seriesColour, seriesKey } from './chart.js';
 import { canvasOf, contextOf, el } from './dom.js';
 import { plotCard } from './plot.js';
-import { shown, shownAt } from './scale.js';
+import { along, figures, shown, shownAt, ticks } from './scale.js';
 import { cssOf, viridis } from './theme.js';
-/** @import { HeatMap } from './chart-data.js' */
+/** @import { Axis, HeatMap } from './chart-data.js' */
 /** @import { Hit, Plot } from './plot.js' */
 
-/** The scale of colours between what its ends stand for. @param {string} low @param {string} high */
-export function rampOf(low, high) {
-  const ramp = canvasOf({ class: 'ramp', width: 110, height: 9 });
+/**
+ * The scale of colours with ticks at round values, and what is said of values above its end.
+ * @param {Axis} axis whose `range` the colours span @param {number} largest of all values that are shown @param {number[]} [marks] where not as usual
+ */
+export function rampOf(axis, largest, marks) {
+  const ramp = canvasOf({ class: 'ramp', width: 170, height: 9 });
   const g = contextOf(ramp);
-  for (let x = 0; x < 110; x++) {
-    g.fillStyle = cssOf(viridis(x / 109));
+  for (let x = 0; x < 170; x++) {
+    g.fillStyle = cssOf(viridis(x / 169));
     g.fillRect(x, 0, 1, 9);
   }
-  return el('span', {}, low, ramp, high);
+  const [low, high] = axis.range ?? [0, 1];
+  const [from, to] = [low, high].map((end) => along(axis, end));
+  const labels = (marks ?? ticks(axis, low, high, 5).map(({ at }) => at)).map((value) => {
+    const label = el('i', {}, shown(value));
+    label.style.left = `${(100 * (along(axis, value) - from)) / (to - from || 1)}%`;
+    return label;
+  });
+  // What is no more than rounding is not above.
+  const above = largest > high * 1.0001 ? `; above ${shown(high)}: last colour, largest ${figures(largest)}` : '';
+  return el('span.scale', {}, el('span.marks', {}, ramp, ...labels), `${axis.label}${above}`);
 }
 
 /**
@@ -65,7 +77,8 @@ export function heatMapCard(card) {
     const where = `${card.x.label} ${shownAt(card.x, x)}\n${card.y.label} ${shownAt(card.y, y)}`;
     return { x, y, text: `${where}\n${value === null ? card.blank : `${shown(value)} ${card.unit}`}` };
   };
-  const keys = [rampOf(shown(card.range[0]), `${shown(card.range[1])} ${card.unit}`), el('span', {}, `blank: ${card.blank}`)];
+  const largest = card.values.reduce((/** @type {number} */ most, value) => Math.max(most, value ?? most), card.range[0]);
+  const keys = [rampOf({ label: card.unit, is_log: false, range: card.range }, largest), el('span', {}, `blank: ${card.blank}`)];
   const names = new Map((card.outlines ?? []).map(outline => [outline.color, outline.label.split(',')[0]]));
   for (const [color, name] of names) keys.push(seriesKey({ name, color, style: 'line' }));
   const { section } = plotCard(card, () => ({

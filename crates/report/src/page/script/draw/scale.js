@@ -29,6 +29,19 @@ export const along = (axis, value) => (axis.is_log ? Math.log10(value) : value);
 export const shownAt = (axis, place) =>
   axis.names?.[Math.round(place)] ?? shown(axis.is_log ? 10 ** place : place);
 
+/** The smallest of 1, 2 and 5 times a power of ten that is no smaller than a number above 0, or the largest that is no larger. @param {number} value @param {'up' | 'down'} [way] */
+export function rounded(value, way = 'up') {
+  const power = Math.floor(Math.log10(value));
+  const all = [-1, 0, 1].flatMap((k) => [1, 2, 5].map((factor) => Number(`${factor}e${power + k}`)));
+  return (way === 'up' ? all.find((step) => step >= value) : all.reverse().find((step) => step <= value)) ?? value;
+}
+
+/** The value that such a share of some does not exceed; 0 of none. @param {Iterable<number>} values @param {number} share */
+export function percentile(values, share) {
+  const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
+  return sorted[Math.max(0, Math.ceil(share * sorted.length) - 1)] ?? 0;
+}
+
 /** The smallest round step that is no smaller than a number. @param {number} least */
 function stepOf(least) {
   const power = 10 ** Math.floor(Math.log10(least));

@@ -3,7 +3,7 @@
 import { canvasOf, contextOf, el } from '../draw/dom.js';
 import { rampOf } from '../draw/heat-map.js';
 import { disc, plotCard } from '../draw/plot.js';
-import { fixed } from '../draw/scale.js';
+import { fixed, percentile, rounded } from '../draw/scale.js';
 import { cssOf, themeColour, viridis } from '../draw/theme.js';
 import { CASES, RAW, singlesOf } from './data.js';
 import { hatch, reasonText } from './map.js';
@@ -38,7 +38,10 @@ export function leanMapCard() {
   const [leads, tilts] = [valuesOf(lead), valuesOf(tilt)];
   const [across, up] = [edgesOf(leads), edgesOf(tilts)];
   const scores = Array.from(score).filter(Number.isFinite);
-  const [low, high] = [Math.min(...scores), Math.max(...scores)];
+  // In round steps from the least to what 98 of 100 do not exceed.
+  const [least, common, largest] = [Math.min(...scores), percentile(scores, 0.98), Math.max(...scores)];
+  const step = rounded((common - least) / 5 || 1);
+  const [low, high] = [Math.floor(least / step) * step, Math.ceil(common / step) * step];
   const reasons = /** @type {string[]} */ ([...new Set(map.reason)]).filter((reason) => reason !== '');
   const own = planned(point);
 
@@ -84,7 +87,7 @@ export function leanMapCard() {
     hatch(contextOf(sample), k, 18, 9);
     return el('span', {}, sample, reasonText(reason));
   });
-  const ramp = scores.length ? [rampOf(fixed(low, 4), `${fixed(high, 4)} mm`)] : [];
+  const ramp = scores.length ? [rampOf({ label: 'mm', is_log: false, range: [low, high] }, largest)] : [];
   const words = `deg, point ${point}: the largest deflection of the best plan; dot: the plan`;
   const { section } = plotCard(
     { title: 'Lead and tilt', detail: words },

@@ -2,11 +2,11 @@
 
 import { legendOf } from '../draw/chart.js';
 import { canvasOf, card, contextOf, el } from '../draw/dom.js';
-import { cellsOf, drawCells, rampOf } from '../draw/heat-map.js';
+import { cellsOf, drawCells } from '../draw/heat-map.js';
 import { Plot, disc, stroke } from '../draw/plot.js';
 import { clamp, fixed } from '../draw/scale.js';
 import { themeColour } from '../draw/theme.js';
-import { SCALE, colourOf } from './colour.js';
+import { colourOf, errorRamp } from './colour.js';
 import { CASES, COUNT, postureText } from './data.js';
 import { RUNS, pathPoint } from './path.js';
 import { pause } from './play.js';
@@ -170,7 +170,8 @@ export function mapCard() {
       { name: 'best plan', color: '--good', style: 'line', y: [] },
       { name: 'worst plan', color: '--bad', style: 'dashed', y: [] },
     ]);
-    legend.replaceChildren(rampOf(String(SCALE[0]), `${SCALE[1]} mm`), ...plans, ...reasons);
+    const largest = currentMap()?.scores.reduce((most, score) => Math.max(most, score || 0), 0);
+    legend.replaceChildren(errorRamp(largest), ...plans, ...reasons);
   };
 
   /** The cursor. @param {Plot} plot @param {CanvasRenderingContext2D} g */

@@ -2,7 +2,6 @@
 
 import { choice, el } from '../draw/dom.js';
 import { giving } from '../draw/downloads.js';
-import { rampOf } from '../draw/heat-map.js';
 import { fixed } from '../draw/scale.js';
 import { ILLUSTRATED } from './bodies.js';
 import { COLOURINGS } from './colour.js';
@@ -27,15 +26,9 @@ let ray = () => ({ from: [0, 0, 0], along: [0, 0, 1] });
 /** That ray. @param {number} x @param {number} y */
 export const viewRay = (x, y) => ray(x, y);
 
-/** What the path is coloured by, where there is something to choose from. */
-function colouringChoice() {
-  if (COLOURINGS.length < 2) return null;
-  const ramp = el('div.legend.chip');
-  Object.assign(ramp.style, { padding: '4px 9px', cursor: 'default' });
-  const show = () => {
-    const { ends } = COLOURINGS[state.colouring];
-    ramp.replaceChildren(rampOf(ends[0], ends[1]));
-  };
+/** The scale of the colours of the path, and what it is coloured by where there is something to choose from. */
+function colouring() {
+  const legend = el('div.legend');
   const pick = choice(
     'Colour of the path',
     COLOURINGS.map(({ name }) => name),
@@ -43,10 +36,8 @@ function colouringChoice() {
     (colouring) => set({ colouring }),
     onChange,
   );
-  onChange(show);
-  const out = el('div.tags.colouring', {}, pick, ramp);
-  out.style.marginBottom = '6px';
-  return out;
+  onChange(() => legend.replaceChildren(COLOURINGS[state.colouring].ramp()));
+  return el('div.tags.colouring', {}, COLOURINGS.length > 1 ? pick : null, legend);
 }
 
 /** How many times too large errors are drawn. */
@@ -113,7 +104,7 @@ export function sceneCard() {
   ];
   host.append(
     el('div.tr', {}, ...views),
-    el('div.bl', {}, colouringChoice(), el('div.tags', {}, ...layers, factorSlider()), el('div.sub', {}, words.filter(Boolean).join('; '))),
+    el('div.bl', {}, colouring(), el('div.tags', {}, ...layers, factorSlider()), el('div.sub', {}, words.filter(Boolean).join('; '))),
   );
   view.tabIndex = 0;
   view.setAttribute('role', 'img');
