@@ -27,7 +27,7 @@ export function rampOf(axis, largest, marks) {
     return label;
   });
   // What is no more than rounding is not above.
-  const above = largest > high * 1.0001 ? `; above ${shown(high)}: last colour, largest ${figures(largest)}` : '';
+  const above = largest > high * 1.0001 ? `; above ${shown(high)} the last colour, largest ${figures(largest)}` : '';
   return el('span.scale', {}, el('span.marks', {}, ramp, ...labels), `${axis.label}${above}`);
 }
 

@@ -17,7 +17,7 @@ import { arrows, tubes } from './mesh.js';
 import { MAGNIFIED, SCORED, pathMeshes } from './path-mesh.js';
 import { DEPTH_FRAGMENT, FRAGMENT, MODE, VERTEX } from './shaders.js';
 import { current, currentJoints, onScene, set, state } from './state.js';
-import { FLOOR, HAS_BLOCK, block, cellEdges, floorGrid, partEdges, reachBall, reachLines, wallEdges } from './surroundings.js';
+import { FLOOR, HAS_BLOCK, HIDES_PATH, block, cellEdges, floorGrid, partEdges, reachBall, reachLines, wallEdges } from './surroundings.js';
 /** @import { Buffers, Program } from './gpu.js' */
 /** @import { Ray } from './camera.js' */
 /** @import { Mat } from './linear.js' */
@@ -29,6 +29,7 @@ export const LAYERS = [
   { name: 'forces', words: `forces, up to ${fixed(LARGEST_FORCE, 0)} N`, isThere: LARGEST_FORCE > 0, isOff: !REMOVAL },
   { name: 'after', words: 'stock after', isThere: STOCKS.length > 0 },
   { name: 'before', words: 'stock before', isThere: STOCKS.length > 0, isOff: true },
+  { name: 'clear', words: 'see through the part', isThere: true, isOff: !HIDES_PATH },
   { name: 'cell', words: 'cell volume', isThere: true },
   { name: 'reach', words: 'reach', isThere: true },
   { name: 'ghost', words: 'other placement', isThere: CASES.length > 2 || Boolean(RAW.live) },
@@ -41,6 +42,8 @@ const SHADOW_PIXELS = 2048;
 const PANE = 0.16;
 /** How much is seen of what is removed of the stock, where the stock is shown both before and after. */
 const REMOVED = 0.4;
+/** How much is seen of each face of a part that is seen through. */
+const CLEAR = 0.25;
 const SUN = unit([0.42, -0.52, 0.86]);
 
 /**
@@ -175,14 +178,13 @@ export function sceneIn(host) {
     const ghost = other ? workpieceFrame(other, state.t) : IDENTITY;
     const bodies = (/** @type {Program} */ program) => {
       parts.arm.forEach((buffers, k) => put(program, buffers, frames[k]));
-      put(program, parts.part, part);
       if (shown.around) parts.onAxes.forEach((buffers, k) => put(program, buffers, axisFrame(k, at)));
       parts.tracks.forEach((buffers, k) => put(program, buffers, carriedBy(AXES[k].carries, at, k)));
       ofCase.platters.forEach((buffers, k) => put(program, buffers, axisFrame(k, at)));
-      put(program, ofCase.block, part);
+    };
+    const work = (/** @type {Program} */ program) => {
       const [before, after] = parts.stocks;
-      if (shown.after) put(program, after, part);
-      else if (shown.before) put(program, before, part);
+      for (const body of [parts.part, ofCase.block, shown.after ? after : shown.before ? before : null]) put(program, body, part);
     };
     const far = FARTHEST;
     const middle = [MIDDLE[0], MIDDLE[1], MIDDLE[2]];
@@ -198,6 +200,7 @@ export function sceneIn(host) {
     gl.useProgram(parts.depth.program);
     gl.uniformMatrix4fv(parts.depth.at('view'), false, sunView);
     bodies(parts.depth);
+    work(parts.depth);
 
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, canvas.width, canvas.height);
@@ -227,6 +230,7 @@ export function sceneIn(host) {
     const [soft, accent] = [themeRgb('--soft'), themeRgb('--accent')];
     paint(MODE.lit);
     bodies(program);
+    if (!shown.clear) work(program);
     put(program, parts.axes, base);
     put(program, ofCase.axes, part);
     if (shown.forces) put(program, ofCase.forces, part);
@@ -259,6 +263,10 @@ export function sceneIn(host) {
     if (shown.curtain) {
       paint(MODE.plain, [1, 1, 1], 0.62);
       put(program, ofCase.curtain, part);
+    }
+    if (shown.clear) {
+      paint(MODE.lit, [1, 1, 1], CLEAR);
+      work(program);
     }
     if (shown.before && shown.after) {
       // Behind what is left, where both have the same face.

@@ -11,10 +11,6 @@ import { EXTENT, PATH_SIZE } from './path-mesh.js';
 /** @import { Mat, Vec } from './linear.js' */
 /** @import { Mesh } from './mesh.js' */
 
-/** Whether a block can be drawn under the path: the tool comes from above everywhere, and no body of the part is known. */
-export const HAS_BLOCK =
-  TASK.axis.every((axis) => axis[2] > 0.8) && ![...BODIES, ...SHAPES, ...STOCKS].some((body) => body.frame === 'workpiece');
-
 /** Lowest and highest place of a body in a direction of the frame that a pose is in. @param {Body} body @param {Mat} pose @param {number} k @returns {[number, number]} */
 function spanOf({ mesh: { p } }, pose, k) {
   let [low, high] = [Infinity, -Infinity];
@@ -30,6 +26,20 @@ const STOCK = STOCKS.length ? /** @type {[number, number][]} */ ([0, 1, 2].map((
 
 /** The extent of path and stock in the workpiece frame. */
 const WORK = EXTENT.map(([low, high], k) => (STOCK ? [Math.min(low, STOCK[k][0]), Math.max(high, STOCK[k][1])] : [low, high]));
+
+/** The bodies of part and stock. */
+const PARTS = [...BODIES, ...SHAPES, ...STOCKS].filter((body) => body.frame === 'workpiece');
+
+/** Whether a block can be drawn under the path: the tool comes from above everywhere, and no body of the part is known. */
+export const HAS_BLOCK = TASK.axis.every((axis) => axis[2] > 0.8) && !PARTS.length;
+
+/** Whether one of them surrounds the path, so that it may hide it. */
+export const HIDES_PATH = PARTS.some((body) =>
+  EXTENT.every(([low, high], k) => {
+    const [from, to] = spanOf(body, IDENTITY, k);
+    return from < low && high < to;
+  }),
+);
 
 /** The lowest place of the work, wherever it is placed. */
 const LOWEST_WORK = Math.min(
