@@ -21,9 +21,11 @@ export function rampOf(axis, largest, marks) {
   }
   const [low, high] = axis.range ?? [0, 1];
   const [from, to] = [low, high].map((end) => along(axis, end));
-  const labels = (marks ?? ticks(axis, low, high, 5).map(({ at }) => at)).map((value) => {
+  const place = (/** @type {number} */ value) => (along(axis, value) - from) / (to - from || 1);
+  const between = ticks(axis, low, high, 3).map(({ at }) => at).filter((at) => place(at) > 0.24 && place(at) < 0.76);
+  const labels = (marks ?? [low, ...between, high]).map((value) => {
     const label = el('i', {}, shown(value));
-    label.style.left = `${(100 * (along(axis, value) - from)) / (to - from || 1)}%`;
+    label.style.left = `${100 * place(value)}%`;
     return label;
   });
   // What is no more than rounding is not above.

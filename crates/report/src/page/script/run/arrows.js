@@ -3,7 +3,7 @@
 import { clamp } from '../draw/scale.js';
 import { CASES, COUNT, TASK } from './data.js';
 import { inWorkpiece } from './external-axes.js';
-import { add, size, times } from './linear.js';
+import { add, cross, dot, less, size, times, unit } from './linear.js';
 import { lathe, mesh } from './mesh.js';
 import { PATH_SIZE } from './path-mesh.js';
 import { RUNS } from './path.js';
@@ -21,6 +21,13 @@ const DEFLECTION = [34, 122, 181];
 /** What the workpiece does to the tool, in the workpiece frame. N @param {Case} of @param {number} i @returns {Vec} */
 export const forceAt = (of, i) =>
   inWorkpiece(of, i, [of.columns.force_x_n[i], of.columns.force_y_n[i], of.columns.force_z_n[i]]);
+
+/** Its parts along the feed, to its left, and along the axis of the path. N @param {Case} of @param {number} i */
+export function forceParts(of, i) {
+  const axis = TASK.axis[i];
+  const feed = unit(less(TASK.feed[i], times(axis, dot(axis, TASK.feed[i]))));
+  return [feed, cross(axis, feed), axis].map((direction) => dot(forceAt(of, i), direction));
+}
 
 /** The whole deflection of the tool, in the workpiece frame. mm @param {Case} of @param {number} i @returns {Vec} */
 export const deflectionAt = (of, i) =>

@@ -5,7 +5,7 @@ import { card, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { FORCES } from './arrows.js';
 import { alongPath, limitAt } from './charts.js';
-import { CASES, COUNT, IS_SCORE, RAW, ROWS, SHORT_NAMES, singlesOf } from './data.js';
+import { CASES, COUNT, ENDS, IS_SCORE, JOINT_NAMES, RAW, ROWS, SHORT_NAMES, singlesOf } from './data.js';
 import { leanMapCard } from './lean-map.js';
 import { jointSharesCard, originsCard } from './origins.js';
 import { pathPoint } from './path.js';
@@ -18,7 +18,7 @@ import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** The result in a few lines, as the terminal has it; a line that is about nothing goes on with the one before. */
 function inShort() {
   const lines = RAW.document.summary ?? [];
-  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [about ? el('dt', {}, about) : null, el('dd', {}, text)]);
+  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [about ? el('dt', {}, about) : null, el('dd', {}, about === 'held by' ? withBounds(text) : text)]);
   return lines.length ? [el('dl.short', { id: 'short' }, ...rows.flat())] : [];
 }
 
@@ -73,18 +73,39 @@ const BOUND_NAMES = {
   'redundancy.max_spindle_turn_deg_per_s': 'turn of the spindle in time',
   'constraints.max_deflection_mm': 'largest deflection of a point',
   'constraints.min_base_distance_mm': 'distance of the path from axis 1',
+  'lean.lead_deg': 'lead of the tool',
+  'lean.tilt_deg': 'tilt of the tool',
+  'lean.max_lean_deg': 'lean of the tool',
+  'lean.scallop_mm': 'scallop height',
+  'lean.step_over_mm': 'step over',
+  'lean.contact_tolerance_mm': 'contact off the path',
+  'limit of axes 2+3': 'sum of joints 2 and 3',
 };
+
+/** A bound in words, and whether it is the upper one: of the angle of a joint that which the controller shows. @param {string} bound @param {boolean} isUpper @returns {[string, boolean]} */
+function boundName(bound, isUpper) {
+  const [, shapes] = bound.match(/^(?:collision\.clearance_mm|keep_out) of (.*)$/) ?? [];
+  const joint = Number(bound.match(/^limit of joint (\d)$/)?.[1]) - 1;
+  if (shapes) return [`distance of ${shapes}`, isUpper];
+  return joint >= 0 ? [`angle ${JOINT_NAMES[joint]}`, isUpper === ENDS[joint][0] < ENDS[joint][1]] : [BOUND_NAMES[bound] ?? bound, isUpper];
+}
+
+/** A line of the summary with its bounds in words: there they are keys of the files. @param {string} text */
+const withBounds = (text) =>
+  text.replace(/([^,;]+?) \((upper|lower)\)/g, (_, bound, side) => {
+    const [name, isUpper] = boundName(bound.trim(), side === 'upper');
+    return `${bound.match(/^ */)?.[0]}${isUpper ? 'upper' : 'lower'} limit of ${name}`;
+  });
 
 /** A bound as a sentence: which it is, and what moving it would do. @param {any} bound @param {boolean} isWorst @returns {[string, string]} */
 function boundWords({ bound, side, gain, unit }, isWorst) {
-  const shapes = bound.match(/^(collision\.clearance_mm|keep_out) of (.*)$/);
-  const name = BOUND_NAMES[bound] ?? (shapes ? `distance of ${shapes[2]}` : bound);
+  const [name, isUpper] = boundName(bound, side === 'upper');
   const [factor, much] = MOVES[unit] ?? [1, `1 (${unit})`];
   // What is asked less of moves a lower bound down and an upper one up.
-  const way = side === 'upper' ? 'more' : 'less';
+  const way = isUpper ? 'more' : 'less';
   const effect = Math.abs(gain * factor);
   const size = effect < 0.0005 ? 'less than 0.001' : fixed(effect, 3);
-  return [`${side === 'upper' ? 'Upper' : 'Lower'} limit: ${name}`, `would ${isWorst ? 'add' : 'save'} ${size} mm for ${much} ${way}`];
+  return [`${isUpper ? 'Upper' : 'Lower'} limit: ${name}`, `would ${isWorst ? 'add' : 'save'} ${size} mm for ${much} ${way}`];
 }
 
 /** What holds the best and the worst placement. */

@@ -4,7 +4,7 @@ import { chartPlot } from '../draw/chart.js';
 import { card, choice, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { JOINT_COLOURS, SCALE } from './colour.js';
-import { CASES, COUNT, LIMITS, ROWS } from './data.js';
+import { CASES, COUNT, ENDS, JOINT_NAMES, LIMITS, ROWS } from './data.js';
 import { DIRECTION, SCORED } from './path-mesh.js';
 import { RUNS, pathPoint } from './path.js';
 import { pause } from './play.js';
@@ -126,14 +126,14 @@ function deflectionCard() {
   return out;
 }
 
-/** @param {number} j @param {number} angle in % of the range of a joint */
-const share = (j, angle) => ((angle - ROWS[j].min) / (ROWS[j].max - ROWS[j].min)) * 100;
+/** An angle of the row of a joint in % of its range, from the end that its name calls the lower one. @param {number} j @param {number} angle */
+const share = (j, angle) => ((angle - ENDS[j][0]) / (ENDS[j][1] - ENDS[j][0])) * 100;
 
 function jointsCard() {
   /** @returns {Series[]} */
   const series = () =>
     ROWS.map((_, j) => ({
-      name: `A${j + 1}`,
+      name: JOINT_NAMES[j],
       style: 'line',
       y: current().joints.map((angles) => share(j, angles[j])),
       color: JOINT_COLOURS[j],

@@ -3,10 +3,9 @@
 import { legendOf } from '../draw/chart.js';
 import { card, choice, el } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
-import { FORCES, forceAt } from './arrows.js';
+import { FORCES, forceParts } from './arrows.js';
 import { alongPath } from './charts.js';
-import { REMOVAL, TASK } from './data.js';
-import { cross, dot, less, times, unit } from './linear.js';
+import { REMOVAL } from './data.js';
 import { current, currentPoint, onChange, set, state } from './state.js';
 /** @import { Series } from '../draw/chart-data.js' */
 
@@ -16,16 +15,9 @@ import { current, currentPoint, onChange, set, state } from './state.js';
  * }} Reading a chart: its curves by name, values and colour, the one that is read last; `isOfCut`: known only where something is cut
  */
 
-/** The directions of a point: along the feed, to its left, and along the tool axis. @param {number} i */
-function directionsAt(i) {
-  const axis = TASK.axis[i];
-  const feed = unit(less(TASK.feed[i], times(axis, dot(axis, TASK.feed[i]))));
-  return [feed, cross(axis, feed), axis];
-}
-
 /** @returns {Reading[]} what is known of every run */
 function ofAll() {
-  const part = (/** @type {number} */ k) => FORCES.map((_, i) => dot(forceAt(current(), i), directionsAt(i)[k]));
+  const part = (/** @type {number} */ k) => FORCES.map((_, i) => forceParts(current(), i)[k]);
   return [
     {
       name: 'force',

@@ -3,6 +3,7 @@
 import { card, el } from '../draw/dom.js';
 import { giving } from '../draw/downloads.js';
 import { clamp, fixed } from '../draw/scale.js';
+import { FORCES, forceParts } from './arrows.js';
 import { JOINT_COLOURS } from './colour.js';
 import { ENDS, FOLD, JOINED, JOINT_ANGLES, JOINT_NAMES, LIMITS, ROWS, shownAngles } from './data.js';
 import { AXES, axesAt } from './external-axes.js';
@@ -26,13 +27,22 @@ export function tiles() {
   const mean = make('mean', 'Mean of this case');
   const kappa = make('kappa', '1/κ here');
   const limit = make('limit', 'To the nearest limit');
+  const lean = make('lean', 'Lean of the tool here');
+  lean.tile.classList.add('wide');
   onChange(() => {
     const of = current();
     const i = currentPoint();
     const columns = of.columns;
     const chosen = chosenState();
+    lean.tile.hidden = !columns.lead_deg;
+    if (chosen) lean.show('–', '', 'along plans only');
+    else if (columns.lead_deg) {
+      const [feed, left, axis] = forceParts(of, i).map((part) => fixed(part, 0));
+      const angles = `lead ${fixed(columns.lead_deg[i], 1)}°, tilt ${fixed(columns.tilt_deg[i], 1)}°`;
+      lean.show(angles, '', `force ${fixed(FORCES[i], 0)} N: ${feed} along the feed, ${left} to its left, ${axis} along the axis of the path`);
+    }
     if (!chosen) {
-      const more = `total ${fixed(columns.total_mm[i], 2)} mm`;
+      const more = `total ${fixed(columns.total_mm[i])} mm`;
       here.show(fixed(columns.score_mm[i]), 'mm', more);
       kappa.show(fixed(columns.inverse_condition[i]), '', `limit ${LIMITS.inverse}`);
     } else {
@@ -51,7 +61,7 @@ export function tiles() {
     const nearest = gaps.indexOf(Math.min(...gaps));
     limit.show(fixed(gaps[nearest], 1), '°', nearest < ROWS.length ? `joint ${nearest + 1}` : 'joints 2+3');
   });
-  return el('div.tiles', {}, here.tile, mean.tile, kappa.tile, limit.tile);
+  return el('div.tiles', {}, here.tile, mean.tile, kappa.tile, limit.tile, lean.tile);
 }
 
 /**
@@ -130,7 +140,7 @@ export function gauges() {
       range.style.width = `${most - least}%`;
     });
   });
-  const words = `deg ${JOINT_ANGLES}${AXES.some((axis) => axis.isRail) ? ', rails in mm' : ''}; shaded: range over the whole path`;
+  const words = `deg ${JOINT_ANGLES}${JOINED ? ', θ2+θ3 of the rows' : ''}${AXES.some((axis) => axis.isRail) ? ', rails in mm' : ''}; shaded: range over the whole path`;
   const out = card(AXES.length ? 'Joints and external axes now' : 'Joints now', words, el(AXES.length ? 'div.gauges.named' : 'div.gauges', {}, ...rows.map((row) => row.host)));
   const figures = () => rows.map(({ gauge, shown }) => [gauge.name, ...[gauge.low, gauge.now(), gauge.high].map(shown)]);
   return giving(out, { rows: () => [['axis', 'from', 'now', 'to'], ...figures()] });
