@@ -39,7 +39,7 @@ addEventListener('keydown', event => {
 });
 const head = el('div', {}, el('h1', {}, sheet.title, el('small', {}, sheet.subtitle)), el('p', {}, sheet.lead));
 const keySign = (/** @type {string} */ name) => el('kbd', {}, name);
-const help = el('span', {}, 'In a chart: ', keySign('←'), ' ', keySign('→'), ' values, ', keySign('+'), ' ', keySign('−'), ' or wheel or drag: zoom, ',
+const help = el('span.keys', {}, 'In a chart: ', keySign('←'), ' ', keySign('→'), ' values, ', keySign('+'), ' ', keySign('−'), ' or wheel or drag: zoom, ',
   keySign('0'), ' all; ', keySign('D'), ' light or dark');
 document.body.append(el('div', { class: 'wrap' },
   el('header', {}, head, el('div', { class: 'tools' }, themeButton())),

@@ -38,6 +38,15 @@ export const card = (title, hint, ...children) =>
     ...children,
   );
 
+/** What is folded on the screen and open on paper, where it would be left out. @param {...(Node | string)} children its summary first */
+export function folded(...children) {
+  const fold = /** @type {HTMLDetailsElement} */ (el('details', {}, ...children));
+  let wasOpen = false;
+  addEventListener('beforeprint', () => ([wasOpen, fold.open] = [fold.open, true]));
+  addEventListener('afterprint', () => void (fold.open = wasOpen));
+  return fold;
+}
+
 /**
  * Buttons of which one is chosen, by click and arrow keys.
  * @param {string} label @param {string[]} names @param {() => number} get @param {(k: number) => void} put

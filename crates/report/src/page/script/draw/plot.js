@@ -47,8 +47,31 @@ export function disc(g, x, y, radius, colour) {
   g.fill();
 }
 
-/** The plots by the elements that they are in. @type {WeakMap<Element, Plot>} */
-export const PLOTS = new WeakMap();
+/** The plots by the elements that they are in. @type {Map<Element, Plot>} */
+export const PLOTS = new Map();
+
+/** Whether the page is being printed, and the theme that it had before. */
+const root = document.documentElement;
+let isPaper = false;
+/** @type {string | undefined} */
+let theme;
+// On paper plots are drawn anew, as wide as it is and in its colours, and are pictures: canvases would stay empty.
+addEventListener('beforeprint', () => {
+  if (!isPaper) theme = root.dataset.theme;
+  isPaper = true;
+  root.dataset.theme = 'light';
+  root.classList.add('paper');
+  PLOTS.forEach((plot) => plot.resize());
+  PLOTS.forEach((plot, host) => host.append(el('img.paper', { src: plot.picture(), alt: '' })));
+});
+addEventListener('afterprint', () => {
+  isPaper = false;
+  root.classList.remove('paper');
+  if (theme) root.dataset.theme = theme;
+  else delete root.dataset.theme;
+  document.querySelectorAll('img.paper').forEach((picture) => picture.remove());
+  PLOTS.forEach((plot) => plot.resize());
+});
 
 export class Plot {
   /** @param {HTMLElement} host @param {() => Drawing} make what is drawn, anew at each `refresh` */
@@ -201,7 +224,7 @@ export class Plot {
 
   resize() {
     const box = this.host.getBoundingClientRect();
-    const ratio = Math.max(1, devicePixelRatio);
+    const ratio = this.ratio;
     [this.width, this.height] = [box.width, box.height];
     for (const canvas of [this.base, this.top]) {
       canvas.width = Math.round(box.width * ratio);
@@ -210,6 +233,20 @@ export class Plot {
     this.draw();
   }
 
+  /** As it looks now. */
+  picture() {
+    const whole = canvasOf({ width: this.base.width, height: this.base.height });
+    const g = contextOf(whole);
+    g.fillStyle = '#fff';
+    g.fillRect(0, 0, whole.width, whole.height);
+    for (const layer of whole.width ? [this.base, this.top] : []) g.drawImage(layer, 0, 0);
+    return whole.toDataURL();
+  }
+
+  /** Dots of a canvas to a pixel. */
+  get ratio() {
+    return Math.max(isPaper ? 3 : 1, devicePixelRatio);
+  }
   get margins() {
     return this.drawing.margins ?? MARGINS;
   }
@@ -262,7 +299,7 @@ export class Plot {
   /** A canvas, cleared, in CSS pixels. @param {HTMLCanvasElement} canvas */
   cleared(canvas) {
     const g = contextOf(canvas);
-    const ratio = Math.max(1, devicePixelRatio);
+    const { ratio } = this;
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
     g.clearRect(0, 0, this.width, this.height);
     g.font = `11px ${getComputedStyle(document.body).fontFamily}`;

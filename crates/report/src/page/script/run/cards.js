@@ -1,7 +1,7 @@
 // Cards for what the run has: the summary, warnings and notes first of all, then what the search and the proofs say.
 
 import { chartCard, legendOf } from '../draw/chart.js';
-import { card, el } from '../draw/dom.js';
+import { card, el, folded } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { FORCES } from './arrows.js';
 import { alongPath, limitAt } from './charts.js';
@@ -22,7 +22,7 @@ function inShort() {
   return lines.length ? [el('dl.short', { id: 'short' }, ...rows.flat())] : [];
 }
 
-/** What the result is in short and its warnings are in the open; notes are folded, and left to the file on paper. */
+/** What the result is in short and its warnings are in the open; notes are folded on the screen, and on paper those on how it was computed are left to the file. */
 export function messages() {
   const list = (/** @type {string[]} */ said) => el('ul', {}, ...said.map((text) => el('li', {}, text)));
   const { notes, warnings } = RAW.document;
@@ -45,7 +45,12 @@ export function messages() {
       notes.length === 1 ? '1 note' : `${notes.length} notes`,
       ' on what the result rests on',
     );
-    parts.push(el('details', {}, summary, list(notes)));
+    const fold = folded(summary, list(notes));
+    /** @type {number[]} */
+    const computed = RAW.computed_notes ?? [];
+    computed.forEach((k) => fold.querySelectorAll('li')[k]?.classList.add('screen'));
+    if (computed.length) fold.append(el('p.paper', {}, `How it was computed (${computed.length} of these notes): notes.txt`));
+    parts.push(fold);
   }
   return parts.length
     ? el('section.card.messages', { 'aria-label': 'Summary, warnings and notes', id: 'messages' }, ...parts)

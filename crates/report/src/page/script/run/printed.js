@@ -1,23 +1,11 @@
 // What is printed in place of what moves: best and worst placement side by side, and the map of the best.
 
 import { el } from '../draw/dom.js';
+import { PLOTS } from '../draw/plot.js';
 import { fixed } from '../draw/scale.js';
 import { CASES } from './data.js';
 import { viewPicture } from './scene-card.js';
 import { currentMap, set, state } from './state.js';
-
-/** One canvas of several that lie on each other. @param {Element | null} host */
-function flattened(host) {
-  const layers = Array.from(host?.querySelectorAll('canvas') ?? []).filter((layer) => !layer.closest('.legend'));
-  if (!layers.length || !layers[0].width) return '';
-  const whole = document.createElement('canvas');
-  [whole.width, whole.height] = [layers[0].width, layers[0].height];
-  const g = /** @type {CanvasRenderingContext2D} */ (whole.getContext('2d'));
-  g.fillStyle = '#fff';
-  g.fillRect(0, 0, whole.width, whole.height);
-  layers.forEach((layer) => g.drawImage(layer, 0, 0, whole.width, whole.height));
-  return whole.toDataURL();
-}
 
 /** The legend of the map, its canvases as pictures. */
 function legend() {
@@ -47,32 +35,27 @@ function pictured(number) {
 /** The part of the page that is only printed. */
 export function printed() {
   const host = el('section.printed', { 'aria-hidden': 'true' });
-  const root = document.documentElement;
-  /** @type {{ case: number, t: number, chosen: any, theme: string | undefined } | null} */
+  /** @type {{ case: number, t: number, chosen: any } | null} */
   let before = null;
   addEventListener('beforeprint', () => {
-    before ??= { case: state.case, t: state.t, chosen: state.chosen, theme: root.dataset.theme };
-    root.dataset.theme = 'light';
+    before ??= { case: state.case, t: state.t, chosen: state.chosen };
     set({ theme: true }, true);
     const worst = CASES.findIndex((of) => of.place === 1);
     const pair = (worst < 0 ? [0] : [0, worst]).map(pictured);
     set({ case: 0, t: 0 }, true);
-    const map = legend();
+    const [map, key] = [currentMap() && PLOTS.get(/** @type {Element} */ (document.getElementById('map'))), legend()];
     const parts = [el('div.pair', {}, ...pair)];
-    if (currentMap() && map) {
+    if (map && key) {
       const title = 'Deflection map of the best placement: spindle angle β over path point';
-      parts.push(el('figure.charted', {}, el('figcaption', {}, el('b', {}, title)), el('img', { src: flattened(document.getElementById('map')), alt: '' }), map));
+      parts.push(el('figure.charted', {}, el('figcaption', {}, el('b', {}, title)), el('img', { src: map.picture(), alt: '' }), key));
     }
     host.replaceChildren(...parts);
   });
   addEventListener('afterprint', () => {
     if (!before) return;
-    const { theme, ...was } = before;
-    before = null;
-    if (theme) root.dataset.theme = theme;
-    else delete root.dataset.theme;
     host.replaceChildren();
-    set({ ...was, theme: true });
+    set({ ...before, theme: true });
+    before = null;
   });
   return host;
 }

@@ -1,6 +1,6 @@
 // The setup sheet: folded on the screen, the first page of what is printed.
 
-import { el } from '../draw/dom.js';
+import { el, folded } from '../draw/dom.js';
 import { giving } from '../draw/downloads.js';
 import { fixed } from '../draw/scale.js';
 import { RAW } from './data.js';
@@ -22,18 +22,11 @@ export function sheetCard() {
   const picture = document.importNode(drawn, true);
   picture.setAttribute('role', 'img');
   picture.setAttribute('aria-label', `Setup sheet: ${summaryOf(sheet)}`);
-  const fold = /** @type {HTMLDetailsElement} */ (
-    el('details', {}, el('summary', {}, el('b', {}, 'Setup sheet'), ` ${summaryOf(sheet)}`), el('div.head', {}, el('span.sub', {}, 'A4, to be printed at full size')), el('div.sheet', { tabindex: 0, role: 'group', 'aria-label': 'The sheet at full size' }, picture))
+  const fold = folded(
+    el('summary', {}, el('b', {}, 'Setup sheet'), ` ${summaryOf(sheet)}`),
+    el('div.head', {}, el('span.sub', {}, 'A4, to be printed at full size')),
+    el('div.sheet', { tabindex: 0, role: 'group', 'aria-label': 'The sheet at full size' }, picture),
   );
-  // What is folded is not printed.
-  let wasOpen = false;
-  addEventListener('beforeprint', () => {
-    wasOpen = fold.open;
-    fold.open = true;
-  });
-  addEventListener('afterprint', () => {
-    fold.open = wasOpen;
-  });
   const out = el('section.card.setup', { 'aria-label': 'Setup sheet', id: 'setup' }, fold);
   return giving(out, { svg: () => RAW.setup_sheet_svg });
 }
