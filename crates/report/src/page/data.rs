@@ -15,6 +15,7 @@ use crate::placement::CaseOfStudy;
 use nalgebra::Vector3;
 use serde_json::Value;
 use stead_model::robot::{Axes23, Compliance, Controller, Joint, Robot};
+use stead_numerics::message::{Note, NoteGroup};
 use stead_placement::outcome::Case;
 use stead_planning::criterion::Direction;
 use stead_planning::feasibility::DeflectionMap;
@@ -35,6 +36,8 @@ pub(crate) struct RunOf<'a> {
     pub removal: Option<&'a RemovalForces>,
     /// Which case of a study it is, where it is one.
     pub study_case: Option<&'a CaseOfStudy>,
+    /// What should be known about its result.
+    pub notes: &'a [Note],
 }
 
 /// A placement with the setup of the cell.
@@ -47,12 +50,17 @@ records! {
     ) {
         let map =
             |((placement, setup), map, table): &MapOf<'_>| MapData::of(&problem.in_setup(setup), placement, map, table);
+        let computed = (0..).zip(run.notes).filter(|(_, note)| note.group() == NoteGroup::Computed);
+        let computed: Vec<usize> = computed.map(|(number, _)| number).collect();
     } with {
         /// The command that left it.
         command: String = command.to_owned(),
         /// Which case of a study it is, where it is one.
         #[serde(skip_serializing_if = "Option::is_none")]
         study_case: Option<CaseOfStudy> = run.study_case.cloned(),
+        /// Which of the notes, from 0, are on how it was computed, where any are: paper leaves these to `notes.txt`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        computed_notes: Option<Vec<usize>> = (!computed.is_empty()).then_some(computed),
         /// The arm.
         robot: RobotData = RobotData::of(problem),
         /// The tool frame in the frame of the flange.

@@ -148,6 +148,7 @@ impl<'a> LivePage<'a> {
             transfer: &self.context.transfer,
             removal: self.context.removal.as_deref(),
             study_case: self.context.study_case.as_ref(),
+            notes: &self.context.notes,
         };
         let mut data = page_data(self.context.document(), content::SCORE, self.problem, &run, &[], &[]);
         if let Some(chosen) = &self.drawn {

@@ -120,6 +120,7 @@ impl Context {
                 transfer: &self.transfer,
                 removal: self.removal.as_deref(),
                 study_case: self.study_case.as_ref(),
+                notes: &self.notes,
             };
             let data = page_data(self.document(), command, problem, &run, plans, maps);
             files.push((page::DATA.to_owned(), bytes(&data)));
