@@ -46,10 +46,11 @@ pub(super) fn page(comparison: &Comparison, assessment: &Assessment, context: &A
         stride += 1;
     }
     let view = PlaneView::new(&comparison.benchmark.plane);
-    for (robot, elbow, map) in maps().filter(|(.., map)| map.count() > 0) {
-        page = page.with(map_card(&view, robot, elbow, map, stride));
-    }
-    page
+    let drawn = maps().filter(|(.., map)| map.count() > 0);
+    let mut cards: Vec<HeatMap> =
+        drawn.map(|(robot, elbow, map)| map_card(&view, robot, elbow, map, stride)).collect();
+    compared(&mut cards);
+    cards.into_iter().fold(page, |page, card| page.with(Card::HeatMap(card)))
 }
 
 fn millimetres(length: Option<f64>) -> Option<String> {
@@ -154,8 +155,31 @@ fn selection(assessment: &Assessment) -> Card {
     })
 }
 
+/// Gives all maps one scale of colours and the same axes, so that they are compared by eye.
+fn compared(maps: &mut [HeatMap]) {
+    let mut ascending: Vec<f64> = maps.iter().flat_map(|map| &map.values).copied().filter(|v| v.is_finite()).collect();
+    ascending.sort_by(f64::total_cmp);
+    let colours = ColourRange::round(&ascending);
+    let ends = |places: fn(&HeatMap) -> &[f64]| {
+        let halves = maps.iter().flat_map(|map| match places(map) {
+            [] => vec![],
+            of @ [first, .., last] => {
+                let half = (last - first) / (of.len() - 1) as f64 / 2.0;
+                vec![first - half, last + half]
+            }
+            [only] => vec![*only - 0.5, only + 0.5],
+        });
+        halves.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], end| [low.min(end), high.max(end)])
+    };
+    let (x, y) = (ends(|map| &map.columns), ends(|map| &map.rows));
+    for map in maps {
+        map.range = [colours.from, colours.to];
+        (map.x.range, map.y.range) = (Some(x), Some(y));
+    }
+}
+
 /// The map of an elbow under the test load, every so-manieth node of the part that has values.
-fn map_card(view: &PlaneView, robot: &RobotResult, elbow: Elbow, map: &Map<2>, stride: usize) -> Card {
+fn map_card(view: &PlaneView, robot: &RobotResult, elbow: Elbow, map: &Map<2>, stride: usize) -> HeatMap {
     let [across, up] = map.grid.counts;
     let values = map.values(0);
     let at = |column: usize, row: usize| values[row * across + column];
@@ -167,9 +191,6 @@ fn map_card(view: &PlaneView, robot: &RobotResult, elbow: Elbow, map: &Map<2>, s
     let columns = has_value(&|column| (0..up).any(|row| at(column, row).is_finite()), across);
     let rows = has_value(&|row| (0..across).any(|column| at(column, row).is_finite()), up);
     let shown: Vec<f64> = rows.iter().flat_map(|row| columns.iter().map(|column| at(*column, *row) * 1e3)).collect();
-    let mut ascending: Vec<f64> = shown.iter().copied().filter(|value| value.is_finite()).collect();
-    ascending.sort_by(f64::total_cmp);
-    let range = ColourRange::below_peaks(ascending.first().copied().unwrap_or(0.0), &ascending);
     let place = |column: usize, row: usize| view.shown(map.grid.at([column as f64, row as f64]));
     let found = robot.configurations.iter().find(|found| found.elbow == elbow && found.load == Load::Test);
     let outline = |kind: &str, color: usize, zone: Option<Zone>| {
@@ -188,7 +209,7 @@ fn map_card(view: &PlaneView, robot: &RobotResult, elbow: Elbow, map: &Map<2>, s
     let detail = found.and_then(|found| Some((found.min?, found.max?))).map_or_else(String::new, |(min, max)| {
         format!("{} to {} mm", figures(min.circularity * 1e3), figures(max.circularity * 1e3))
     });
-    Card::HeatMap(HeatMap {
+    HeatMap {
         title: format!("{}, elbow {}", robot.name, elbow.word()),
         detail: format!("{detail}; {}", view.words()),
         x: Axis::new(view.labels[0]),
@@ -196,11 +217,10 @@ fn map_card(view: &PlaneView, robot: &RobotResult, elbow: Elbow, map: &Map<2>, s
         columns: columns.iter().map(|column| place(*column, 0)[0]).collect(),
         rows: rows.iter().map(|row| place(0, *row)[1]).collect(),
         values: shown,
-        range: [range.from, range.to],
         unit: "mm".to_owned(),
         blank: "no circle fits".to_owned(),
         outlines: outlines.flatten().collect(),
         is_even: true,
-        is_written: false,
-    })
+        ..HeatMap::default()
+    }
 }

@@ -73,6 +73,15 @@ impl ColourRange {
         Self { from, to: if is_peak { common } else { largest } }
     }
 
+    /// From nothing to the smallest of 1, 2 and 5 times a power of ten that 98 of 100 values (ascending) do not pass.
+    pub fn round(ascending: &[f64]) -> Self {
+        let common = ascending.get((ascending.len() * 98).div_ceil(100).saturating_sub(1)).copied().unwrap_or(0.0);
+        let exponent = libm::floor(libm::log10(common)) as i32;
+        let steps = [1, 2, 5, 10].map(|digit| format!("{digit}e{exponent}").parse::<f64>().unwrap_or(1.0));
+        let to = steps.into_iter().find(|step| *step >= common).unwrap_or(1.0);
+        Self { from: 0.0, to: if common > 0.0 { to } else { 1.0 } }
+    }
+
     /// The level of a value; values beyond the range have the level of its end.
     pub fn level(&self, value: f64) -> usize {
         let part = if self.to > self.from { (value - self.from) / (self.to - self.from) } else { 0.0 };
@@ -163,6 +172,14 @@ mod tests {
         let map = map();
         assert_eq!((map.at((10, 89)), map.at((39, 60)), map.at((15, 31))), (Some(0), Some(31), Some(0)));
         assert_eq!((map.at((15, 60)), map.at((40, 60))), (None, None));
+    }
+
+    #[test]
+    fn round_ranges_end_at_1_2_or_5_times_a_power_of_ten() {
+        let end = |common: f64| ColourRange::round(&[vec![common; 98], vec![1e3 * common; 2]].concat()).to;
+        for (common, to) in [(0.2, 0.2), (0.201, 0.5), (1.08, 2.0), (5.1e-4, 1e-3), (1e3, 1e3), (0.0, 1.0)] {
+            assert_eq!(end(common), to, "{common}");
+        }
     }
 
     #[test]

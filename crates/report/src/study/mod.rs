@@ -10,6 +10,7 @@ pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod text;
+mod words;
 
 pub use json::{StudyFigures, study_json};
 pub use page::CasePages;

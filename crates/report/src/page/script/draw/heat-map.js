@@ -6,7 +6,7 @@ import { plotCard } from './plot.js';
 import { along, figures, shown, shownAt, ticks } from './scale.js';
 import { cssOf, viridis } from './theme.js';
 /** @import { Axis, HeatMap } from './chart-data.js' */
-/** @import { Hit, Plot } from './plot.js' */
+/** @import { Hit, Plot, View } from './plot.js' */
 
 /**
  * The scale of colours with ticks at round values, and what is said of values above its end.
@@ -50,9 +50,9 @@ export function cellsOf(across, up, colour) {
   return canvas;
 }
 
-/** Draws cells over all that there is. @param {Plot} plot @param {CanvasRenderingContext2D} g @param {HTMLCanvasElement} cells */
-export function drawCells(plot, g, cells) {
-  const { x0, x1, y0, y1 } = plot.drawing.home;
+/** Draws cells over all that there is, or a part. @param {Plot} plot @param {CanvasRenderingContext2D} g @param {HTMLCanvasElement} cells @param {View} [part] */
+export function drawCells(plot, g, cells, part = plot.drawing.home) {
+  const { x0, x1, y0, y1 } = part;
   const [left, upper] = [plot.pixelX(x0), plot.pixelY(y1)];
   g.imageSmoothingEnabled = false;
   g.drawImage(cells, left, upper, plot.pixelX(x1) - left, plot.pixelY(y0) - upper);
@@ -63,9 +63,10 @@ export function heatMapCard(card) {
   const [across, up] = [card.columns.length, card.rows.length];
   const step = (/** @type {number[]} */ list) => list.length > 1 ? (list[list.length - 1] - list[0]) / (list.length - 1) : 1;
   const [dx, dy] = [step(card.columns), step(card.rows)];
-  const home = {
+  const part = {
     x0: card.columns[0] - dx / 2, x1: card.columns[across - 1] + dx / 2, y0: card.rows[0] - dy / 2, y1: card.rows[up - 1] + dy / 2,
   };
+  const [[x0, x1], [y0, y1]] = [card.x.range ?? [part.x0, part.x1], card.y.range ?? [part.y0, part.y1]];
   const level = (/** @type {number} */ value) => (value - card.range[0]) / (card.range[1] - card.range[0] || 1);
   const cells = cellsOf(across, up, (column, row) => {
     const value = card.values[row * across + column];
@@ -86,11 +87,11 @@ export function heatMapCard(card) {
   const { section } = plotCard(card, () => ({
     x: card.x,
     y: card.y,
-    home,
+    home: { x0, x1, y0, y1 },
     isEven: card.is_even,
     name: `${card.title}: ${card.unit} over ${card.x.label} and ${card.y.label}`,
     draw: (plot, g) => {
-      drawCells(plot, g, cells);
+      drawCells(plot, g, cells, part);
       if (card.is_written) write(plot, g, card, level, [dx, dy]);
       for (const { color, low, high } of card.outlines ?? []) {
         g.lineWidth = 2;
@@ -99,7 +100,7 @@ export function heatMapCard(card) {
         g.strokeRect(x, y, plot.pixelX(high[0]) - x, plot.pixelY(low[1]) - y);
       }
     },
-    find: (plot, x, y) => hitOf(Math.floor((plot.placeX(x) - home.x0) / dx), Math.floor((plot.placeY(y) - home.y0) / dy)),
+    find: (plot, x, y) => hitOf(Math.floor((plot.placeX(x) - part.x0) / dx), Math.floor((plot.placeY(y) - part.y0) / dy)),
     rows: () => [
       [card.x.label, card.y.label, card.unit],
       ...card.values.map((value, k) => [shownAt(card.x, card.columns[k % across]), shownAt(card.y, card.rows[Math.floor(k / across)]), value]),
