@@ -230,21 +230,32 @@ run('study', 'report', out('small.toml'), '--out', out('small'));
 const front = table(join(out('small'), 'study-front.csv'));
 const ranked = table(join(out('small'), 'study-ranking.csv'));
 await must('study report: front and map with the numbers of the tables, and the page of the case that is kept', join(out('small'), 'report.html'), async (page) => {
-  const columns = Object.keys(front[0]).filter((name) => /_(mm|s)$/.test(name));
-  const title = `Front of ${columns[0]} and ${columns[1]}`;
+  const columns = { best_mean_total_mm: 'whole deflection, mean (mm)', cycle_s: 'cycle time (s)' };
+  const title = 'Front of whole deflection, mean and cycle time';
   for (const row of front) {
     const text = await pointWith(page, title, `case ${row.cases} `);
-    for (const name of columns) {
-      const [, value] = text.match(new RegExp(`${name} \\([^)]*\\) (\\S+)`));
+    for (const [name, words] of Object.entries(columns)) {
+      const value = parseFloat(text.split(`${words}, smaller is better `)[1]);
       assert.ok(Math.abs(value - row[name]) < 1e-4 * Math.abs(row[name]), `${name} in ${text}`);
     }
   }
   await zooms(page, title);
-  const map = 'Mean of objective_mm';
+  const map = 'Mean of score';
   const read = await pointWith(page, map, 'published');
   const values = ranked.filter((row) => row.cell === 'published').map((row) => +row.objective_mm);
-  const [, mean] = read.match(/(\S+) objective_mm$/);
+  const [, mean] = read.match(/(\S+) mm$/);
   assert.ok(values.some((value) => Math.abs(value - mean) < 1e-3 * value), `${read}: none of ${values}`);
+  // Columns in words with their units, figures with three digits, the whole deflection beside the score, and that scores cancel.
+  const heads = await card(page, 'Ranking').locator('thead th').allTextContents();
+  assert.deepEqual(heads, ['rank', 'case', 'cell', 'robot joints[1] stiffness (MN m/rad)', 'score (mm)', 'whole deflection, mean (mm)', 'behind the best (%)', 'status', 'reason']);
+  const found = table(join(out('small'), 'study.csv'));
+  for (const [k, row] of ranked.entries()) {
+    const shown = await card(page, 'Ranking').locator(`tbody tr:nth-child(${k + 1}) td`).allTextContents();
+    const { best_mean_total_mm: whole } = found.find((one) => one.case === row.cases);
+    for (const [text, value] of [[shown[4], row.objective_mm], [shown[5], whole]])
+      assert.ok(+text === +(+value).toPrecision(3) && text.replace(/^0\.0*|\./g, '').length === 3, `${text}: ${value}`);
+  }
+  assert.match(await card(page, 'Notes').or(page.locator('.text')).first().textContent(), /score of 4 of 4 layouts is below a fifth of their whole deflection/);
   // The links: of the table, and of its point in the front where it has one.
   const link = card(page, 'Ranking').locator('a');
   assert.equal(await link.count(), 1);
@@ -329,6 +340,23 @@ await must('assess: maps with zones, ranking', join(out('assess'), 'report.html'
   assert.ok(Object.values(map[0]).length > 3 && +value > 0, text);
   await zooms(page, title);
   await sorts(page, 'Ranking', 1);
+  // All maps have the colours and the axes of each other.
+  const maps = await page.locator('section.tall').evaluateAll((all) => all.map((one) => one.querySelector('.marks').textContent));
+  assert.ok(maps.length > 1 && maps.every((one) => one === maps[0]), maps.join('; '));
+  const ends = await page.evaluate(() => JSON.parse(document.getElementById('data').textContent).cards.filter(({ kind }) => kind === 'heat-map').map(({ x, y, range }) => [x.range, y.range, range]));
+  ends.forEach((one) => assert.deepEqual(one, ends[0]));
+  const drawn = await page.locator('section.tall .plot').evaluateAll((all) => all.map((one) => one.getBoundingClientRect()));
+  drawn.forEach(({ width, height }) => assert.ok(Math.abs(width - drawn[0].width) < 1 && height === drawn[0].height));
+  // On paper charts are drawn for its width, as pictures, and the figures come first.
+  await page.emulateMedia({ media: 'print' });
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  const pictures = await page.locator('.plot').evaluateAll((all) => all.map((one) => [one.querySelector('img').naturalWidth, one.clientWidth]));
+  assert.ok(pictures.length > 2 && pictures.every(([dots, width]) => width === 690 && dots === 3 * width), `${pictures}`);
+  const tops = await page.evaluate(() => ['h1', '.tiles', '.warning', 'table', '.plot'].map((part) => document.querySelector(part).getBoundingClientRect().top));
+  assert.deepEqual(tops, [...tops].sort((a, b) => a - b));
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.emulateMedia({ media: 'screen' });
+  assert.equal(await page.locator('.plot img').count(), 0);
 });
 
 /** The file of a name in the folder of the assessment. */

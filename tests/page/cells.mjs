@@ -80,6 +80,53 @@ await check('the robot is seen through the fence', 'collision', async (page) => 
   return `${(100 * Math.min(...counts)).toFixed(0)} % of its pixels at least`;
 });
 
+await check('the path is seen through the part that surrounds it', 'collision', async (page) => {
+  const box = page.getByRole('checkbox', { name: 'see through the part' });
+  assert.ok(await box.isChecked(), 'the part hides its path at first');
+  // The path alone has these colours: strong greens and yellows.
+  const path = () =>
+    page.evaluate(async () => {
+      const picture = new Image();
+      picture.src = window.stead.picture();
+      await picture.decode();
+      const g = Object.assign(document.createElement('canvas'), { width: picture.width, height: picture.height }).getContext('2d');
+      g.drawImage(picture, 0, 0);
+      const { data } = g.getImageData(0, 0, picture.width, picture.height);
+      let count = 0;
+      for (let k = 0; k < data.length; k += 4) count += data[k + 1] > 1.25 * data[k + 2] && data[k + 1] > 1.15 * data[k] ? 1 : 0;
+      return count;
+    });
+  for (const name of ['curtain', 'ghost', 'around']) await page.locator(`[data-layer=${name}]`).click();
+  await page.locator('[data-view=tool]').click();
+  const clear = await path();
+  await box.focus();
+  await page.keyboard.press('Space');
+  const solid = await path();
+  assert.ok(clear > 1.5 * solid && clear > 500, `${clear} pixels of the path with it, ${solid} without`);
+  await page.keyboard.press('Space');
+  assert.equal(await path(), clear);
+  return `${clear} pixels of the path, ${solid} through a solid part`;
+});
+
+await check('a leaning plan says lead, tilt and force at its points, and its bounds in words', 'leaning-tool', async (page, place) => {
+  const rows = table(join(place, PLANS[0]));
+  for (const point of [0, 17, 40]) {
+    await page.evaluate((t) => window.stead.set({ t }, true), point);
+    const row = rows[point];
+    assert.equal(await page.locator('#lean').textContent(), `lead ${(+row.lead_deg).toFixed(1)}°, tilt ${(+row.tilt_deg).toFixed(1)}°`);
+    const said = await page.locator('#lean-more').textContent();
+    const [, size, ...parts] = said.match(/^force (\S+) N: (\S+) along the feed, (\S+) to its left, (\S+) along the axis of the path$/);
+    const force = Math.hypot(row.force_x_n, row.force_y_n, row.force_z_n);
+    assert.ok(Math.abs(size - force) < 0.6 && Math.abs(Math.hypot(...parts) - force) < 1.5, `${said}: ${force}`);
+  }
+  const { cases } = JSON.parse(readFileSync(join(place, 'summary.json'), 'utf8'));
+  const keys = cases.flatMap((one) => one.active_bounds ?? []).map(({ bound }) => bound);
+  assert.ok(keys.some((key) => key.startsWith('lean.')), `${keys}`);
+  const said = [await page.locator('#short').textContent(), await page.locator('section[aria-label="What holds the placements"]').textContent()];
+  for (const key of keys.filter((key) => /_(mm|deg|condition)/.test(key))) assert.ok(said.every((text) => !text.includes(key)), `${key} in ${said}`);
+  assert.match(said[1], /limit: (lead|tilt|lean) of the tool/);
+});
+
 // Fences that are drawn as solid walls must fail.
 {
   const html = readFileSync(join(folder('collision'), 'report.html'), 'utf8');

@@ -128,6 +128,17 @@ export const figures = (folder, plans) => ({
     const plan = tables.get('The cell in three dimensions');
     assert.deepEqual([plan[0].split(',').length, plan.length], [Object.keys(plans[0][0]).length, plans[0].length + 1]);
     assert.equal(+plan[5].split(',')[plan[0].split(',').indexOf('point')], 4);
+    // Under the names of the controller stand its angles, also as shares of their ranges.
+    const joints = tables.get('Joints within their limits').map((line) => line.split(','));
+    const ends = await page.locator('.gauges:not(.shares) .g').evaluateAll((all) => all.map((one) => [...one.querySelectorAll('span')].map((end) => +end.textContent)));
+    for (const point of [0, 40, 90]) {
+      const angles = await page.evaluate((angles) => window.stead.shownAngles(angles), [1, 2, 3, 4, 5, 6].map((j) => +plans[0][point][`theta${j}_deg`]));
+      angles.forEach((angle, j) => {
+        assert.match(joints[0][j + 1], new RegExp(`^A${j + 1} `));
+        const share = (100 * (angle - ends[j][0])) / (ends[j][1] - ends[j][0]);
+        assert.ok(Math.abs(joints[point + 1][j + 1] - share) < 0.5, `A${j + 1} at ${point}: ${joints[point + 1][j + 1]} % of its range, ${share}`);
+      });
+    }
     const states = table(join(folder, 'deflection-map-best.csv'));
     const map = tables.get('Deflection map').slice(1).map((line) => line.split(','));
     assert.equal(map.length, states.length);

@@ -10,7 +10,7 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import assert from 'node:assert/strict';
 import { inShort, launch, withScript } from './browser.mjs';
 import { violations } from './axe.mjs';
-import { frame, open, table } from './suite.mjs';
+import { endsRound, frame, open, scale, table } from './suite.mjs';
 
 const root = fileURLToPath(new URL('../../', import.meta.url));
 const stead = process.env.STEAD ?? join(root, 'target/debug/stead');
@@ -122,7 +122,7 @@ await check('forces and the stock before and after are switched', layers);
 
 async function colours(page) {
   await page.locator('[data-view=tool]').click();
-  const legend = () => page.locator('.colouring .legend').textContent();
+  const legend = () => scale(page, '.colouring');
   const seen = new Map();
   for (const name of ['error', 'force', 'removed']) {
     await pick(page, 'Colour of the path', name);
@@ -130,16 +130,34 @@ async function colours(page) {
     seen.set(await picture(page), await legend());
   }
   assert.equal(seen.size, 3);
-  const most = Math.max(...engagement.map((row) => +row.force_n));
-  assert.equal([...seen.values()][1], `0${most.toPrecision(3)} N`);
+  const values = [...seen.values()];
+  endsRound({ ...values[1], words: values[1].words.replace(/^N/, 'mm') }, engagement.map((row) => +row.force_n));
   // The other case keeps the colours.
   const before = await legend();
   await page.keyboard.press('3');
-  assert.equal(await legend(), before);
+  assert.deepEqual(await legend(), before);
 }
 await check('the path has the colours of error, force and removed volume', colours);
 
 await check('axe-core finds nothing', async (page) => assert.deepEqual(await violations(page), []));
+
+await check('on paper it goes from the headline to the tables, its notes open', async (page) => {
+  const fold = page.locator('#messages details');
+  assert.equal(await fold.evaluate((one) => one.open), false);
+  await page.emulateMedia({ media: 'print' });
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  const parts = ['#setup svg', 'h1', '#short', '.warnings', '#messages details', '.printed figure', '#cases', '.further table'];
+  const tops = await page.evaluate((parts) => parts.map((part) => document.querySelector(part).getBoundingClientRect().top), parts);
+  assert.deepEqual(tops, [...tops].sort((a, b) => a - b), parts.join());
+  const { computed_notes: computed } = JSON.parse(readFileSync(at('out/page-data.json'), 'utf8'));
+  assert.ok(computed.length > 0 && computed.length < summary.notes.length, `${computed}`);
+  const seen = await fold.locator('li').evaluateAll((all) => all.map((one) => one.offsetHeight > 0));
+  seen.forEach((isSeen, k) => assert.equal(isSeen, !computed.includes(k), summary.notes[k]));
+  assert.match(await fold.innerText(), /notes\.txt/);
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.emulateMedia({ media: 'screen' });
+  assert.deepEqual(await fold.evaluate((one) => [one.open, one.querySelector('p').offsetHeight]), [false, 0]);
+});
 
 await check('both feeds and the warnings are stated', async (page) => {
   const rows = await page.locator('section[aria-label="At the programmed and at the held feed"] tbody tr').allTextContents();
@@ -167,7 +185,7 @@ for (const width of [380, 800, 1400]) {
 await check(
   'a run without a stock has none of it',
   async (page) => {
-    assert.equal(await page.locator('[data-layer=after], [data-layer=before], .colouring').count(), 0);
+    assert.equal(await page.locator('[data-layer=after], [data-layer=before], .colouring .choice').count(), 0);
     assert.deepEqual(await forces(page).getByRole('radio').allTextContents(), ['force', 'deflection']);
   },
   { where: pathToFileURL(join(root, 'results/caro-2013/report.html')).href },

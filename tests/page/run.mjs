@@ -133,6 +133,13 @@ await check('the table of cases fits in a window of 1400', { width: 1400, height
 await check('the play bar is in a low window', { width: 1280, height: 720 }, address, async (page) => {
   const { y, height } = await page.locator('#play').boundingBox();
   assert.ok(y > 0 && y + height <= 720, `${y}`);
+  // It covers nothing of the view, at first and where the view is scrolled to.
+  for (const block of ['', 'end']) {
+    if (block) await page.locator('.view').evaluate((view, block) => view.scrollIntoView({ block }), block);
+    const [bar, view] = [await page.locator('.bar').boundingBox(), await page.locator('.view').boundingBox()];
+    assert.ok(bar.y + bar.height <= view.y || view.y + view.height <= bar.y, `bar ${bar.y} to ${bar.y + bar.height}, view from ${view.y}`);
+    assert.ok(bar.y >= 0 && view.y + view.height <= 720, `view ${view.y} to ${view.y + view.height}`);
+  }
 });
 
 await check('a finger that goes up scrolls the page', { width: 390, height: 844, touch: true }, address, async (page) => {

@@ -43,6 +43,27 @@ export const setSlider = (page, value) =>
 export const frame = (page) =>
   page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
+/** The scale of colours of a card: its ticks and its words. */
+export const scale = (page, card) =>
+  page.locator(`${card} .scale`).evaluate((one) => ({
+    ticks: [...one.querySelectorAll('.marks i')].map((tick) => +tick.textContent),
+    words: one.lastChild.textContent,
+  }));
+/** Whether a number is 1, 2 or 5 times a power of ten. */
+const isRound = (value) => /^[125](\.0*)?e/.test(value.toExponential(6));
+/** Whether a scale ends at the smallest round value that 98 of 100 values do not exceed, and says which is the largest of all that is above. */
+export function endsRound({ ticks, words }, values, largest = Math.max(...values)) {
+  const top = ticks.at(-1);
+  assert.ok(isRound(top), `${ticks}`);
+  const share = (end) => values.filter((value) => value <= end).length / values.length;
+  assert.ok(share(top) >= 0.98, `${share(top)} of the values are within ${top}`);
+  assert.ok(share(top / 2.5) < 0.98, `${top} is too large`);
+  if (largest <= top) return assert.ok(!words.includes('above'), words);
+  assert.ok(words.startsWith(`mm; above ${top} the last colour, largest `), words);
+  const said = +words.match(/(\S+)$/)[1];
+  assert.ok(Math.abs(said - largest) <= 0.005 * largest, `${words}: ${largest}`);
+}
+
 async function shows(page, rows, point) {
   await frame(page);
   const row = rows[point];
@@ -257,6 +278,24 @@ export function tests(folder, others) {
       await check(69, 101);
       await page.keyboard.press('Escape');
       await shows(page, plans[0], 69);
+    },
+
+    'colours end at a round value that one outlier does not move': async (page) => {
+      const scores = plans.flat().map((row) => +row.score_mm);
+      const states = ['best', 'worst'].map((name) => table(join(folder, `deflection-map-${name}.csv`)).map((row) => +row.score_mm));
+      const all = [];
+      for (const [k, key] of ['1', '3'].entries()) {
+        await page.keyboard.press(key);
+        await frame(page);
+        const [view, map] = [await scale(page, '#scene'), await scale(page, '.mapbox')];
+        endsRound(view, scores);
+        endsRound(map, scores, Math.max(...scores, ...states[k]));
+        assert.ok(view.ticks.every(isRound), `${view.ticks}`);
+        all.push(view.ticks, map.ticks);
+      }
+      all.forEach((ticks) => assert.deepEqual(ticks, all[0], 'best and worst, view and map share the scale'));
+      await page.keyboard.press('1');
+      return all[0].join(', ');
     },
 
     'a row of the table selects its case': async (page) => {

@@ -47,8 +47,7 @@ pub(super) fn page(comparison: &Comparison, assessment: &Assessment, context: &A
     }
     let view = PlaneView::new(&comparison.benchmark.plane);
     let drawn = maps().filter(|(.., map)| map.count() > 0);
-    let mut cards: Vec<HeatMap> =
-        drawn.map(|(robot, elbow, map)| map_card(&view, robot, elbow, map, stride)).collect();
+    let mut cards: Vec<HeatMap> = drawn.map(|(robot, elbow, map)| map_card(&view, robot, elbow, map, stride)).collect();
     compared(&mut cards);
     cards.into_iter().fold(page, |page, card| page.with(Card::HeatMap(card)))
 }

@@ -7,7 +7,7 @@ use crate::units::figures;
 use std::collections::BTreeMap;
 use stead_disk::input::InputFile;
 use stead_planning::sense::Sense;
-use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure};
+use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure, Ranked};
 use stead_study::cases::TableCell;
 
 /// The column of the whole deflection, and below which share of it a score is small: parts cancel in it.
@@ -81,12 +81,14 @@ fn whole(layouts: &Layouts, layout: usize) -> Option<f64> {
 /// A note on scores that are small beside the whole deflection.
 fn cancelling(analysis: &Analysis) -> Option<String> {
     let ranking = &analysis.ranking;
-    let is_small = |layout: usize, score: f64| whole(&analysis.layouts, layout).is_some_and(|mm| score < SMALL_PART * mm);
-    let small = ranking.ranked.iter().filter(|ranked| is_small(ranked.layout, ranked.value)).count();
+    let share = |layout: usize| Some(SMALL_PART * whole(&analysis.layouts, layout)?);
+    let is_small = |ranked: &&Ranked| share(ranked.layout).is_some_and(|share| ranked.value < share);
+    let small = ranking.ranked.iter().filter(is_small).count();
     (ranking.measure.name == "objective_mm" && small > 0).then(|| {
         format!(
-            "the score of {small} of {} layouts is below a fifth of their whole deflection: parts of different sign cancel in \
-             it, and small errors of the force undo that; the whole deflection is beside the score, and --by {WHOLE} ranks by it",
+            "the score of {small} of {} layouts is below a fifth of their whole deflection: parts of different sign \
+             cancel in it, and small errors of the force undo that; the whole deflection is beside the score, and \
+             --by {WHOLE} ranks by it",
             ranking.ranked.len()
         )
     })
@@ -146,7 +148,8 @@ fn ranking(analysis: &Analysis, pages: &CasePages) -> Card {
     columns.extend(
         axes.iter().map(|axis| Column { name: heading(&layouts.columns[*axis].name), is_number: is_number(*axis) }),
     );
-    let has_whole = ranking.measure.name != WHOLE && (0..layouts.all.len()).any(|layout| whole(layouts, layout).is_some());
+    let is_known = |layout| whole(layouts, layout).is_some();
+    let has_whole = ranking.measure.name != WHOLE && (0..layouts.all.len()).any(is_known);
     columns.push(Column::number(heading(&ranking.measure.name)));
     columns.extend(has_whole.then(|| Column::number(heading(WHOLE))));
     columns.push(Column::number("behind the best (%)"));

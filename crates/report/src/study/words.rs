@@ -14,25 +14,9 @@ const COLUMNS: [(&str, &str, &str); 8] = [
     ("price_eur", "price of the arm", "EUR"),
 ];
 
-/// Endings of names with the units that they are, the longer ones first.
-const UNITS: [(&str, &str); 16] = [
-    ("_mnm_per_rad", "MN m/rad"),
-    ("_urad_per_nm", "µrad/(N m)"),
-    ("_deg_per_mm", "deg/mm"),
-    ("_deg_per_s", "deg/s"),
-    ("_mm_per_s", "mm/s"),
-    ("_percent", "%"),
-    ("_n_per_mm", "N/mm"),
-    ("_mpa", "MPa"),
-    ("_rpm", "1/min"),
-    ("_deg", "deg"),
-    ("_mm", "mm"),
-    ("_kg", "kg"),
-    ("_hz", "Hz"),
-    ("_nm", "N m"),
-    ("_n", "N"),
-    ("_s", "s"),
-];
+/// Endings of names and the units that they are, the longer ones first.
+const UNITS: &str = "_mnm_per_rad:MN m/rad,_urad_per_nm:µrad/(N m),_deg_per_mm:deg/mm,_deg_per_s:deg/s,_mm_per_s:mm/s,\
+                     _n_per_mm:N/mm,_percent:%,_mpa:MPa,_rpm:1/min,_deg:deg,_mm:mm,_kg:kg,_hz:Hz,_nm:N m,_n:N,_s:s";
 
 /// Which case of a placement a figure is of.
 const CASES: [(&str, &str); 4] = [
@@ -48,7 +32,8 @@ pub(super) fn words(name: &str) -> (String, &'static str) {
     if let Some((_, words, unit)) = COLUMNS.iter().find(|(column, ..)| *column == name) {
         return ((*words).to_owned(), unit);
     }
-    let ending = UNITS.iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, *unit)));
+    let mut units = UNITS.split(',').filter_map(|unit| unit.split_once(':'));
+    let ending = units.find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, unit)));
     let (bare, unit) = ending.filter(|(bare, _)| !bare.is_empty()).unwrap_or((name, ""));
     let words = deflection(bare).unwrap_or_else(|| bare.replace(['_', '.'], " "));
     (words, unit)
@@ -57,10 +42,13 @@ pub(super) fn words(name: &str) -> (String, &'static str) {
 /// A figure of a case.
 fn deflection(bare: &str) -> Option<String> {
     let (rest, case) = CASES.iter().find_map(|(start, words)| Some((bare.strip_prefix(start)?, words)))?;
-    let (of, part) = rest.split_once('_')?;
-    let of = [("mean", "mean"), ("max", "largest")].iter().find(|(key, _)| *key == of)?.1;
+    let (of, part) = match rest.split_once('_')? {
+        ("mean", part) => ("mean", part),
+        ("max", part) => ("largest", part),
+        _ => return None,
+    };
     let parts = [("wall", "wall deflection"), ("axis", "deflection along the axis"), ("total", "whole deflection")];
-    let part = parts.iter().find(|(key, _)| *key == part)?.1;
+    let (_, part) = parts.iter().find(|(key, _)| *key == part)?;
     Some(format!("{part}, {of}{case}"))
 }
 
