@@ -96,8 +96,11 @@ await check('the path is seen through the part that surrounds it', 'collision', 
       for (let k = 0; k < data.length; k += 4) count += data[k + 1] > 1.25 * data[k + 2] && data[k + 1] > 1.15 * data[k] ? 1 : 0;
       return count;
     });
-  for (const name of ['curtain', 'ghost', 'around']) await page.locator(`[data-layer=${name}]`).click();
+  for (const name of ['curtain', 'ghost', 'around', 'cell', 'reach']) await page.locator(`[data-layer=${name}]`).click();
   await page.locator('[data-view=tool]').click();
+  // From below, where the part is between the eye and the path.
+  await page.locator('.view').focus();
+  for (let k = 0; k < 5; k++) await page.keyboard.press('ArrowDown');
   const clear = await path();
   await box.focus();
   await page.keyboard.press('Space');

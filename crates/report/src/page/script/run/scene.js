@@ -227,16 +227,20 @@ export function sceneIn(host) {
       gl.uniform3fv(program.at('tint'), tint);
       gl.uniform1f(program.at('alpha'), alpha);
     };
+    const path = () => {
+      paint(MODE.lit);
+      if (shown.forces) put(program, ofCase.forces, part);
+      if (shown.deflection) put(program, ofCase.deflection, part);
+      paint(MODE.plain);
+      put(program, ofCase.tube, part);
+    };
     const [soft, accent] = [themeRgb('--soft'), themeRgb('--accent')];
     paint(MODE.lit);
     bodies(program);
     if (!shown.clear) work(program);
     put(program, parts.axes, base);
     put(program, ofCase.axes, part);
-    if (shown.forces) put(program, ofCase.forces, part);
-    if (shown.deflection) put(program, ofCase.deflection, part);
-    paint(MODE.plain);
-    put(program, ofCase.tube, part);
+    if (!shown.clear) path();
     if (shown.cell) {
       paint(MODE.plain, accent);
       put(program, parts.cell);
@@ -256,6 +260,14 @@ export function sceneIn(host) {
     put(program, parts.thick);
     paint(MODE.plain, soft, 0.8);
     put(program, ofCase.edges, part);
+    if (shown.clear) {
+      // The path behind it in time, so that no face of the part covers it.
+      paint(MODE.lit, [1, 1, 1], CLEAR);
+      work(program);
+      gl.depthMask(true);
+      path();
+      gl.depthMask(false);
+    }
     if (shown.ghost) {
       paint(MODE.plain, [1, 1, 1], 0.5);
       put(program, ofCase.ghost, ghost);
@@ -263,10 +275,6 @@ export function sceneIn(host) {
     if (shown.curtain) {
       paint(MODE.plain, [1, 1, 1], 0.62);
       put(program, ofCase.curtain, part);
-    }
-    if (shown.clear) {
-      paint(MODE.lit, [1, 1, 1], CLEAR);
-      work(program);
     }
     if (shown.before && shown.after) {
       // Behind what is left, where both have the same face.
