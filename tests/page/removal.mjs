@@ -152,7 +152,7 @@ await check('on paper it goes from the headline to the tables, its notes open', 
   const { computed_notes: computed } = JSON.parse(readFileSync(at('out/page-data.json'), 'utf8'));
   assert.ok(computed.length > 0 && computed.length < summary.notes.length, `${computed}`);
   const seen = await fold.locator('li').evaluateAll((all) => all.map((one) => one.offsetHeight > 0));
-  seen.forEach((isSeen, k) => assert.equal(isSeen, !computed.includes(k), summary.notes[k]));
+  seen.forEach((isSeen, k) => assert.equal(isSeen, !computed.includes(summary.notes[k]), summary.notes[k]));
   assert.match(await fold.innerText(), /notes\.txt/);
   await page.evaluate(() => dispatchEvent(new Event('afterprint')));
   await page.emulateMedia({ media: 'screen' });

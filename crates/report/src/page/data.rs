@@ -50,17 +50,17 @@ records! {
     ) {
         let map =
             |((placement, setup), map, table): &MapOf<'_>| MapData::of(&problem.in_setup(setup), placement, map, table);
-        let computed = (0..).zip(run.notes).filter(|(_, note)| note.group() == NoteGroup::Computed);
-        let computed: Vec<usize> = computed.map(|(number, _)| number).collect();
+        let computed = run.notes.iter().filter(|note| note.group() == NoteGroup::Computed);
+        let computed: Vec<String> = computed.map(ToString::to_string).collect();
     } with {
         /// The command that left it.
         command: String = command.to_owned(),
         /// Which case of a study it is, where it is one.
         #[serde(skip_serializing_if = "Option::is_none")]
         study_case: Option<CaseOfStudy> = run.study_case.cloned(),
-        /// Which of the notes, from 0, are on how it was computed, where any are: paper leaves these to `notes.txt`.
+        /// Those of the notes that are on how it was computed, where there are any: paper leaves these to `notes.txt`.
         #[serde(skip_serializing_if = "Option::is_none")]
-        computed_notes: Option<Vec<usize>> = (!computed.is_empty()).then_some(computed),
+        computed_notes: Option<Vec<String>> = (!computed.is_empty()).then_some(computed),
         /// The arm.
         robot: RobotData = RobotData::of(problem),
         /// The tool frame in the frame of the flange.

@@ -46,9 +46,9 @@ export function messages() {
       ' on what the result rests on',
     );
     const fold = folded(summary, list(notes));
-    /** @type {number[]} */
+    /** @type {string[]} */
     const computed = RAW.computed_notes ?? [];
-    computed.forEach((k) => fold.querySelectorAll('li')[k]?.classList.add('screen'));
+    fold.querySelectorAll('li').forEach((note) => note.classList.toggle('screen', computed.includes(note.textContent ?? '')));
     if (computed.length) fold.append(el('p.paper', {}, `How it was computed (${computed.length} of these notes): notes.txt`));
     parts.push(fold);
   }
