@@ -15,10 +15,13 @@ import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
 
+/** What is to be seen before the figures are believed. */
+const DOUBTS = new Set(['INTERRUPTED', 'NOT CHECKED', 'WARNING']);
+
 /** The result in a few lines, as the terminal has it; a line that is about nothing goes on with the one before. */
 function inShort() {
   const lines = RAW.document.summary ?? [];
-  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [about ? el('dt', {}, about) : null, el('dd', {}, about === 'held by' ? withBounds(text) : text)]);
+  const rows = lines.map((/** @type {{about: string, text: string}} */ { about, text }) => [about ? el('dt', { 'data-level': DOUBTS.has(about) ? 'doubt' : null }, about) : null, el('dd', {}, about === 'held by' ? withBounds(text) : text)]);
   return lines.length ? [el('dl.short', { id: 'short' }, ...rows.flat())] : [];
 }
 
