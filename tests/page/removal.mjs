@@ -146,7 +146,7 @@ await check('on paper it goes from the headline to the tables, its notes open', 
   assert.equal(await fold.evaluate((one) => one.open), false);
   await page.emulateMedia({ media: 'print' });
   await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
-  const parts = ['#setup svg', 'h1', '#short', '.warnings', '#messages details', '.printed figure', '#cases', '.further table'];
+  const parts = ['#setup svg', 'h1', '#short', '.warnings', '#messages details', '.printed figure', '#cases', 'footer'];
   const tops = await page.evaluate((parts) => parts.map((part) => document.querySelector(part).getBoundingClientRect().top), parts);
   assert.deepEqual(tops, [...tops].sort((a, b) => a - b), parts.join());
   const { computed_notes: computed } = JSON.parse(readFileSync(at('out/page-data.json'), 'utf8'));
