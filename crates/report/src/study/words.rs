@@ -84,7 +84,7 @@ mod tests {
         ] {
             assert_eq!(heading(name), expected);
         }
-        assert_eq!(["4.70589886352", "6", "a.toml", "123456.5"].map(value), ["4.71", "6", "a.toml", "123457"]);
+        assert_eq!(["4.70589886352", "6", "a.toml", "123456.7"].map(value), ["4.71", "6", "a.toml", "123457"]);
         // Every column of what is found has words that are no key.
         for column in stead_study::cases::result_columns() {
             assert!(!heading(&column.name).contains('_'), "{}", column.name);
