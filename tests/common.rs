@@ -47,6 +47,22 @@ impl Bench {
         std::fs::read_to_string(self.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
     }
 
+    /// Writes a file as the result of an earlier run of a command: with a manifest that lists it.
+    pub fn write_result(&self, command: &str, file: &str, text: &str) {
+        self.write(file, text);
+        let (folder, name) = file.rsplit_once('/').unwrap();
+        let set = stead_disk::manifest::ResultSet {
+            command: command.to_owned(),
+            version: "0.1.0".to_owned(),
+            complete: true,
+            interrupted: false,
+            inputs: Vec::new(),
+            files: vec![stead_disk::manifest::ResultFile::of(name, text.as_bytes())],
+        };
+        let manifest = stead_disk::manifest::Manifest::default().with(set).to_bytes().unwrap();
+        self.write(&format!("{folder}/manifest.json"), std::str::from_utf8(&manifest).unwrap());
+    }
+
     /// Writes a file, and the folders to it.
     pub fn write(&self, name: &str, text: &str) {
         let path = self.path(name);

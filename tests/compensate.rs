@@ -181,7 +181,7 @@ fn a_path_that_cannot_be_corrected_all_along_has_no_result_where_all_is_asked_fo
     // Joint 1 of the plan goes up to 104.2999 deg, and corrected to 104.33699 deg, at point 61.
     let bench = bench();
     bench.replace(ROBOT, "max_deg = 185.0", "max_deg = 104.3365");
-    bench.write("out/corrected-path.csv", "an earlier result\n");
+    bench.write_result("compensate", "out/corrected-path.csv", "an earlier result\n");
     let before = bench.tree("");
     for more in [&["--out", "new"][..], &["--out", "new", "--json"], &["--out", "out"]] {
         let ended = bench.stead(&[&["compensate", CONFIG, "--all-or-nothing"], more].concat());

@@ -41,7 +41,8 @@ fn robot() -> Robot {
         is_j3_level: None,
         root_from_base: Some(Pose { rotation: Matrix3::identity(), translation: vector![0.0, 0.0, 0.75] }),
     };
-    Robot::new("KUKA KR270-2", rows).unwrap().with_controller(controller).with_spring_model(Some(SpringModel::Axes))
+    let robot = Robot::new("KUKA KR270-2", rows).unwrap().with_flange(0.23);
+    robot.with_controller(controller).with_spring_model(Some(SpringModel::Axes))
 }
 
 /// Five segments of 21 points, a staircase down and to the right. Corners in tenths of a millimetre.

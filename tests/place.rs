@@ -342,7 +342,7 @@ fn threads_do_not_change_the_result() {
     let other = Bench::new();
     let text = ["place", RUN, "--out", "a/b/five", "--threads", "5", "--seed", "1"];
     other.write("a/b/five/own.txt", "the user's own\n");
-    other.write("a/b/five/best.csv", "an earlier result\n");
+    other.write_result("place", "a/b/five/best.csv", "an earlier result\n");
     let five = other.stead(&text);
     assert_eq!((five.code, five.said().as_str()), (Some(0), ""));
     let mut found = other.tree("a/b/five");

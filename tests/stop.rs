@@ -209,13 +209,13 @@ mod interrupt {
         bench.copy_all(&["configs/umons-aluminium.toml", "configs/robots/staubli-tx200.toml"]);
         let pass = "configs/umons-aluminium.toml";
         bench.replace(pass, "window_s = [0.4, 1.4]", "steps_per_turn = 3600\nslices = 256\nwindow_s = [0.3, 0.4]");
-        bench.write("out/wall.csv", "an earlier result\n");
+        bench.write_result("simulate", "out/wall.csv", "an earlier result\n");
         for more in [&[][..], &["--fast"]] {
             let arguments = [&["simulate", pass, "--out", "out", "--json"], more].concat();
             let ended = interrupted(started(&bench, &arguments), Duration::from_millis(800));
             assert_eq!((ended.code, ended.stdout.as_str()), (Some(130), ""), "{}", ended.stderr);
             assert_eq!(ended.said(), format!("{STOPPED}error: stopped before it was done\n"));
-            assert_eq!(bench.names("out"), ["wall.csv"]);
+            assert_eq!(bench.names("out"), ["manifest.json", "wall.csv"]);
         }
     }
 
@@ -338,7 +338,7 @@ mod interrupt {
     #[test]
     fn twice_ends_at_once_and_leaves_earlier_results_alone() {
         let bench = Bench::new();
-        bench.write("out/best.csv", "an earlier result\n");
+        bench.write_result("place", "out/best.csv", "an earlier result\n");
         let child = search(&bench, 100_000);
         wait_for_work(&child, Duration::from_millis(500));
         interrupt(&child);
@@ -350,7 +350,7 @@ mod interrupt {
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(130), ""), "{}", ended.stderr);
         assert!(begun.elapsed() < Duration::from_secs(5));
         assert_eq!(bench.read("out/best.csv"), "an earlier result\n");
-        assert_eq!(bench.names("out"), ["best.csv"]);
+        assert_eq!(bench.names("out"), ["best.csv", "manifest.json"]);
     }
     #[test]
     fn a_long_path_is_placed_with_what_there_is_and_without_maps() {

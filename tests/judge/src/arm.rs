@@ -48,6 +48,8 @@ pub(crate) struct Arm {
     pub normal: Option<Vec<Normal>>,
     pub covariance: Option<(Vec<String>, DMatrix<f64>)>,
     pub counting: Option<Counting>,
+    /// How far the mounting flange is beyond the last row. m
+    pub flange: f64,
     /// From where to where the forearm may be turned against the base. rad
     pub sum: Option<[f64; 2]>,
     /// Whether a parallelogram drives axis 3.
@@ -99,7 +101,8 @@ impl Arm {
             Ok::<_, String>([end("sum_min_deg")?, end("sum_max_deg")?])
         });
         let linkage = joined.and_then(|joined| joined.get("linkage")?.as_bool()).unwrap_or(false);
-        Ok(Self { rows, normal, covariance, counting, sum: sum.transpose()?, linkage })
+        let flange = table.get("flange_mm").and_then(plain).map_or(0.0, |mm| mm * 1e-3);
+        Ok(Self { rows, normal, covariance, counting, flange, sum: sum.transpose()?, linkage })
     }
 
     /// The base and the frames of the six rows, where the base has this pose.

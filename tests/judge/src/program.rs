@@ -282,7 +282,7 @@ pub(crate) fn judge(verdict: &mut Verdict, plan: &Plan<'_>, main: &Path) -> Answ
         verdict.within(
             "tool of a program (m)",
             || name.clone(),
-            (tool.translation.vector - cell.tool.translation.vector).norm(),
+            (tool.translation.vector - cell.tool.translation.vector + Vector3::z() * cell.arm.flange).norm(),
             1e-7,
         );
         let turn = angle_between(tool, &cell.tool);

@@ -176,6 +176,9 @@ impl Writer<'_> {
             }
         }
         table.insert("stiffness_like".to_owned(), Value::from("made up"));
+        if self.of("speeds") != "none" {
+            table.insert("flange_mm".to_owned(), Value::from(137.0));
+        }
         self.model(&mut table);
         if let Some(controller) = table.get_mut("controller").and_then(Value::as_table_mut) {
             let is_fanuc = controller.get("kind").and_then(Value::as_str) == Some("fanuc");

@@ -83,8 +83,8 @@ pub fn options() -> OpenOptions {
     options
 }
 
-/// Whether a file could not be written though its name is right: for want of room on the disk, in the user's share of it
-/// or under a limit on the size of files, or since the disk fails.
+/// Whether a file could not be written though its name is right: for want of room on the disk, in the user's share of
+/// it or under a limit on the size of files, or since the disk fails.
 pub fn is_of_disk(cause: &Error) -> bool {
     #[cfg(unix)]
     if cause.raw_os_error() == Some(libc::EIO) {

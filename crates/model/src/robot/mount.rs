@@ -38,8 +38,8 @@ impl Robot {
         Self { flange, ..self }
     }
 
-    /// A frame that is given in the last frame, in that of the mounting flange, as a fitter measures it and a controller
-    /// states a tool.
+    /// A frame that is given in the last frame, in that of the mounting flange, as a fitter measures it and a
+    /// controller states a tool.
     pub fn on_flange(&self, of_last: &Pose<f64>) -> Pose<f64> {
         Pose { translation: of_last.translation - Vector3::z() * self.flange, ..*of_last }
     }

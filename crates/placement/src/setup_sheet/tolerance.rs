@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
+use stead_planning::constraints::{ConstraintKind, Measured, describe, on_joint_steps, on_joints, on_state};
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::{AtPoint, LineEnd, Space};
@@ -115,7 +115,8 @@ struct Trials<'a> {
 }
 
 /// How far a part may be off the placement of a case; a part that external axes carry with all of them at zero.
-/// `rotation` turns the frame of the sheet, in which directions are, into that of placements; their z axes are parallel.
+/// `rotation` turns the frame of the sheet, in which directions are, into that of placements; their z axes are
+/// parallel.
 ///
 /// # Errors
 /// A sentence: why it is not known.
@@ -253,14 +254,21 @@ impl<'a> Trials<'a> {
     /// What it cannot keep there, in words.
     fn at(&self, placement: &Placement) -> Result<f64, String> {
         let problem = &self.sampled;
+        let mut before: Option<(usize, [f64; 6])> = None;
         let mut costs = vec![0.0; self.problem.task.segments().len()];
         for (point, of) in self.points.iter().enumerate() {
             let kept = |kind: ConstraintKind| format!("{} at point {}", describe(&[kind]).join(", "), of.point);
             let state = problem.at(placement).state(point, of.beta, of.posture);
             let mut state = state.map_err(|_| kept(ConstraintKind::Reach))?;
             state.joints = turned_to(&state.joints, &of.joints);
-            let measured = on_joints(problem, &state.joints).chain(on_state(problem, &state));
-            if let Some(broken) = measured.into_iter().find(|measured| !measured.holds()) {
+            // The conditioning decides where a plan is looked for, and not what an arm can do: what follows of it is
+            // in the deflection and in the steps of the joints.
+            let on_state = on_state(problem, &state).filter(|of| of.kind() != ConstraintKind::Conditioning);
+            let from = before.replace((of.segment, state.joints)).filter(|(segment, _)| *segment == of.segment);
+            let steps =
+                from.map(|(_, from)| on_joint_steps(&problem.robot, &from, &state.joints, &problem.joint_steps(point)));
+            let mut measured = on_joints(problem, &state.joints).chain(on_state).chain(steps.into_iter().flatten());
+            if let Some(broken) = measured.find(|measured| !measured.holds()) {
                 return Err(kept(broken.kind()));
             }
             if let Some(Measured::Clearance { names, .. }) =

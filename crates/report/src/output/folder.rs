@@ -64,8 +64,8 @@ impl Folder {
         }
     }
 
-    /// Refuses a folder with a file of a name that results would replace though no manifest lists it, or with somebody's
-    /// own in place of the folder for interrupted results: to be called before the long work.
+    /// Refuses a folder with a file of a name that results would replace though no manifest lists it, or with
+    /// somebody's own in place of the folder for interrupted results: to be called before the long work.
     ///
     /// # Errors
     /// [`ReportError::OtherManifest`] with that file, and for a manifest that cannot be read.

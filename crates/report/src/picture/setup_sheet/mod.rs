@@ -33,8 +33,8 @@ const BOTTOM: i32 = 1146;
 /// From line to line of a table.
 const LINE: i32 = 16;
 /// Letters of a line of small print, and of one beside its heading: with the widest letters that a viewer may take.
-const WIDEST: usize = 124;
-const LETTERS: usize = 108;
+const WIDEST: usize = 140;
+const LETTERS: usize = 120;
 /// Letters of tables and of small print.
 const SIZES: [f64; 2] = [11.5, 9.5];
 
