@@ -97,8 +97,11 @@ fn of_any_origin(text: &str) -> Value {
     let keys = document.as_object_mut().unwrap();
     assert!(keys.remove("inputs").is_some());
     keys.remove("run_file");
-    let notes = keys["notes"].as_array_mut().unwrap();
-    notes.retain(|note| !note.as_str().unwrap().contains("comes from a program"));
+    for key in ["notes", "computed_notes"] {
+        if let Some(notes) = keys.get_mut(key).and_then(Value::as_array_mut) {
+            notes.retain(|note| !note.as_str().unwrap().contains("comes from a program"));
+        }
+    }
     document
 }
 

@@ -71,7 +71,8 @@ fn sentences_state_the_bound_and_what_falls_short() {
     let text = certificate_text(&reached);
     let joined = text.replace('\n', " ");
     assert!(
-        joined.contains("below 0.1069723 mm; yours has 0.1075099 mm: none is better by more than 0.5 %."),
+        joined.contains("more than 0.5 % below yours. Certificate, best placement: ")
+            && joined.contains(" it is at least 0.1069723 mm; yours has 0.1075099 mm."),
         "{text}"
     );
     assert!(
