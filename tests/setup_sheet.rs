@@ -160,7 +160,7 @@ fn the_sheet_of_a_run_states_what_its_files_do_in_the_frame_of_the_pendant() {
         decimals(&line.replace(',', " ")).iter().any(|(z, _)| (z - on_flange[2]).abs() < 1e-3),
         "{line} {on_flange:?}"
     );
-    assert_eq!(bench.stead(&["export", RUN, "r/best.csv", "--format", "krl", "--check", "p/PART.src"]).code, Some(0));
+    assert_eq!(bench.stead(&["export", RUN, "r/best.csv", "--check", "p/PART.src"]).code, Some(0));
     // Each check point has the frame of the tool, status and turn; without shapes nothing is said to be free.
     for check in sheet["check_points"].as_array().unwrap() {
         assert_eq!(

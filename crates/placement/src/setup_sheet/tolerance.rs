@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::constraints::{ConstraintKind, Measured, describe, on_joint_steps, on_joints, on_state};
+use stead_planning::constraints::{ConstraintKind, Measured, describe, joint_steps_hold, on_joints, on_state};
 use stead_planning::criterion::CANCELLATION;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::{AtPoint, LineEnd, Space};
@@ -23,6 +23,9 @@ const TRIALS: [[f64; 3]; 2] = [[5e-3, 0.1, 5e-5], [PI / 360.0, PI / 18.0, PI / 3
 const GROWTH: f64 = 5.0;
 /// An offset is found to this share of itself, on the safe side.
 const FINENESS: f64 = 0.2;
+/// A controller slows the path down where a joint is at its speed. Where one would be so many times as fast as it can
+/// be, the pose is nearly singular, and a line is not followed.
+const FASTER: f64 = 2.0;
 /// Most trials for a direction.
 const MOST: usize = 14;
 /// Path points that stand for a long path, beside one for every segment; of paths of fewer than twice as many all are
@@ -265,9 +268,11 @@ impl<'a> Trials<'a> {
             // in the deflection and in the steps of the joints.
             let on_state = on_state(problem, &state).filter(|of| of.kind() != ConstraintKind::Conditioning);
             let from = before.replace((of.segment, state.joints)).filter(|(segment, _)| *segment == of.segment);
-            let steps =
-                from.map(|(_, from)| on_joint_steps(&problem.robot, &from, &state.joints, &problem.joint_steps(point)));
-            let mut measured = on_joints(problem, &state.joints).chain(on_state).chain(steps.into_iter().flatten());
+            let limits = problem.joint_steps(point).map(|limit| FASTER * limit);
+            if from.is_some_and(|(_, from)| !joint_steps_hold(&problem.robot, &from, &state.joints, &limits)) {
+                return Err(format!("a nearly singular pose at point {}", of.point));
+            }
+            let mut measured = on_joints(problem, &state.joints).chain(on_state);
             if let Some(broken) = measured.find(|measured| !measured.holds()) {
                 return Err(kept(broken.kind()));
             }
@@ -282,7 +287,7 @@ impl<'a> Trials<'a> {
         let space = Space::new(&self.problem, placement);
         for [from, to] in &self.moves {
             if let Some(names) = space.hit(*from, *to) {
-                return Err(format!("{} and {} on the way to the next segment", names[0], names[1]));
+                return Err(format!("{} and {} on a joint move", names[0], names[1]));
             }
         }
         for of in &self.lines {

@@ -11,8 +11,6 @@ use stead_placement::setup_sheet::{Allowed, AxisSetup, RISES, SetupSheet, SheetF
 
 /// Right edges of the columns of x, y, z, A, B and C.
 const POSE: [i32; 6] = [-310, -385, -460, -535, -605, -675];
-/// Most characters of what stands before and behind them.
-const NAME: usize = 36;
 
 /// A position of an axis with its unit.
 fn position(kind: AxisKind, at: f64) -> String {
@@ -43,10 +41,8 @@ pub(super) fn places(table: &mut Table<'_>, sheet: &SetupSheet) {
             Carried::Robot => "robot",
             Carried::Workpiece => "part",
         };
-        let name =
-            shortened(&format!("{} \"{}\", carries the {carries}", capital(word(axis.kind)), axis.name), NAME + 8);
-        let text = format!("{}; {}", stands(axis), direction(axis));
-        table.row([(0, name.as_str()), (235, text.as_str())], false);
+        let name = format!("{} \"{}\", carries the {carries}", capital(word(axis.kind)), axis.name);
+        table.remark(&format!("{name}, {}; {}", stands(axis), direction(axis)));
     }
     let floor = match sheet.floor {
         Some(height) => format!("Floor: top of the shape \"floor\" at z {} mm.", mm(height)),
