@@ -268,8 +268,11 @@ impl<'a> Trials<'a> {
             // in the deflection and in the steps of the joints.
             let on_state = on_state(problem, &state).filter(|of| of.kind() != ConstraintKind::Conditioning);
             let from = before.replace((of.segment, state.joints)).filter(|(segment, _)| *segment == of.segment);
-            let limits = problem.joint_steps(point).map(|limit| FASTER * limit);
-            if from.is_some_and(|(_, from)| !joint_steps_hold(&problem.robot, &from, &state.joints, &limits)) {
+            let is_singular = from.is_some_and(|(_, from)| {
+                let limits = problem.joint_steps(point).map(|limit| FASTER * limit);
+                !joint_steps_hold(&problem.robot, &from, &state.joints, &limits)
+            });
+            if is_singular {
                 return Err(format!("a nearly singular pose at point {}", of.point));
             }
             let mut measured = on_joints(problem, &state.joints).chain(on_state);
