@@ -96,11 +96,24 @@ fn what_the_arm_cannot_do_with_the_part_elsewhere_is_found_by_its_own_limits() {
         problem.clone().with(|parts| parts.robot = narrowed)
     };
     let found = SetupSheet::new(&narrow(room), &case, &Monitor::silent()).tolerances.unwrap();
+    let is_beyond = |of: &Tolerance, offset: f64| {
+        let mut placement = near_the_best();
+        placement[of.direction.axis] += if of.direction.is_negative { -offset } else { offset };
+        case.plan.points.iter().any(|of| {
+            let state = problem.at(&placement).state(of.point, of.beta, of.posture).unwrap();
+            !(least - room - 1e-9..=most + room + 1e-9).contains(&state.joints[1])
+        })
+    };
+    let mut met = 0;
     for of in found.directions.iter().filter(|of| !of.direction.is_turn()) {
-        let by = of.blocked.as_ref().map(|blocked| blocked.by.clone()).unwrap_or_default();
-        let is_met = by.starts_with("limits of joint 2 at point ") && of.rises[1].offset < 2e-3;
-        assert!(is_met || of.direction.axis == 3, "{}: {by} {:?}", of.direction, of.rises);
+        assert!(!is_beyond(of, of.rises[1].offset), "{}", of.direction);
+        let Some(blocked) = of.blocked.as_ref().filter(|blocked| blocked.by.starts_with("limits of joint 2 ")) else {
+            continue;
+        };
+        met += 1;
+        assert!(is_beyond(of, blocked.offset), "{}: {blocked:?}", of.direction);
     }
+    assert!(met >= 4, "{met}");
     // A plan that does not keep its own limits has no tolerances, and says why.
     case.plan.points[3].beta += 3.0;
     let why = SetupSheet::new(&narrow(room), &case, &Monitor::silent()).tolerances.unwrap_err();
