@@ -13,7 +13,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_disk::Existing;
 use stead_disk::files::new::{check_all_new, foreign, write_all_new};
-use stead_disk::input::InputFile;
 use stead_numerics::message::Note;
 use stead_report::forces::{ENDINGS, forces_files, forces_json, forces_text};
 use stead_run_files as run_files;
@@ -38,9 +37,14 @@ impl ForcesRun {
         &self.run.notes
     }
 
-    /// The files that it was read from.
-    pub fn inputs(&self) -> &[InputFile] {
-        &self.run.inputs
+    /// Refuses the [files](PathForces::files) of a task where they may not be written: to be called before the long
+    /// work.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a file that is there already and to be kept, that is one of the inputs, or that is replaced
+    /// though no `NAME-forces.json` is beside it, so that it is somebody else's.
+    pub fn check_files(&self, task: impl AsRef<Path>, existing: Existing) -> Result<(), Error> {
+        check_files(&self.run, task.as_ref(), existing)
     }
 
     /// What is to be cut.
@@ -58,6 +62,16 @@ impl ForcesRun {
         let forces = self.run.forces(monitor)?;
         let notes = self.run.notes.iter().chain(&forces.notes).cloned().collect();
         Ok(PathForces { run: Arc::clone(&self.run), forces, notes })
+    }
+}
+
+fn check_files(run: &stead_runs::ForcesRun, task: &Path, existing: Existing) -> Result<(), Error> {
+    let files = PathForces::files(task);
+    check_all_new(&files, existing, &run.inputs)?;
+    let is_told = files.last().is_some_and(|document| document.is_file());
+    match files.iter().find(|file| existing == Existing::Replaced && !is_told && file.is_file()) {
+        Some(file) => Err(foreign(file).into()),
+        None => Ok(()),
     }
 }
 
@@ -86,21 +100,6 @@ impl PathForces {
         ENDINGS.into_iter().map(name).collect()
     }
 
-    /// Refuses these files where they may not be written: to be called before the long work.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a file that is there already and to be kept, that is one of the inputs, or that is replaced
-    /// though no `NAME-forces.json` is beside it, so that it is somebody else's.
-    pub fn check_files(run: &ForcesRun, task: impl AsRef<Path>, existing: Existing) -> Result<(), Error> {
-        let files = Self::files(task);
-        check_all_new(&files, existing, run.inputs())?;
-        let is_told = files.last().is_some_and(|document| document.is_file());
-        match files.iter().find(|file| existing == Existing::Replaced && !is_told && file.is_file()) {
-            Some(file) => Err(foreign(file).into()),
-            None => Ok(()),
-        }
-    }
-
     /// Writes the task with forces to a file, and beside it `NAME-engagement.csv`, `NAME-forces.svg`,
     /// `NAME-forces.html`, `NAME-stock-before.stl`, `NAME-stock-after.stl` and `NAME-forces.json`: all of them or none.
     /// Returns their paths.
@@ -109,7 +108,7 @@ impl PathForces {
     /// [`Error::Input`] for a file that is there already and to be kept, or that cannot be written.
     pub fn write(&self, task: impl AsRef<Path>, existing: Existing) -> Result<Vec<PathBuf>, Error> {
         let task = task.as_ref();
-        Self::check_files(&ForcesRun { run: Arc::clone(&self.run) }, task, existing)?;
+        check_files(&self.run, task, existing)?;
         let made = forces_files(&self.run, &self.forces)?;
         let files: Vec<(PathBuf, String)> = Self::files(task)
             .into_iter()

@@ -7,7 +7,7 @@ use super::values::threads;
 use super::{Failure, on_threads, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
-use stead::forces::{ForcesRun, PathForces};
+use stead::forces::ForcesRun;
 
 #[derive(Debug, Args)]
 pub(super) struct ForcesOptions {
@@ -56,7 +56,7 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &ForcesOptions) -> Result<(), Failure> {
     let run = ForcesRun::read(&options.config)?;
     // What is there and to be kept is found out before the long work.
-    PathForces::check_files(&run, &options.out, options.force.existing())?;
+    run.check_files(&options.out, options.force.existing())?;
     say_notes(run.notes());
     let shown = Terminal::start(None).show(None);
     let forces = on_threads(options.threads, || run.compute(&shown.monitor))?;

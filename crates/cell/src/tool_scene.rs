@@ -159,11 +159,6 @@ impl ToolScene {
         &self.scene
     }
 
-    /// Cutter and holder.
-    pub fn tool(&self) -> &ToolBody {
-        &self.tool
-    }
-
     /// What of tool and part is not known, in sentences.
     pub fn notes(&self) -> Vec<String> {
         let moves = "on moves between segments";

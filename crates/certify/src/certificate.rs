@@ -9,7 +9,7 @@ use super::worst::worst;
 use crate::settings::CertificateSettings;
 use serde::{Serialize, Serializer};
 use std::time::{Duration, Instant};
-use stead_numerics::digits::{figures, fixed};
+use stead_numerics::digits::{figures, trimmed};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_planning::constraints::{ConstraintKind, describe, relaxed};
@@ -243,7 +243,7 @@ impl Proof {
 
     /// The gap in per cent as sentences state it.
     pub fn gap_words(&self) -> String {
-        fixed(self.gap_percent(), GAP_DECIMALS).trim_end_matches('0').trim_end_matches('.').to_owned()
+        trimmed(self.gap_percent(), GAP_DECIMALS)
     }
 
     /// What is proved of the best placement, in one plain sentence; `None` where that is nothing of use.
@@ -252,12 +252,14 @@ impl Proof {
         is_said.then(|| {
             let Self { scope, figure, .. } = self;
             let gap = self.gap_words();
-            let none = format!("o placement {scope}, however the arm is posed, has a {figure} more than {gap} % below");
-            match self.gap_percent() {
-                gap if gap <= CLOSE_PERCENT => format!("N{none} yours."),
-                wide if wide <= WIDE_PERCENT => format!("Up to {gap} % may be left to gain: n{none} yours."),
-                _ => format!("Little is proved, and up to {gap} % may be left to gain: n{none} yours."),
-            }
+            let begin = match self.gap_percent() {
+                close if close <= CLOSE_PERCENT => "No".to_owned(),
+                wide if wide <= WIDE_PERCENT => format!("Up to {gap} % may be left to gain: no"),
+                _ => format!("Little is proved, and up to {gap} % may be left to gain: no"),
+            };
+            format!(
+                "{begin} placement {scope}, however the arm is posed, has a {figure} more than {gap} % below yours."
+            )
         })
     }
 

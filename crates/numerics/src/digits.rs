@@ -9,6 +9,17 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with at most so many decimals, without zeros at its end.
+///
+/// ```
+/// # use stead_numerics::digits::trimmed;
+/// assert_eq!([trimmed(0.5, 4), trimmed(20.0, 4), trimmed(100.0, 0)], ["0.5", "20", "100"]);
+/// ```
+pub fn trimmed(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
 /// A number with three significant digits, or all digits before the point where there are more; very small and very
 /// large ones with a power of ten.
 pub fn figures(value: f64) -> String {

@@ -88,31 +88,27 @@ impl Cell {
         self.clamp(&Placement { x: along(0), y: along(1), z: along(2), yaw })
     }
 
+    /// The bounds of x, y, z and yaw with where a placement is in them; a yaw that is free is at an end.
+    fn coordinates(&self, placement: &Placement) -> [(Interval, f64); 4] {
+        let [x, y, z] = self.position;
+        let yaw = if self.is_yaw_free() { self.yaw.min } else { self.turned_to(wrap(placement.yaw)) };
+        [(x, placement.x), (y, placement.y), (z, placement.z), (self.yaw, yaw)]
+    }
+
     /// Whether a placement is inside the cell.
     pub fn contains(&self, placement: &Placement) -> bool {
-        let [x, y, z] = self.position;
-        let yaw = self.is_yaw_free() || self.yaw.contains(self.turned_to(wrap(placement.yaw)));
-        x.contains(placement.x) && y.contains(placement.y) && z.contains(placement.z) && yaw
+        self.coordinates(placement).iter().all(|(bounds, value)| bounds.contains(*value))
     }
 
     /// By how much a placement is outside the cell and in which coordinates, in words; nothing for one inside.
     pub fn excess(&self, placement: &Placement) -> Option<String> {
-        let of = |name: &str, unit: &str, bounds: &Interval, value: f64, per_si: f64| {
-            let (by, end) =
-                if value < bounds.min { (bounds.min - value, bounds.min) } else { (value - bounds.max, bounds.max) };
-            let text = || format!("{name} by {} {unit} beyond {}", figures(by * per_si), figures(end * per_si));
-            (!bounds.contains(value)).then(text)
+        let units = [("x", "mm", 1e3), ("y", "mm", 1e3), ("z", "mm", 1e3), ("yaw", "deg", 1f64.to_degrees())];
+        let outside = |((bounds, value), (name, unit, per_si)): ((Interval, f64), (&str, &str, f64))| {
+            let end = bounds.clamp(value);
+            let by = (value - end).abs();
+            (by > 0.0).then(|| format!("{name} by {} {unit} beyond {}", figures(by * per_si), figures(end * per_si)))
         };
-        let Self { position: [x, y, z], yaw } = self;
-        let turned = if self.is_yaw_free() { yaw.min } else { self.turned_to(wrap(placement.yaw)) };
-        let degrees = 1f64.to_degrees();
-        let named = [
-            of("x", "mm", x, placement.x, 1e3),
-            of("y", "mm", y, placement.y, 1e3),
-            of("z", "mm", z, placement.z, 1e3),
-            of("yaw", "deg", yaw, turned, degrees),
-        ];
-        let words: Vec<String> = named.into_iter().flatten().collect();
+        let words: Vec<String> = self.coordinates(placement).into_iter().zip(units).filter_map(outside).collect();
         (!words.is_empty()).then(|| words.join(", "))
     }
 

@@ -19,6 +19,8 @@ use stead_numerics::scalar::Scalar;
 /// A mean deflection below this is a cancellation: the plan balances the deflection to nothing, and ratios to it mean
 /// nothing. m
 pub const CANCELLATION: f64 = 1e-9;
+/// A scored part below this share of the whole deflection is small: parts of different sign cancel in it.
+pub const SMALL_PART: f64 = 0.2;
 
 /// How much the parts of a deflection count.
 #[derive(Debug, Clone, Copy, PartialEq)]

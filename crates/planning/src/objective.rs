@@ -6,14 +6,11 @@ use super::problem::Problem;
 use nalgebra::Matrix3;
 use stead_model::robot::Robot;
 use stead_model::stiffness::whole::yields_elsewhere;
-use stead_numerics::digits::fixed;
+use stead_numerics::digits::trimmed;
 use stead_numerics::scalar::Scalar;
 
-/// A number to six digits, without zeros at its end.
-fn short(value: f64) -> String {
-    let text = fixed(value, 6);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
+/// Decimals of weights and shares in words.
+const DECIMALS: usize = 6;
 
 impl Problem {
     /// The arm with each set of compliances that a score covers: the robot itself where no others are given.
@@ -87,7 +84,9 @@ impl Problem {
             None => {
                 let Weights { feed, wall, axis, surface } = criterion.weights;
                 let named = [("feed", feed), ("wall", wall), ("axis", axis), ("surface", surface)];
-                let of = |(name, weight): (&str, f64)| (weight != 0.0).then(|| format!("{name} {}", short(weight)));
+                let of = |(name, weight): (&str, f64)| {
+                    (weight != 0.0).then(|| format!("{name} {}", trimmed(weight, DECIMALS)))
+                };
                 format!("deflection weighted by {}", named.into_iter().filter_map(of).collect::<Vec<_>>().join(", "))
             }
         }
@@ -106,7 +105,8 @@ impl Problem {
             parts.push("of the points that are scored".to_owned());
         }
         if criterion.segment_weights.iter().any(|weight| *weight != 1.0) {
-            let weights: Vec<String> = criterion.segment_weights.iter().copied().map(short).collect();
+            let weights: Vec<String> =
+                criterion.segment_weights.iter().map(|weight| trimmed(*weight, DECIMALS)).collect();
             parts.push(format!("segments weighted {}", weights.join(", ")));
         }
         if let Some(sets) = &criterion.stiffness {
@@ -114,10 +114,13 @@ impl Problem {
             parts.push(format!("of {} sets of stiffness {how} at every point", sets.robots.len()));
         }
         if criterion.force_uncertainty != 0.0 {
-            parts.push(format!("force errors of {} % covered", short(criterion.force_uncertainty * 100.0)));
+            parts.push(format!("force errors of {} % covered", trimmed(criterion.force_uncertainty * 100.0, DECIMALS)));
         }
         if self.covers_compliance_errors() {
-            parts.push(format!("errors of the compliances covered to {} sigma", short(criterion.confidence)));
+            parts.push(format!(
+                "errors of the compliances covered to {} sigma",
+                trimmed(criterion.confidence, DECIMALS)
+            ));
         }
         if criterion.joint_travel_weight != 0.0 {
             parts.push("with the travel of the joints".to_owned());

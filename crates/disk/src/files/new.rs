@@ -44,9 +44,9 @@ pub fn write_all_new(files: &[(PathBuf, &str)], existing: Existing, inputs: &[In
     files.iter().try_for_each(|(file, _)| check(file, existing, inputs))?;
     let mut made = MadeFolders::default();
     let mut staged = Vec::with_capacity(files.len());
-    for (file, text) in files {
-        let folder = file.parent().unwrap_or(Path::new(""));
-        remove_abandoned(folder, PREFIX);
+    let folders: Vec<&Path> = files.iter().map(|(file, _)| file.parent().unwrap_or(Path::new(""))).collect();
+    folders.chunk_by(PartialEq::eq).for_each(|same| remove_abandoned(same[0], PREFIX));
+    for ((file, text), folder) in files.iter().zip(folders) {
         let written = made.make(folder).and_then(|()| Staged::write(folder, PREFIX, text.as_bytes()));
         staged.push((written.map_err(|cause| cannot(file, &cause))?, file));
     }

@@ -10,8 +10,7 @@ use stead_model::task::lean::{Lean, LeanForce};
 use stead_numerics::digits::figures;
 use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::criterion::Criterion;
+use stead_planning::criterion::{CANCELLATION, Criterion, SMALL_PART};
 use stead_planning::feed::CutFeed;
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::{self, ShortLine, TransferPath};
@@ -184,9 +183,6 @@ fn slowed(feed: &CutFeed) -> Option<String> {
         )
     })
 }
-
-/// A scored part below this share of the whole deflection is small.
-const SMALL_PART: f64 = 0.2;
 
 /// A note on a plan whose scored part is small beside the whole deflection: it may have been balanced against itself.
 fn small_part(problem: &Problem, plan: &Plan) -> Option<String> {

@@ -6,13 +6,13 @@ use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series,
 use crate::units::figures;
 use std::collections::BTreeMap;
 use stead_disk::input::InputFile;
+use stead_planning::criterion::SMALL_PART;
 use stead_planning::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure, Ranked};
 use stead_study::cases::TableCell;
 
-/// The column of the whole deflection, and below which share of it a score is small: parts cancel in it.
+/// The column of the whole deflection.
 const WHOLE: &str = "best_mean_total_mm";
-const SMALL_PART: f64 = 0.2;
 
 /// The pages of the cases that are kept, by the numbers of the cases: paths from the folder of the study.
 pub type CasePages = BTreeMap<i64, String>;

@@ -1,11 +1,12 @@
 // What keeps the figures of a placement from being those of a part that can be cut there: seen at once, and asked before it is pinned.
 
+import { DOUBTS } from '../run/data.js';
 import { shown } from './follow.js';
 
 /** @typedef {{ level: '' | 'stale' | 'doubt' | 'bad', text: string }} Concern of the first level what is common to all placements */
 
-/** What a line of the summary is about, and how much it weighs. @type {Record<string, Concern['level']>} */
-const LEVELS = { WARNING: 'doubt', INTERRUPTED: 'doubt', 'NOT CHECKED': 'doubt', 'RESTS ON': '' };
+/** How much a line of the summary weighs by what it is about; nothing where it is no concern. @param {string} about @returns {Concern['level'] | null} */
+const levelOf = (about) => (DOUBTS.has(about) ? 'doubt' : about === 'RESTS ON' ? '' : null);
 /** @type {Concern['level'][]} */
 const WORST_FIRST = ['bad', 'doubt', 'stale', ''];
 
@@ -18,8 +19,10 @@ export function concerns() {
   if (!answer) return [];
   if (isWhole && answer.document?.summary) summary = answer.document.summary;
   // A warning is of the placement that it came with, and its own line below says that this one is outside.
-  const isOf = (/** @type {string} */ about) => about in LEVELS && (about !== 'WARNING' || (isWhole && !isFollowing));
-  const said = summary.filter(({ about }) => isOf(about)).map(({ about, text }) => ({ level: LEVELS[about], text: `${about.toLowerCase()}: ${text}` }));
+  const said = summary.flatMap(({ about, text }) => {
+    const level = about !== 'WARNING' || (isWhole && !isFollowing) ? levelOf(about) : null;
+    return level === null ? [] : [{ level, text: `${about.toLowerCase()}: ${text}` }];
+  });
   const [some, all] = answer.points;
   const out = [
     ...(answer.outside_cell ? [{ level: /** @type {const} */ ('bad'), text: answer.outside_cell }] : []),

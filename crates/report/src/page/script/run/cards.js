@@ -5,7 +5,7 @@ import { card, el, folded } from '../draw/dom.js';
 import { fixed } from '../draw/scale.js';
 import { FORCES } from './arrows.js';
 import { alongPath, limitAt } from './charts.js';
-import { CASES, COUNT, ENDS, IS_SCORE, JOINT_NAMES, RAW, ROWS, SHORT_NAMES, singlesOf } from './data.js';
+import { CASES, COUNT, DOUBTS, ENDS, IS_SCORE, JOINT_NAMES, RAW, ROWS, SHORT_NAMES, singlesOf } from './data.js';
 import { leanMapCard } from './lean-map.js';
 import { jointSharesCard, originsCard } from './origins.js';
 import { pathPoint } from './path.js';
@@ -14,9 +14,6 @@ import { current, onChange, set } from './state.js';
 import { HAS_OTHERS, besideJoints, byJointOnPlan } from './yielding.js';
 /** @import { Series } from '../draw/chart-data.js' */
 /** @import { Case } from './data.js' */
-
-/** What is to be seen before the figures are believed. */
-const DOUBTS = new Set(['INTERRUPTED', 'NOT CHECKED', 'WARNING']);
 
 /** The result in a few lines, as the terminal has it; a line that is about nothing goes on with the one before. */
 function inShort() {

@@ -111,6 +111,9 @@ export function mapOf(entry) {
 
 export const IS_SCORE = RAW.command === 'score';
 
+/** What lines of the summary are about that are to be seen before the figures are believed. */
+export const DOUBTS = new Set(['INTERRUPTED', 'NOT CHECKED', 'WARNING']);
+
 /** What is stated of each case, best placement first. @returns {any[]} */
 function caseEntries() {
   const { document } = RAW;
