@@ -207,12 +207,6 @@ impl Cases {
         [&self.best, &self.best_worst_plan].into_iter().chain(worst).collect()
     }
 
-    /// The same, to be changed.
-    pub(crate) fn all_mut(&mut self) -> impl Iterator<Item = &mut Case> {
-        let worst = self.worst.iter_mut().flat_map(BySense::iter_mut).map(|(_, case)| case);
-        [&mut self.best, &mut self.best_worst_plan].into_iter().chain(worst)
-    }
-
     /// The placements, each with its best plan: the best one, and the worst where it was looked for.
     pub fn optima(&self) -> Vec<&Case> {
         self.all().into_iter().step_by(2).collect()
@@ -409,29 +403,6 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Of cases that no search came before.
-    pub(crate) fn of_cases(cases: Cases) -> Self {
-        Self {
-            cases,
-            tried_setups: Vec::new(),
-            lookup_summary: None,
-            path_levels: None,
-            convergence: Vec::new(),
-            refinements: Vec::new(),
-            maps: None,
-            lean_map: None,
-            sheet: None,
-            evaluations: 0,
-            states: 0,
-            interrupted: false,
-            sensitivity: None,
-            sets: Vec::new(),
-            set_basins: Vec::new(),
-            notes: Vec::new(),
-            warnings: Vec::new(),
-        }
-    }
-
     /// Makes the deflection maps at the best and, where it was looked for, at the worst placement, and where the tool
     /// may lean the map over lead and tilt. A stop may leave them out, which is then among the warnings.
     pub fn map(&mut self, problem: &Problem, monitor: &Monitor) {

@@ -4,9 +4,10 @@
 //! Each use starts from the answer of the poorer one, and a step is only taken to a setup whose plan is better, so a
 //! richer use is never worse.
 
+use super::job::Planned;
 use crate::evaluator::Evaluator;
 use crate::path_subset::PathSubset;
-use crate::refine::{Solution, planned, refine};
+use crate::refine::refine;
 use rayon::prelude::*;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_numerics::monitor::{Monitor, Progress};
@@ -36,15 +37,8 @@ const STEPS: usize = 60;
 /// Points that are left of a segment at least, where the axis is planned on some of the points of a dense path.
 const KEPT: usize = 4;
 
-/// A placement in a setup, with its best plan.
-#[derive(Debug, Clone)]
-pub(super) struct Improved {
-    pub setup: Setup,
-    pub solution: Solution,
-}
-
 /// One axis after the other, those of some numbers along the path, and the placement, by turns.
-pub(super) fn by_turns(problem: &Problem, start: &Improved, moving: &[usize], monitor: &Monitor) -> Improved {
+pub(super) fn by_turns(problem: &Problem, start: &Planned, moving: &[usize], monitor: &Monitor) -> Planned {
     let mut best = start.clone();
     let axes = || problem.external_axes.iter().enumerate().filter(|(_, axis)| axis.max > axis.min);
     for round in 0..ROUNDS {
@@ -73,23 +67,15 @@ pub(super) fn by_turns(problem: &Problem, start: &Improved, moving: &[usize], mo
     best
 }
 
-/// The best plan at a placement in a setup.
-pub(super) fn planned_in(problem: &Problem, setup: Setup, placement: &Placement) -> Option<Improved> {
-    let set_up = problem.in_setup(&setup);
-    let planner = Planner::finer(&set_up);
-    let solution = planned(&planner, placement, None, &mut planner.workspace())?;
-    Some(Improved { setup, solution })
-}
-
 /// The plan with other positions of the axes, where it is better.
-fn better(problem: &Problem, known: &Improved, positions: AxisPositions) -> Option<Improved> {
+fn better(problem: &Problem, known: &Planned, positions: AxisPositions) -> Option<Planned> {
     let setup = Setup { positions, ..known.setup.clone() };
-    let found = planned_in(problem, setup, &known.solution.placement)?;
+    let found = Planned::at(problem, setup, &known.solution.placement)?;
     (found.solution.objective < known.solution.objective).then_some(found)
 }
 
 /// The placement refined with the axes where they stand.
-pub(super) fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) -> Option<Improved> {
+pub(super) fn refined(problem: &Problem, known: &Planned, monitor: &Monitor) -> Option<Planned> {
     let is_long = problem.task.points().len() > MOST_REFINED;
     if problem.cell.pinned().is_some() || is_long || monitor.should_stop() {
         return None;
@@ -98,18 +84,18 @@ pub(super) fn refined(problem: &Problem, known: &Improved, monitor: &Monitor) ->
     let planner = Planner::finer(&set_up);
     let evaluator = Evaluator::new(&planner, None);
     let (solution, _) = refine(&evaluator, &known.solution.placement, Sense::Min, None, monitor)?;
-    (solution.objective < known.solution.objective).then(|| Improved { setup: known.setup.clone(), solution })
+    (solution.objective < known.solution.objective).then(|| Planned { solution, ..known.clone() })
 }
 
 /// Another position of an axis for the path, or for each segment: first anywhere in its range, then by ever smaller
 /// steps.
 fn by_segments<'a>(
     problem: &Problem,
-    known: &Improved,
+    known: &Planned,
     number: usize,
     axis: &'a ExternalAxis,
     monitor: &Monitor,
-) -> Option<Improved> {
+) -> Option<Planned> {
     let path = problem.task.path();
     let rows = known.setup.positions.spread(&problem.task);
     let placement = &known.solution.placement;
@@ -171,7 +157,7 @@ impl Shifts<'_> {
 /// where the range of the axis leaves no shift.
 fn costs(
     problem: &Problem,
-    known: &Improved,
+    known: &Planned,
     now: &Shifts<'_>,
     placement: &Placement,
     by: &[f64],
@@ -231,11 +217,11 @@ fn for_each(problem: &Problem, costs: &[Vec<Option<f64>>], tried: &[(f64, Segmen
 /// An axis that moves along the path: over its whole range on a grid, then about the way found.
 fn along_path(
     problem: &Problem,
-    known: &Improved,
+    known: &Planned,
     number: usize,
     axis: &ExternalAxis,
     monitor: &Monitor,
-) -> Option<Improved> {
+) -> Option<Planned> {
     let set_up = problem.in_setup(&known.setup);
     let kept = stride(&set_up, axis);
     let thinned = (kept.len() < set_up.task.points().len()).then(|| PathSubset::of_points(kept.clone()).of(&set_up));
@@ -243,7 +229,7 @@ fn along_path(
     let all: Vec<Vec<f64>> = known.setup.positions.spread(&set_up.task);
     let mut way: Vec<f64> = kept.iter().map(|point| all[*point][number]).collect();
     let mut width = axis.max - axis.min;
-    let mut best: Option<Improved> = None;
+    let mut best: Option<Planned> = None;
     for narrowing in 0..=NARROWINGS {
         if monitor.should_stop() {
             break;

@@ -1,8 +1,8 @@
 //! Refinement of the basins that a search found, and the choice among what comes out.
 
+use super::job::Planned;
 use super::long_path::LongPath;
 use super::long_refinement;
-use super::refined::Refined;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::refine::{found_again, planned, refine};
@@ -25,10 +25,10 @@ pub(super) const MAX_DEFICIT: f64 = 0.03;
 /// The best and, where it is looked for, the worst of the refined basins of both searches, the best by its regret where
 /// regrets are given; `None` when there is none.
 pub(super) fn choose(
-    basins: &BySense<Vec<Refined>>,
+    basins: &BySense<Vec<Planned>>,
     regrets: Option<&[Option<f64>]>,
     settings: &SearchSettings,
-) -> Option<(Refined, Option<Refined>)> {
+) -> Option<(Planned, Option<Planned>)> {
     let by_regret = regrets.and_then(least_regret).and_then(|place| basins.best.get(place));
     let best = by_regret.or_else(|| leading(Sense::Min, &basins.best));
     if !settings.worst {
@@ -48,7 +48,7 @@ pub(super) fn choose(
 }
 
 /// The first of the basins whose objective is the best in a sense.
-pub(super) fn leading(sense: Sense, basins: &[Refined]) -> Option<&Refined> {
+pub(super) fn leading(sense: Sense, basins: &[Planned]) -> Option<&Planned> {
     basins.iter().reduce(|known, next| {
         let (known_objective, objective) = (known.solution.objective, next.solution.objective);
         let is_better = match sense {
@@ -66,9 +66,9 @@ fn least_regret(regrets: &[Option<f64>]) -> Option<usize> {
     least.map(|(place, _)| place)
 }
 
-/// What was found without the basins of the worst placement.
-pub(super) fn best_alone(found: &BySense<SearchResult>) -> BySense<SearchResult> {
-    BySense { best: found.best.clone(), worst: SearchResult { basins: Vec::new(), ..found.worst.clone() } }
+/// Basins of the best placement alone.
+pub(super) fn of_best(basins: Vec<Candidate>) -> BySense<SearchResult> {
+    BySense { best: SearchResult { basins, ..SearchResult::nothing() }, worst: SearchResult::nothing() }
 }
 
 /// Refines the basins of both searches side by side, those of the best and those of the worst placement. The first
@@ -80,7 +80,7 @@ pub(super) fn refine_basins(
     long: Option<&LongPath>,
     found: &BySense<SearchResult>,
     monitor: &Monitor,
-) -> (BySense<Vec<Refined>>, Vec<Refinement>) {
+) -> (BySense<Vec<Planned>>, Vec<Refinement>) {
     if let Some(path) = long {
         return long_refinement::refine_basins(path, evaluator.planner(), found, monitor);
     }
@@ -97,16 +97,16 @@ pub(super) fn refine_basins(
         report_done(if refined.is_some() { 1 } else { 2 });
         refined
     };
-    let planned_again = |sense: Sense, (refined, report): (Refined, Option<Refinement>)| {
-        let Refined { mut solution, scheme } = refined;
+    let planned_again = |sense: Sense, (mut refined, report): (Planned, Option<Refinement>)| {
         // The worst placement has the plan that the planner finds.
         if sense == Sense::Min && report.is_some() {
-            solution = found_again(evaluator.planner(), solution, scheme.as_deref(), monitor);
+            let (solution, scheme) = (refined.solution.clone(), refined.scheme.as_deref());
+            refined.solution = found_again(evaluator.planner(), solution, scheme, monitor);
         }
         report_done(1);
-        (Refined { solution, scheme }, report)
+        (refined, report)
     };
-    let refined_of = |sense: Sense, found: &SearchResult| -> Vec<(Refined, Option<Refinement>)> {
+    let refined_of = |sense: Sense, found: &SearchResult| -> Vec<(Planned, Option<Refinement>)> {
         let Some((first, others)) = found.basins.split_first() else { return Vec::new() };
         let first = refined(sense, first).map(|first| planned_again(sense, first));
         let ahead = first.as_ref().map(|(refined, _)| refined.solution.objective);
@@ -142,7 +142,7 @@ fn refine_one(
     sense: Sense,
     candidate: &Candidate,
     monitor: &Monitor,
-) -> Option<(Refined, Option<Refinement>)> {
+) -> Option<(Planned, Option<Refinement>)> {
     let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
     let (solution, report) = if monitor.should_stop() {
         let planner = evaluator.planner();
@@ -151,5 +151,5 @@ fn refine_one(
         let (solution, report) = refine(evaluator, placement, sense, scheme, monitor)?;
         (solution, Some(report))
     };
-    Some((Refined { solution, scheme: candidate.scheme.clone() }, report))
+    Some((Planned::new(evaluator.planner().problem(), solution, candidate.scheme.clone()), report))
 }

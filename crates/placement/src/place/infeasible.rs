@@ -54,6 +54,14 @@ pub struct Infeasible {
     pub interrupted: bool,
 }
 
+impl Infeasible {
+    /// Where no placement that was tried has a plan, and none of them says why.
+    pub(super) fn unexplained(placement: Placement, monitor: &Monitor) -> Self {
+        let interrupted = monitor.should_stop();
+        Self { placement, searched: true, findings: Vec::new(), collisions: Vec::new(), interrupted }
+    }
+}
+
 impl std::fmt::Display for Infeasible {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Placement { x, y, z, .. } = self.placement;

@@ -4,31 +4,27 @@
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
 //! ([`MotionGrid`]), first over their whole ranges, then off that grid; placement, betas and leans are refined by
 //! the gradient in all of them, and lead and tilt are planned anew, by turns. The best of these are refined further
-//! ([`Job::together`]), with their external axes. A step is only taken to a plan that is better, so that where the axis
+//! ([`Leaning::together`]), with their external axes. A step is only taken to a plan that is better, so that where the axis
 //! of the path is allowed the result is never worse than with it.
 
 mod drawn;
 mod together;
 
-use super::axes::{Improved, kept_points, planned_in, refined};
+use super::axes::{kept_points, refined};
+use super::candidates::Found;
 use super::infeasible::Infeasible;
+use super::job::{Job, Planned};
 use super::motion::with_better_axes;
-use super::refined::Refined;
 use super::thinned::{Thinned, path_of, points_needed, spread};
-use super::{notes, stated_cases};
-use crate::outcome::{Cases, Outcome};
-use crate::settings::SearchSettings;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::cell::Cell;
 use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
 use stead_planning::problem::{Placement, Problem};
-use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::motion::MotionGrid;
 use stead_planning::sense::Sense;
 use stead_planning::setup::Setup;
-use stead_planning::transfer::TransferSettings;
 
 /// Two starts are no nearer than this in one coordinate (m, rad).
 const APART: [f64; 2] = [0.05, 0.2];
@@ -47,30 +43,30 @@ const FINALISTS: (usize, f64) = (3, 1.02);
 const HOPELESS: f64 = 1.25;
 
 /// What is leaned.
-struct Job<'a> {
+struct Leaning<'a> {
     problem: &'a Problem,
     space: &'a LeanSpace,
     monitor: &'a Monitor,
 }
 
 /// How the tool leans best at a placement, with the plan; none where no lean that was tried has one.
-pub(super) fn leaned_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<Improved> {
+pub(super) fn leaned_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Option<Planned> {
     let space = problem.lean.as_deref()?;
     let pinned = problem.in_cell(Cell::at(placement));
-    let job = Job { problem: &pinned, space, monitor };
+    let job = Leaning { problem: &pinned, space, monitor };
     let best = job.at(&problem.setup, placement, None)?;
     let best = job.with_axes(job.by_gradient(&best).unwrap_or(best));
     Some(job.by_gradient(&best).unwrap_or(best))
 }
 
-impl Job<'_> {
+impl Leaning<'_> {
     /// The plan with the tool leaning so.
-    fn planned(&self, setup: &Setup, placement: &Placement, leans: Vec<Lean>) -> Option<Improved> {
-        planned_in(self.problem, Setup { leans: leans.into(), ..setup.clone() }, placement)
+    fn planned(&self, setup: &Setup, placement: &Placement, leans: Vec<Lean>) -> Option<Planned> {
+        Planned::at(self.problem, Setup { leans: leans.into(), ..setup.clone() }, placement)
     }
 
     /// The upright plan, where the axis of the path is allowed everywhere.
-    fn upright(&self, setup: &Setup, placement: &Placement) -> Option<Improved> {
+    fn upright(&self, setup: &Setup, placement: &Placement) -> Option<Planned> {
         let is_allowed = self.space.holds_path(self.problem.task.upright().path());
         is_allowed.then(|| self.planned(setup, placement, Vec::new()))?
     }
@@ -79,7 +75,7 @@ impl Job<'_> {
     ///
     /// Where the contact or the joints do not allow a step of the grid from one point to the next, lead and tilt are
     /// planned on fewer points, and once more on all of them.
-    fn at(&self, setup: &Setup, placement: &Placement, known: Option<Improved>) -> Option<Improved> {
+    fn at(&self, setup: &Setup, placement: &Placement, known: Option<Planned>) -> Option<Planned> {
         let mut best = known.or_else(|| self.upright(setup, placement));
         let upright = self.problem.in_setup(&Setup { leans: [].into(), ..setup.clone() });
         let sparse = kept_points(&upright, MOST_PLANNED_POINTS, |time| points_needed(self.space, &upright, time));
@@ -99,8 +95,8 @@ impl Job<'_> {
         setup: &Setup,
         placement: &Placement,
         on: &Thinned<'_>,
-        best: Option<Improved>,
-    ) -> Option<Improved> {
+        best: Option<Planned>,
+    ) -> Option<Planned> {
         let way =
             MotionGrid::new(on.problem()).and_then(|grid| path_of(&grid, placement)).map(|path| path.motion.leans);
         self.halved(setup, placement, on, way, self.space.steps, best)
@@ -114,8 +110,8 @@ impl Job<'_> {
         on: &Thinned<'_>,
         mut way: Option<Vec<Lean>>,
         mut steps: [f64; 2],
-        mut best: Option<Improved>,
-    ) -> Option<Improved> {
+        mut best: Option<Planned>,
+    ) -> Option<Planned> {
         for _ in 0..=HALVINGS {
             let Some(leans) = way.take().filter(|_| best.is_none() || !self.monitor.should_stop()) else { break };
             let candidate = spread(self.space, on, &leans).and_then(|leans| self.planned(setup, placement, leans));
@@ -132,7 +128,7 @@ impl Job<'_> {
     }
 
     /// Leans and placement by turns, from a placement.
-    fn improved(&self, setup: &Setup, placement: &Placement) -> Option<Improved> {
+    fn improved(&self, setup: &Setup, placement: &Placement) -> Option<Planned> {
         let mut best = self.at(setup, placement, None)?;
         for _ in 0..ROUNDS {
             let before = best.solution.objective;
@@ -152,10 +148,10 @@ impl Job<'_> {
     }
 
     /// The best of improved placements, of which the best few are refined in all at once.
-    fn best_finished(&self, mut all: Vec<Improved>) -> Option<Improved> {
+    fn best_finished(&self, mut all: Vec<Planned>) -> Option<Planned> {
         all.sort_by(|a, b| a.solution.objective.total_cmp(&b.solution.objective));
         let limit = FINALISTS.1 * all.first()?.solution.objective;
-        let mut finalists: Vec<Improved> = Vec::new();
+        let mut finalists: Vec<Planned> = Vec::new();
         for found in all {
             let is_new = finalists.iter().all(|known| is_apart(&known.solution.placement, &found.solution.placement));
             if finalists.len() < FINALISTS.0 && found.solution.objective <= limit && is_new {
@@ -167,7 +163,7 @@ impl Job<'_> {
     }
 
     /// Placement and leans refined together, and once more wherever leans over their whole ranges are better there.
-    fn finished(&self, known: Improved) -> Improved {
+    fn finished(&self, known: Planned) -> Planned {
         let mut best = known;
         for _ in 0..ROUNDS {
             best = self.with_axes(self.together(best));
@@ -186,7 +182,7 @@ impl Job<'_> {
 
     /// With the external axes improved for the tool that leans, and planned with lead and tilt where they move along
     /// the path.
-    fn with_axes(&self, known: Improved) -> Improved {
+    fn with_axes(&self, known: Planned) -> Planned {
         if self.problem.external_axes.is_empty() {
             return known;
         }
@@ -194,11 +190,10 @@ impl Job<'_> {
     }
 
     /// The best placements with the axis of the path, each with its setup.
-    fn basins(&self, outcome: &Outcome, most: usize) -> Vec<Start> {
-        let best = &outcome.cases.best;
-        let start = |placement: Placement| Start { setup: best.setup.clone(), placement, coarse: None };
-        let mut starts = vec![start(best.placement)];
-        let mut others: Vec<_> = outcome.refinements.iter().filter(|one| one.sense == Sense::Min).collect();
+    fn basins(&self, found: &Found, most: usize) -> Vec<Start> {
+        let start = |placement: Placement| Start { setup: found.best.setup.clone(), placement, coarse: None };
+        let mut starts = vec![start(found.best.placement())];
+        let mut others: Vec<_> = found.record.refinements.iter().filter(|one| one.sense == Sense::Min).collect();
         others.sort_by(|a, b| a.end_mean.total_cmp(&b.end_mean));
         for other in others {
             if starts.len() < most && starts.iter().all(|start| is_apart(&start.placement, &other.end)) {
@@ -206,6 +201,23 @@ impl Job<'_> {
             }
         }
         starts
+    }
+
+    /// The best placement from these starts, leaning.
+    fn best_from(&self, starts: &[Start]) -> Option<Planned> {
+        let mut all: Vec<Planned> = Vec::new();
+        for (number, start) in starts.iter().enumerate() {
+            let known = all.iter().map(|found| found.solution.objective).fold(f64::INFINITY, f64::min);
+            if !all.is_empty() && self.monitor.should_stop() {
+                break;
+            }
+            if start.coarse.is_some_and(|coarse| coarse > HOPELESS * known) {
+                continue;
+            }
+            self.monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: starts.len() });
+            all.extend(self.improved(&start.setup, &start.placement));
+        }
+        self.best_finished(all)
     }
 }
 
@@ -225,7 +237,7 @@ fn is_apart(a: &Placement, b: &Placement) -> bool {
 
 /// The best and the worst placement in their order, with the tool leaning at both; where they are one, with the better
 /// plan.
-fn in_order(best: Improved, worst: Option<Improved>) -> (Improved, Option<Improved>) {
+fn in_order(best: Planned, worst: Option<Planned>) -> (Planned, Option<Planned>) {
     let Some(worst) = worst else { return (best, None) };
     let is_one = best.solution.placement == worst.solution.placement;
     let is_in_order = best.solution.objective <= worst.solution.objective;
@@ -241,20 +253,18 @@ fn in_order(best: Improved, worst: Option<Improved>) -> (Improved, Option<Improv
 ///
 /// # Errors
 /// [`Infeasible`] where no placement that was tried has a plan.
-pub(super) fn place_leaned(
-    problem: &Problem,
-    settings: &SearchSettings,
-    transfer: &TransferSettings,
-    monitor: &Monitor,
-    closed: Result<Outcome, Infeasible>,
-) -> Result<Outcome, Infeasible> {
-    let Some(space) = problem.lean.as_deref() else { return closed };
-    let without_tie_rule = problem.without_tie_rule();
-    let job = Job { problem: &without_tie_rule, space, monitor };
-    let basins = closed.as_ref().map_or_else(|_| Vec::new(), |outcome| job.basins(outcome, settings.basins));
-    let mut drawn = job.drawn(basins.first().map_or(&problem.setup, |start| &start.setup), settings);
-    let worst_drawn =
-        if closed.is_err() { drawn.last().map(|start| (start.setup.clone(), start.placement)) } else { None };
+pub(super) fn leaned(job: &Job<'_>, closed: Result<Found, Infeasible>) -> Result<Found, Infeasible> {
+    let Some(space) = job.problem.lean.as_deref() else { return closed };
+    let (problem, settings, monitor) = (job.without_tie_rule, job.settings, job.monitor);
+    let leaning = Leaning { problem, space, monitor };
+    let basins = closed.as_ref().map_or_else(|_| Vec::new(), |found| leaning.basins(found, settings.basins));
+    let mut drawn = leaning.drawn(basins.first().map_or(&problem.setup, |start| &start.setup), settings);
+    // The worst placement is the one with the axis of the path, or else of those drawn, with the tool leaning as well
+    // as it can there.
+    let at_worst = match &closed {
+        Ok(found) => found.worst.as_ref().map(|at| (at.setup.clone(), at.placement())),
+        Err(_) => drawn.last().filter(|_| settings.worst).map(|at| (at.setup.clone(), at.placement)),
+    };
     let mut apart: Vec<Placement> = basins.iter().map(|start| start.placement).collect();
     drawn.retain(|start| {
         let is_new = apart.len() < 2 * settings.basins && apart.iter().all(|known| is_apart(known, &start.placement));
@@ -262,63 +272,14 @@ pub(super) fn place_leaned(
         is_new
     });
     let starts: Vec<Start> = basins.into_iter().chain(drawn).collect();
-    let mut all: Vec<Improved> = Vec::new();
-    for (number, start) in starts.iter().enumerate() {
-        let known = all.iter().map(|found| found.solution.objective).fold(f64::INFINITY, f64::min);
-        if !all.is_empty() && monitor.should_stop() {
-            break;
-        }
-        if start.coarse.is_some_and(|coarse| coarse > HOPELESS * known) {
-            continue;
-        }
-        monitor.report(Progress::Steps { stage: "lead and tilt", done: number, total: starts.len() });
-        all.extend(job.improved(&start.setup, &start.placement));
-    }
-    let Some(best) = job.best_finished(all) else {
-        return Err(closed.err().unwrap_or_else(|| Infeasible {
-            placement: starts.first().map_or(Placement::from([0.0; 4]), |start| start.placement),
-            searched: true,
-            findings: Vec::new(),
-            collisions: Vec::new(),
-            interrupted: monitor.should_stop(),
-        }));
+    let Some(best) = leaning.best_from(&starts) else {
+        let at = starts.first().map_or(Placement::from([0.0; 4]), |start| start.placement);
+        return Err(closed.err().unwrap_or_else(|| Infeasible::unexplained(at, monitor)));
     };
-    let cases = |found: Improved, sense: Sense| {
-        let set_up = problem.in_setup(&found.setup);
-        let without_tie_rule = set_up.without_tie_rule();
-        let refined = Refined { solution: found.solution, scheme: None };
-        stated_cases(&set_up, &Planner::finer(&without_tie_rule), transfer, sense, &refined, monitor)
-    };
-    let upright = closed.as_ref().ok().map(|outcome| outcome.cases.best.plan.objective);
-    // The worst placement is the one with the axis of the path, or else of those drawn, with the tool leaning as well
-    // as it can there.
-    let at_worst = match &closed {
-        Ok(outcome) => outcome.cases.worst.as_ref().map(|worst| (worst.best.setup.clone(), worst.best.placement)),
-        Err(_) => worst_drawn.filter(|_| settings.worst),
-    };
-    let leaned =
-        |(setup, placement): (Setup, Placement)| leaned_at(&without_tie_rule.in_setup(&setup), &placement, monitor);
-    let worst = at_worst.filter(|_| closed.is_err() || !monitor.should_stop()).and_then(leaned);
+    let at_worst = at_worst.filter(|_| closed.is_err() || !monitor.should_stop());
+    let worst = at_worst.and_then(|(setup, placement)| leaned_at(&problem.in_setup(&setup), &placement, monitor));
     let (best, worst) = in_order(best, worst);
-    let of_best = cases(best, Sense::Min);
-    let of_closed = || closed.as_ref().ok().and_then(|outcome| outcome.cases.worst.clone());
-    let worst = worst.map(|found| cases(found, Sense::Max)).or_else(of_closed);
-    let mut outcome = match closed {
-        Ok(outcome) => outcome,
-        Err(_) => {
-            Outcome::of_cases(Cases { best: of_best.best.clone(), best_worst_plan: of_best.worst.clone(), worst: None })
-        }
-    };
-    outcome.cases = Cases { best: of_best.best, best_worst_plan: of_best.worst, worst };
-    let set_up = problem.in_setup(&outcome.cases.best.setup);
-    let leaned = outcome.cases.best.plan.objective;
-    outcome.notes = notes::of_lean(&set_up, upright, leaned, outcome.cases.worst.is_some());
-    if !outcome.sets.is_empty() {
-        outcome.sets.clear();
-        outcome.set_basins.clear();
-        let text = "what each stiffness set makes of the best placement is not stated where the tool leans";
-        outcome.notes.push(text.to_owned().into());
-    }
-    outcome.interrupted |= monitor.should_stop();
-    Ok(outcome)
+    let upright = closed.as_ref().ok().map(|found| found.best.stated_objective(job));
+    let (record, of_path) = closed.map_or_else(|_| Default::default(), |found| (found.record, found.worst));
+    Ok(Found { best, worst: worst.or(of_path), record, upright, is_improved: true })
 }

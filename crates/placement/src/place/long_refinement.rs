@@ -1,7 +1,7 @@
 //! Refinement of basins of a long path: on a subset, then on the whole path.
 
+use super::job::Planned;
 use super::long_path::LongPath;
-use super::refined::Refined;
 use crate::coordinate_search::neighbours;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
@@ -57,7 +57,7 @@ pub(super) fn refine_basins(
     planner: &Planner<'_>,
     found: &BySense<SearchResult>,
     monitor: &Monitor,
-) -> (BySense<Vec<Refined>>, Vec<Refinement>) {
+) -> (BySense<Vec<Planned>>, Vec<Refinement>) {
     let jobs = SearchResult::jobs(found);
     let whole = WholePath::new(planner);
     let done = AtomicUsize::new(0);
@@ -144,7 +144,7 @@ fn estimated<'c>(
 
 /// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by
 /// their plans are refined on the whole path, and the best of all is taken.
-fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>], monitor: &Monitor) -> Vec<Refined> {
+fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>], monitor: &Monitor) -> Vec<Planned> {
     let Some(first) = estimates.first().map(|first| first.objective) else { return Vec::new() };
     let is_long = planner.problem().task.points().len() > MAX_REFINED;
     let close = if is_long { CLOSE_LONG } else { CLOSE };
@@ -164,16 +164,16 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
             .into_iter()
             .reduce(|end, start| if sense.compare(start.objective, end.objective).is_lt() { start } else { end })?;
         (estimate.report.end, estimate.report.end_mean) = (solution.placement, solution.objective);
-        Some((rank, Refined { solution, scheme }))
+        Some((rank, Planned::new(planner.problem(), solution, scheme)))
     };
-    let mut planned: Vec<(usize, Refined)> = estimates.par_iter_mut().enumerate().filter_map(plan).collect();
+    let mut planned: Vec<(usize, Planned)> = estimates.par_iter_mut().enumerate().filter_map(plan).collect();
     planned.sort_by(|a, b| sense.compare(a.1.solution.objective, b.1.solution.objective));
     if sense == Sense::Min && !is_long {
         let limit = planned.first().map_or(0.0, |(_, best)| best.solution.objective * (1.0 + TIED));
         planned.retain(|(_, basin)| basin.solution.objective <= limit);
         planned.dedup_by(|later, earlier| is_same(planner.problem(), &later.1, &earlier.1));
         planned.truncate(REFINED);
-        let refined = |(rank, mut basin): (usize, Refined)| {
+        let refined = |(rank, mut basin): (usize, Planned)| {
             let report = refine_whole(planner, &mut basin, estimates[rank].report.clone(), monitor);
             (rank, basin, report)
         };
@@ -190,7 +190,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
 }
 
 /// Whether two basins have come to the same end: in the same postures to the same place, but for a turn about axis 1.
-fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
+fn is_same(problem: &Problem, a: &Planned, b: &Planned) -> bool {
     let (a, b) = (&a.solution, &b.solution);
     let [distance, height, yaw] = apart_about_axis_1(problem, &a.placement, &b.placement);
     a.plans.iter().zip(&b.plans).all(|(a, b)| a.posture == b.posture)
@@ -202,7 +202,7 @@ fn is_same(problem: &Problem, a: &Refined, b: &Refined) -> bool {
 /// among the plans that its start has, and where plans of neighbours go another way through the angles it does not see
 /// them. What comes out counts as the planner plans it, so that whoever asks for the placement alone gets the same.
 /// Returns the report, continued.
-fn refine_whole(planner: &Planner<'_>, best: &mut Refined, mut report: Refinement, monitor: &Monitor) -> Refinement {
+fn refine_whole(planner: &Planner<'_>, best: &mut Planned, mut report: Refinement, monitor: &Monitor) -> Refinement {
     let plan = |placement: &Placement| planned(planner, placement, best.scheme.as_deref(), &mut planner.workspace());
     let refined = |from: &Solution, report: &mut Refinement| {
         let run = solver::run(planner.problem(), from, Ending::LOOSE, monitor);

@@ -4,7 +4,8 @@
 //! nothing; both may gain together. So all of them are planned at once ([`MotionGrid`]): on a coarse grid over their
 //! whole ranges, and about what is known, in ever smaller steps. A step is only taken to a plan that is better.
 
-use super::axes::{GAIN, Improved, PATH_GRID, ROUNDS, between, by_turns, kept_points, planned_in, refined};
+use super::axes::{GAIN, PATH_GRID, ROUNDS, between, by_turns, kept_points, refined};
+use super::job::Planned;
 use super::thinned::{Thinned, path_of, points_needed, spread};
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_model::task::lean::Lean;
@@ -30,19 +31,18 @@ const FOLLOWED: usize = 3;
 /// all together are never worse than the best of them alone.
 pub(super) fn with_better_axes(
     problem: &Problem,
-    start: &Improved,
+    start: &Planned,
     space: Option<&LeanSpace>,
     monitor: &Monitor,
-) -> Option<Improved> {
+) -> Option<Planned> {
     let moving = moving(problem);
-    let least = |a: Improved, b: Improved| if b.solution.objective < a.solution.objective { b } else { a };
     let alone = |number: &usize| by_turns(problem, start, &[*number], monitor);
     let mut best = match moving.len() {
         0 | 1 => by_turns(problem, start, &moving, monitor),
         _ => moving
             .iter()
             .map(alone)
-            .reduce(least)
+            .reduce(Planned::better)
             .map_or_else(|| start.clone(), |best| by_turns(problem, &best, &moving, monitor)),
     };
     let together = Together { problem, space, moving: &moving, monitor };
@@ -79,7 +79,7 @@ struct Together<'a> {
 
 impl Together<'_> {
     /// A better motion at the placement that is known; nothing where there is none.
-    fn at(&self, known: &Improved) -> Option<Improved> {
+    fn at(&self, known: &Planned) -> Option<Planned> {
         let placement = &known.solution.placement;
         let upright = self.problem.in_setup(&Setup { leans: [].into(), ..known.setup.clone() });
         let steps = self.steps();
@@ -138,7 +138,7 @@ impl Together<'_> {
     }
 
     /// What is known, at some points.
-    fn motion_of(&self, upright: &Problem, known: &Improved, points: &[usize]) -> Motion {
+    fn motion_of(&self, upright: &Problem, known: &Planned, points: &[usize]) -> Motion {
         let rows = known.setup.positions.spread(&upright.task);
         let lean = |point: &usize| known.setup.leans.get(*point).copied().unwrap_or(Lean::NONE);
         Motion {
@@ -159,7 +159,7 @@ impl Together<'_> {
     }
 
     /// The plan with a motion over all points, or what is known where it is no better.
-    fn better(&self, on: &Thinned<'_>, motion: &Motion, known: Improved) -> Improved {
+    fn better(&self, on: &Thinned<'_>, motion: &Motion, known: Planned) -> Planned {
         let setup = || {
             let leans = match self.space {
                 Some(space) => spread(space, on, &motion.leans)?.into(),
@@ -168,7 +168,7 @@ impl Together<'_> {
             let rows = between(on.upright, &on.kept, &motion.axes);
             Some(Setup { positions: AxisPositions::shortest(rows, &on.upright.task), leans, ..known.setup.clone() })
         };
-        let found = setup().and_then(|setup| planned_in(self.problem, setup, &known.solution.placement));
+        let found = setup().and_then(|setup| Planned::at(self.problem, setup, &known.solution.placement));
         found.filter(|found| found.solution.objective < known.solution.objective).unwrap_or(known)
     }
 }

@@ -1,9 +1,9 @@
 //! What should be known about a result, said of the cases that are stated, when they are.
 
 use super::calmer::{calmer, swing};
-use super::setups::plans_of;
-use crate::outcome::{Case, Cycle, Outcome, Plan};
-use crate::settings::SearchSettings;
+use super::candidates::plans_of;
+use super::job::Job;
+use crate::outcome::{Case, Cases, Cycle, Plan};
 use stead_model::plausibility;
 use stead_model::robot::PostureWord;
 use stead_model::task::lean::{Lean, LeanForce};
@@ -24,20 +24,22 @@ pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {
     })
 }
 
-/// Adds to an outcome what should be known about its cases.
-pub(super) fn say(problem: &Problem, settings: &SearchSettings, outcome: &mut Outcome, monitor: &Monitor) {
-    let Case { placement, setup, plan, cycle, .. } = &outcome.cases.best;
-    let set_up = problem.in_setup(setup);
-    let mut notes = of(&set_up, placement, plan, &cycle.feed, monitor);
-    notes.extend((!settings.worst).then(best_alone));
-    notes.append(&mut outcome.notes);
-    let named = outcome.cases.all().into_iter().zip(["case 1", "case 2", "case 3", "case 4"]);
-    let ends = short_ends(&set_up, placement, "case 1", plan);
-    let moves = moves(&named.map(|(case, name)| (name, &case.cycle)).collect::<Vec<_>>(), ends);
-    let cancelled = cancellation(problem, plan.objective);
-    let warnings = cancelled.into_iter().chain(moves).chain(outcome.interrupted.then(interruption)).collect::<Vec<_>>();
-    outcome.warnings.extend(warnings);
-    outcome.notes = notes;
+/// What should be known about cases, those beside their plans among it, and why they may not be what was wanted.
+pub(super) fn of_cases(
+    job: &Job<'_>,
+    cases: &Cases,
+    beside: Vec<Note>,
+    interrupted: bool,
+) -> (Vec<Note>, Vec<Warning>) {
+    let Case { placement, setup, plan, cycle, .. } = &cases.best;
+    let set_up = job.problem.in_setup(setup);
+    let mut notes = of(&set_up, placement, plan, &cycle.feed, job.monitor);
+    notes.extend((!job.settings.worst).then(best_alone).into_iter().chain(beside));
+    let named: Vec<_> = cases.all().into_iter().map(|case| (format!("case {}", case.number()), &case.cycle)).collect();
+    let named: Vec<_> = named.iter().map(|(name, cycle)| (name.as_str(), *cycle)).collect();
+    let moves = moves(&named, short_ends(&set_up, placement, "case 1", plan));
+    let cancelled = cancellation(job.problem, plan.objective);
+    (notes, cancelled.into_iter().chain(moves).chain(interrupted.then(interruption)).collect())
 }
 
 /// What should be known about a best plan though nothing is wrong with it.
@@ -97,6 +99,18 @@ fn weight(problem: &Problem, plan: &Plan) -> Option<String> {
 /// A note that there is no worst placement to compare with.
 pub(super) fn best_alone() -> Note {
     let text = "the worst placement was not looked for: there is nothing to compare the best one with";
+    Note::from(text.to_owned())
+}
+
+/// That stiffness sets are not told apart where the tool leans.
+pub(super) fn no_sets() -> Note {
+    "what each stiffness set makes of the best placement is not stated where the tool leans".to_owned().into()
+}
+
+/// That what is compared with the best placement has its external axes.
+pub(super) fn held_axes() -> Note {
+    let text = "what is best for one stiffness set alone, or where force errors are covered, is looked for with the external axes where \
+                they stand in the best plan";
     Note::from(text.to_owned())
 }
 

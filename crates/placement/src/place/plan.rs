@@ -1,6 +1,6 @@
 //! Plans with everything that there is to say of them.
 
-use super::refined::Refined;
+use super::job::Planned;
 use crate::outcome::{AtHeldFeed, Cycle, DeflectionFigures, Plan, PlanPoint};
 use crate::refine::planned;
 use crate::sag::Sag;
@@ -23,23 +23,27 @@ pub(super) struct StatedPlans {
 }
 
 impl StatedPlans {
-    /// Plans a refined placement; once the caller asks to stop, its refined plan is stated as it is.
-    pub fn of(planner: &Planner<'_>, refined: &Refined, monitor: &Monitor) -> Self {
-        let (solution, scheme) = (&refined.solution, refined.scheme.as_deref());
+    /// Plans a placement that was found.
+    pub fn of(planner: &Planner<'_>, found: &Planned, monitor: &Monitor) -> Self {
+        let worst = || worst_plan(planner, &found.solution.placement, found.scheme.as_deref());
+        let (best, worst) = rayon::join(|| Self::best(planner, found, monitor), worst);
+        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for
+        // both.
+        Self { worst: worst.unwrap_or_else(|_| best.clone()), best }
+    }
+
+    /// The best plan; once the caller asks to stop, the one that was found.
+    pub fn best(planner: &Planner<'_>, found: &Planned, monitor: &Monitor) -> Vec<SegmentPlan> {
+        let Planned { solution, scheme, .. } = found;
         let tie = planner.problem().postures.tie;
         let within_tie = || {
             if tie == 0.0 || monitor.should_stop() {
                 return None;
             }
-            let found = planned(planner, &solution.placement, scheme, &mut planner.workspace());
+            let found = planned(planner, &solution.placement, scheme.as_deref(), &mut planner.workspace());
             found.filter(|found| found.objective <= solution.objective * (1.0 + tie + ROUNDING))
         };
-        let worst = || worst_plan(planner, &solution.placement, scheme);
-        let (best, worst) = rayon::join(within_tie, worst);
-        let best = best.map_or_else(|| solution.plans.clone(), |found| found.plans);
-        // A placement with a best plan has a worst one too; should the two disagree on a limit, the best stands for
-        // both.
-        Self { worst: worst.unwrap_or_else(|_| best.clone()), best }
+        within_tie().map_or_else(|| solution.plans.clone(), |found| found.plans)
     }
 }
 

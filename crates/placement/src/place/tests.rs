@@ -4,7 +4,7 @@ use super::super::settings::{LookupUse, PostureSearch};
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::lookup::LookupTable;
-use crate::outcome::{Plan, PlanPoint};
+use crate::outcome::{Case, Plan, PlanPoint};
 use crate::search;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -12,6 +12,7 @@ use stead_model::robot::angles::yaw_from_q4;
 use stead_planning::criterion::{Over, StiffnessSets, Weights};
 use stead_planning::problem::{Cell, Interval, Placement};
 use stead_planning::redundancy::Planner;
+use stead_planning::sense::Sense;
 use stead_planning::symmetry::Unsupported;
 use stead_planning::testing::{five_segments, with_uncertainty};
 

@@ -1,6 +1,6 @@
 //! Placements drawn over the cell from which the tool is led along the path.
 
-use super::{Job, Start, is_apart};
+use super::{Leaning, Start, is_apart};
 use crate::coordinate_search::{Directions, coordinate_search};
 use crate::path_subset::PathSubset;
 use crate::settings::SearchSettings;
@@ -24,7 +24,7 @@ const ON: (usize, usize, f64) = (40, 2, PI / 12.0);
 /// Of the best so many are led to the bottom of their basins for each start.
 const LED: usize = 3;
 
-impl Job<'_> {
+impl Leaning<'_> {
     /// The problem on few points and a coarse grid of leans and beta.
     fn coarse(&self, upright: &Problem) -> Problem {
         let (points, half, step) = ON;

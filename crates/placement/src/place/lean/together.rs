@@ -5,8 +5,9 @@
 //! When that gains nothing, the placements before and behind along x, y, z and yaw are tried, each with leans planned
 //! anew for it: the end is a placement of which no such neighbour is better with the best leans near the ones known.
 
-use super::{Improved, Job, NEAR};
-use crate::place::axes::{MOST_REFINED, planned_in, refined};
+use super::{Leaning, NEAR};
+use crate::place::axes::{MOST_REFINED, refined};
+use crate::place::job::Planned;
 use crate::place::thinned::{Thinned, path_of, spread};
 use crate::refine::{neighbours, solver};
 use rayon::prelude::*;
@@ -28,9 +29,9 @@ const POLLS: [(f64, f64); 3] = [(0.15, 1.0), (0.03, 2.0), (0.006, 8.0)];
 /// How often a change that gains is doubled.
 const DOUBLINGS: usize = 8;
 
-impl Job<'_> {
+impl Leaning<'_> {
     /// The best placement near one that is known, with the best leans and betas there.
-    pub(super) fn together(&self, known: Improved) -> Improved {
+    pub(super) fn together(&self, known: Planned) -> Planned {
         let is_long = self.problem.task.points().len() > MOST_REFINED;
         if self.problem.cell.pinned().is_some() || is_long {
             return known;
@@ -58,7 +59,7 @@ impl Job<'_> {
     }
 
     /// Placement, betas, leads and tilts by the gradient in all of them; nothing where that gains nothing.
-    pub(super) fn by_gradient(&self, known: &Improved) -> Option<Improved> {
+    pub(super) fn by_gradient(&self, known: &Planned) -> Option<Planned> {
         let set_up = self.problem.in_setup(&known.setup);
         let is_long = self.problem.task.points().len() > MOST_REFINED;
         if set_up.setup.leans.is_empty() || is_long || self.monitor.should_stop() {
@@ -66,7 +67,7 @@ impl Job<'_> {
         }
         let (run, leans) = solver::run_leaning(&set_up, &known.solution, solver::Ending::TIGHT, self.monitor);
         // In a narrow space what the gradient reaches may be no plan of the grid, from which it would be found again.
-        let again = planned_in(self.problem, Setup { leans, ..known.setup.clone() }, &run.solution.placement)?;
+        let again = Planned::at(self.problem, Setup { leans, ..known.setup.clone() }, &run.solution.placement)?;
         if again.solution.objective >= known.solution.objective {
             return None;
         }
@@ -81,11 +82,11 @@ impl Job<'_> {
             })
         };
         let is_planned = is_better || loses_lines();
-        Some(if is_planned { again } else { Improved { solution: run.solution, ..again } })
+        Some(if is_planned { again } else { Planned { solution: run.solution, ..again } })
     }
 
     /// The leans planned anew about those that are known, at the placement that is known.
-    fn near(&self, known: &Improved) -> Option<Improved> {
+    fn near(&self, known: &Planned) -> Option<Planned> {
         let upright = self.problem.in_setup(&upright(&known.setup));
         let on = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
         let leans = self.leans_on(known, &on.kept);
@@ -102,7 +103,7 @@ impl Job<'_> {
     }
 
     /// The best neighbour, if it is better, with leans planned anew there; of those planned before a stop.
-    fn polled(&self, known: &Improved) -> Option<Improved> {
+    fn polled(&self, known: &Planned) -> Option<Planned> {
         let upright = self.problem.in_setup(&upright(&known.setup));
         let on = Thinned::to_at_most(&upright, MOST_PLANNED_POINTS);
         let leans = self.leans_on(known, &on.kept);
@@ -116,14 +117,14 @@ impl Job<'_> {
                 self.planned(&known.setup, placement, spread(self.space, &on, &path.motion.leans)?)
             };
             let around = neighbours(self.problem, &known.solution.placement, distance);
-            let tried: Vec<Option<Improved>> = around.par_iter().map(at).collect();
+            let tried: Vec<Option<Planned>> = around.par_iter().map(at).collect();
             let better = tried.into_iter().flatten().filter(|near| near.solution.objective < limit);
             better.reduce(|a, b| if b.solution.objective < a.solution.objective { b } else { a })
         })
     }
 
     /// What changed from one placement with its leans to a better one, followed further as long as that gains.
-    fn ahead(&self, from: &Improved, to: Improved) -> Improved {
+    fn ahead(&self, from: &Planned, to: Planned) -> Planned {
         let upright = self.problem.in_setup(&upright(&from.setup));
         let all: Vec<usize> = (0..upright.task.points().len()).collect();
         let [old, new] = [from, &to].map(|known| self.leans_on(known, &all));
@@ -154,7 +155,7 @@ impl Job<'_> {
     }
 
     /// How the tool leans at some points.
-    fn leans_on(&self, known: &Improved, points: &[usize]) -> Vec<Lean> {
+    fn leans_on(&self, known: &Planned, points: &[usize]) -> Vec<Lean> {
         points.iter().map(|point| known.setup.leans.get(*point).copied().unwrap_or(Lean::NONE)).collect()
     }
 }

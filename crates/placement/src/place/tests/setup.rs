@@ -1,7 +1,9 @@
 //! What a mount, an axis or an orientation does is known from a problem without one.
 
+use super::with_first_springs;
 use crate::outcome::Case;
 use crate::place::{Score, place, score, setup_at};
+use crate::sensitivity::mean_by;
 use crate::settings::{LookupUse, SearchSettings};
 use nalgebra::{Vector3, vector};
 use std::sync::Arc;
@@ -13,6 +15,7 @@ use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule}
 use stead_numerics::monitor::Monitor;
 use stead_numerics::rotation::rotation_from_zyx;
 use stead_planning::cell::Cell;
+use stead_planning::criterion::Over;
 use stead_planning::lean::{LeanRange, LeanSpace};
 use stead_planning::problem::{Interval, Placement, Problem};
 use stead_planning::setup::{AxisPositions, Orientation, Setup};
@@ -213,6 +216,43 @@ fn a_richer_use_is_never_worse_and_keeps_to_speed_and_range() {
     assert!(moves.iter().any(|length| *length > 0.01), "{moves:?}");
     for (transfer, length) in indexed.1.cycles.best.transfers.iter().zip(moves) {
         assert!(transfer.duration.unwrap() >= length / 0.5, "{transfer:?} {length}");
+    }
+}
+
+/// A rail that moves along the path changes the best placement after the search: all that is stated is of the plan at
+/// the end.
+#[test]
+fn sets_force_errors_and_warnings_belong_to_the_plans_that_are_stated() {
+    let mut problem = with_first_springs(&with_speeds(), &[1.0, 0.3], Over::Mean);
+    problem.external_axes = vec![rail(Carried::Workpiece, Vector3::y(), [-0.1, 0.1], AxisUse::Continuous)];
+    problem.setup = Setup::at_rest(&problem.external_axes);
+    problem.cell.position = [0.0, -1.8, -0.5].map(|at| Interval { min: at - 0.05, max: at + 0.05 });
+    problem.postures.tie = 0.01;
+    let settings = SearchSettings { population: 4, sensitivity: Some(0.1), worst: false, ..small() };
+    let outcome = place(&problem, &settings, &TransferSettings::default(), &Monitor::silent()).unwrap();
+    let best = &outcome.cases.best;
+    assert!(matches!(best.setup.positions, AxisPositions::PerPoint(_)), "the rail does not move");
+    let sensitivity = outcome.sensitivity.as_ref().unwrap();
+    assert_eq!(sensitivity.nominal[0], best.plan.objective);
+    assert!(sensitivity.nominal[1] > sensitivity.nominal[0] && sensitivity.robust[1] <= sensitivity.nominal[1]);
+    let set_up = problem.in_setup(&best.setup);
+    let robots = &problem.criterion.stiffness.as_ref().unwrap().robots;
+    for (set, robot) in outcome.sets.iter().zip(robots) {
+        assert_eq!(set.mean, mean_by(&set_up.with_stiffness_alone(robot), &best.placement, &best.plan));
+        assert!(set.regret().unwrap() > -0.011, "{set:?}");
+    }
+    assert_eq!(outcome.sets.len(), 2);
+    assert_eq!(outcome.set_basins.len(), 1);
+    assert!(
+        outcome
+            .notes
+            .iter()
+            .any(|note| String::from(note.clone()).contains("external axes where they stand in the best plan"))
+    );
+    for case in outcome.cases.all() {
+        let is_named =
+            outcome.warnings.iter().any(|warning| warning.message.contains(&format!("case {} to", case.number())));
+        assert_eq!(is_named, !case.cycle.unfollowed.is_empty(), "case {}", case.number());
     }
 }
 
