@@ -3,6 +3,7 @@
 use super::staged::{Aside, PREFIX, Staged, remove_abandoned, sync};
 use super::{is_of_disk, read};
 use crate::input::{InputError, InputFile, sha256};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// What becomes of files that are there already.
@@ -39,9 +40,14 @@ pub fn check_all_new(files: &[PathBuf], existing: Existing, inputs: &[InputFile]
 /// the new ones, or none that looks whole.
 ///
 /// # Errors
-/// Those of [`write_new`].
+/// Those of [`write_new`], and where a file is replaced by one that begins otherwise, so that it is somebody else's.
 pub fn write_all_new(files: &[(PathBuf, &str)], existing: Existing, inputs: &[InputFile]) -> Result<(), InputError> {
-    files.iter().try_for_each(|(file, _)| check(file, existing, inputs))?;
+    for (file, text) in files {
+        check(file, existing, inputs)?;
+        if existing == Existing::Replaced && !begins_like(file, text) {
+            return Err(foreign(file));
+        }
+    }
     let mut made = MadeFolders::default();
     let mut staged = Vec::with_capacity(files.len());
     let folders: Vec<&Path> = files.iter().map(|(file, _)| file.parent().unwrap_or(Path::new(""))).collect();
@@ -104,6 +110,20 @@ impl MadeFolders {
 impl Drop for MadeFolders {
     fn drop(&mut self) {
         self.0.iter().rev().for_each(|folder| drop(std::fs::remove_dir(folder)));
+    }
+}
+
+/// Whether a file begins as a new one does: with the same first word, such as the first column of a table; what is not
+/// there or empty does so too.
+fn begins_like(file: &Path, text: &str) -> bool {
+    let word = |bytes: &[u8]| -> Vec<u8> {
+        let text = bytes.trim_ascii_start();
+        text.iter().copied().take_while(|byte| !byte.is_ascii_whitespace() && *byte != b',').collect()
+    };
+    let mut begin = Vec::new();
+    match std::fs::File::open(file).and_then(|old| old.take(4096).read_to_end(&mut begin)) {
+        Err(_) => !file.exists(),
+        Ok(_) => begin.is_empty() || word(&begin) == word(text.as_bytes()),
     }
 }
 
@@ -174,18 +194,26 @@ mod tests {
     fn a_file_is_replaced_where_that_is_asked_for_and_a_folder_or_a_link_never() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
-        std::fs::write(at("a"), "mine").unwrap();
+        std::fs::write(at("a"), "of mine").unwrap();
         std::fs::create_dir(at("d")).unwrap();
-        write_all_new(&[(at("a"), "new"), (at("b"), "new")], Existing::Replaced, &[]).unwrap();
-        assert_eq!([at("a"), at("b")].map(|file| std::fs::read_to_string(file).unwrap()), ["new", "new"]);
+        write_all_new(&[(at("a"), "of new"), (at("b"), "of new")], Existing::Replaced, &[]).unwrap();
+        assert_eq!([at("a"), at("b")].map(|file| std::fs::read_to_string(file).unwrap()), ["of new", "of new"]);
         for other in ["d", "a/below"] {
-            let files = [(at("a"), "newer"), (at(other), "newer")];
+            let files = [(at("a"), "of newer"), (at(other), "of newer")];
             let message = write_all_new(&files, Existing::Replaced, &[]).unwrap_err().to_string();
             assert!(message.contains("is a folder or a link") || message.contains("cannot be written"), "{message}");
-            assert_eq!(std::fs::read_to_string(at("a")).unwrap(), "new", "{other}");
+            assert_eq!(std::fs::read_to_string(at("a")).unwrap(), "of new", "{other}");
         }
         // Nothing else is left.
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+        // What begins otherwise is somebody else's.
+        for (begin, is_replaced) in [("solid part", false), ("\u{0}of", false), ("of,x_mm", true), ("", true)] {
+            std::fs::write(at("c"), begin).unwrap();
+            let replaced = write_all_new(&[(at("c"), "of new")], Existing::Replaced, &[]);
+            assert_eq!(replaced.is_ok(), is_replaced, "{begin}");
+            let found = std::fs::read_to_string(at("c")).unwrap();
+            assert_eq!(found, if is_replaced { "of new" } else { begin });
+        }
     }
 
     #[test]
@@ -214,25 +242,28 @@ mod tests {
         let at = |name: &str| folder.path().join(name);
         let texts = || ["a", "b", "c"].map(|name| std::fs::read_to_string(at(name)).unwrap_or_default());
         let set = |text: &'static str| ["a", "b", "c"].map(|name| (at(name), text));
-        write_all_new(&set("old"), Existing::Kept, &[]).unwrap();
+        write_all_new(&set("of old"), Existing::Kept, &[]).unwrap();
         // What comes in the way after the old files have gone aside is not replaced.
         let aside = [at("a"), at("b")].map(|file| Aside::take(&file).unwrap());
-        assert_eq!(texts(), ["", "", "old"]);
+        assert_eq!(texts(), ["", "", "of old"]);
         // A command that runs in the meantime takes them for those of a process that is alive.
         remove_abandoned(folder.path(), PREFIX);
         aside.into_iter().for_each(Aside::put_back);
-        assert_eq!(texts(), ["old"; 3]);
+        assert_eq!(texts(), ["of old"; 3]);
 
-        let input = [input_file("task", "tasks/b", b"old")];
-        let message = write_all_new(&set("new"), Existing::Replaced, &input).unwrap_err().to_string();
-        assert!(message.contains("b: is read by this command") && texts() == ["old"; 3], "{message}");
-        write_all_new(&set("new"), Existing::Replaced, &[input_file("task", "tasks/d", b"old")]).unwrap();
-        assert_eq!(texts(), ["new"; 3]);
+        let input = [input_file("task", "tasks/b", b"of old")];
+        let message = write_all_new(&set("of new"), Existing::Replaced, &input).unwrap_err().to_string();
+        assert!(message.contains("b: is read by this command") && texts() == ["of old"; 3], "{message}");
+        write_all_new(&set("of new"), Existing::Replaced, &[input_file("task", "tasks/d", b"of old")]).unwrap();
+        assert_eq!(texts(), ["of new"; 3]);
 
         // What a killed process has left is cleared by the next.
         Staged::write(folder.path(), PREFIX, b"left").unwrap().abandon().unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 4);
-        write_all_new(&set("newer"), Existing::Replaced, &[]).unwrap();
-        assert_eq!((std::fs::read_dir(folder.path()).unwrap().count(), texts()), (3, ["newer"; 3].map(str::to_owned)));
+        write_all_new(&set("of newer"), Existing::Replaced, &[]).unwrap();
+        assert_eq!(
+            (std::fs::read_dir(folder.path()).unwrap().count(), texts()),
+            (3, ["of newer"; 3].map(str::to_owned))
+        );
     }
 }
