@@ -2,7 +2,7 @@
 //! once it is known that they may ask, on a limited number of connections, each in a limited time.
 //!
 //! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has
-//! waited longest is closed, first among those without a request that was allowed.
+//! waited longest is closed, first among those that were refused, then among those without a request that was allowed.
 
 mod message;
 
@@ -40,10 +40,20 @@ struct Open {
     stream: TcpStream,
     /// Since when it has been waiting for a request.
     since: Instant,
-    /// Whether a request on it was allowed.
-    is_known: bool,
-    /// Whether it is being answered.
-    is_busy: bool,
+    stage: Stage,
+}
+
+/// How far a connection has come; the first are given up first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Stage {
+    /// A request on it was refused, and it only takes what is still sent.
+    Refused,
+    /// Nothing was allowed on it yet.
+    Unknown,
+    /// A request on it was allowed.
+    Allowed,
+    /// It is being answered.
+    Answered,
 }
 
 /// A listener with its connections.
@@ -70,9 +80,8 @@ impl Shared {
         let Ok(stream) = stream.try_clone() else { return false };
         let mut open = self.open();
         if open.len() >= MOST_CONNECTIONS {
-            let waiting = open.iter().filter(|(_, one)| !one.is_busy);
-            let Some(number) = waiting.min_by_key(|(_, one)| (one.is_known, one.since)).map(|(number, _)| *number)
-            else {
+            let waiting = open.iter().filter(|(_, one)| one.stage != Stage::Answered);
+            let Some(number) = waiting.min_by_key(|(_, one)| (one.stage, one.since)).map(|(number, _)| *number) else {
                 return false;
             };
             if let Some(one) = open.remove(&number) {
@@ -80,7 +89,7 @@ impl Shared {
                 let _ = one.stream.shutdown(Shutdown::Both);
             }
         }
-        open.insert(number, Open { stream, since: Instant::now(), is_known: false, is_busy: false });
+        open.insert(number, Open { stream, since: Instant::now(), stage: Stage::Unknown });
         true
     }
 
@@ -140,7 +149,7 @@ impl Listener {
         let end = Instant::now() + wait;
         loop {
             let mut open = self.shared.open();
-            open.retain(|_, one| one.is_busy || one.stream.shutdown(Shutdown::Both).is_err());
+            open.retain(|_, one| one.stage == Stage::Answered || one.stream.shutdown(Shutdown::Both).is_err());
             if open.is_empty() || Instant::now() > end {
                 open.values().for_each(|one| drop(one.stream.shutdown(Shutdown::Both)));
                 return;
@@ -186,17 +195,17 @@ impl Connection<'_> {
             if let Some(refusal) = site.refuses(&head) {
                 return self.refuse(refusal);
             }
-            self.shared.set(self.number, |one| one.is_known = true);
+            self.shared.set(self.number, |one| one.stage = Stage::Allowed);
             if length > 0 && head.header("expect").is_some_and(|value| value.eq_ignore_ascii_case("100-continue")) {
                 self.stream.write_all(b"HTTP/1.1 100 Continue\r\n\r\n")?;
             }
             let Some(body) = self.body(length, began + TIME_OF_REQUEST)? else {
                 return self.refuse(Answer::error(408, "the request took longer than 10 s"));
             };
-            self.shared.set(self.number, |one| one.is_busy = true);
+            self.shared.set(self.number, |one| one.stage = Stage::Answered);
             let is_last = head.is_last() || self.shared.is_closing.load(Ordering::SeqCst);
             self.stream.write_all(&site.answer(&head, &body).bytes(&head.method, is_last))?;
-            self.shared.set(self.number, |one| (one.is_busy, one.since) = (false, Instant::now()));
+            self.shared.set(self.number, |one| (one.stage, one.since) = (Stage::Allowed, Instant::now()));
             if is_last {
                 break;
             }
@@ -268,6 +277,7 @@ impl Connection<'_> {
 
     /// Says no, and closes the connection.
     fn refuse(mut self, answer: Answer) -> io::Result<()> {
+        self.shared.set(self.number, |one| one.stage = Stage::Refused);
         self.stream.write_all(&answer.bytes("GET", true))?;
         self.stream.shutdown(Shutdown::Write)?;
         // What was sent meanwhile is taken for a moment, so that the system does not throw away the answer with it.
