@@ -7,7 +7,6 @@ use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
 use stead_numerics::message::Note;
-use stead_placement::outcome::left_out;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
 use stead_planning::problem::Placement;
@@ -54,7 +53,7 @@ impl PlacementScore {
         self.map = feasibility::deflection_map(&self.run.problem, &self.score.placement, monitor);
         let left_out = match self.map {
             Some(_) => self.score.map_leans(&self.run.problem, monitor),
-            None => Some(left_out("the deflection map is")),
+            None => Some(Warning::left_out("the deflection map is")),
         };
         self.context.warnings.extend(left_out);
         self.score.interrupted |= monitor.should_stop();

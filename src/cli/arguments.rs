@@ -3,7 +3,7 @@
 
 #[cfg(feature = "live")]
 use super::live;
-use super::manual::STEAD;
+use super::manuals::STEAD;
 use super::{
     assess, check, circularity, compensate, completions, explain, export, forces, identify, import, init, man, page,
     place, pose, robots, schema, score, simulate, stability, study,

@@ -21,6 +21,7 @@ mod init;
 mod live;
 mod man;
 mod manual;
+mod manuals;
 mod page;
 mod place;
 mod pose;
@@ -90,8 +91,8 @@ impl Failure {
 
 /// The command line with its overview. Every command is described by its own one-line summary.
 fn command() -> clap::Command {
-    let command = manual::documented(Arguments::command(), "");
-    let overview = manual::overview(&command);
+    let command = manuals::documented(Arguments::command(), "");
+    let overview = manuals::overview(&command);
     // The texts are laid out by hand: no wrapping.
     command.term_width(0).help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{overview}Options:\n{{options}}{{after-help}}"

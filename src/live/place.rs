@@ -1,10 +1,12 @@
 //! Where the part stands, and how it and the external axes are set up: as pages ask for it and results state it.
 
-use super::requests::FARTHEST_MM;
 use serde_json::{Map, Value, json};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::setup::{AxisPositions, Setup};
+
+/// Places farther away than this are a slip. mm
+pub(super) const FARTHEST_MM: f64 = 1e6;
 
 /// A placement with its setup.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! What pages ask, read and checked: a body that says something else is refused with the field, what was found and what
 //! is allowed.
 
-use super::place::{Place, shown};
+use super::place::{FARTHEST_MM, Place, shown};
 use serde_json::{Map, Value};
 use stead_disk::quote::{GARBLED, garbles};
 use stead_planning::problem::{Placement, Problem};
@@ -28,8 +28,6 @@ impl RequestError {
     }
 }
 
-/// Places farther away than this are a slip. mm
-pub(super) const FARTHEST_MM: f64 = 1e6;
 /// Turns of more than this are a slip. deg
 const MOST_DEG: f64 = 3.6e5;
 /// Characters of a name.

@@ -19,6 +19,11 @@ impl Warning {
     pub fn new(kind: &'static str, message: impl Into<String>) -> Self {
         Self { kind, message: message.into() }
     }
+
+    /// That the caller's stop left something out, with its verb.
+    pub fn left_out(what: &str) -> Self {
+        Self::new("interrupted", format!("interrupted: {what} left out"))
+    }
 }
 
 impl fmt::Display for Warning {

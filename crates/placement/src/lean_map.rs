@@ -1,6 +1,6 @@
 //! Deflection over lead and tilt at a path point: for every lean the best angle about the tool axis.
 
-use crate::outcome::{Case, left_out};
+use crate::case::Case;
 use crate::path_subset::PathSubset;
 use stead_model::task::lean::Lean;
 use stead_numerics::message::Warning;
@@ -45,7 +45,7 @@ impl LeanMap {
     pub(crate) fn new(problem: &Problem, case: &Case, monitor: &Monitor) -> (Option<Self>, Option<Warning>) {
         let map = Self::made(problem, case, monitor);
         let is_left_out = map.is_none() && problem.lean.is_some() && monitor.should_stop();
-        (map, is_left_out.then(|| left_out("the map over lead and tilt is")))
+        (map, is_left_out.then(|| Warning::left_out("the map over lead and tilt is")))
     }
 
     /// None where the tool may not lean, or where the caller stops it.

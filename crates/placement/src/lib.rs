@@ -24,6 +24,7 @@
 //! # Ok::<(), stead_placement::place::Infeasible>(())
 //! ```
 
+mod case;
 pub mod coordinate_search;
 pub mod evaluator;
 pub mod lean_map;

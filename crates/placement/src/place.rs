@@ -1,6 +1,6 @@
 //! The placement job: search, refine, improve, state.
 //!
-//! Three stages hand on placements with their plans (`job`): `candidates` searches (`searched`) and refines (`basins`)
+//! Three stages hand on placements with their plans (`job`, `found`): `candidates` searches (`searched`) and refines (`basins`)
 //! in every setup, `axes` and `lean` improve external axes and leans of what it finds, and `state` says what there is to
 //! say of the end alone (`plan`, `notes`, `sets` for several stiffnesses, `calmer` for plans whose joints turn less).
 //! `long_path` and `long_refinement` search by subsets of a long path, `infeasible` says what blocks a placement that is
@@ -21,6 +21,7 @@ mod axes;
 mod basins;
 mod calmer;
 mod candidates;
+mod found;
 mod from_here;
 mod infeasible;
 mod job;

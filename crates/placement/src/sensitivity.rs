@@ -1,6 +1,7 @@
 //! What a result rests on: how its objective answers to the stiffness of every joint, and to errors of the force.
 
-use super::outcome::{Plan, PlanPoint};
+pub use crate::case::SpringSlope;
+use crate::case::{Plan, PlanPoint};
 use rayon::prelude::*;
 pub use stead_model::robot::{About, Spring};
 use stead_model::robot::{Compliance, Robot};
@@ -16,16 +17,6 @@ const STEP: f64 = 0.01;
 const FOLLOWING: Spacing = Spacing { first: 4e-3, last: 6e-5 };
 /// A sensitivity is not left uncertain by more than this share of the largest.
 const UNCERTAIN: f64 = 0.01;
-
-/// How an objective answers to the stiffness of a spring, or of several that turn the tool about one line in every
-/// configuration, so that no deflection tells them apart.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpringSlope {
-    /// The spring, and those that cannot be told from it.
-    pub springs: Vec<Spring>,
-    /// Derivative of the objective by the logarithm of the stiffness. m
-    pub slope: f64,
-}
 
 /// The springs of an arm, axes first, those together that no deflection tells apart: springs about z of joints 5 and 6
 /// turn the tool about the lines of springs about y of joints 4 and 5, where these sit in the wrist centre.

@@ -3,7 +3,7 @@
 use super::PathStability;
 use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
-use stead_placement::outcome::{Outcome, Plan, left_out};
+use stead_placement::outcome::{Outcome, Plan};
 use stead_placement::place::{self, Infeasible, Score};
 use stead_planning::problem::Placement;
 use stead_planning::setup::Setup;
@@ -88,7 +88,7 @@ fn stability(
     let Some(analysis) = &run.path_stability else { return Ok(None) };
     let found = PathStability::along(&run.problem, analysis, plans, monitor)?;
     if found.is_none() {
-        warnings.push(left_out("the critical depths along the path are"));
+        warnings.push(Warning::left_out("the critical depths along the path are"));
     }
     Ok(found)
 }

@@ -6,65 +6,21 @@
 
 use super::axes::GRID;
 use super::basins::{choose, refine_basins};
+use super::found::{Found, Record};
 use super::infeasible::{Infeasible, infeasible};
 use super::job::{Job, Planned, shifted_back};
 use super::lean::leaned_at;
 use super::long_path::LongPath;
 use super::motion::with_better_axes;
+use super::plan::stated_objective;
 use super::searched::{Searched, search_cell};
 use super::sets::Sets;
 use crate::evaluator::Evaluator;
-use crate::outcome::{Generation, LookupSummary, Plan, Refinement};
 use crate::refine::planned;
-use std::ops::Range;
-use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::{Candidate, Objective};
-use stead_planning::joint_travel::joint_travel;
 use stead_planning::problem::{Cell, Placement, Problem};
-use stead_planning::redundancy::{Planner, SegmentPlan};
-use stead_planning::sense::Sense;
+use stead_planning::redundancy::Planner;
 use stead_planning::setup::{AxisPositions, Setup, TriedSetup};
-use stead_planning::symmetry::Unsupported;
-
-/// What was found, and how.
-pub(super) struct Found {
-    pub best: Planned,
-    /// The worst placement, where it was looked for.
-    pub worst: Option<Planned>,
-    pub record: Record,
-    /// The objective of the best placement with the axis of the path, where the tool may lean. m
-    pub upright: Option<f64>,
-    /// Whether the best placement is another than the one of the search.
-    pub is_improved: bool,
-}
-
-/// How something was found; of several setups the best one's.
-#[derive(Default)]
-pub(super) struct Record {
-    /// The basins of the best placement, in the cell in which they were searched.
-    basins: Vec<Candidate>,
-    pub long: Option<LongPath>,
-    pub sets: Sets,
-    pub tried: Vec<TriedSetup>,
-    pub lookup_summary: Option<Result<LookupSummary, Unsupported>>,
-    pub convergence: Vec<Generation>,
-    pub refinements: Vec<Refinement>,
-    pub evaluations: usize,
-    pub states: usize,
-    pub interrupted: bool,
-}
-
-impl Found {
-    /// Where refinements of the best placement start, in the setup and the cell that it is planned in: the basins, and
-    /// it itself where it is none of theirs.
-    pub fn starts(&self) -> Vec<Candidate> {
-        let Planned { scheme, solution, .. } = &self.best;
-        let objective = Objective::Feasible(solution.objective);
-        let itself = Candidate { placement: solution.placement, scheme: scheme.clone(), objective };
-        self.is_improved.then_some(itself).into_iter().chain(self.record.basins.iter().cloned()).collect()
-    }
-}
 
 /// Finds the best and the worst placement over all setups.
 ///
@@ -108,8 +64,8 @@ impl Setups {
                 return None;
             }
         };
-        let best = found.best.stated_objective(job);
-        let worst = found.worst.take().map(|worst| (worst.stated_objective(job), worst));
+        let best = stated_objective(job, &found.best);
+        let worst = found.worst.take().map(|worst| (stated_objective(job, &worst), worst));
         self.tried.push(tried(Some((best, worst.as_ref().map(|(objective, _)| *objective)))));
         self.evaluations += found.record.evaluations;
         self.states += found.record.states;
@@ -261,33 +217,4 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
     let setup =
         start.and_then(|start| with_better_axes(&set_up, &start, None, monitor)).map_or(setup, |found| found.setup);
     leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
-}
-
-/// A plan segment by segment.
-pub(super) fn plans_of(plan: &Plan, problem: &Problem) -> Vec<SegmentPlan> {
-    let segments = problem.task.segments().iter().zip(&plan.postures);
-    let travel = problem.travel_cost(Sense::Min);
-    let of_segment = |(span, posture): (&Range<usize>, &Posture)| {
-        let points = &plan.points[span.clone()];
-        let costs = points.iter().map(|point| problem.point_cost(point.point, point.score));
-        let joints: Vec<[f64; 6]> = points.iter().map(|point| point.joints).collect();
-        SegmentPlan {
-            points: span.clone(),
-            posture: *posture,
-            betas: unwrapped(points.iter().map(|point| point.beta)),
-            cost: costs.fold(travel * joint_travel(&joints), |sum, cost| problem.criterion.aggregate.join(sum, cost)),
-            joints,
-        }
-    };
-    segments.map(of_segment).collect()
-}
-
-/// Angles that change by less than half a turn from one to the next. rad
-fn unwrapped(angles: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut all: Vec<f64> = Vec::new();
-    for angle in angles {
-        let before = all.last().copied().unwrap_or(angle);
-        all.push(before + stead_model::robot::angles::wrap(angle - before));
-    }
-    all
 }

@@ -1,6 +1,5 @@
 //! What the placement job works on, and a placement with its plan as it goes from stage to stage.
 
-use super::plan::{StatedPlans, detailed};
 use crate::refine::{Solution, planned};
 use crate::settings::SearchSettings;
 use std::borrow::Cow;
@@ -71,13 +70,6 @@ impl Planned {
             Some((shifted, _)) => Cow::Owned(shifted),
             None => set_up,
         }
-    }
-
-    /// The objective of the plan that would be stated. m
-    pub fn stated_objective(&self, job: &Job<'_>) -> f64 {
-        let problem = self.problem(job.problem);
-        let plans = StatedPlans::best(&Planner::finer(&problem), self, job.monitor);
-        detailed(&problem, &self.solution.placement, &plans).objective
     }
 }
 

@@ -11,10 +11,11 @@ mod drawn;
 mod together;
 
 use super::axes::{kept_points, refined};
-use super::candidates::Found;
+use super::found::Found;
 use super::infeasible::Infeasible;
 use super::job::{Job, Planned};
 use super::motion::with_better_axes;
+use super::plan::stated_objective;
 use super::thinned::{Thinned, path_of, points_needed, spread};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
@@ -279,7 +280,7 @@ pub(super) fn leaned(job: &Job<'_>, closed: Result<Found, Infeasible>) -> Result
     let at_worst = at_worst.filter(|_| closed.is_err() || !monitor.should_stop());
     let worst = at_worst.and_then(|(setup, placement)| leaned_at(&problem.in_setup(&setup), &placement, monitor));
     let (best, worst) = in_order(best, worst);
-    let upright = closed.as_ref().ok().map(|found| found.best.stated_objective(job));
+    let upright = closed.as_ref().ok().map(|found| stated_objective(job, &found.best));
     let (record, of_path) = closed.map_or_else(|_| Default::default(), |found| (found.record, found.worst));
     Ok(Found { best, worst: worst.or(of_path), record, upright, is_improved: true })
 }

@@ -1,8 +1,8 @@
 //! What should be known about a result, said of the cases that are stated, when they are.
 
 use super::calmer::{calmer, swing};
-use super::candidates::plans_of;
 use super::job::Job;
+use super::plan::plans_of;
 use crate::outcome::{Case, Cases, Cycle, Plan};
 use stead_model::plausibility;
 use stead_model::robot::PostureWord;

@@ -1,16 +1,17 @@
 //! Plans with everything that there is to say of them.
 
-use super::job::Planned;
+use super::job::{Job, Planned};
 use crate::outcome::{AtHeldFeed, Cycle, DeflectionFigures, Plan, PlanPoint};
 use crate::refine::planned;
 use crate::sag::Sag;
+use std::ops::Range;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
 use stead_planning::collision::PlanClearance;
 use stead_planning::evaluate::reference::{ScoredByOrigin, scored_by_origin, scored_part_by_parameters};
 use stead_planning::feed::CutFeed;
-use stead_planning::joint_travel::JointTravel;
+use stead_planning::joint_travel::{JointTravel, joint_travel};
 use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
 use stead_planning::sense::Sense;
@@ -45,6 +46,13 @@ impl StatedPlans {
         };
         within_tie().map_or_else(|| solution.plans.clone(), |found| found.plans)
     }
+}
+
+/// The objective of the plan that would be stated of a placement. m
+pub(super) fn stated_objective(job: &Job<'_>, found: &Planned) -> f64 {
+    let problem = found.problem(job.problem);
+    let plans = StatedPlans::best(&Planner::finer(&problem), found, job.monitor);
+    detailed(&problem, &found.solution.placement, &plans).objective
 }
 
 /// Objectives that differ by less (relative) are the same.
@@ -172,4 +180,33 @@ fn plan_clearance(problem: &Problem, points: &[PlanPoint]) -> Option<PlanClearan
     });
     let (_, point, distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(PlanClearance { point, distance, names })
+}
+
+/// A plan segment by segment.
+pub(super) fn plans_of(plan: &Plan, problem: &Problem) -> Vec<SegmentPlan> {
+    let segments = problem.task.segments().iter().zip(&plan.postures);
+    let travel = problem.travel_cost(Sense::Min);
+    let of_segment = |(span, posture): (&Range<usize>, &Posture)| {
+        let points = &plan.points[span.clone()];
+        let costs = points.iter().map(|point| problem.point_cost(point.point, point.score));
+        let joints: Vec<[f64; 6]> = points.iter().map(|point| point.joints).collect();
+        SegmentPlan {
+            points: span.clone(),
+            posture: *posture,
+            betas: unwrapped(points.iter().map(|point| point.beta)),
+            cost: costs.fold(travel * joint_travel(&joints), |sum, cost| problem.criterion.aggregate.join(sum, cost)),
+            joints,
+        }
+    };
+    segments.map(of_segment).collect()
+}
+
+/// Angles that change by less than half a turn from one to the next. rad
+fn unwrapped(angles: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut all: Vec<f64> = Vec::new();
+    for angle in angles {
+        let before = all.last().copied().unwrap_or(angle);
+        all.push(before + wrap(angle - before));
+    }
+    all
 }

@@ -1,7 +1,7 @@
 //! What is stated of the best and the worst placement: made once, when both are known.
 
 use super::basins::{leading, of_best, refine_basins};
-use super::candidates::{Found, Record};
+use super::found::{Found, Record};
 use super::job::{Job, Planned, shifted_back};
 use super::notes;
 use super::plan::{StatedPlans, detailed, stated};

@@ -5,7 +5,7 @@ mod tolerance;
 
 pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances};
 
-use crate::outcome::{Case, Plan, left_out};
+use crate::case::{Case, Plan};
 use nalgebra::Vector3;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid};
@@ -152,7 +152,7 @@ impl SetupSheet {
     /// The warning that a stop left the tolerances out.
     pub fn left_out(&self) -> Option<Warning> {
         let is_interrupted = self.tolerances.as_ref().is_err_and(|why| why == INTERRUPTED);
-        is_interrupted.then(|| left_out("the tolerances of the setup sheet are"))
+        is_interrupted.then(|| Warning::left_out("the tolerances of the setup sheet are"))
     }
 
     /// The sheet of a case of a problem, whatever its setup.

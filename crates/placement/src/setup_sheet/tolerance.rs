@@ -3,7 +3,7 @@
 //! between segments stay, as their joint angles do.
 
 use super::{JointMove, joint_moves};
-use crate::outcome::{Case, PlanPoint};
+use crate::case::{Case, PlanPoint};
 use crate::path_subset::PathSubset;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::cli::command;
+use crate::cli::manual::expanded;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -120,14 +121,6 @@ fn tables_of_the_guide_are_those_of_the_commands() {
     }
     assert!(stale.is_empty(), "renew them: {}", stale.join(" && "));
     assert!(marks >= 14, "{marks}");
-}
-
-/// A name with all its alternatives in braces.
-fn expanded(name: &str) -> Vec<String> {
-    let Some((before, rest)) = name.split_once('{') else { return vec![name.to_owned()] };
-    let (choices, after) = rest.split_once('}').unwrap();
-    let all = choices.split(',').flat_map(|choice| expanded(&format!("{before}{choice}{after}")));
-    all.collect()
 }
 
 /// Whether a file has a name, in which `*` and `<..>` stand for anything.
