@@ -299,6 +299,10 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     assert_eq!(again.code, Some(2));
     again.assert_says(&["PART.csv: is there already", "--force replaces it"]);
     bench.write("my/PART.csv", "mine");
+    let foreign = bench.stead(&[&export[..], &["--force"]].concat());
+    assert_eq!((foreign.code, bench.read("my/PART.csv").as_str()), (Some(2), "mine"));
+    foreign.assert_says(&["PART.csv: was not written by this command, and is not replaced"]);
+    bench.write("my/PART.csv", "");
     run(&[&export[..], &["--force"]].concat());
     assert!(bench.read("my/PART.csv").lines().count() > 10);
 }

@@ -62,6 +62,13 @@ fn a_file_that_is_there_is_neither_replaced_nor_joined() {
         assert_eq!(bench.tree(""), before);
     }
     assert_eq!(bench.stead(&["init", "cook", "new"]).code, Some(2));
+    // What is not of the kind is somebody else's, with --force too.
+    let foreign = bench.stead(&["init", "assess", "new", "--force"]);
+    assert_eq!(foreign.code, Some(2));
+    foreign.assert_says(&["new/robot.toml: was not written by this command, and is not replaced"]);
+    assert_eq!(bench.tree(""), before);
+    let begin = starter("assess").read("new/robot.toml").lines().next().unwrap().to_owned();
+    bench.write("new/robot.toml", &(begin + "\n# mine\n"));
     let replaced = bench.stead(&["init", "assess", "new", "--force"]);
     assert_eq!((replaced.code, bench.tree("new").len()), (Some(0), 2), "{}", replaced.stderr);
     assert!(bench.read("new/robot.toml").contains("[[joints]]"));

@@ -1,8 +1,9 @@
 //! HTTP as the page of one browser needs it, and no more: requests with a head of limited length, whose body is read
 //! once it is known that they may ask, on a limited number of connections, each in a limited time.
 //!
-//! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has
-//! waited longest is closed, first among those that were refused, then among those without a request that was allowed.
+//! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held and none ends within
+//! a moment, the one that has waited longest is closed, first among those that were refused, then among those without a
+//! request that was allowed.
 
 mod message;
 
@@ -25,6 +26,8 @@ const TIME_OF_REQUEST: Duration = Duration::from_secs(10);
 const IDLE: Duration = Duration::from_secs(60);
 /// Connections that are open side by side.
 const MOST_CONNECTIONS: usize = 64;
+/// So long the end of one is waited for, where there are as many. ms
+const MOMENT_MS: usize = 50;
 
 /// What answers.
 pub(super) trait Site: Send + Sync + 'static {
@@ -78,6 +81,14 @@ impl Shared {
     /// Takes up a connection; where there are too many, one that waits is closed for it, as the module says.
     fn enter(&self, number: u64, stream: &TcpStream) -> bool {
         let Ok(stream) = stream.try_clone() else { return false };
+        for _ in 0..MOMENT_MS {
+            let open = self.open();
+            if open.len() < MOST_CONNECTIONS || open.values().any(|one| one.stage == Stage::Refused) {
+                break;
+            }
+            drop(open);
+            std::thread::sleep(Duration::from_millis(1));
+        }
         let mut open = self.open();
         if open.len() >= MOST_CONNECTIONS {
             let waiting = open.iter().filter(|(_, one)| one.stage != Stage::Answered);

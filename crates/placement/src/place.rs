@@ -1,11 +1,11 @@
 //! The placement job: search, refine, improve, state.
 //!
-//! Three stages hand on placements with their plans (`job`, `found`): `candidates` searches (`searched`) and refines (`basins`)
-//! in every setup, `axes` and `lean` improve external axes and leans of what it finds, and `state` says what there is to
-//! say of the end alone (`plan`, `notes`, `sets` for several stiffnesses, `calmer` for plans whose joints turn less).
-//! `long_path` and `long_refinement` search by subsets of a long path, `infeasible` says what blocks a placement that is
-//! refused, `preview` and `from_here` are for a placement that is moved by hand: what it comes to at once, and the best
-//! one near it.
+//! Three stages hand on placements with their plans (`job`, `found`): `candidates` searches (`searched`) and refines
+//! (`basins`) in every setup, `axes` and `lean` improve external axes and leans of what it finds, and `state` says what
+//! there is to say of the end alone (`plan`, `notes`, `sets` for several stiffnesses, `calmer` for plans whose joints
+//! turn less). `long_path` and `long_refinement` search by subsets of a long path, `infeasible` says what blocks a
+//! placement that is refused, `preview` and `from_here` are for a placement that is moved by hand: what it comes to at
+//! once, and the best one near it.
 
 use super::outcome::Outcome;
 use super::settings::SearchSettings;

@@ -4,8 +4,8 @@
 //! drawn over the cell that are best on a coarse grid of leans, lead and tilt are planned together with beta
 //! ([`MotionGrid`]), first over their whole ranges, then off that grid; placement, betas and leans are refined by
 //! the gradient in all of them, and lead and tilt are planned anew, by turns. The best of these are refined further
-//! ([`Leaning::together`]), with their external axes. A step is only taken to a plan that is better, so that where the axis
-//! of the path is allowed the result is never worse than with it.
+//! ([`Leaning::together`]), with their external axes. A step is only taken to a plan that is better, so that where the
+//! axis of the path is allowed the result is never worse than with it.
 
 mod drawn;
 mod together;
