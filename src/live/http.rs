@@ -1,9 +1,9 @@
 //! HTTP as the page of one browser needs it, and no more: requests with a head of limited length, whose body is read
 //! once it is known that they may ask, on a limited number of connections, each in a limited time.
 //!
-//! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held and none ends within
-//! a moment, the one that has waited longest is closed, first among those that were refused, then among those without a
-//! request that was allowed.
+//! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has
+//! waited longest is closed, first among those that were refused, then among those without a request that was allowed,
+//! which are left a moment for it.
 
 mod message;
 
@@ -26,8 +26,8 @@ const TIME_OF_REQUEST: Duration = Duration::from_secs(10);
 const IDLE: Duration = Duration::from_secs(60);
 /// Connections that are open side by side.
 const MOST_CONNECTIONS: usize = 64;
-/// So long the end of one is waited for, where there are as many. ms
-const MOMENT_MS: usize = 50;
+/// One that is new is not closed for another.
+const MOMENT: Duration = Duration::from_millis(50);
 
 /// What answers.
 pub(super) trait Site: Send + Sync + 'static {
@@ -81,9 +81,11 @@ impl Shared {
     /// Takes up a connection; where there are too many, one that waits is closed for it, as the module says.
     fn enter(&self, number: u64, stream: &TcpStream) -> bool {
         let Ok(stream) = stream.try_clone() else { return false };
-        for _ in 0..MOMENT_MS {
+        let is_new = |one: &Open| one.stage == Stage::Unknown && one.since.elapsed() < MOMENT;
+        loop {
             let open = self.open();
-            if open.len() < MOST_CONNECTIONS || open.values().any(|one| one.stage == Stage::Refused) {
+            let Some(first) = open.values().min_by_key(|one| (one.stage, one.since)) else { break };
+            if open.len() < MOST_CONNECTIONS || !is_new(first) {
                 break;
             }
             drop(open);
