@@ -224,6 +224,7 @@ fn a_richer_use_is_never_worse_and_keeps_to_speed_and_range() {
 #[test]
 fn sets_force_errors_and_warnings_belong_to_the_plans_that_are_stated() {
     let mut problem = with_first_springs(&with_speeds(), &[1.0, 0.3], Over::Mean);
+    problem.redundancy.beta_count = 24;
     problem.external_axes = vec![rail(Carried::Workpiece, Vector3::y(), [-0.1, 0.1], AxisUse::Continuous)];
     problem.setup = Setup::at_rest(&problem.external_axes);
     problem.cell.position = [0.0, -1.8, -0.5].map(|at| Interval { min: at - 0.05, max: at + 0.05 });
