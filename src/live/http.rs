@@ -27,7 +27,7 @@ const IDLE: Duration = Duration::from_secs(60);
 /// Connections that are open side by side.
 const MOST_CONNECTIONS: usize = 64;
 /// One that is new is not closed for another.
-const MOMENT: Duration = Duration::from_millis(50);
+const MOMENT: Duration = Duration::from_millis(10);
 
 /// What answers.
 pub(super) trait Site: Send + Sync + 'static {
