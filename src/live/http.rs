@@ -82,22 +82,18 @@ impl Shared {
     fn enter(&self, number: u64, stream: &TcpStream) -> bool {
         let Ok(stream) = stream.try_clone() else { return false };
         let is_new = |one: &Open| one.stage == Stage::Unknown && one.since.elapsed() < MOMENT;
-        loop {
-            let open = self.open();
-            let Some(first) = open.values().min_by_key(|one| (one.stage, one.since)) else { break };
-            if open.len() < MOST_CONNECTIONS || !is_new(first) {
-                break;
-            }
-            drop(open);
-            std::thread::sleep(Duration::from_millis(1));
-        }
         let mut open = self.open();
-        if open.len() >= MOST_CONNECTIONS {
+        while open.len() >= MOST_CONNECTIONS {
             let waiting = open.iter().filter(|(_, one)| one.stage != Stage::Answered);
-            let Some(number) = waiting.min_by_key(|(_, one)| (one.stage, one.since)).map(|(number, _)| *number) else {
-                return false;
-            };
-            if let Some(one) = open.remove(&number) {
+            let Some((first, one)) = waiting.min_by_key(|(_, one)| (one.stage, one.since)) else { return false };
+            if is_new(one) {
+                drop(open);
+                std::thread::sleep(Duration::from_millis(1));
+                open = self.open();
+                continue;
+            }
+            let first = *first;
+            if let Some(one) = open.remove(&first) {
                 // It is being given up.
                 let _ = one.stream.shutdown(Shutdown::Both);
             }
