@@ -16,7 +16,6 @@ use super::plan::stated_objective;
 use super::searched::{Searched, search_cell};
 use super::sets::Sets;
 use crate::evaluator::Evaluator;
-use crate::refine::planned;
 use stead_numerics::monitor::Monitor;
 use stead_planning::problem::{Cell, Placement, Problem};
 use stead_planning::redundancy::Planner;
@@ -188,33 +187,26 @@ pub(super) fn with_axes(job: &Job<'_>, mut found: Found) -> Found {
 /// plan.
 pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> Setup {
     let pinned = problem.without_tie_rule().in_cell(Cell::at(placement));
-    let at = |setup: &Setup| {
-        let set_up = pinned.in_setup(setup);
-        let planner = Planner::finer(&set_up);
-        planned(&planner, placement, None, &mut planner.workspace())
-    };
-    let mut best = (problem.setup.clone(), at(&problem.setup));
+    let at = |setup: Setup| Planned::at(&pinned, setup, placement);
+    let (mut setup, mut best) = (problem.setup.clone(), at(problem.setup.clone()));
     for (number, axis) in problem.external_axes.iter().enumerate() {
-        let AxisPositions::Same(start) = best.0.positions.clone() else { break };
+        let AxisPositions::Same(start) = setup.positions.clone() else { break };
         for position in axis.grid(GRID) {
             if monitor.should_stop() {
                 break;
             }
             let mut positions = start.clone();
             positions[number] = position;
-            let setup = Setup { positions: AxisPositions::Same(positions), ..best.0.clone() };
-            let known = best.1.as_ref().map_or(f64::INFINITY, |known| known.objective);
-            if let Some(found) = at(&setup)
-                && found.objective < known
+            if let Some(found) = at(Setup { positions: AxisPositions::Same(positions), ..setup.clone() })
+                && best.as_ref().is_none_or(|known| found.solution.objective < known.solution.objective)
             {
-                best = (setup, Some(found));
+                setup = found.setup.clone();
+                best = Some(found);
             }
         }
     }
-    let (setup, start) = best;
     let set_up = pinned.in_setup(&setup);
-    let start = start.map(|solution| Planned { setup: setup.clone(), shift: None, scheme: None, solution });
-    let setup =
-        start.and_then(|start| with_better_axes(&set_up, &start, None, monitor)).map_or(setup, |found| found.setup);
+    let improved = best.and_then(|start| with_better_axes(&set_up, &start, None, monitor));
+    let setup = improved.map_or(setup, |found| found.setup);
     leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
 }

@@ -102,7 +102,7 @@ pub(super) fn best_alone() -> Note {
     Note::from(text.to_owned())
 }
 
-/// That stiffness sets are not told apart where the tool leans.
+/// That no figures of single stiffness sets are stated where the tool leans.
 pub(super) fn no_sets() -> Note {
     "what each stiffness set makes of the best placement is not stated where the tool leans".to_owned().into()
 }

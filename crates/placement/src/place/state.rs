@@ -25,9 +25,8 @@ pub(super) fn state(job: &Job<'_>, mut found: Found) -> Outcome {
     let is_whole = !found.record.interrupted && !monitor.should_stop();
     let size = settings.sensitivity.filter(|_| is_whole);
     let sensitivity = size.and_then(|size| force_sensitivity(job, &found, &cases.best, size));
-    let leaned = problem.lean.is_some();
     let mut beside = Vec::new();
-    if leaned {
+    if problem.lean.is_some() {
         let set_up = problem.in_setup(&cases.best.setup);
         let objective = cases.best.plan.objective;
         beside = notes::of_lean(&set_up, found.upright, objective, cases.worst.is_some());
