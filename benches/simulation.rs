@@ -1,7 +1,7 @@
 //! Speed of simulated passes: `cargo bench --bench simulation`.
 //!
-//! Prints first, for each variant of the shipped aluminium pass at 90 steps a turn, how long the full and the condensed
-//! model take on one core, and how many times as fast as the pass that is (the fastest of seven runs).
+//! Prints first, for each variant of the shipped aluminium pass at 90 steps a turn, how long it takes on one core, and
+//! how many times as fast as the pass that is (the fastest of seven runs).
 
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a benchmark of shipped files that prints its figures")]
 
@@ -19,16 +19,14 @@ use stead_simulation::surface::Node;
 fn main() {
     for variant in Variant::ALL {
         let run = shipped(variant);
-        for (name, is_fast) in [("full", false), ("fast", true)] {
-            let times = (0..7).map(|_| {
-                let start = Instant::now();
-                let pass = simulated(&run, is_fast);
-                (start.elapsed().as_secs_f64(), pass.step * (pass.samples.len() - 1) as f64)
-            });
-            let (time, duration) = times.min_by(|a, b| a.0.total_cmp(&b.0)).expect("seven runs");
-            let (word, factor) = (variant.word(), duration / time);
-            println!("{word:10} {name}: {time:.3} s for {duration:.2} s of motion, real-time factor {factor:.1}");
-        }
+        let times = (0..7).map(|_| {
+            let start = Instant::now();
+            let pass = simulated(&run);
+            (start.elapsed().as_secs_f64(), pass.step * (pass.samples.len() - 1) as f64)
+        });
+        let (time, duration) = times.min_by(|a, b| a.0.total_cmp(&b.0)).expect("seven runs");
+        let (word, factor) = (variant.word(), duration / time);
+        println!("{word:10}: {time:.3} s for {duration:.2} s of motion, real-time factor {factor:.1}");
     }
     divan::main();
 }
@@ -42,10 +40,9 @@ fn shipped(variant: Variant) -> SimulationRun {
     run
 }
 
-fn simulated(run: &SimulationRun, is_fast: bool) -> Run {
+fn simulated(run: &SimulationRun) -> Run {
     let job = Job { setup: &run.setup, cutter: &run.cutter, cut: &run.cut, gap: run.gap };
-    let silent = &Monitor::silent();
-    if is_fast { job.run_fast(silent) } else { job.run(silent) }.expect("the shipped pass can be started")
+    job.run(&Monitor::silent()).expect("the shipped pass can be started")
 }
 
 /// The milling alone, with a tool that does not yield: 32 slices, 90 steps a turn, a thousand turns in the work.

@@ -83,23 +83,11 @@ impl SimulationRun {
     /// # Errors
     /// [`Error::Failed`] for a pass too short to be judged; [`Error::Stopped`] when the monitor asked to stop.
     pub fn simulate(&self, monitor: &Monitor) -> Result<SimulatedPass, Error> {
-        self.run_with(false, monitor)
-    }
-
-    /// Simulates the pass with the condensed model: mass matrix and Jacobian frozen every few millimetres.
-    ///
-    /// # Errors
-    /// As [`SimulationRun::simulate`].
-    pub fn simulate_condensed(&self, monitor: &Monitor) -> Result<SimulatedPass, Error> {
-        self.run_with(true, monitor)
-    }
-
-    fn run_with(&self, is_fast: bool, monitor: &Monitor) -> Result<SimulatedPass, Error> {
         let run = &self.run;
         let job = Job { setup: &run.setup, cutter: &run.cutter, cut: &run.cut, gap: run.gap };
         let start = Instant::now();
-        let pass = if is_fast { job.run_fast(monitor) } else { job.run(monitor) };
-        let making = Making { is_fast, wall: start.elapsed().as_secs_f64() };
+        let pass = job.run(monitor);
+        let making = Making { wall: start.elapsed().as_secs_f64() };
         let pass = pass.map_err(|error| match error {
             JobError::Stopped(stop) => Error::Stopped(stop),
             error => Error::failed(error),

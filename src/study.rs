@@ -130,20 +130,18 @@ impl Study {
     /// The table of results, one row for each case; nothing as long as cases are missing.
     ///
     /// # Errors
-    /// As [`Study::status`]; [`Error::Input`] too where `study.csv` or `study.parquet` is there and not as its run has
-    /// left it, by `manifest.json`: cut short, changed, or of two runs.
+    /// As [`Study::status`]; [`Error::Input`] too where `study.csv` is there and not as its run has left it, by
+    /// `manifest.json`: cut short or changed.
     pub fn results(&self, folder: impl AsRef<Path>) -> Result<Option<Table>, Error> {
         let folder = folder.as_ref();
-        for file in cases::TABLES.map(|name| folder.join(name)) {
-            if let Ok(bytes) = files::read(&file) {
-                manifest::check(&file, &bytes, Unlisted::Refused)?;
-            }
+        let file = folder.join(cases::TABLE);
+        if let Ok(bytes) = files::read(&file) {
+            manifest::check(&file, &bytes, Unlisted::Refused)?;
         }
         Ok(cases::merged(&self.plan, folder)?)
     }
 
-    /// Writes `study.csv`, `study.parquet` and `study-timing.csv` from the shards where every case is done, and says
-    /// whether it is so.
+    /// Writes `study.csv` and `study-timing.csv` from the shards where every case is done, and says whether it is so.
     ///
     /// # Errors
     /// As [`Study::status`], and where a file cannot be written.
@@ -181,7 +179,7 @@ impl Study {
         };
         let mut analysis = Analysis::of(&table, question).map_err(|error| Error::Argument(error.to_string()))?;
         analysis.notes.clone_from(&self.plan.notes);
-        let csv = input_file("table", cases::TABLES[0], &table.to_csv()?);
+        let csv = input_file("table", cases::TABLE, &table.to_csv()?);
         let inputs = self.plan.study.inputs.iter().cloned().chain([csv]).collect();
         Ok(StudyReport { plan: Arc::clone(&self.plan), analysis, inputs, pages: self.pages(folder) })
     }

@@ -96,7 +96,6 @@ fn a_job_that_is_stopped_says_so_and_is_no_bad_input() {
             compensation.compensate(monitor).unwrap_err(),
             compensation.compensate_all(monitor).unwrap_err(),
             simulation.simulate(monitor).unwrap_err(),
-            simulation.simulate_condensed(monitor).unwrap_err(),
             stability.analyse(monitor).unwrap_err(),
             run.export(&plan, &ExportOptions::new(ProgramFormat::Csv, "PART"), monitor).unwrap_err(),
             run.check_program(&plan, &main, &ReadBackOptions::default(), monitor).unwrap_err(),

@@ -44,7 +44,6 @@ fn a_pass_has_its_files_its_document_and_its_text() {
     let frequencies: Vec<f64> = modes.iter().map(|mode| number(&mode["frequency_hz"])).collect();
     assert!((frequencies[0] - 15.76).abs() < 0.0051 && frequencies.len() == 6, "{frequencies:?}");
     assert_eq!((document["stable"].as_bool(), document["end"].as_str()), (Some(true), Some("complete")));
-    assert_eq!(document["fast"].as_bool(), Some(false));
     assert!(number(&document["real_time_factor"]) > 0.0);
 
     let expected = [
@@ -76,23 +75,10 @@ fn a_pass_has_its_files_its_document_and_its_text() {
 }
 
 #[test]
-fn the_fast_model_agrees_in_every_variant() {
-    let bench = bench();
-    for variant in ["springs", "gravity", "orthogonal", "backlash"] {
-        let [full, fast] = [&["--json"][..], &["--json", "--fast"]].map(|arguments| {
-            let ended = simulate(&bench, &[arguments, &["--variant", variant]].concat());
-            assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-            ended.json()
-        });
-        assert_eq!((full["variant"].as_str(), fast["fast"].as_bool()), (Some(variant), Some(true)));
-        let tolerance = if variant == "backlash" { 0.02 } else { 1e-3 };
-        for axis in ["force_x", "force_y"] {
-            for key in ["mean_n", "rms_n"] {
-                let [full, fast] = [&full, &fast].map(|document| number(&document[axis][key]));
-                assert!((fast / full - 1.0).abs() < tolerance, "{variant} {axis} {key}: {fast} {full}");
-            }
-        }
-    }
+fn an_option_that_was_taken_away_is_refused_with_what_does_instead() {
+    let ended = simulate(&bench(), &["--fast"]);
+    assert_eq!((ended.code, ended.stderr.lines().count()), (Some(2), 1), "{}", ended.stderr);
+    ended.assert_says(&["error: --fast: there is no such option any more; allowed: nothing in its place: "]);
 }
 
 /// Forces push the tip the way it goes: both have one sense of y, in which the wall pushes it back.
@@ -128,7 +114,7 @@ fn simulate_and_stability_agree_on_calm_and_flip() {
         bench.replace(steel, "runout_um = [6.929, 0.0]", "runout_um = [0.0, 0.0]");
         bench.replace(steel, "# steps_per_turn = 360", "steps_per_turn = 90\nslices = 8");
         bench.replace(steel, "# [stability] ", "[stability]\nlobes_points = 2\n# ");
-        let pass = bench.stead(&["simulate", steel, "--fast", "--json"]).json();
+        let pass = bench.stead(&["simulate", steel, "--json"]).json();
         let stability = bench.stead(&["stability", steel, "--json"]).json();
         assert_eq!(pass["judgement"], judgement, "{depth}: {}", pass["small_motions"]);
         assert_eq!((&pass["stable"], &stability["stable"]), (&is_calm.into(), &is_calm.into()), "{depth}");
@@ -137,7 +123,7 @@ fn simulate_and_stability_agree_on_calm_and_flip() {
         assert!(number(&pass["unrest"]) < 0.01, "{depth}: from turn to turn nothing is to be seen");
         assert_eq!(number(&pass["unrest_of_teeth_alike"]) > 0.2, !is_calm, "{depth}");
         assert_eq!((&pass["notes"], &stability["notes"]), (&serde_json::json!([]), &serde_json::json!([])));
-        let text = bench.stead(&["simulate", steel, "--fast"]).stdout;
+        let text = bench.stead(&["simulate", steel]).stdout;
         let sentence = if is_calm {
             "The cut is calm: forces differ by 0.0"
         } else {
@@ -156,11 +142,11 @@ fn a_flip_with_runout_is_told_by_its_growth() {
     bench.replace(steel, "axial_depth_mm = 1.6", "axial_depth_mm = 0.75");
     bench.replace(steel, "# steps_per_turn = 360", "steps_per_turn = 90\nslices = 8");
     bench.replace(steel, "# [stability] ", "[stability]\nlobes_points = 2\n# ");
-    let ended = bench.stead(&["simulate", steel, "--fast"]);
+    let ended = bench.stead(&["simulate", steel]);
     for part in ["The cut chatters (flip): with runout a flip repeats from turn to turn", "Small motions grow (flip)"] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
-    for command in [&["simulate", steel, "--fast", "--json"][..], &["stability", steel, "--json"]] {
+    for command in [&["simulate", steel, "--json"][..], &["stability", steel, "--json"]] {
         let ended = bench.stead(command);
         let note = "the stability of small motions is that of the cutter without its runout";
         ended.assert_says(&["note: ", note]);

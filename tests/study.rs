@@ -43,9 +43,9 @@ pub fn run(bench: &Bench, out: &str, more: &[&str]) -> Ended {
     ended
 }
 
-/// The files that depend on nothing but the study.
-pub fn results(bench: &Bench, out: &str) -> [Vec<u8>; 2] {
-    ["study.csv", "study.parquet"].map(|name| std::fs::read(bench.path(&format!("{out}/{name}"))).unwrap())
+/// The file that depends on nothing but the study.
+pub fn results(bench: &Bench, out: &str) -> Vec<u8> {
+    std::fs::read(bench.path(&format!("{out}/study.csv"))).unwrap()
 }
 
 /// The rows of a table of results, by the names of the columns.
@@ -60,7 +60,7 @@ fn shards_in_any_order_and_on_any_threads_give_the_bytes_of_one() {
     let bench = bench();
     let whole = run(&bench, "whole", &["--threads", "1"]);
     assert_eq!(whole.stdout, "study: 6 of 6 cases done, 6 of them now; results in whole/study.csv\n");
-    assert_eq!(bench.names("whole/shards"), ["0001-of-0001-timing.csv", "0001-of-0001.lock", "0001-of-0001.parquet"]);
+    assert_eq!(bench.names("whole/shards"), ["0001-of-0001.jsonl", "0001-of-0001.lock"]);
     let expected = results(&bench, "whole");
     for (out, order) in [("a", [4, 1, 3, 2]), ("b", [2, 3, 4, 1])] {
         for (done, shard) in order.iter().enumerate() {
@@ -353,23 +353,28 @@ fn shards_out_of_range_other_studies_and_locks_are_refused() {
 }
 
 #[test]
-fn a_parquet_file_cut_short_is_told_and_its_shard_done_again() {
+fn a_journal_that_was_changed_is_told_and_its_cases_done_again() {
     let bench = bench();
     for shard in ["1/2", "2/2"] {
         run(&bench, "out", &["--shard", shard]);
     }
     let expected = results(&bench, "out");
-    let file = bench.path("out/shards/0002-of-0002.parquet");
+    let file = bench.path("out/shards/0002-of-0002.jsonl");
     let bytes = std::fs::read(&file).unwrap();
-    std::fs::write(&file, &bytes[..bytes.len() / 2]).unwrap();
+    let second = bytes.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    let mut changed = bytes.clone();
+    changed[second + 100] ^= 1;
+    std::fs::write(&file, &changed).unwrap();
     let status = bench.stead(&["study", "status", STUDY, "--out", "out"]);
-    assert!(status.stdout.starts_with("3 of 6 cases done"), "{}", status.stdout);
-    status.assert_says(&["warning: out/shards/0002-of-0002.parquet: is no whole Parquet file of this study: "]);
+    assert!(status.stdout.starts_with("4 of 6 cases done"), "{}", status.stdout);
+    let warning = "warning: out/shards/0002-of-0002.jsonl: line 2 is not as it was written; its case and those behind";
+    status.assert_says(&[warning]);
     let ended = bench.stead(&["study", "run", STUDY, "--out", "out", "--shard", "2/2"]);
     assert_eq!(ended.code, Some(0));
-    ended.assert_says(&["warning: out/shards/0002-of-0002.parquet: ", "; its cases are done again"]);
-    assert!(ended.stdout.starts_with("shard 2/2: 3 of 3 cases done, 3 of them now; results in"), "{}", ended.stdout);
-    assert_eq!((results(&bench, "out"), std::fs::read(&file).unwrap()), (expected, bytes));
+    ended.assert_says(&[warning, " it are done again"]);
+    assert!(ended.stdout.starts_with("shard 2/2: 3 of 3 cases done, 2 of them now; results in"), "{}", ended.stdout);
+    assert_eq!(results(&bench, "out"), expected);
+    assert!(!bench.stead(&["study", "status", STUDY, "--out", "out"]).stderr.contains("warning"));
 }
 
 #[cfg(unix)]

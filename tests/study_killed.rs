@@ -109,8 +109,7 @@ impl Study {
     fn assert_whole(&self, out: &str) {
         assert!(results(&self.bench, out) == self.expected, "not the bytes of an undisturbed run");
         assert_eq!(self.bench.read(&format!("{out}/mine.txt")), "the user's own\n");
-        let stray =
-            self.bench.names(out).into_iter().find(|name| [".tmp", ".jsonl"].iter().any(|end| name.ends_with(end)));
+        let stray = self.bench.names(out).into_iter().find(|name| name.ends_with(".tmp"));
         assert_eq!(stray, None);
         let report = self.bench.stead(&["study", "report", STUDY, "--out", out, "--json"]);
         assert_eq!(report.code, Some(0), "{}", report.stderr);

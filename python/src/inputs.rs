@@ -283,11 +283,9 @@ impl SimulationRun {
         read.map(Self).map_err(|error| raised(py, error))
     }
 
-    fn simulate(&self, py: Python<'_>, condensed: bool, options: Options) -> Done {
+    fn simulate(&self, py: Python<'_>, options: Options) -> Done {
         let input = self.0.clone();
-        let job = move |monitor: &stead::Monitor| {
-            if condensed { input.simulate_condensed(monitor) } else { input.simulate(monitor) }
-        };
+        let job = move |monitor: &stead::Monitor| input.simulate(monitor);
         let (result, was_stopped) = run_stoppable(py, &options, job)?;
         done(result, was_stopped, Kind::Simulated, |error| raised(py, error))
     }

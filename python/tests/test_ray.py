@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import fcntl
 import json
 import os
-import re
 import secrets
 import shutil
 import signal
@@ -169,18 +167,13 @@ def test_a_node_that_is_killed_costs_no_case(
     assert "Traceback" not in err and "error: " not in err, err
 
     subprocess.run([*command, "study", "run", file, "--out", tmp_path / "local"], capture_output=True, check=True)
-    for name in ("study.csv", "study.parquet"):
-        assert (folder / name).read_bytes() == (tmp_path / "local" / name).read_bytes(), name
+    assert (folder / "study.csv").read_bytes() == (tmp_path / "local" / "study.csv").read_bytes()
     status = stead.Study.read(file).status(folder)
     assert status.done == CASES and [shard.shard for shard in status.shards] == [(i, SHARDS) for i in range(1, 9)]
 
     # The shard that was begun on the killed node went on where it was: its finished cases keep the time that they took there.
-    with open(re.sub(r"\.jsonl$", "-timing.csv", str(journal)), newline="") as text:
-        seconds = {row["id"]: float(row["seconds"]) for row in csv.DictReader(text)}
-    assert len(seconds) == CASES // SHARDS
-    for line in finished:
-        entry = json.loads(line)["case"]
-        assert seconds[entry["id"]] == entry["timing"]["seconds"]
+    lines = Path(journal).read_text().splitlines()
+    assert len(lines) == CASES // SHARDS and lines[: len(finished)] == finished
 
 
 def test_ctrl_c_and_what_is_refused(nodes: tuple[Node, Node, str], small_study: Path, tmp_path: Path) -> None:

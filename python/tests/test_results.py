@@ -77,8 +77,8 @@ def test_the_other_commands(command: list[str], tmp_path: Path) -> None:
     assert b"compliance" in robot.files["robot-identified.toml"]
 
     file = "configs/umons-aluminium.toml"
-    simulated = stead.SimulationRun.read(file, spindle_rpm=18000.0).simulate(condensed=True)
-    check_same(simulated, command, tmp_path / "4", "simulate", file, "--spindle-rpm", "18000", "--fast")
+    simulated = stead.SimulationRun.read(file, spindle_rpm=18000.0).simulate()
+    check_same(simulated, command, tmp_path / "4", "simulate", file, "--spindle-rpm", "18000")
     assert simulated.force_x.max_n > 0.0
 
     file = "configs/umons-aluminium.toml"
@@ -170,7 +170,7 @@ def test_every_key_is_declared(out: stead.Placements) -> None:
         stead.FitRun.read("configs/identify-example.toml").fit(),
         stead.DesignRun.read("configs/identify-plan-example.toml").plan(),
         stead.CompensationRun.read("configs/compensate-caro-2013.toml").compensate(),
-        stead.SimulationRun.read("configs/umons-aluminium.toml").simulate(condensed=True),
+        stead.SimulationRun.read("configs/umons-aluminium.toml").simulate(),
         stead.StabilityRun.read("configs/umons-aluminium.toml").analyse(),
         stead.Profile.read("tasks/measured-groove.csv").circularity(),
         stead.AssessmentRun.read("configs/horizontal-slot.toml").assess(),

@@ -1,4 +1,4 @@
-"""Studies: the bytes of the command, shards, what stops them, and their tables in other libraries."""
+"""Studies: the bytes of the command, shards, what stops them, and their tables."""
 
 from __future__ import annotations
 
@@ -7,13 +7,10 @@ import json
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
-import duckdb
 import numpy as np
 import pandas as pd
-import polars as pl
 import pytest
 
 import stead
@@ -89,8 +86,7 @@ def of_command(study_file: Path, command: list[str], tmp_path_factory: pytest.Te
 
 
 def check_same(ours: Path, theirs: Path) -> None:
-    for name in ("study.csv", "study.parquet"):
-        assert (ours / name).read_bytes() == (theirs / name).read_bytes(), name
+    assert (ours / "study.csv").read_bytes() == (theirs / "study.csv").read_bytes()
 
 
 def test_the_bytes_are_those_of_the_command(done: Path, of_command: Path) -> None:
@@ -144,41 +140,6 @@ def test_the_table_of_results(study_file: Path, done: Path) -> None:
     frame = table.to_pandas()
     for name, column in zip(names, zip(*rows, strict=True), strict=True):
         assert [None if pd.isna(value) else value for value in frame[name]] == list(column), name
-
-
-def parquet_by_pandas(file: Path) -> tuple[list[str], list[str], list[list[Value]]]:
-    frame = pd.read_parquet(file)
-    kinds = {"int64": "count", "float64": "number", "object": "text", "str": "text", "string": "text"}
-    # pandas has no missing whole numbers by default.
-    found = ["count" if name in COUNTS else kinds[str(dtype)] for name, dtype in frame.dtypes.items()]
-    rows = [[None if pd.isna(value) else value for value in row] for row in frame.itertuples(index=False, name=None)]
-    return list(frame.columns), found, rows
-
-
-def parquet_by_polars(file: Path) -> tuple[list[str], list[str], list[list[Value]]]:
-    frame = pl.read_parquet(file)
-    kinds = {pl.Int64: "count", pl.Float64: "number", pl.String: "text"}
-    return frame.columns, [kinds[type(kind)] for kind in frame.dtypes], [list(row) for row in frame.rows()]
-
-
-def parquet_by_duckdb(file: Path) -> tuple[list[str], list[str], list[list[Value]]]:
-    found = duckdb.sql(f"select * from read_parquet('{file}')")
-    assert found is not None
-    kinds = {"BIGINT": "count", "DOUBLE": "number", "VARCHAR": "text"}
-    return found.columns, [kinds[str(kind)] for kind in found.types], [list(row) for row in found.fetchall()]
-
-
-@pytest.mark.parametrize("read", [parquet_by_pandas, parquet_by_polars, parquet_by_duckdb])
-def test_the_parquet_file_has_values_nulls_and_types_of_the_csv_file(
-    done: Path,
-    read: Callable[[Path], tuple[list[str], list[str], list[list[Value]]]],
-) -> None:
-    names, kinds, rows = read(done / "study.parquet")
-    expected_names, expected = rows_of(done)
-    assert names == expected_names
-    assert kinds == ["text" if name in TEXTS else "count" if name in COUNTS else "number" for name in names]
-    assert rows == expected
-    assert any(value is None for row in rows for value in row)
 
 
 def test_what_is_refused(study_file: Path, done: Path, tmp_path: Path) -> None:

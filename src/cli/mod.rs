@@ -35,6 +35,7 @@ mod study;
 mod values;
 
 use arguments::{Arguments, Command};
+use clap::error::ContextKind;
 use clap::{CommandFactory, FromArgMatches};
 use manual::Manual;
 use serde::Serialize;
@@ -154,9 +155,18 @@ fn outlive_file_limits() {
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
+/// Options that were taken away, and what does instead.
+const GONE: [(&str, &str); 1] =
+    [("--fast", "nothing in its place: a pass is simulated with the whole arm, in some tenths of a second")];
+
 /// Shows the help or the version that was requested, or what is wrong with the command line.
 fn show_usage(shown: &clap::Error) -> u8 {
     let code = u8::try_from(shown.exit_code()).unwrap_or(2);
+    let unknown = shown.get(ContextKind::InvalidArg).map(ToString::to_string);
+    if let Some((option, instead)) = GONE.iter().find(|(option, _)| unknown.as_deref() == Some(option)) {
+        say(&format!("error: {option}: there is no such option any more; allowed: {instead}"));
+        return code;
+    }
     match shown.print() {
         Err(error) if code == 0 && error.kind() != ErrorKind::BrokenPipe => {
             say(&format!("error: the result cannot be written to standard output: {error}"));

@@ -15,9 +15,6 @@ pub(super) struct SimulateOptions {
     pub config: PathBuf,
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Use the condensed model, with mass matrix and Jacobian frozen every few millimetres
-    #[arg(long)]
-    pub fast: bool,
     /// Folder for the results [default: results/<name of the simulation file>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -30,7 +27,7 @@ pub(super) struct SimulateOptions {
 pub(super) const MANUAL: Manual = Manual {
     examples: &[
         "stead simulate configs/umons-aluminium.toml",
-        "stead simulate configs/umons-aluminium.toml --variant gravity --fast",
+        "stead simulate configs/umons-aluminium.toml --variant gravity",
         "stead simulate configs/umons-steel.toml --damping-scale 10 --out results/steel-damped",
     ],
     files: &[
@@ -51,7 +48,7 @@ pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let run = SimulationRun::read_with(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     let shown = Terminal::start(Some(&out.folder)).show(None);
-    let pass = if options.fast { run.simulate_condensed(&shown.monitor) } else { run.simulate(&shown.monitor) };
+    let pass = run.simulate(&shown.monitor);
     drop(shown);
     let pass = pass?;
     say_notes(pass.notes());

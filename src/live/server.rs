@@ -47,6 +47,10 @@ impl Server {
         let taken = |cause: std::io::Error| StartError::Port { port, cause: cause.to_string() };
         let system = |cause: std::io::Error| StartError::System(cause.to_string());
         let listener = TcpListener::bind(("127.0.0.1", port)).map_err(taken)?;
+        #[cfg(unix)]
+        // As many may wait to be accepted as the system allows, not the 128 of the standard library: one that finds no
+        // place is only tried again a second later.
+        rustix::net::listen(&listener, 4096).map_err(|cause| taken(cause.into()))?;
         let port = listener.local_addr().map_err(taken)?.port();
         let session = Arc::new(session);
         let guard = Guard { port, token: token()? };

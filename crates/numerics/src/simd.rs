@@ -7,7 +7,7 @@ use pulp::{Arch, Scalar256b, Simd, WithSimd, bytemuck};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 /// Most lanes that any processor has here: rows that are read in lanes go on this far beyond their end.
-pub const MAX_LANES: usize = 8;
+pub const MAX_LANES: usize = 4;
 
 /// Which instructions of the processor are used: chosen once, the same results for all.
 #[derive(Debug, Clone, Copy)]
@@ -27,27 +27,20 @@ impl Instructions {
         Self(None)
     }
 
-    /// Plain ones, and all others that this processor has.
-    pub fn all() -> Vec<Self> {
-        let mut all = vec![Self::plain()];
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        all.extend(pulp::x86::V3::try_new().map(|v3| Self(Some(Arch::V3(v3)))));
-        if !matches!(Arch::new(), Arch::Scalar) {
-            all.push(Self::best());
-        }
-        all
+    /// Plain ones, and the best that this processor has.
+    pub fn all() -> [Self; 2] {
+        [Self::plain(), Self::best()]
     }
 
     /// Runs `work` with them.
     #[inline(always)]
     pub fn run<W: WithSimd>(self, work: W) -> W::Output {
         match self.0 {
-            None => plain(work),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Some(Arch::V3(simd)) => Simd::vectorize(simd, work),
-            #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Some(Arch::V4(simd)) => Simd::vectorize(simd, work),
-            Some(arch) => of_others(arch, work),
+            #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+            Some(arch) => arch.dispatch(work),
+            _ => plain(work),
         }
     }
 }
@@ -57,12 +50,6 @@ impl Instructions {
 #[inline(never)]
 fn plain<W: WithSimd>(work: W) -> W::Output {
     work.with_simd(Scalar256b)
-}
-
-/// Work with instructions that have no name here.
-#[inline(never)]
-fn of_others<W: WithSimd>(arch: Arch, work: W) -> W::Output {
-    arch.dispatch(work)
 }
 
 /// Some numbers, as many as `S` has lanes.
@@ -305,12 +292,8 @@ impl<S: Simd> Mask<S> {
     pub fn first(self) -> usize {
         let bytes = bytemuck::bytes_of(&self.bits);
         let mut mask = 0;
-        if bytes.len() == 8 * S::F64_LANES {
-            for k in 0..S::F64_LANES {
-                mask |= (u32::from(bytes[8 * k]) & 1) << k;
-            }
-        } else {
-            mask = u32::from(bytes[0]);
+        for k in 0..S::F64_LANES {
+            mask |= (u32::from(bytes[8 * k]) & 1) << k;
         }
         if mask == 0 { S::F64_LANES } else { mask.trailing_zeros() as usize }
     }

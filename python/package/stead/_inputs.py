@@ -218,7 +218,6 @@ class SimulationRun:
 
     def simulate(
         self,
-        condensed: bool = False,
         threads: int | None = None,
         *,
         progress: Progress | None = None,
@@ -227,7 +226,6 @@ class SimulationRun:
         """Simulates the pass with the whole kinematic chain.
 
         Args:
-            condensed: With mass matrix and Jacobian frozen every few millimetres, as `stead simulate --fast`.
             threads: Number of threads; it does not change the result.
             progress: Called with stage, steps done and steps in all.
             time_limit_s: The job ends without a result after so many seconds.
@@ -237,7 +235,7 @@ class SimulationRun:
             Interrupted: at Ctrl-C, without a result.
         """
         options = options_of(progress, threads, time_limit_s)
-        return finished(SimulatedPass, self._native.simulate(condensed, options))
+        return finished(SimulatedPass, self._native.simulate(options))
 
 
 class StabilityRun:

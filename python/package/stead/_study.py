@@ -152,7 +152,7 @@ class Study:
     ) -> Finished:
         """Does what is left to do of a shard, and writes the table of results once every case of the study is done.
 
-        It may be killed at any moment and goes on where it was. The bytes of `study.csv` and `study.parquet` are those of the command.
+        It may be killed at any moment and goes on where it was. The bytes of `study.csv` are those of the command.
 
         Args:
             folder: Where the results go; made where it is missing.
@@ -201,7 +201,7 @@ class Study:
         return self._native.prune(Path(folder))
 
     def merge(self, folder: File) -> bool:
-        """Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done, and says whether it is so.
+        """Writes `study.csv` and `study-timing.csv` where every case is done, and says whether it is so.
 
         Raises:
             OutputError: the folder of another study, or a file that cannot be read or written.

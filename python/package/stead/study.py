@@ -18,7 +18,7 @@ Does what is left to do of a study, as `stead study run` does, here or on a Ray 
 
 With --engine ray a shard of the study is a task. When a worker or a node dies its shard is done by another one, which goes on where it was. The
 study file, the files that it names and the results folder must be seen by all nodes under the same paths, and stead be installed on each.
-The command may be killed at any moment: the same command goes on where it was. The bytes of study.csv and study.parquet depend on neither
+The command may be killed at any moment: the same command goes on where it was. The bytes of study.csv depend on neither
 engine nor shards nor threads.
 """
 

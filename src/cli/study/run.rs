@@ -36,7 +36,7 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead study run configs/study-example.toml --prune",
     ],
     files: &[
-        ("study.csv, study.parquet", "one row for each case, once every case is done"),
+        ("study.csv", "one row for each case, once every case is done"),
         ("study-timing.csv", "where and how long each case was computed, and on how many threads"),
         ("cases/<number>-<digest>/", "with keep in the study file: what `stead place` writes"),
         ("study.json, shards/", "what is done so far"),
@@ -44,7 +44,7 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
     remarks: "The command may be killed at any moment: the same command continues where it was. After an edit of the \
               study file it does what the edit has changed; kept cases that are not of the study any longer are named, \
               and removed with --prune. Shards may run at the same time, on many machines, in one folder that they \
-              share; the last one writes the table. The bytes of study.csv and study.parquet depend on neither threads \
+              share; the last one writes the table. The bytes of study.csv depend on neither threads \
               nor shards.",
     done: "done; cases without a placement are rows with their reason",
     failed: "a file could not be written, or another process works on the shard; finished cases are kept",

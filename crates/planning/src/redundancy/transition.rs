@@ -245,7 +245,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
     }
 }
 
-const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0];
 
 /// The costs of the point before, and how far to look.
 struct Band<'s, R> {

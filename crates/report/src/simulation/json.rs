@@ -26,8 +26,6 @@ records! {
         variant: &'static str = run.setup.variant.word(),
         /// What the damping of the robot file is multiplied by.
         damping_scale: f64 = run.setup.damping_scale,
-        /// Whether the fast integrator was used.
-        fast: bool = making.is_fast,
         /// Spindle speed.
         spindle_rpm: SpeedRpm = run.cut.spindle_speed.into(),
         /// Slices of the tool along its axis.

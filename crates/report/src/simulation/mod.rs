@@ -22,8 +22,6 @@ use stead_simulation::outcome::Simulation;
 /// How a run was made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Making {
-    /// With the condensed model.
-    pub is_fast: bool,
     /// Time on the clock that the run took. s
     pub wall: f64,
 }

@@ -14,9 +14,8 @@ use stead_simulation::stability::{Kind, Verdict};
 /// calm. Lines end with a line break.
 pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making) -> String {
     let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
-    let model = if making.is_fast { "condensed model" } else { "full model" };
     let mut text = format!(
-        "{}, {}: {} s in {} steps, {model}, {} times as fast as the pass\n\n",
+        "{}, {}: {} s in {} steps, {} times as fast as the pass\n\n",
         run.setup.robot.name(),
         run.setup.variant.word(),
         fixed(duration, 3),

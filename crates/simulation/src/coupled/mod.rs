@@ -1,10 +1,8 @@
 //! Coupled simulation of a pass: the arm under the milling force, which depends on the motion of its tip.
 //!
-//! [`full`] moves the whole chain with its changing mass matrix; [`condensed`] freezes that along the pass and
-//! condenses each step to the two unknowns of the tip. Both give a [`Run`]: forces and places over time, the work that
-//! was left, and how it ended. Where the milling model is no longer valid the run ends, with the reason.
+//! [`full`] moves the whole chain with its changing mass matrix. It gives a [`Run`]: forces and places over time, the
+//! work that was left, and how it ended. Where the milling model is no longer valid the run ends, with the reason.
 
-pub mod condensed;
 pub mod full;
 #[cfg(test)]
 mod tests;
@@ -99,17 +97,6 @@ impl Job<'_> {
             AnyArm::Eighteen(arm) => full::run(self, &arm, monitor),
         }
     }
-
-    /// Simulates the pass with the condensed model.
-    ///
-    /// # Errors
-    /// As [`Job::run`].
-    pub fn run_fast(&self, monitor: &Monitor) -> Result<Run, JobError> {
-        match self.setup.arm()? {
-            AnyArm::Six(arm) => condensed::run(self, &arm, monitor),
-            AnyArm::Eighteen(arm) => condensed::run(self, &arm, monitor),
-        }
-    }
 }
 
 /// The plane of the cut in the base frame.
@@ -139,11 +126,6 @@ impl CutPlane {
     /// A vector in the plane.
     fn part(&self, vector: &Vector3<f64>) -> [f64; 2] {
         [self.feed.dot(vector), self.normal.dot(vector)]
-    }
-
-    /// A vector along feed, normal and tool axis.
-    fn parts(&self, vector: &Vector3<f64>) -> [f64; 3] {
-        [self.feed.dot(vector), self.normal.dot(vector), self.axis.dot(vector)]
     }
 
     /// A force of milling in the base frame. N

@@ -1,5 +1,7 @@
 //! Passes against published tables, the condensed model against the whole chain, and how runs end.
 
+mod condensed;
+
 use super::*;
 use crate::arm::{Variant, testing};
 use crate::motion::{Pass, Ramp};
@@ -24,6 +26,14 @@ fn stopped_at(report: usize) -> Monitor {
     Monitor::new(watch).with_stop(handle)
 }
 
+/// The same job by the condensed model.
+fn run_condensed(job: &Job<'_>, monitor: &Monitor) -> Result<Run, JobError> {
+    match job.setup.arm()? {
+        AnyArm::Six(arm) => condensed::run(job, &arm, monitor),
+        AnyArm::Eighteen(arm) => condensed::run(job, &arm, monitor),
+    }
+}
+
 #[test]
 fn a_stop_before_or_during_a_pass_leaves_none() {
     let (setup, cutter) = (setup(Variant::Springs, 1.0, 1e-2, 0.1), cutter(180.0, 0.0, 800e6, 300e6));
@@ -31,10 +41,8 @@ fn a_stop_before_or_during_a_pass_leaves_none() {
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
     let stopped = Monitor::silent();
     stopped.stop_handle().stop();
-    for run in [Job::run, Job::run_fast] {
-        for monitor in [&stopped, &stopped_at(0), &stopped_at(2)] {
-            assert_eq!(run(&job, monitor).unwrap_err(), JobError::Stopped(Stop::Asked));
-        }
+    for monitor in [&stopped, &stopped_at(0), &stopped_at(2)] {
+        assert_eq!(job.run(monitor).unwrap_err(), JobError::Stopped(Stop::Asked));
     }
 }
 
@@ -64,11 +72,11 @@ fn cut(rpm: f64, steps_per_turn: usize, slices: usize) -> PassCut {
 }
 
 /// The published pass in aluminium.
-fn aluminium(variant: Variant, steps_per_turn: usize, is_fast: bool) -> Run {
+fn aluminium(variant: Variant, steps_per_turn: usize, is_condensed: bool) -> Run {
     let setup = setup(variant, 1.0, 3.7 / 60.0, 0.09);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), cut(18_700.0, steps_per_turn, 32));
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
-    let run = if is_fast { job.run_fast(&Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap();
+    let run = if is_condensed { run_condensed(&job, &Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap();
     assert_eq!(run.end, End::Complete);
     run
 }
@@ -136,9 +144,9 @@ fn the_axial_force_bends_the_condensed_arm_too() {
         Cutter::new(plain.teeth().to_vec(), plain.helix(), plain.flute_length(), Rotation::Clockwise, coefficients)
             .unwrap();
     let cut = PassCut { length: 0.03, ..cut(18_700.0, 90, 8) };
-    let [full, fast, without] = [(&pulled, false), (&pulled, true), (&plain, true)].map(|(cutter, is_fast)| {
+    let [full, fast, without] = [(&pulled, false), (&pulled, true), (&plain, true)].map(|(cutter, is_condensed)| {
         let job = Job { setup: &setup, cutter, cut: &cut, gap: 0.5e-3 };
-        if is_fast { job.run_fast(&Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap()
+        if is_condensed { run_condensed(&job, &Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap()
     });
     let apart = |other: &Run| {
         let pairs = full.samples.iter().zip(&other.samples);
@@ -154,7 +162,7 @@ fn the_axial_force_bends_the_condensed_arm_too() {
 #[test]
 fn a_quarter_of_the_steps_is_enough() {
     for variant in [Variant::Springs, Variant::Backlash] {
-        let [coarse, fine] = [90, 360].map(|steps| forces(&aluminium(variant, steps, true)));
+        let [coarse, fine] = [90, 360].map(|steps| forces(&aluminium(variant, steps, false)));
         for (coarse, fine) in coarse.iter().zip(fine) {
             assert!(near(coarse.mean, fine.mean, 2e-3), "{variant:?} {coarse:?} {fine:?}");
             assert!(near(coarse.root_mean_square, fine.root_mean_square, 2e-3), "{variant:?} {coarse:?} {fine:?}");
@@ -166,7 +174,7 @@ fn a_quarter_of_the_steps_is_enough() {
 fn steel(damping_scale: f64) -> Run {
     let setup = setup(Variant::Springs, damping_scale, 0.28 / 60.0, 0.05);
     let (cutter, cut) = (cutter(180.0, 6.929e-6, 3333e6, 2289e6), cut(3100.0, 90, 8));
-    Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 }.run_fast(&Monitor::silent()).unwrap()
+    Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 }.run(&Monitor::silent()).unwrap()
 }
 
 /// As published: steel is unstable, and bounded with ten times the damping.
@@ -189,12 +197,10 @@ fn a_run_beyond_what_is_represented_ends_with_the_reason() {
     let cutter = cutter(180.0, 0.0, 3333e7, 2289e7);
     let mut cut = cut(3100.0, 90, 8);
     cut.section.axial_depth = 20e-3;
-    for is_fast in [false, true] {
-        let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
-        let run = if is_fast { job.run_fast(&Monitor::silent()) } else { job.run(&Monitor::silent()) }.unwrap();
-        assert!(matches!(run.end, End::Limit(_)), "{:?}", run.end);
-        assert!(run.samples.len() > 10 && run.samples.len() == run.trail.nodes().len());
-    }
+    let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.5e-3 };
+    let run = job.run(&Monitor::silent()).unwrap();
+    assert!(matches!(run.end, End::Limit(_)), "{:?}", run.end);
+    assert!(run.samples.len() > 10 && run.samples.len() == run.trail.nodes().len());
 }
 
 /// Where nothing is cut the arm follows its path: what deflects it is the ramp alone, alike in both models.
@@ -203,7 +209,7 @@ fn without_work_the_arm_follows_its_path() {
     let setup = setup(Variant::Springs, 1.0, 3.7 / 60.0, 0.05);
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), cut(18_700.0, 90, 8));
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.2 };
-    let (full, fast) = (job.run(&Monitor::silent()).unwrap(), job.run_fast(&Monitor::silent()).unwrap());
+    let (full, fast) = (job.run(&Monitor::silent()).unwrap(), run_condensed(&job, &Monitor::silent()).unwrap());
     for (full, fast) in full.samples.iter().zip(&fast.samples) {
         assert_eq!((full.force, fast.force), ([0.0; 3], [0.0; 3]));
         for axis in 0..2 {
@@ -221,7 +227,7 @@ fn small_motions_are_those_in_the_middle_of_the_work() {
     let (cutter, cut) = (cutter(170.0, 0.0, 661.553e6, 253.458e6), PassCut { length: 0.01, ..cut(18_700.0, 90, 8) });
     let job = Job { setup: &setup, cutter: &cutter, cut: &cut, gap: 0.06 };
     let look = EvaluationSettings { window: None, height: 0.8e-3, cutoff: 2.5e-3, analysis_distance: 0.005 };
-    let found = Simulation::of(&job, &look, job.run_fast(&Monitor::silent()).unwrap()).unwrap();
+    let found = Simulation::of(&job, &look, job.run(&Monitor::silent()).unwrap()).unwrap();
     let frame = setup.motion.cut_frame(cut.wall(&cutter));
     let verdict_at = |distance: f64| {
         let plant = linear_at(&setup, distance).unwrap().plant(&frame).unwrap();

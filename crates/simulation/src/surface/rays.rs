@@ -1,10 +1,10 @@
 //! Rays from the tool centre, several at once, and the part of them that lies in the block.
 
 use pulp::Simd;
-use stead_numerics::simd::{Lanes, MAX_LANES};
+use stead_numerics::simd::Lanes;
 
 /// Rays in one bundle: the same for every processor, so that what is decided for a bundle does not depend on it.
-pub const LANES: usize = MAX_LANES;
+pub const LANES: usize = 8;
 
 /// Where in a bundle each of the processor's vectors starts.
 #[inline(always)]

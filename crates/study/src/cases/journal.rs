@@ -72,24 +72,40 @@ impl Entry {
     }
 }
 
-/// The entries of a journal up to the first line that is torn, and the length of those lines in bytes.
+/// A journal as it was left.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct JournalRead {
+    /// The entries up to the first line that is not whole.
+    pub entries: Vec<Entry>,
+    /// The length of their lines. Bytes
+    pub whole: u64,
+    /// That a line was changed, which a process that was killed does not do: it leaves the last one torn.
+    pub problem: Option<String>,
+}
+
+/// Reads a journal; one that is not there has no entries.
 ///
 /// # Errors
-/// [`StudyError::File`] for a journal that cannot be read; one that is not there has no entries.
-pub(super) fn read(path: &Path, columns: &[Column]) -> Result<(Vec<Entry>, u64), StudyError> {
+/// [`StudyError::File`] for a journal that cannot be read.
+pub(super) fn read(path: &Path, columns: &[Column]) -> Result<JournalRead, StudyError> {
     let bytes = match files::read_own(path) {
         Ok(bytes) => bytes,
-        Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => return Ok((Vec::new(), 0)),
+        Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => return Ok(JournalRead::default()),
         Err(cause) => return Err(StudyError::read(path, cause)),
     };
-    let (mut entries, mut whole) = (Vec::new(), 0);
+    let mut read = JournalRead::default();
     for line in bytes.split_inclusive(|byte| *byte == b'\n') {
         let text = std::str::from_utf8(line).ok().and_then(|line| line.strip_suffix('\n'));
-        let Some(entry) = text.and_then(|line| Entry::of(line, columns)) else { break };
-        entries.push(entry);
-        whole += line.len() as u64;
+        let Some(entry) = text.and_then(|line| Entry::of(line, columns)) else {
+            let place = format!("{}: line {}", path.display(), read.entries.len() + 1);
+            let problem = format!("{place} is not as it was written; its case and those behind it are done again");
+            read.problem = line.ends_with(b"\n").then_some(problem);
+            break;
+        };
+        read.entries.push(entry);
+        read.whole += line.len() as u64;
     }
-    Ok((entries, whole))
+    Ok(read)
 }
 
 /// A journal that entries are put to.

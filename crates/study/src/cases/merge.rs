@@ -18,11 +18,11 @@ pub fn merged(plan: &Plan, folder: &Path) -> Result<Option<Table>, StudyError> {
     Ok(table(plan, &store.rows(&mut Vec::new())?))
 }
 
-/// The files that hold the table of results.
-pub const TABLES: [&str; 2] = ["study.csv", "study.parquet"];
+/// The file that holds the table of results.
+pub const TABLE: &str = "study.csv";
 
-/// Writes `study.csv`, `study.parquet` and `study-timing.csv` where every case is done; says whether it is so. The
-/// first two are published as one set; the third differs from run to run.
+/// Writes `study.csv` and `study-timing.csv` where every case is done; says whether it is so. The second differs from
+/// run to run.
 ///
 /// # Errors
 /// [`StudyError`]: the folder of another study, or a file that cannot be read or written.
@@ -32,8 +32,7 @@ pub fn merge(plan: &Plan, folder: &Path, keeping: &dyn Keeping) -> Result<bool, 
     let _lock = store.lock()?;
     let Some(table) = table(plan, &store.rows(&mut Vec::new())?) else { return Ok(false) };
     store.write("study-timing.csv", &timing(plan, &store)?.to_csv()?)?;
-    let [csv, parquet] = TABLES;
-    keeping.publish(&[(csv, table.to_csv()?), (parquet, table.to_parquet()?)]).map_err(StudyError::Keep)?;
+    keeping.publish(&[(TABLE, table.to_csv()?)]).map_err(StudyError::Keep)?;
     Ok(true)
 }
 

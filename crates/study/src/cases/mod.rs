@@ -2,10 +2,9 @@
 //!
 //! A [`Plan`] is all cases of a study file in a fixed order, each with the digest of all that its result depends on. A
 //! shard I of N does the cases I, I + N, and so on ([`run`]). Finished cases go into a journal of the shard, line by
-//! line, so that a run that was killed goes on where it was; the journal becomes a Parquet file at the end of the
-//! shard. Rows are found again by the digest of their case: those that an edit of the study has not touched are not
-//! computed anew. Once every case of the plan is done, the table of results is written ([`merge`]); its bytes depend on
-//! nothing but the study.
+//! line, so that a run that was killed goes on where it was. Rows are found again by the digest of their case: those
+//! that an edit of the study has not touched are not computed anew. Once every case of the plan is done, the table of
+//! results is written ([`merge`]); its bytes depend on nothing but the study.
 
 mod journal;
 mod keeping;
@@ -22,7 +21,7 @@ mod table;
 mod tests;
 
 pub use keeping::Keeping;
-pub use merge::{TABLES, merge, merged};
+pub use merge::{TABLE, merge, merged};
 pub use plan::{Plan, PlannedCase};
 pub use progress::{ShardStatus, StudyStatus, status};
 pub use row::{CaseStatus, result_columns};

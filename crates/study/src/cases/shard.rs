@@ -1,11 +1,11 @@
 //! A shard of a study, done: cases side by side, each finished one on the disk before the next is begun.
 
 use super::StudyError;
-use super::journal::{self, Entry, Journal, Timing};
+use super::journal::{Entry, Journal, Timing};
 use super::keeping::Keeping;
 use super::merge::{best, merge};
 use super::plan::{Plan, PlannedCase};
-use super::row::{CaseStatus, result_columns, row_of, row_without};
+use super::row::{CaseStatus, row_of, row_without};
 use super::store::{Rows, Shard, Store};
 use super::table::TableCell;
 use crate::run::{RunError, place};
@@ -70,9 +70,8 @@ pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result
     let pending: Vec<&PlannedCase> = mine.iter().copied().filter(|case| !is_done(case, &rows)).collect();
     finished.before = mine.len() - pending.len();
     if !pending.is_empty() {
-        let path = store.of_shard(settings.shard, ".jsonl");
-        let (_, whole) = journal::read(&path, &result_columns())?;
-        let mut journal = Journal::open(&path, whole)?;
+        let whole = store.journal(settings.shard)?.whole;
+        let mut journal = Journal::open(&store.of_shard(settings.shard, ".jsonl"), whole)?;
         let is_kept = plan.study.keep == Keep::All;
         side_by_side(plan, &pending, settings, is_kept, monitor, &mut |entry| {
             journal.push(&entry)?;
@@ -89,12 +88,6 @@ pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result
     if finished.before + finished.now < mine.len() {
         return Ok(finished);
     }
-    let mut timings = store.timings()?;
-    let entry = |case: &&PlannedCase| {
-        let timing = timings.remove(&case.id).unwrap_or_default();
-        rows.get(&case.id).map(|row| Entry { id: case.id.clone(), row: row.clone(), timing })
-    };
-    store.close(settings.shard, mine.iter().filter_map(entry).collect())?;
     finished.is_complete = merge(plan, settings.folder, settings.keeping)?;
     if finished.is_complete {
         keep_best(plan, settings, monitor)?;

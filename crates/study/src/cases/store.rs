@@ -1,11 +1,11 @@
 //! The folder of a study: what is where, and which rows are done.
 
 use super::StudyError;
-use super::journal::{self, Entry, Timing};
+use super::journal::{self, JournalRead, Timing};
 use super::lock::Lock;
 use super::plan::Plan;
 use super::row::result_columns;
-use super::table::{Column, ColumnKind, Table, TableCell};
+use super::table::TableCell;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -172,74 +172,35 @@ impl Store {
         let shard = |name: &str| {
             let (name, ending) = name.split_at_checked("0001-of-0001".len())?;
             let (index, count) = name.split_once("-of-")?;
-            let is_result = [".jsonl", ".parquet"].contains(&ending);
             Shard::parse(&format!("{}/{}", index.parse::<usize>().ok()?, count.parse::<usize>().ok()?))
-                .filter(|_| is_result)
+                .filter(|_| ending == ".jsonl")
         };
         let mut shards: Vec<Shard> = entries.filter_map(|entry| shard(entry.file_name().to_str()?)).collect();
         shards.sort_by_key(|shard| (shard.count, shard.index));
-        shards.dedup();
         shards
-    }
-
-    /// What a shard has finished, by the digests of the cases: of its Parquet file and its journal. What is wrong with
-    /// the Parquet file is said.
-    pub fn rows_of(&self, shard: Shard, problems: &mut Vec<String>) -> Result<Rows, StudyError> {
-        let mut rows = Rows::default();
-        let path = self.of_shard(shard, ".parquet");
-        if path.exists() {
-            match Table::from_parquet(&path, &shard_columns()) {
-                Ok(table) => rows.extend(table.rows.into_iter().filter_map(|mut row| match row.remove(0) {
-                    TableCell::Text(id) => Some((id, row)),
-                    _ => None,
-                })),
-                Err(problem) => problems.push(format!(
-                    "{}: is no whole Parquet file of this study: {problem}; its cases are done again",
-                    path.display()
-                )),
-            }
-        }
-        let (entries, _) = journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())?;
-        rows.extend(entries.into_iter().map(|entry| (entry.id, entry.row)));
-        Ok(rows)
     }
 
     /// What all shards have finished.
     pub fn rows(&self, problems: &mut Vec<String>) -> Result<Rows, StudyError> {
         let mut rows = Rows::default();
         for shard in self.found() {
-            rows.extend(self.rows_of(shard, problems)?);
+            let read = self.journal(shard)?;
+            problems.extend(read.problem);
+            rows.extend(read.entries.into_iter().map(|entry| (entry.id, entry.row)));
         }
         Ok(rows)
     }
 
-    /// Makes the files of a shard that is done; its journal goes.
-    pub fn close(&self, shard: Shard, entries: Vec<Entry>) -> Result<(), StudyError> {
-        let timing = self.of_shard(shard, "-timing.csv");
-        write(&timing, &timing_table(&entries).to_csv()?, &shard.temporary())?;
-        let row = |entry: Entry| std::iter::once(TableCell::Text(entry.id)).chain(entry.row).collect();
-        let table = Table { columns: shard_columns(), rows: entries.into_iter().map(row).collect() };
-        write(&self.of_shard(shard, ".parquet"), &table.to_parquet()?, &shard.temporary())?;
-        let journal = self.of_shard(shard, ".jsonl");
-        match std::fs::remove_file(&journal) {
-            Err(cause) if cause.kind() != std::io::ErrorKind::NotFound => Err(StudyError::write(&journal, cause)),
-            _ => Ok(()),
-        }
+    /// The journal of a shard, as it was left.
+    pub fn journal(&self, shard: Shard) -> Result<JournalRead, StudyError> {
+        journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())
     }
 
     /// How long finished cases took, by their digests.
     pub fn timings(&self) -> Result<HashMap<String, Timing>, StudyError> {
         let mut timings = HashMap::new();
         for shard in self.found() {
-            let (entries, _) = journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())?;
-            timings.extend(entries.into_iter().map(|entry| (entry.id, entry.timing)));
-            let Ok(bytes) = files::read(&self.of_shard(shard, "-timing.csv")) else { continue };
-            let mut reader = csv::Reader::from_reader(&bytes[..]);
-            for row in reader.records().flatten() {
-                let at = |index: usize| row.get(index).unwrap_or_default();
-                let (seconds, threads) = (at(1).parse().unwrap_or(0.0), at(2).parse().unwrap_or(0));
-                timings.insert(at(0).to_owned(), Timing { seconds, threads, host: at(3).to_owned() });
-            }
+            timings.extend(self.journal(shard)?.entries.into_iter().map(|entry| (entry.id, entry.timing)));
         }
         Ok(timings)
     }
@@ -247,30 +208,6 @@ impl Store {
 
 /// Rows of results by the digests of their cases.
 pub(super) type Rows = HashMap<String, Vec<TableCell>>;
-
-/// The columns of the file of a shard.
-fn shard_columns() -> Vec<Column> {
-    std::iter::once(Column::new("id", ColumnKind::Text)).chain(result_columns()).collect()
-}
-
-fn timing_table(entries: &[Entry]) -> Table {
-    let kinds = [
-        ("id", ColumnKind::Text),
-        ("seconds", ColumnKind::Number),
-        ("threads", ColumnKind::Count),
-        ("host", ColumnKind::Text),
-    ];
-    let row = |entry: &Entry| {
-        vec![
-            TableCell::Text(entry.id.clone()),
-            TableCell::Number(entry.timing.seconds),
-            TableCell::Count(entry.timing.threads as i64),
-            TableCell::Text(entry.timing.host.clone()),
-        ]
-    };
-    let columns = kinds.map(|(name, kind)| Column::new(name, kind)).to_vec();
-    Table { columns, rows: entries.iter().map(row).collect() }
-}
 
 /// Temporary files of the folder itself, which are written under its lock.
 const OF_FOLDER: &str = ".stead-study-";

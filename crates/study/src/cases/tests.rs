@@ -1,6 +1,6 @@
 //! Journals and tables: what is written comes back, what was torn does not.
 
-use super::journal::{self, Entry, Journal, Timing};
+use super::journal::{self, Entry, Journal, JournalRead, Timing};
 use super::table::{Column, ColumnKind, Table, TableCell};
 use super::{Shard, result_columns};
 
@@ -22,27 +22,7 @@ fn table() -> Table {
 }
 
 #[test]
-fn a_table_comes_back_from_parquet_and_a_file_cut_short_does_not() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("a.parquet");
-    for table in [table(), Table { columns: columns(), rows: Vec::new() }] {
-        let bytes = table.to_parquet().unwrap();
-        assert_eq!(bytes, table.to_parquet().unwrap());
-        std::fs::write(&file, &bytes).unwrap();
-        assert_eq!(Table::from_parquet(&file, &columns()), Ok(table));
-        assert_eq!(Table::from_parquet(&file, &columns()[1..]), Err("has other columns".to_owned()));
-        for length in [0, 3, bytes.len() / 2, bytes.len() - 1] {
-            std::fs::write(&file, &bytes[..length]).unwrap();
-            assert!(Table::from_parquet(&file, &columns()).is_err(), "{length}");
-        }
-    }
-    let bytes = table().to_parquet().unwrap();
-    for flipped in 0..bytes.len() {
-        let mut changed = bytes.clone();
-        changed[flipped] ^= 1;
-        std::fs::write(&file, &changed).unwrap();
-        assert_eq!(Table::from_parquet(&file, &columns()), Err("is not as it was written".to_owned()), "{flipped}");
-    }
+fn a_table_as_csv_has_empty_fields_and_every_digit() {
     assert_eq!(
         String::from_utf8(table().to_csv().unwrap()).unwrap(),
         "a.b[1],x & y,n\n\"a,\"\"b\"\"\",0.30000000000000004,-3\n,,\n\u{e4},-0.0625,9223372036854775807\n"
@@ -58,14 +38,15 @@ fn entry(number: usize) -> Entry {
 fn a_journal_cut_anywhere_has_its_whole_lines_and_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jsonl");
-    assert_eq!(journal::read(&path, &columns()).unwrap(), (Vec::new(), 0));
+    assert_eq!(journal::read(&path, &columns()).unwrap(), JournalRead::default());
     let mut journal = Journal::open(&path, 0).unwrap();
     (0..4).for_each(|number| journal.push(&entry(number)).unwrap());
     let bytes = std::fs::read(&path).unwrap();
     let ends: Vec<usize> = (1..=bytes.len()).filter(|end| bytes[end - 1] == b'\n').collect();
     for length in (0..=bytes.len()).step_by(7) {
         std::fs::write(&path, &bytes[..length]).unwrap();
-        let (entries, whole) = journal::read(&path, &columns()).unwrap();
+        let JournalRead { entries, whole, problem } = journal::read(&path, &columns()).unwrap();
+        assert_eq!(problem, None);
         let expected = ends.iter().filter(|end| **end <= length).count();
         assert_eq!(entries, (0..expected).map(entry).collect::<Vec<_>>());
         let mut journal = Journal::open(&path, whole).unwrap();
@@ -76,7 +57,8 @@ fn a_journal_cut_anywhere_has_its_whole_lines_and_goes_on() {
         let mut changed = bytes.clone();
         changed[flipped] ^= 1;
         std::fs::write(&path, &changed).unwrap();
-        let (entries, _) = journal::read(&path, &columns()).unwrap();
+        let JournalRead { entries, problem, .. } = journal::read(&path, &columns()).unwrap();
+        assert!(problem.is_some() || entries.len() == 4);
         let before = ends.iter().filter(|end| **end <= flipped).count();
         assert!(entries.len() <= before + 1 && entries == (0..entries.len()).map(entry).collect::<Vec<_>>());
     }

@@ -1,4 +1,5 @@
-//! The fast model: mass matrix and Jacobian frozen along the pass, each step condensed to the two unknowns of the tip.
+//! Another model of a pass, which the whole chain is held against: mass matrix and Jacobian frozen along the pass, each
+//! step condensed to the two unknowns of the tip.
 //!
 //! With `u` the angles by which springs have yielded, the arm obeys `M u'' + D u' + K(u) = r(t) + J^T F`, where r is
 //! what gravity and the commanded motion ask for. Intervals of a few millimetres have M, the slope of gravity and J;
@@ -10,7 +11,7 @@
 //! With backlash springs act or not. For every set of springs that act the step is linear as well; its matrices are
 //! made when it first occurs, and a step is repeated until the springs that it assumes to act are those that do.
 
-use super::{CutPlane, End, Job, JobError, Process, Run};
+use super::super::{CutPlane, End, Job, JobError, Process, Run};
 use crate::arm::Arm;
 use crate::integrator::StepError;
 use crate::milling::Force;
@@ -88,7 +89,10 @@ impl<'a, const N: usize> Frozen<'a, N> {
         };
         // Rows along feed, normal and tool axis.
         let turned = |jacobian: SMatrix<f64, 3, N>| {
-            SMatrix::<f64, 3, N>::from_fn(|row, joint| plane.parts(&jacobian.column(joint).into_owned())[row])
+            SMatrix::<f64, 3, N>::from_fn(|row, joint| {
+                let column = jacobian.column(joint);
+                [plane.feed, plane.normal, plane.axis][row].dot(&column)
+            })
         };
         let tips = (0..=count).map(|k| {
             let distance = spacing * k as f64;
@@ -201,7 +205,7 @@ fn side(angle: f64, gap: f64) -> f64 {
 ///
 /// # Errors
 /// [`JobError`] before the first step, or when `monitor` asked to stop.
-pub fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>, monitor: &Monitor) -> Result<Run, JobError> {
+pub(super) fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>, monitor: &Monitor) -> Result<Run, JobError> {
     let mut process = Process::new(job)?;
     let (steps, h) = (process.steps(), process.step);
     let motion = process.motion;
