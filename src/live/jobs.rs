@@ -329,9 +329,10 @@ impl Session {
         let mut score = reading.run.in_setup(&place.setup).score(&place.placement, monitor)?;
         score.map(monitor);
         score.make_sheet(monitor);
-        let pin = Pin::write(self, reading, &score, label)?;
+        let (pin, unkept) = Pin::write(self, reading, &score, label)?;
         let mean = Unit::DEFLECTION_MM.text(score.score().plans.best.mean);
         said.push(format!("mean {mean} mm, kept in {}", self.folder.path().join(&pin).display()));
+        said.extend(unkept);
         Ok(Ended { said, place: Some(place.entry(reading.run.problem())), pin: Some(pin) })
     }
 

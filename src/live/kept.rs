@@ -79,10 +79,11 @@ impl Known {
 }
 
 impl Session {
-    /// Writes what is to be there again when the folder is opened by another session. A disk that is full is said when
-    /// a placement is kept.
-    pub(super) fn keep_state(&self) {
-        let _ = self.folder.write(FILE, &document::bytes(&self.known().kept()));
+    /// Writes what is to be there again when the folder is opened by another session. That it cannot be written is
+    /// returned, and said when a placement is kept.
+    pub(super) fn keep_state(&self) -> Option<String> {
+        let written = self.folder.write(FILE, &document::bytes(&self.known().kept()));
+        written.err().map(|error| format!("warning: a later session will not know names and changed values: {error}"))
     }
 
     /// The number of the next file or folder with such a name: none that there is, and none that there was, so that
@@ -96,7 +97,8 @@ impl Session {
             known.numbers.insert(before.to_owned(), number.into());
             number
         };
-        self.keep_state();
+        // What follows says it.
+        let _ = self.keep_state();
         number
     }
 }

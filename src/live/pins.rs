@@ -34,7 +34,8 @@ const SHOWN: [&str; 7] =
     ["placement", "placement_exact", "orientation", "external_axes", "best", "feasible", "interrupted"];
 
 impl Pin {
-    /// Those in a folder, in the order of their numbers, with what an earlier session said of them.
+    /// Those in a folder, in the order of their numbers, with what an earlier session said of them. Temporary files of
+    /// one that was killed while it kept a placement go.
     pub fn all_in(folder: &Folder, kept: &Kept) -> Vec<Self> {
         let read = |number: u64| {
             let name = format!("{NAME}{number}");
@@ -43,14 +44,21 @@ impl Pin {
             let label = said["label"].as_str().filter(|label| !label.contains(garbles)).unwrap_or_default().to_owned();
             Some(Self { label, edits: strings(&said["edits"]), document: shown(&document), name })
         };
-        numbers_in(folder.path(), NAME, "").into_iter().filter_map(read).collect()
+        let numbers = numbers_in(folder.path(), NAME, "");
+        for placement in numbers.iter().map(|number| folder.path().join(format!("{NAME}{number}"))) {
+            if placement.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+                files::remove_abandoned(&placement, files::PREFIX);
+            }
+        }
+        numbers.into_iter().filter_map(read).collect()
     }
 
-    /// Writes a placement that was scored into a folder of its own; returns its name.
+    /// Writes a placement that was scored into a folder of its own; returns its name, and a warning where what the
+    /// folder does not hold could not be kept.
     ///
     /// # Errors
     /// [`Error::Output`]: the folder cannot be written.
-    pub fn write(session: &Session, reading: &Reading, score: &PlacementScore, label: &str) -> Result<String, Error> {
+    pub fn write(session: &Session, reading: &Reading, score: &PlacementScore, label: &str) -> Result<(String, Option<String>), Error> {
         let name = format!("{NAME}{}", session.next_number(NAME, ""));
         score.write(session.folder.path().join(&name))?;
         let pin = Self {
@@ -60,8 +68,7 @@ impl Pin {
             document: shown(&score.to_json()),
         };
         session.known().pins.push(pin);
-        session.keep_state();
-        Ok(name)
+        Ok((name, session.keep_state()))
     }
 
     /// As the page has it.

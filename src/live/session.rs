@@ -225,7 +225,7 @@ impl Session {
             let mut known = self.known();
             known.place = asked.place.clone();
         }
-        self.keep_state();
+        let _ = self.keep_state();
         self.jobs.outdate(&page);
         received(&self.wholes.ask(page, asked))
     }
@@ -259,7 +259,7 @@ impl Session {
             }
             known.reading = Arc::new(Reading::new(version, run, edits));
         }
-        self.keep_state();
+        let _ = self.keep_state();
         Ok(self.state())
     }
 

@@ -109,6 +109,14 @@ fn a_placement_comes_to_what_the_commands_say_of_it() {
     // No other session takes the folder in the meantime.
     let taken = Folder::create(&bench.path("out")).unwrap_err().to_string();
     assert!(taken.contains("another run of stead"), "{taken}");
+
+    // What its folder does not hold cannot be written.
+    std::fs::remove_file(bench.path("out/live.json")).unwrap();
+    std::fs::create_dir(bench.path("out/live.json")).unwrap();
+    let kept = bench.job("keep", &json!({}));
+    assert_eq!(kept["pin"], "placement-2", "{kept}");
+    let warning = kept["said"][1].as_str().unwrap();
+    assert!(warning.starts_with("warning: a later session will not know names and changed values: "), "{warning}");
 }
 
 #[test]
@@ -124,7 +132,11 @@ fn the_next_session_begins_where_the_last_one_ended() {
     // The first session still holds the folder; what it has left is read from a copy.
     let copy = bench.path("copy");
     copy_all(&bench.path("out"), &copy);
+    // As of a session that was killed while it kept another one.
+    let left = copy.join("placement-1/.stead-a1B2c3.tmp");
+    std::fs::write(&left, "left").unwrap();
     let next = Session::new(run, options, Folder::create(&copy).unwrap(), &Monitor::silent()).unwrap();
+    assert!(!left.exists());
     assert_eq!(next.state()["pins"], before["pins"]);
     assert_eq!(next.state()["edits"], json!(["cell.z_mm=[-500, -214]"]));
     assert!(next.notes()[0].contains("cell.z_mm=[-500, -214]"));

@@ -9,7 +9,7 @@ pub mod new;
 mod staged;
 
 pub use lock::{Lock, TryLock};
-pub use staged::{PREFIX, Staged, remove, remove_stale, sync};
+pub use staged::{PREFIX, Staged, remove, remove_abandoned, remove_stale, sync};
 
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{Error, ErrorKind, Read, Result};

@@ -118,7 +118,7 @@ pub fn remove_stale(folder: &Path, prefix: &str) {
 
 /// The same in a folder that others may write to: a file that a process has open is kept, and so is every one on a file
 /// system without locks.
-pub(super) fn remove_abandoned(folder: &Path, prefix: &str) {
+pub fn remove_abandoned(folder: &Path, prefix: &str) {
     for path in temporary_in(named(folder), prefix) {
         if matches!(Lock::attempt(&path), Ok(TryLock::Taken(Lock { is_locked: true, .. }))) {
             let _ = std::fs::remove_file(path);

@@ -3,6 +3,7 @@
 use super::super::axes::around;
 use super::super::canvas::{Canvas, Pixel, Place, TextStyle, exact, nearest};
 use super::super::colour::{BLACK, GREY, WHITE};
+use super::super::labels::{Label, Labeller};
 use super::super::surroundings::{arm, corners_at, hull};
 use super::{SIDES, SIZES, deg, mm};
 use nalgebra::Vector3;
@@ -67,8 +68,7 @@ pub(super) fn draw(canvas: &mut Canvas, problem: &Problem, case: &Case, sheet: &
             canvas.text(&words, (left + size[0], top + 6), TextStyle::new(SIZES[1]).ending());
         }
         let view = View { corner: (left, top + 18), size, axes, window, scale };
-        view.draw(canvas, &lines, sheet);
-        view.check_points(canvas, problem, sheet);
+        view.draw(canvas, &lines, problem, sheet);
         canvas.outline((left, top + 18), (left + size[0], top + 18 + size[1]), BLACK);
     }
     let mut legend = vec!["thick: part", "dashed: extent of the path", "1 2 3: check points"];
@@ -179,14 +179,32 @@ impl View {
         (direction[self.axes[0]], -direction[self.axes[1]])
     }
 
-    fn draw(&self, canvas: &mut Canvas, lines: &[Line], sheet: &SetupSheet) {
+    fn draw(&self, canvas: &mut Canvas, lines: &[Line], problem: &Problem, sheet: &SetupSheet) {
         for line in lines {
             self.line(canvas, line);
         }
-        self.axes_of_cell(canvas, sheet);
-        self.robot(canvas, sheet);
-        self.part(canvas, sheet);
         self.dimensions(canvas, sheet);
+        self.axes_of_cell(canvas, sheet);
+        let mut named = self.robot(canvas, sheet);
+        named.extend(self.part(canvas, sheet));
+        named.extend(self.check_points(canvas, problem, sheet));
+        let corner = (self.corner.0 + self.size[0], self.corner.1 + self.size[1]);
+        let mut labeller = Labeller::new((self.corner, corner));
+        for (_, at) in &named {
+            let (x, y) = nearest(*at);
+            labeller.take(((x - 3, y - 3), (x + 3, y + 3)));
+        }
+        // Beside what it names, on the side that is free, to the lower right first.
+        for (name, at) in &named {
+            let label = Label { text: name, colour: BLACK, ground: WHITE };
+            let around = |radius: f64| {
+                (0..12).map(move |k| {
+                    let turn = std::f64::consts::TAU * (f64::from(k) + 1.5) / 12.0;
+                    nearest((at.0 + radius * libm::cos(turn), at.1 + radius * libm::sin(turn)))
+                })
+            };
+            labeller.put(canvas, &label, [11.0, 15.0, 20.0, 26.0].into_iter().flat_map(around));
+        }
     }
 
     /// A line: an arm as it is, all else by its outline.
@@ -252,8 +270,9 @@ impl View {
         }
     }
 
-    /// The robot's own frame, and the origin of the frame of the sheet.
-    fn robot(&self, canvas: &mut Canvas, sheet: &SetupSheet) {
+    /// The robot's own frame, and the origin of the frame of the sheet; returns the names of its axes and where they
+    /// end.
+    fn robot(&self, canvas: &mut Canvas, sheet: &SetupSheet) -> Vec<(String, Place)> {
         let (x, y) = nearest(self.place(&sheet.robot.translation));
         canvas.fill((x - 6, y - 6), (x + 6, y + 6), BLACK);
         let origin = self.place(&Vector3::zeros());
@@ -261,38 +280,43 @@ impl View {
             canvas.text("robot", (x + 11, y - 10), TextStyle::new(SIZES[1]).bold());
         }
         let names = self.axes.map(|axis| ["x", "y", "z"][axis]);
-        for ((dx, dy), name) in [(26.0, 0.0), (0.0, -26.0)].into_iter().zip(names) {
+        let axes = [(26.0, 0.0), (0.0, -26.0)].into_iter().zip(names).map(|((dx, dy), name)| {
             let tip = (origin.0 + dx, origin.1 + dy);
             canvas.arrow(origin, tip, BLACK, 1);
-            canvas.text(name, nearest((tip.0 + dx * 0.4, tip.1 + dy * 0.4)), TextStyle::new(SIZES[0]).centred());
-        }
+            (name.to_owned(), tip)
+        });
+        let axes = axes.collect();
         canvas.dot(origin, 3, BLACK);
+        axes
     }
 
-    /// Axes of the part at its datum, and the check points.
-    fn part(&self, canvas: &mut Canvas, sheet: &SetupSheet) {
+    /// Axes of the part at its datum; returns their names and where they end.
+    fn part(&self, canvas: &mut Canvas, sheet: &SetupSheet) -> Vec<(String, Place)> {
         let datum = self.place(&sheet.part.translation);
+        let mut axes = Vec::new();
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let (dx, dy) = self.seen(&sheet.part.rotation.column(axis).into_owned());
             if libm::hypot(dx, dy) > 0.3 {
-                canvas.arrow(datum, (datum.0 + dx * 30.0, datum.1 + dy * 30.0), BLACK, 2);
-                let place = nearest((datum.0 + dx * 42.0, datum.1 + dy * 42.0));
-                canvas.text(name, place, TextStyle::new(SIZES[0]).bold().centred());
+                let tip = (datum.0 + dx * 30.0, datum.1 + dy * 30.0);
+                canvas.arrow(datum, tip, BLACK, 2);
+                axes.push((name.to_owned(), tip));
             }
         }
         canvas.dot(datum, 5, BLACK);
         canvas.dot(datum, 2, WHITE);
+        axes
     }
 
-    /// The numbers of the check points, all axes at zero.
-    fn check_points(&self, canvas: &mut Canvas, problem: &Problem, sheet: &SetupSheet) {
+    /// The check points, all axes at zero; returns their numbers and places.
+    fn check_points(&self, canvas: &mut Canvas, problem: &Problem, sheet: &SetupSheet) -> Vec<(String, Place)> {
         let placed = sheet_from_placed(problem, sheet);
-        for (number, check) in (1..).zip(&sheet.check_points) {
-            let Some(point) = problem.task.points().get(check.point) else { continue };
+        let numbered = (1..).zip(&sheet.check_points).filter_map(|(number, check)| {
+            let point = problem.task.points().get(check.point)?;
             let at = self.place(&placed.point(&point.position));
             canvas.dot(at, 3, BLACK);
-            canvas.text(&format!("{number}"), nearest((at.0 + 8.0, at.1 + 9.0)), TextStyle::new(SIZES[0]).bold());
-        }
+            Some((number.to_string(), at))
+        });
+        numbered.collect()
     }
 
     /// Lines from the origin to the datum with the distance along each axis of the view.
