@@ -87,8 +87,12 @@ pub fn options() -> OpenOptions {
 /// it or under a limit on the size of files, or since the disk fails.
 pub fn is_of_disk(cause: &Error) -> bool {
     #[cfg(unix)]
-    if cause.raw_os_error() == Some(libc::EIO) {
-        return true;
+    {
+        // That of a temporary file is wrapped into one with its path.
+        let wrapped = cause.get_ref().and_then(|inner| inner.source()?.downcast_ref::<Error>());
+        if [Some(cause), wrapped].into_iter().flatten().any(|cause| cause.raw_os_error() == Some(libc::EIO)) {
+            return true;
+        }
     }
     matches!(cause.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge)
 }
@@ -96,6 +100,29 @@ pub fn is_of_disk(cause: &Error) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_disk_that_fails_is_told_within_an_error_that_names_the_file() {
+        /// As `tempfile` wraps the errors of a file.
+        #[derive(Debug)]
+        struct AtPath(Error);
+        impl std::fmt::Display for AtPath {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                write!(f, "{} at a path", self.0)
+            }
+        }
+        impl std::error::Error for AtPath {
+            fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+                Some(&self.0)
+            }
+        }
+        let error = |code| Error::from_raw_os_error(code);
+        let wrapped = |code| Error::new(error(code).kind(), AtPath(error(code)));
+        for (code, expected) in [(libc::EIO, true), (libc::ENOSPC, true), (libc::EACCES, false)] {
+            assert_eq!([is_of_disk(&error(code)), is_of_disk(&wrapped(code))], [expected; 2]);
+        }
+    }
 
     #[test]
     fn files_are_read_and_nothing_else() {
