@@ -10,9 +10,9 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 use stead_certify::best;
-use stead_certify::settings::CertificateSettings;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_placement::place::place;
+use stead_problem::settings::CertificateSettings;
 use stead_run_files::read_run;
 
 /// Run, gap in per cent, and the time allowed for the certificate on two cores. s

@@ -16,11 +16,11 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 use published::{poses, problem};
 use stead_model::robot::{BaseCompliance, NormalSprings, PostureClass, SpringModel};
 use stead_numerics::simd::Instructions;
-use stead_planning::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use stead_planning::problem::{Placement, Problem, ProblemParts};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::transition::{self, Step};
-use stead_planning::sense::Sense;
+use stead_problem::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_problem::problem::{Placement, Problem, ProblemParts};
+use stead_problem::sense::Sense;
 
 fn main() {
     divan::main();

@@ -12,7 +12,7 @@ use divan::{Bencher, black_box};
 use published::{poses, problem};
 use stead_placement::lookup::{BetaGrid, CollisionEffort, LookupTable};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 fn main() {
     let problem = problem();

@@ -6,12 +6,12 @@ use serde_json::Value;
 use std::fmt::Display;
 use std::ops::Bound::{Excluded, Included};
 use std::ops::RangeBounds;
-use stead_certify::settings::CertificateSettings;
 use stead_model::published::Published;
-use stead_placement::lookup::LookupTable;
-use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings};
-use stead_planning::problem::Problem;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::Problem;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::settings::TransferSettings;
+use stead_problem::settings::{LookupUse, PostureSearch, SearchSettings};
+use stead_problem::table_shape::Shape;
 
 /// What [`Run::place`] does with a problem, and how hard it tries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ impl PlaceOptions {
             ));
         }
         if self.search.tables == LookupUse::Always
-            && let Err(unsuited) = LookupTable::shape_for(problem)
+            && let Err(unsuited) = Shape::of(problem)
         {
             return Err(refused("search.tables", "Always", format!("Auto or Never: there can be none, {unsuited}")));
         }

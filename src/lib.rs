@@ -100,7 +100,7 @@ pub use run::{Placements, Run};
 pub use score::{Explanations, PlacementScore};
 pub use simulation::{SimulatedPass, SimulationRun, StabilityAnalysis, StabilityRun};
 pub use stead_numerics::monitor::{Monitor, Progress};
-pub use stead_planning::problem::Placement;
+pub use stead_problem::problem::Placement;
 pub use study::Study;
 
 pub mod model {
@@ -117,8 +117,8 @@ pub mod cell {
 
 pub mod certify {
     //! Bounds on what any placement can reach.
-    pub use stead_certify::settings::CertificateSettings;
     pub use stead_certify::*;
+    pub use stead_problem::settings::CertificateSettings;
 }
 
 pub mod monitor {

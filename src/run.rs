@@ -9,15 +9,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 use stead_certify as certify;
-use stead_certify::settings::CertificateSettings;
 use stead_certify::{self, Certificate};
 use stead_format::field::{FieldOverride, FieldOverrides};
 use stead_numerics::message::Note;
 use stead_placement::outcome::{Cases, Outcome};
 use stead_placement::place::{Infeasible, setup_at};
 use stead_planning::feasibility;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::Setup;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::settings::CertificateSettings;
+use stead_problem::setup::Setup;
 use stead_removal::cut::CutFigures;
 use stead_report::certificate::{
     certificate_files, certificate_json, certificate_text, has_certificate, write_certificate,
@@ -48,7 +48,7 @@ pub struct Run {
 
 impl Run {
     /// The relative size of the force error of `stead place --sensitivity`.
-    pub const FORCE_ERROR: f64 = stead_placement::settings::SearchSettings::FORCE_ERROR;
+    pub const FORCE_ERROR: f64 = stead_problem::settings::SearchSettings::FORCE_ERROR;
 
     pub(crate) fn of(run: stead_runs::Run) -> Self {
         Self { run: Arc::new(run), is_set_up: false }
@@ -138,7 +138,7 @@ impl Run {
     /// # Errors
     /// [`Error::Argument`] where the problem has none ([`SearchSettings::check_for`]).
     ///
-    /// [`SearchSettings::check_for`]: stead_placement::settings::SearchSettings::check_for
+    /// [`SearchSettings::check_for`]: stead_problem::settings::SearchSettings::check_for
     pub fn with_sensitivity(mut self, force_error: f64) -> Result<Self, Error> {
         let run = Arc::make_mut(&mut self.run);
         run.search.sensitivity = Some(force_error);

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use stead_numerics::message::Note;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
-use stead_planning::problem::Placement;
+use stead_problem::problem::Placement;
 use stead_report::placement::{Context, Summary, evaluation, score_files, score_summary, write_score};
 use stead_report::{Files, Folder};
 

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
 use stead_numerics::message::Note;
-use stead_report::simulation::{Making, simulation_files, simulation_text, timed_json, write_simulation};
+use stead_report::simulation::{simulation_files, simulation_text, timed_json, write_simulation};
 use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
@@ -87,13 +87,13 @@ impl SimulationRun {
         let job = Job { setup: &run.setup, cutter: &run.cutter, cut: &run.cut, gap: run.gap };
         let start = Instant::now();
         let pass = job.run(monitor);
-        let making = Making { wall: start.elapsed().as_secs_f64() };
+        let wall = start.elapsed().as_secs_f64();
         let pass = pass.map_err(|error| match error {
             JobError::Stopped(stop) => Error::Stopped(stop),
             error => Error::failed(error),
         })?;
         let simulation = Simulation::of(&job, &run.evaluation, pass).map_err(Error::failed)?;
-        Ok(SimulatedPass { run: Arc::clone(run), simulation, making })
+        Ok(SimulatedPass { run: Arc::clone(run), simulation, wall })
     }
 }
 
@@ -135,7 +135,7 @@ impl StabilityRun {
 pub struct SimulatedPass {
     run: Arc<stead_runs::SimulationRun>,
     simulation: Simulation,
-    making: Making,
+    wall: f64,
 }
 
 /// Whether a cut chatters.
@@ -161,19 +161,19 @@ impl StabilityAnalysis {
 
 impl Report for SimulatedPass {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_simulation(folder, &self.run, &self.simulation, &self.making)?)
+        Ok(write_simulation(folder, &self.run, &self.simulation)?)
     }
 
     fn files(&self) -> Result<Files, Error> {
-        Ok(simulation_files(&self.run, &self.simulation, &self.making)?)
+        Ok(simulation_files(&self.run, &self.simulation)?)
     }
 
     fn document(&self) -> Value {
-        timed_json(&self.run, &self.simulation, &self.making)
+        timed_json(&self.run, &self.simulation, self.wall)
     }
 
     fn table(&self) -> String {
-        simulation_text(&self.run, &self.simulation, &self.making)
+        simulation_text(&self.run, &self.simulation, self.wall)
     }
 
     fn notes(&self) -> &[Note] {

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::Posture;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// What is drawn from each cell.
 const STATES: usize = 300;

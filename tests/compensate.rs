@@ -7,7 +7,7 @@ use std::path::Path;
 use stead_format::read_robot;
 use stead_model::robot::angles::wrap;
 use stead_model::stiffness::equilibrium::{Load, equilibrium};
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 use stead_run_files::read_run;
 
 const CONFIG: &str = "configs/compensate.toml";

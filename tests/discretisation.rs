@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 use std::path::Path;
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
 use stead_run_files::read_run;
 
 /// The mean of the final plan at a placement, m.

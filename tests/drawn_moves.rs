@@ -4,7 +4,7 @@ use crate::collision::{RUN, shipped};
 use serde_json::Value;
 use std::f64::consts::TAU;
 use stead_cell::Scene;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 type Joints = [f64; 6];
 

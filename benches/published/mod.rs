@@ -1,7 +1,7 @@
 //! The published case, for the benchmarks of the placement.
 
 use std::path::Path;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 use stead_run_files::read_run;
 
 /// The problem of the shipped run.

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use stead::{Error, Run};
 use stead_disk::Existing;
 use stead_format::field::FieldOverride;
-use stead_planning::problem::Placement;
+use stead_problem::problem::Placement;
 use stead_run_files::Overrides;
 use stead_simulation::arm::Variant;
 

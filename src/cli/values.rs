@@ -2,10 +2,10 @@
 
 use stead::MAX_THREADS;
 use stead_assessment::roundness::Sector;
-use stead_certify::settings::CertificateSettings;
 use stead_format::MAX_SPINDLE_SPEED_RPM;
 use stead_format::field::FieldOverride;
 use stead_model::robot::ControllerKind;
+use stead_problem::settings::CertificateSettings;
 use stead_run_files::{GAPS_ALLOWED, MAX_DAMPING_SCALE};
 use stead_simulation::arm::Variant;
 use stead_study::cases::Shard;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use stead_disk::Existing;
 use stead_disk::files::new::write_new;
 use stead_model::external_axis::AxisKind;
-use stead_planning::setup::AxisPositions;
+use stead_problem::setup::AxisPositions;
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 /// The tables whose values can be changed in a session.

@@ -149,7 +149,7 @@ impl Session {
 
 impl Run {
     /// The same run in a setup, in which external axes are not looked for.
-    pub(super) fn in_setup(&self, setup: &stead_planning::setup::Setup) -> Self {
+    pub(super) fn in_setup(&self, setup: &stead_problem::setup::Setup) -> Self {
         let problem = self.run.problem.in_setup(setup).into_owned();
         Self { is_set_up: true, ..Self::of(stead_runs::Run { problem, ..(*self.run).clone() }) }
     }

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use std::io::ErrorKind;
 use std::path::Path;
 use stead_disk::files;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 use stead_report::{Folder, document};
 
 /// The file of a session beside its placements.

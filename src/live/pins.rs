@@ -58,7 +58,12 @@ impl Pin {
     ///
     /// # Errors
     /// [`Error::Output`]: the folder cannot be written.
-    pub fn write(session: &Session, reading: &Reading, score: &PlacementScore, label: &str) -> Result<(String, Option<String>), Error> {
+    pub fn write(
+        session: &Session,
+        reading: &Reading,
+        score: &PlacementScore,
+        label: &str,
+    ) -> Result<(String, Option<String>), Error> {
         let name = format!("{NAME}{}", session.next_number(NAME, ""));
         score.write(session.folder.path().join(&name))?;
         let pin = Self {

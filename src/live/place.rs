@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::{AxisPositions, Setup};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// Places farther away than this are a slip. mm
 pub(super) const FARTHEST_MM: f64 = 1e6;
@@ -20,7 +20,7 @@ pub(super) struct Place {
 impl Place {
     /// In the middle of the cell, as the run is set up.
     pub fn middle(problem: &Problem) -> Self {
-        let middle = |range: &stead_planning::problem::Interval| (range.min + range.max) / 2.0;
+        let middle = |range: &stead_problem::problem::Interval| (range.min + range.max) / 2.0;
         let [x, y, z] = problem.cell.position.each_ref().map(middle);
         let placement = Placement { x, y, z, yaw: middle(&problem.cell.yaw) };
         Self { placement, setup: problem.setup.clone() }

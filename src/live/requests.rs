@@ -4,8 +4,8 @@
 use super::place::{FARTHEST_MM, Place, shown};
 use serde_json::{Map, Value};
 use stead_disk::quote::{GARBLED, garbles};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::AxisPositions;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::AxisPositions;
 
 /// Why a request is not answered: the field, what was found there and what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use stead_planning::problem::Placement;
+use stead_problem::problem::Placement;
 use stead_report::Folder;
 
 /// The published case on a coarser grid and with a search of a second, in a folder of its own.

@@ -4,9 +4,9 @@ use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
-use stead_planning::problem::{Cell, Interval, Problem};
-use stead_planning::setup::Setup;
-use stead_planning::symmetry::{Unsupported, is_vertical};
+use stead_problem::problem::{Cell, Interval, Problem};
+use stead_problem::setup::Setup;
+use stead_problem::symmetry::{Unsupported, is_vertical};
 
 /// The same problem without external axes: rails, and turntables about the vertical, that stay at one place for the
 /// whole path shift and turn the workpiece against the robot, so that each place is another cell. The cell holds all of

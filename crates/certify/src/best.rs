@@ -10,13 +10,13 @@ use super::leaning;
 use super::model::Model;
 use super::region::Region;
 use super::requirements::certifiable;
-use crate::settings::CertificateSettings;
 use rayon::prelude::*;
 use std::sync::Arc;
 use stead_numerics::monitor::{Monitor, Stop};
-use stead_planning::problem::Problem;
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::{Unsupported, Upright};
+use stead_problem::problem::Problem;
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::symmetry::{Unsupported, Upright};
 
 /// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (what
 /// is minimised, m) by more than the gap of the settings.

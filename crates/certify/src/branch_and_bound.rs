@@ -8,9 +8,9 @@ use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
-use stead_planning::criterion::Aggregate;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::Sense;
+use stead_problem::criterion::Aggregate;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one
 /// ([`super::worst()`]).

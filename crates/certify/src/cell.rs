@@ -6,7 +6,7 @@ use super::region::{Point, Region};
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::wrap;
 use stead_model::task::PathPoint;
-use stead_planning::problem::{Cell, Placement, Problem};
+use stead_problem::problem::{Cell, Placement, Problem};
 
 /// Which way up the arm stands: +1, or -1 upside down.
 pub(super) fn side(problem: &Problem) -> f64 {

@@ -6,17 +6,17 @@ use super::region::Region;
 use super::relaxed::relaxed_value;
 use super::requirements::{certifiable, certifiable_from_above, left_out};
 use super::worst::worst;
-use crate::settings::CertificateSettings;
 use serde::{Serialize, Serializer};
 use std::time::{Duration, Instant};
 use stead_numerics::digits::{figures, trimmed};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Stop};
-use stead_planning::constraints::{ConstraintKind, describe, relaxed};
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::constraints::{ConstraintKind, describe, relaxed};
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::symmetry::Unsupported;
 
 /// Gaps in per cent are rounded up to this many decimals.
 const GAP_DECIMALS: usize = 4;

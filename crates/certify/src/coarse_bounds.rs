@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::{Monitor, Stop};
-use stead_planning::criterion::Aggregate;
+use stead_problem::criterion::Aggregate;
 
 /// Coarse tables, one for each kind of load, in ever coarser levels; and finer ones, of which a part is made when it is
 /// first needed.

@@ -332,7 +332,7 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_planning::testing::five_segments;
+    use stead_problem::testing::five_segments;
 
     /// A cell 4 m wide and 2 m high has gigabytes of chunks. Setting them up takes seconds, without a look at the time
     /// limit.

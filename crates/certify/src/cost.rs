@@ -9,7 +9,7 @@ use super::load::Load;
 use super::moment::{MOMENTS, MomentModel, MomentPart, TurnedMoment, moved};
 use super::region::{Point, PolarModel, Region};
 use super::yielding::{Tangent, Yielding};
-use stead_planning::criterion::{Aggregate, Over};
+use stead_problem::criterion::{Aggregate, Over};
 
 /// What a node tells: how it yields to forces and, where some moment acts, to moments.
 pub(super) type Known<'a> = (&'a AffineModel, Option<&'a MomentModel>);

@@ -1,7 +1,7 @@
 //! Certificates: how far a placement is from the best possible.
 //!
 //! For an upright tool a state depends on the radius and height of the tool centre point and on the spindle's heading
-//! against its azimuth ([`stead_planning::symmetry`]), and, by the direction of the feed against the azimuth, on one
+//! against its azimuth ([`stead_problem::symmetry`]), and, by the direction of the feed against the azimuth, on one
 //! more angle. That makes bounds possible that hold for every placement of the cell, every posture scheme and every
 //! plan of beta.
 //!
@@ -28,8 +28,8 @@
 //! ```
 //! use stead_certify::{certify, settings::CertificateSettings};
 //! use stead_numerics::monitor::Monitor;
-//! use stead_planning::problem::{Cell, Interval, Placement};
-//! use stead_planning::testing::five_segments;
+//! use stead_problem::problem::{Cell, Interval, Placement};
+//! use stead_problem::testing::five_segments;
 //! // The published case where the workpiece may be moved by 2 mm and turned by 2 deg: nothing in there is better than
 //! // the placement found, with 0.1075 mm in the mean, by more than a twentieth.
 //! let range = |min, max| Interval { min, max };
@@ -72,7 +72,6 @@ mod region;
 mod relaxed;
 mod requirements;
 mod segments;
-pub mod settings;
 mod sliding_min;
 mod upper_bound;
 mod worst;

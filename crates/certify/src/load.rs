@@ -14,8 +14,8 @@
 //! the force, u is +1 or -1 and S the same at every state.
 
 use super::yielding::{Tangent, Yielding, added, dot, norm, scaled};
-use stead_planning::criterion::Aggregate;
-use stead_planning::problem::Problem;
+use stead_problem::criterion::Aggregate;
+use stead_problem::problem::Problem;
 
 /// What acts on a path point and what of its deflection is scored, in the frame of the load: axis 1 is its third axis,
 /// and the first lies along the feed, or along the force where the score is the same in every direction of the plane.

@@ -14,8 +14,8 @@ use super::sliding_min::{INFINITE, SlidingMin, joined, min_into};
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Monitor;
-use stead_planning::beta_step::BetaStep;
-use stead_planning::criterion::Aggregate;
+use stead_problem::beta_step::BetaStep;
+use stead_problem::criterion::Aggregate;
 
 /// Steps over more cells than there are.
 const ANYWHERE: (isize, isize) = (-1_000_000, 1_000_000);

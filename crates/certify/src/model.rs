@@ -9,10 +9,10 @@ use super::load::Objective;
 use super::region::{Point, PolarModel, Region};
 use std::ops::Range;
 use stead_model::robot::Robot;
-use stead_planning::beta_step::BetaStep;
-use stead_planning::criterion::Over;
-use stead_planning::problem::Problem;
-use stead_planning::symmetry::Upright;
+use stead_problem::beta_step::BetaStep;
+use stead_problem::criterion::Over;
+use stead_problem::problem::Problem;
+use stead_problem::symmetry::Upright;
 
 /// Steps of the coarsest tables, and their number.
 pub(super) const STEPS: Steps = Steps { length: 0.025, headings: 128 };

@@ -2,13 +2,13 @@
 
 use super::branch_and_bound::{Bound, Status};
 use super::segments;
-use crate::settings::CertificateSettings;
 use std::sync::Arc;
 use std::time::Instant;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::Problem;
-use stead_planning::setup::Orientation;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::problem::Problem;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::setup::Orientation;
+use stead_problem::symmetry::Unsupported;
 
 /// The open boxes of a part of a problem that is bounded by itself: of one orientation of the part, and of one segment.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
@@ -105,10 +105,10 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
     use stead_model::task::{Task, ToolPath, Wrench};
     use stead_numerics::rotation::rotation_from_vector;
-    use stead_planning::constraints::ConstraintKind;
-    use stead_planning::problem::{Cell, Interval, Placement};
-    use stead_planning::sense::Sense;
-    use stead_planning::testing::five_segments;
+    use stead_problem::constraints::ConstraintKind;
+    use stead_problem::problem::{Cell, Interval, Placement};
+    use stead_problem::sense::Sense;
+    use stead_problem::testing::five_segments;
 
     /// The five segments near the best placement, as the part lies and turned by an angle (rad) about the vertical.
     fn in_two(angle: f64) -> (Problem, Placement) {

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// Grid values of beta, before it is refined.
 const BETAS: usize = 360;

@@ -11,10 +11,10 @@ use super::orientations;
 use super::segments;
 use stead_model::robot::Robot;
 use stead_model::stiffness::whole::yields_elsewhere;
-use stead_planning::criterion::Aggregate;
-use stead_planning::problem::Problem;
-use stead_planning::setup::Orientation;
-use stead_planning::symmetry::{
+use stead_problem::criterion::Aggregate;
+use stead_problem::problem::Problem;
+use stead_problem::setup::Orientation;
+use stead_problem::symmetry::{
     Unsupported, Upright, require_certain_compliances, require_constant, require_free_beta, require_no_travel,
 };
 

@@ -6,15 +6,15 @@ use super::branch_and_bound::{Bound, Status};
 use super::load::Objective;
 use super::orientations::{OpenIn, sharing};
 use super::relaxed::{relaxed_value, rough_value};
-use crate::settings::CertificateSettings;
 use rayon::prelude::*;
 use stead_model::external_axis::AxisUse;
 use stead_model::task::KeptPoint;
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::Setup;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::settings::CertificateSettings;
+use stead_problem::setup::Setup;
+use stead_problem::symmetry::Unsupported;
 
 /// Whether segments are bounded one by one: external axes stand at another place for each, so that seen from the robot
 /// no two need have the same placement.
@@ -157,10 +157,10 @@ mod tests {
     use crate::{NoProof, certifiable};
     use nalgebra::Vector3;
     use stead_model::external_axis::{AxisKind, Carried, ExternalAxis};
-    use stead_planning::criterion::{Aggregate, Weights};
-    use stead_planning::problem::{Cell, Interval};
-    use stead_planning::setup::AxisPositions;
-    use stead_planning::testing::five_segments;
+    use stead_problem::criterion::{Aggregate, Weights};
+    use stead_problem::problem::{Cell, Interval};
+    use stead_problem::setup::AxisPositions;
+    use stead_problem::testing::five_segments;
 
     /// The five segments near the best placement, on a short rail or turntable with a place for each segment.
     fn indexed(kind: AxisKind, aggregate: Aggregate) -> (Problem, Placement) {

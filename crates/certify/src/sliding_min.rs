@@ -1,7 +1,7 @@
 //! Sums at the corners of a box, and the least of neighbouring ones.
 
 use super::cost::CORNERS;
-use stead_planning::criterion::Aggregate;
+use stead_problem::criterion::Aggregate;
 
 /// No way.
 pub(super) const INFINITE: [f64; CORNERS] = [f64::INFINITY; CORNERS];

@@ -11,12 +11,12 @@ use super::region::Region;
 use super::relaxed::relaxed_value;
 use super::requirements::certifiable_from_above;
 use super::upper_bound::{BoxBounds, Inherited};
-use crate::settings::CertificateSettings;
 use std::sync::Arc;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::symmetry::Unsupported;
 
 /// Steps of the coarsest tables, and their number: one level more than lower bounds have, for a first bounds.
 const STEPS: Steps = Steps { length: 0.05, headings: 64 };

@@ -7,15 +7,15 @@ use stead_cell::Clearance;
 use stead_model::robot::{Posture, PostureWords, Spring};
 use stead_model::task::lean::Lean;
 use stead_numerics::mean_max::MeanAndMax;
-use stead_planning::collision::PlanClearance;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::evaluate::reference::ScoredByOrigin;
-use stead_planning::joint_travel::JointTravel;
-use stead_planning::limit::ActiveBound;
-use stead_planning::problem::Placement;
-use stead_planning::sense::{BySense, Sense};
-use stead_planning::setup::{AxisPath, Setup};
 use stead_planning::transfer::Cycle;
+use stead_problem::collision::PlanClearance;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::evaluate::reference::ScoredByOrigin;
+use stead_problem::joint_travel::JointTravel;
+use stead_problem::limit::ActiveBound;
+use stead_problem::problem::Placement;
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::setup::{AxisPath, Setup};
 
 /// One path point of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,7 +114,7 @@ pub struct Plan {
     pub postures: Vec<Posture>,
     /// The same in words.
     pub posture_words: Vec<PostureWords>,
-    /// The figure that is minimised ([`Problem::objective`](stead_planning::problem::Problem::objective)), with what
+    /// The figure that is minimised ([`Problem::objective`](stead_problem::problem::Problem::objective)), with what
     /// joint travel counts in it; by default the mean. m
     pub objective: f64,
     /// Mean of the scores: f_MQC (Caro 2013, eq. 13). m
@@ -187,7 +187,7 @@ pub struct Cases {
     /// Best placement, worst plan.
     pub best_worst_plan: Case,
     /// Worst placement with its best and its worst plan; `None` where it was not looked for
-    /// ([`SearchSettings::worst`](super::settings::SearchSettings::worst)).
+    /// ([`SearchSettings::worst`](stead_problem::settings::SearchSettings::worst)).
     pub worst: Option<BySense<Case>>,
 }
 

@@ -7,9 +7,9 @@
 use nalgebra::Vector2;
 use std::cmp::Ordering;
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::{Objective, rank};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Objective, rank};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// First steps: radius (m), height (m), yaw (rad), azimuth (rad).
 const FIRST: [f64; 4] = [0.03, 0.03, 0.06, 0.06];

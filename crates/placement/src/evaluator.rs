@@ -8,11 +8,11 @@ use super::outcome::Generation;
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::{Candidate, Objective, rank};
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::{self, Planner};
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::apart_about_axis_1;
+use stead_problem::candidate::{Candidate, Objective, rank};
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
+use stead_problem::symmetry::apart_about_axis_1;
 
 /// A planner, and the table before it.
 #[derive(Debug, Clone)]

@@ -6,8 +6,8 @@ use stead_model::task::lean::Lean;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::feasibility::{MapCell, MapReason, deflection_rows};
-use stead_planning::problem::Problem;
-use stead_planning::setup::Setup;
+use stead_problem::problem::Problem;
+use stead_problem::setup::Setup;
 
 /// Deflection over lead and tilt at the point of a plan that deflects most, of those at which the tool may lean.
 #[derive(Debug, Clone, PartialEq)]

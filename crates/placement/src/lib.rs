@@ -13,7 +13,7 @@
 //! ```
 //! use stead_numerics::monitor::Monitor;
 //! use stead_placement::{place::place, settings::SearchSettings};
-//! use stead_planning::{testing::five_segments, transfer::TransferSettings};
+//! use stead_problem::{settings::TransferSettings, testing::five_segments};
 //! // The published case with a search that is too small to be trusted, for the best placement alone.
 //! let (usual, worst) = (SearchSettings::default(), false);
 //! let settings = SearchSettings { population: 16, generations: 3, basins: 1, worst, ..usual };
@@ -38,6 +38,5 @@ pub mod refine;
 pub mod sag;
 pub mod search;
 pub mod sensitivity;
-pub mod settings;
 pub mod setup_sheet;
 mod whole_path;

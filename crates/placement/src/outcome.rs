@@ -7,10 +7,10 @@ use serde::Serialize;
 use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_planning::feasibility::{DeflectionMap, deflection_map};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::Sense;
-use stead_planning::setup::TriedSetup;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::setup::TriedSetup;
+use stead_problem::symmetry::Unsupported;
 
 pub use crate::case::{AtHeldFeed, Case, Cases, DeflectionFigures, Plan, PlanPoint};
 pub use stead_planning::transfer::{Cycle, Transfer};
@@ -61,7 +61,7 @@ pub struct Refinement {
 /// How a round of the gradient refinement ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum RefinementStatus {
-    /// The mean deflection is below [`CANCELLATION`](stead_planning::criterion::CANCELLATION).
+    /// The mean deflection is below [`CANCELLATION`](stead_problem::criterion::CANCELLATION).
     #[error("converged: the deflection is cancelled")]
     Cancelled,
     /// The linear model promises no gain worth a step: a first-order optimum.

@@ -14,8 +14,8 @@ use stead_model::stiffness::whole::{WholeArm, of_part};
 use stead_numerics::digits::figures;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::Note;
-use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::symmetry::is_axis_1_vertical;
+use stead_problem::problem::{Interval, Placement, Problem};
+use stead_problem::symmetry::is_axis_1_vertical;
 
 /// What a run states of its spindle, tool path, forces and cell.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -327,7 +327,7 @@ fn within(robot: &Robot, wrapped: &[f64; 6]) -> Option<([f64; 6], f64)> {
 mod tests {
     use super::*;
     use stead_model::robot::PointMass;
-    use stead_planning::testing::{Beside, five_segments, with_beside};
+    use stead_problem::testing::{Beside, five_segments, with_beside};
 
     #[test]
     fn the_published_run_is_understood() {
@@ -373,7 +373,7 @@ mod tests {
     #[test]
     fn a_cell_out_of_reach_is_noted() {
         let mut problem = five_segments();
-        problem.cell.position[0] = stead_planning::problem::Interval { min: 9.0, max: 9.5 };
+        problem.cell.position[0] = stead_problem::problem::Interval { min: 9.0, max: 9.5 };
         let overview = Overview::of(&problem);
         assert_eq!((overview.middle.reached, overview.middle.first), (0, None));
         assert!(overview.notes()[0].contains("reaches 0 of 105 path points"));

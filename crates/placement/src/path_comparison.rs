@@ -3,14 +3,14 @@
 use super::outcome::SubsetAccuracy;
 use super::path_subset::PathSubset;
 use super::search;
-use super::settings::SearchSettings;
 use super::whole_path::WholePath;
 use rayon::prelude::*;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::candidate::{Candidate, Objective, rank};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Candidate, Objective, rank};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::settings::SearchSettings;
 
 /// Placements with their objectives on the whole path, by which subsets are measured.
 ///

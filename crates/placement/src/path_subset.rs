@@ -9,7 +9,7 @@
 
 use std::ops::Range;
 use stead_model::task::{KeptPoint, Task, ToolPath};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Points kept of a path, ascending.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -179,7 +179,7 @@ fn nearest(ascending: &[f64], at: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_planning::testing::five_segments;
+    use stead_problem::testing::five_segments;
 
     #[test]
     fn weights_sum_up_and_linear_scores_keep_their_sum() {

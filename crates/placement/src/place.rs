@@ -8,14 +8,14 @@
 //! once, and the best one near it.
 
 use super::outcome::Outcome;
-use super::settings::SearchSettings;
 use candidates::{candidates, with_axes};
 use job::Job;
 use lean::leaned;
 use state::state;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::Problem;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::Problem;
+use stead_problem::settings::SearchSettings;
+use stead_problem::settings::TransferSettings;
 
 mod axes;
 mod basins;
@@ -44,14 +44,6 @@ pub use infeasible::{BlockingPair, Infeasible};
 pub use long_path::LongPath;
 pub use preview::{Blocked, Preview, PreviewProblem};
 pub use score::{Score, score};
-
-/// Memory for a point of the path while it is planned and reported, as measured with 50 000 points. Bytes
-const MEMORY_PER_POINT: u64 = 12_000;
-
-/// About how much memory the job takes for a path. Bytes
-pub fn planning_memory(problem: &Problem) -> u64 {
-    MEMORY_PER_POINT * problem.task.points().len() as u64
-}
 
 /// Finds the best and the worst placement, each with its best and its worst plan: the four cases of Caro 2013, Table
 /// III; or the best one alone ([`SearchSettings::worst`]), which is what it is beside the worst one as long as the path

@@ -7,7 +7,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 use stead_model::stiffness::elastic::ElasticArm;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// How far the weight moves the tool at the points of a path that are scored.
 #[derive(Debug, Clone, PartialEq, Serialize)]

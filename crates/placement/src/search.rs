@@ -18,7 +18,6 @@ mod tests;
 use super::evaluator::Evaluator;
 use super::lookup::CollisionEffort;
 use super::outcome::Generation;
-use super::settings::{PostureSearch, SearchSettings};
 use evaluation::{better_third, evaluate};
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -27,11 +26,12 @@ use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::candidate::{Candidate, Objective, rank};
-use stead_planning::problem::{Cell, Placement, Problem};
 use stead_planning::redundancy::{self, Planner};
-use stead_planning::sense::{BySense, Sense};
-use stead_planning::symmetry::{apart_about_axis_1, is_axis_1_vertical};
+use stead_problem::candidate::{Candidate, Objective, rank};
+use stead_problem::problem::{Cell, Placement, Problem};
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::settings::{PostureSearch, SearchSettings};
+use stead_problem::symmetry::{apart_about_axis_1, is_axis_1_vertical};
 
 /// What a search returns.
 #[derive(Debug, Clone, PartialEq)]

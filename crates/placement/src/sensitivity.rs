@@ -5,11 +5,11 @@ use crate::case::{Plan, PlanPoint};
 use rayon::prelude::*;
 pub use stead_model::robot::{About, Spring};
 use stead_model::robot::{Compliance, Robot};
-use stead_planning::problem::{Placement, Problem, ProblemParts};
 use stead_planning::redundancy::off_grid::Spacing;
 use stead_planning::redundancy::{Kept, SegmentPlan, settled_among_free};
-use stead_planning::sense::Sense;
 use stead_planning::transfer_path::whole_lines;
+use stead_problem::problem::{Placement, Problem, ProblemParts};
+use stead_problem::sense::Sense;
 
 /// Relative step of the central differences of stiffness: what "one per cent more" means.
 const STEP: f64 = 0.01;
@@ -189,10 +189,10 @@ mod tests {
     use crate::place::score;
     use crate::refine::planned;
     use stead_numerics::monitor::Monitor;
-    use stead_planning::criterion::{Aggregate, Weights};
     use stead_planning::redundancy::Planner;
-    use stead_planning::testing::{Beside, compensated, five_segments, with_beside, with_laws};
-    use stead_planning::transfer::TransferSettings;
+    use stead_problem::criterion::{Aggregate, Weights};
+    use stead_problem::settings::TransferSettings;
+    use stead_problem::testing::{Beside, compensated, five_segments, with_beside, with_laws};
 
     /// The objective of the best plan at a placement.
     fn planned_objective(problem: &Problem, placement: &Placement) -> (f64, Vec<SegmentPlan>) {

@@ -2,11 +2,11 @@
 
 use super::path_subset::PathSubset;
 use stead_model::robot::Posture;
-use stead_planning::candidate::{Candidate, Objective};
-use stead_planning::criterion::Aggregate;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, off_grid};
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Candidate, Objective};
+use stead_problem::criterion::Aggregate;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// Of every stretch of points that decide, so many join a subset.
 const STRETCH: usize = 3;
@@ -168,7 +168,7 @@ fn deciding(problem: &Problem, none: &NoFeasiblePlan) -> Vec<usize> {
 mod tests {
     use super::*;
     use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
-    use stead_planning::testing::five_segments;
+    use stead_problem::testing::five_segments;
 
     /// The five segments with points `from` to `from + 3` changed, which a subset of ten points leaves out, and that
     /// subset.

@@ -1,12 +1,12 @@
 //! Where arm and external axes are on a move between two segments, from place to place: for pictures of the move, and
 //! for times of it.
 
-use crate::problem::Problem;
-use crate::transfer::TransferSettings;
 use crate::transfer::part_durations;
 use crate::transfer_path::{STRAIGHT_STEP, TransferPath};
 use stead_model::robot::angles::nearest_turns;
 use stead_model::robot::{Pose, Posture};
+use stead_problem::problem::Problem;
+use stead_problem::settings::TransferSettings;
 
 /// A part of a move between segments that is driven from rest to rest, straight in joint space or along the tool axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,17 +91,17 @@ fn along_axis(problem: &Problem, posture: Posture, from: [f64; 6], to: [f64; 6])
 mod tests {
     use super::*;
     use crate::redundancy::Planner;
-    use crate::sense::Sense;
-    use crate::testing::five_segments;
     use crate::transfer_path::transfer_path;
     use std::sync::Arc;
     use stead_cell::testing::{kr270_shapes, scene_of};
+    use stead_problem::sense::Sense;
+    use stead_problem::testing::five_segments;
 
     /// Out of the cut and into it the tool stays on its axis to two hundredths of a millimetre between the places, and
     /// what is between is one straight joint move; each part ends where the next one begins.
     #[test]
     fn parts_follow_the_way() {
-        let placement = crate::problem::Placement::from([0.1, -1.9, -0.4, 1.0]);
+        let placement = stead_problem::problem::Placement::from([0.1, -1.9, -0.4, 1.0]);
         let mut problem = five_segments();
         let planner = Planner::new(&problem);
         let plans = planner.plan(&placement, Sense::Min, None, &mut planner.workspace()).unwrap();

@@ -1,9 +1,6 @@
 //! Why a state or a placement is not allowed: which constraint is broken, and by how much; and the map of deflections
 //! and of what forbids states along a path.
 
-use super::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
-use super::evaluate::reference::{ScoredByOrigin, State, scored_by_origin};
-use super::problem::{BetaPlan, Placement, Problem};
 use super::redundancy::{NoFeasiblePlan, Obstruction};
 use rayon::prelude::*;
 use std::fmt;
@@ -11,6 +8,9 @@ use stead_cell::{PairKind, Proximity};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::{Posture, PostureWords, turns::Range};
 use stead_numerics::monitor::Monitor;
+use stead_problem::constraints::{ConstraintKind, Measured, describe, on_joints, on_state};
+use stead_problem::evaluate::reference::{ScoredByOrigin, State, scored_by_origin};
+use stead_problem::problem::{BetaPlan, Placement, Problem};
 
 /// What one posture gives at one point and beta.
 #[derive(Debug, Clone, PartialEq)]
@@ -346,9 +346,9 @@ pub fn diagnose(
 mod tests {
     use super::*;
     use crate::redundancy::Planner;
-    use crate::sense::Sense;
-    use crate::testing::five_segments;
     use stead_model::robot::angles::yaw_from_q4;
+    use stead_problem::sense::Sense;
+    use stead_problem::testing::five_segments;
 
     #[test]
     fn explains_the_eight_postures_at_the_check_point() {

@@ -30,7 +30,6 @@
 mod external_axes;
 mod linear_motion;
 
-use crate::problem::Problem;
 use crate::redundancy::SegmentPlan;
 use external_axes::{axis_limit, smallest};
 use linear_motion::{LinearMotion, Node, rates_between};
@@ -38,6 +37,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt;
 use stead_model::robot::Joint;
+use stead_problem::problem::Problem;
 
 /// Poses of the blended path on each blending distance.
 const POSES_PER_BLEND: f64 = 4.0;

@@ -6,30 +6,11 @@
 //! ([`TransferPath`]).
 
 use super::feed::{CutFeed, cut_feed};
-use super::problem::{Placement, Problem};
-use super::segment_plan::SegmentPlan;
 use super::transfer_path::{LineEnd, TransferPath, transfer_path};
 use rsruckig::prelude::{InputParameter, Ruckig, ThrowErrorHandler, Trajectory};
-
-/// Limits of the joint moves between segments, for joints whose row of the robot file does not state them, and how the
-/// cut is blended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TransferSettings {
-    /// Time from rest to full speed at full acceleration; the acceleration limit is speed over this. s
-    pub acceleration_time: f64,
-    /// Time from no to full acceleration at full jerk; the jerk limit is acceleration over this. s
-    pub jerk_time: f64,
-    /// Distance over which the controller blends changes of the joint speeds along the cut ([`crate::feed`]). m
-    pub blend: f64,
-}
-
-impl Default for TransferSettings {
-    /// Assumptions: manufacturers publish speeds, not accelerations, and the blending distance is set by the robot's
-    /// program.
-    fn default() -> Self {
-        Self { acceleration_time: 0.4, jerk_time: 0.1, blend: 5e-3 }
-    }
-}
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::segment_plan::SegmentPlan;
+use stead_problem::settings::TransferSettings;
 
 /// How long the cut takes.
 #[derive(Debug, Clone, PartialEq)]
@@ -187,8 +168,8 @@ fn axis_duration(problem: &Problem, settings: &TransferSettings, [from, to]: [&[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::five_segments;
     use stead_model::robot::{Joint, Robot};
+    use stead_problem::testing::five_segments;
 
     fn with_speeds(speeds_deg: [f64; 6]) -> Problem {
         let mut problem = five_segments();

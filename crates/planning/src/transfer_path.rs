@@ -4,10 +4,6 @@
 //! Where the straight joint move hits, higher lifts are tried, then a tree search from both ends (RRT-connect: Kuffner
 //! and LaValle 2000) with random numbers of its own, so that the same plan always gets the same moves.
 
-use crate::problem::{Placement, Problem};
-use crate::segment_plan::SegmentPlan;
-pub use crate::straight_move::LineEnd;
-use crate::straight_move::{MAX_SWING, limit_end};
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -17,6 +13,10 @@ use stead_cell::{PairKind, Scene};
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::{Pose, Posture};
 use stead_model::task::PathPoint;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::segment_plan::SegmentPlan;
+pub use stead_problem::straight_move::LineEnd;
+use stead_problem::straight_move::{MAX_SWING, limit_end};
 
 /// How a move between two segments goes.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use std::ops::RangeInclusive;
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried};
 use stead_model::robot::Pose;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// What moves the base of a program, by its name at the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

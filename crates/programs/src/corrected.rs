@@ -10,7 +10,7 @@ use stead_disk::manifest::{self, Unlisted};
 use stead_model::robot::Pose;
 use stead_model::robot::angles::wrap;
 use stead_numerics::rotation::rotation_from_vector;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 use stead_runs::plan;
 
 /// A target of the corrected path may miss that of the plan by this much, which is printed with a tenth of it. m

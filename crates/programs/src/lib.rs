@@ -58,7 +58,7 @@ use stead_disk::manifest::interruption_note;
 use stead_model::robot::{ControllerKind, Posture, Robot};
 use stead_numerics::message::{Note, NoteGroup, Warning};
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem, UNCHECKED};
+use stead_problem::problem::{Placement, Problem, UNCHECKED};
 use stead_runs::Run;
 use stead_runs::plan::{PlacedPlan, read_plan};
 use transfer_paths::{Ends, TransferPaths};

@@ -7,8 +7,8 @@ use super::transfer_paths::{Ends, Names, TransferPaths};
 use stead_model::external_axis::AxisKind;
 use stead_model::robot::angles::{ANGLE_ROUNDING, nearest_turns};
 use stead_model::robot::{Pose, Posture};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::TransferPath;
+use stead_problem::problem::{Placement, Problem};
 
 /// Positions of the external axes that there are, in mm and deg.
 pub(super) type External = [Option<f64>; 6];

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use stead_numerics::digits::figures;
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
-use stead_planning::problem::Problem;
 use stead_planning::redundancy::SegmentPlan;
 use stead_planning::transfer_path::{AtPoint, LineEnd, ShortLine, Space, TransferPath, transfer_path};
+use stead_problem::problem::Problem;
 use stead_runs::plan::PlacedPlan;
 
 /// How close to its points a program goes.

@@ -13,7 +13,7 @@ use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::message::{Note, Warning};
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::overview::{Hit, Overview, Stand, Yields};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 use stead_removal::cut::CutFigures;
 
 /// A run as it was understood.

@@ -8,8 +8,8 @@ use stead_disk::input::InputFile;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_placement::outcome::DeflectionFigures;
 use stead_planning::feed::{CutFeed, FeedLimit, FeedLimitKind};
-use stead_planning::joint_travel::{JointTravel, Swing};
-use stead_planning::problem::Placement;
+use stead_problem::joint_travel::{JointTravel, Swing};
+use stead_problem::problem::Placement;
 
 /// How long a computation took.
 #[derive(Debug, Clone, Copy, PartialEq)]

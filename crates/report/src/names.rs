@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use stead_model::robot::{Posture, PostureWords};
 use stead_placement::outcome::{Plan, RefinementStatus};
-use stead_planning::constraints::{ConstraintKind, describe};
-use stead_planning::limit::{ActiveBound, Limit};
-use stead_planning::problem::Problem;
-use stead_planning::sense::Sense;
+use stead_problem::constraints::{ConstraintKind, describe};
+use stead_problem::limit::{ActiveBound, Limit};
+use stead_problem::problem::Problem;
+use stead_problem::sense::Sense;
 
 /// `best` or `worst`.
 pub(super) fn sense(sense: Sense) -> &'static str {

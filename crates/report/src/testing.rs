@@ -9,16 +9,16 @@ use stead_model::published::Published;
 use stead_model::robot::{Posture, Robot, angles::yaw_from_q4, turns::Range};
 use stead_placement::outcome::*;
 use stead_placement::sensitivity::{About, Spring, SpringSlope};
-use stead_placement::settings::SearchSettings;
-use stead_planning::constraints::{ConstraintKind, on_joints, on_state};
-use stead_planning::evaluate::reference::State;
 use stead_planning::feasibility::{DeflectionMap, MapCell, MapReason};
 use stead_planning::feed::{CutFeed, FeedLimit, FeedLimitKind};
-use stead_planning::joint_travel::JointTravel;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::{BySense, Sense};
-use stead_planning::testing::five_segments;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::constraints::{ConstraintKind, on_joints, on_state};
+use stead_problem::evaluate::reference::State;
+use stead_problem::joint_travel::JointTravel;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::settings::SearchSettings;
+use stead_problem::settings::TransferSettings;
+use stead_problem::testing::five_segments;
 
 /// Grid steps of beta from point to point.
 const STEPS: i64 = 4;

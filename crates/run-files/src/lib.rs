@@ -2,7 +2,7 @@
 //!
 //! A run file (TOML) names a robot file (TOML) and a task file (CSV) and states the spindle, the cell, the constraints
 //! and the settings of the search; [`read_run`] reads all three into a [`Run`](stead_runs::Run), which holds a
-//! [`Problem`](stead_planning::problem::Problem) that needs no further checks. Files of studies, assessments,
+//! [`Problem`](stead_problem::problem::Problem) that needs no further checks. Files of studies, assessments,
 //! identifications and simulations do the same for their jobs; [`schema`] describes all of them.
 //!
 //! ```

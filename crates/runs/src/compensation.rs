@@ -3,7 +3,7 @@
 use stead_calibration::compensation::CompensationProblem;
 use stead_disk::input::InputFile;
 use stead_numerics::message::{Note, Warning};
-use stead_planning::problem::Placement;
+use stead_problem::problem::Placement;
 
 /// A compensation file and the files it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,8 +11,8 @@ use stead_disk::manifest::{self, Unlisted, interruption_note};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::{AxisPositions, Setup};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// The file with the cases.
 const SUMMARY: &str = "summary.json";

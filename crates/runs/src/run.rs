@@ -2,13 +2,13 @@
 
 use serde_json::Value;
 use std::sync::Arc;
-use stead_certify::settings::CertificateSettings;
 use stead_disk::input::InputFile;
 use stead_model::published::Published;
 use stead_numerics::message::{Note, Warning};
-use stead_placement::settings::SearchSettings;
-use stead_planning::problem::Problem;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::Problem;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::settings::SearchSettings;
+use stead_problem::settings::TransferSettings;
 use stead_removal::outcome::RemovalForces;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 

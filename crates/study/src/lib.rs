@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use stead_numerics::monitor::Monitor;
-//! use stead_planning::problem::Placement;
+//! use stead_problem::problem::Placement;
 //! let run = stead_run_files::read_run("../../configs/caro-2013.toml".as_ref())?;
 //! // The best placement of results/caro-2013, to the digits that are printed: what it scores with its best plan.
 //! let placement = Placement::from_mm_deg([0.0284, -1640.0, -214.0], 78.9664);

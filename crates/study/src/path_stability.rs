@@ -2,8 +2,8 @@
 
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Plan, PlanPoint};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::Setup;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::Setup;
 use stead_simulation::path_stability::{PathConfiguration, PathStabilityAnalysis};
 use stead_simulation::stability_analysis::{CutStability, StabilityError};
 

@@ -5,8 +5,8 @@ use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::{Outcome, Plan};
 use stead_placement::place::{self, Infeasible, Score};
-use stead_planning::problem::Placement;
-use stead_planning::setup::Setup;
+use stead_problem::problem::Placement;
+use stead_problem::setup::Setup;
 use stead_runs::Run;
 use stead_simulation::stability_analysis::StabilityError;
 

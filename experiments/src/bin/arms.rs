@@ -13,8 +13,8 @@ use stead_format::read_robot;
 use stead_numerics::monitor::Monitor;
 use stead_placement::outcome::DeflectionFigures;
 use stead_placement::place::place;
-use stead_planning::criterion::Weights;
-use stead_planning::problem::Problem;
+use stead_problem::criterion::Weights;
+use stead_problem::problem::Problem;
 use stead_run_files::read_run;
 use stead_runs::Run;
 

@@ -16,7 +16,7 @@ use std::error::Error;
 use stead_cell::cover::{Cover, lower_bound};
 use stead_cell::{Attachment, PairKind, Proximity, Scene};
 use stead_model::robot::Posture;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// Distances of round shapes are good to this. m
 const ACCURACY: f64 = 1e-5;

@@ -16,7 +16,7 @@ use std::time::Instant;
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::Monitor;
 use stead_placement::place::score;
-use stead_planning::problem::Placement;
+use stead_problem::problem::Placement;
 use stead_run_files::read_run;
 use stead_runs::Run;
 

@@ -28,9 +28,9 @@ use stead_placement::outcome::Outcome;
 use stead_placement::path_comparison::PathComparison;
 use stead_placement::path_subset::PathSubset;
 use stead_placement::place::{LongPath, place};
-use stead_placement::settings::SearchSettings;
-use stead_planning::problem::{Problem, ProblemError};
 use stead_planning::redundancy::Planner;
+use stead_problem::problem::{Problem, ProblemError};
+use stead_problem::settings::SearchSettings;
 use stead_run_files::read_run;
 use stead_runs::Run;
 

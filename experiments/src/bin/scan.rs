@@ -15,11 +15,11 @@ use stead_placement::evaluator::Evaluator;
 use stead_placement::lookup::LookupTable;
 use stead_placement::refine::refine;
 use stead_placement::search::distinct;
-use stead_planning::candidate::{Candidate, rank};
-use stead_planning::problem::Interval;
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Candidate, rank};
+use stead_problem::problem::Interval;
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
 use stead_run_files::read_run;
 
 /// Basins of the grid that are refined, for each sense.

@@ -14,8 +14,8 @@ use std::path::Path;
 use stead_format::read_robot;
 use stead_numerics::monitor::Monitor;
 use stead_placement::place::place;
-use stead_placement::settings::{PostureSearch, SearchSettings};
-use stead_planning::criterion::CANCELLATION;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::settings::{PostureSearch, SearchSettings};
 use stead_run_files::read_run;
 
 fn main() -> Result<(), Box<dyn Error>> {

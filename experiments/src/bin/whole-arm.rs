@@ -19,9 +19,9 @@ use std::fs;
 use std::path::Path;
 use stead_numerics::monitor::Monitor;
 use stead_placement::place::place;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{Planner, Workspace};
-use stead_planning::sense::Sense;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 use stead_run_files::read_run;
 
 /// The run that all are made of.

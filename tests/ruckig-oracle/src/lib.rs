@@ -7,9 +7,9 @@
 mod tests {
     use proptest::prelude::*;
     use stead_model::robot::Robot;
-    use stead_planning::testing::five_segments;
-    use stead_planning::transfer::TransferSettings;
     use stead_planning::transfer::duration;
+    use stead_problem::settings::TransferSettings;
+    use stead_problem::testing::five_segments;
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]

@@ -8,7 +8,7 @@ use super::singularity::{Limits, Needs, tool_lever};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::{Geometry, Robot, angles::ANGLE_ROUNDING};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// What does not change from state to state.
 #[derive(Debug, Clone)]

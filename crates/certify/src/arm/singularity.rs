@@ -12,7 +12,7 @@ use super::super::number::Number;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::ANGLE_ROUNDING;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Squared velocities of a joint that turns by 1 and a wrist that undoes the turn, at least.
 pub(super) const UNDONE: f64 = 1.5;

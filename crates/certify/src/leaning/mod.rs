@@ -22,7 +22,6 @@ use super::load::{Load, Objective};
 use super::minorant::Affine;
 use super::region::Region;
 use super::sliding_min::{INFINITE, joined, min_into, plus};
-use crate::settings::CertificateSettings;
 use cells::{Cells, LEVELS};
 use nalgebra::Vector3;
 use piece::half_of;
@@ -31,9 +30,10 @@ use std::ops::Range;
 use std::sync::Arc;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::Aggregate;
-use stead_planning::problem::Problem;
-use stead_planning::sense::Sense;
+use stead_problem::criterion::Aggregate;
+use stead_problem::problem::Problem;
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
 
 /// Tool axes of a path that a bound covers.
 pub(super) const MOST_AXES: usize = 3;

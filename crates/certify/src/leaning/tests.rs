@@ -13,11 +13,11 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 use stead_model::robot::angles::wrap;
 use stead_model::task::{Task, ToolPath};
-use stead_planning::criterion::Weights;
 use stead_planning::feasibility::explain;
-use stead_planning::problem::{Interval, Placement};
-use stead_planning::symmetry::Unsupported;
-use stead_planning::testing::{five_segments, slanted};
+use stead_problem::criterion::Weights;
+use stead_problem::problem::{Interval, Placement};
+use stead_problem::symmetry::Unsupported;
+use stead_problem::testing::{five_segments, slanted};
 
 const MEMORY: u64 = 1_000_000_000;
 

@@ -3,13 +3,13 @@
 //! the open boxes that it is in, or outside of these better than the value by more than the gap.
 
 use super::*;
-use crate::settings::CertificateSettings;
 use crate::{OpenBox, certify};
 use rayon::prelude::*;
 use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::{Planner, Workspace};
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::about_axis_1;
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::symmetry::about_axis_1;
 
 const GAP: f64 = 1e-3;
 

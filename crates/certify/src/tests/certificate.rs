@@ -5,18 +5,18 @@ use super::super::certificate::{Certificate, NoProof, Proof, certify};
 use super::*;
 use crate::at_rest::without_axes;
 use crate::requirements::certifiable_from_above;
-use crate::settings::CertificateSettings;
 use crate::{best, certifiable};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
-use stead_planning::constraints::ConstraintKind;
-use stead_planning::criterion::{Over, StiffnessSets};
-use stead_planning::problem::{BetaPlan, Cell, Placement};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::setup::{AxisPositions, Setup};
-use stead_planning::symmetry::Unsupported;
-use stead_planning::testing::Beside;
+use stead_problem::constraints::ConstraintKind;
+use stead_problem::criterion::{Over, StiffnessSets};
+use stead_problem::problem::{BetaPlan, Cell, Placement};
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::setup::{AxisPositions, Setup};
+use stead_problem::symmetry::Unsupported;
+use stead_problem::testing::Beside;
 
 const PLACEMENT: Placement = Placement { x: 0.0, y: -1.9, z: -0.214, yaw: 1.4 };
 
@@ -244,7 +244,7 @@ fn what_a_bound_leaves_out_of_the_objective_is_named() {
 
 #[test]
 fn what_yields_beside_the_joints_is_covered_or_refused() {
-    use stead_planning::testing::with_beside;
+    use stead_problem::testing::with_beside;
     let refused = |problem: &Problem| certifiable(problem, u64::MAX).unwrap_err();
     // A base that is not alike in every direction, and a joint 5 that yields beside the wrist centre.
     let error = refused(&with_beside(five_segments(), Beside::Matrices));

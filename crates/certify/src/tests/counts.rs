@@ -4,12 +4,12 @@ use super::super::arm::Margins;
 use super::super::compliance_table::{Node, enclosed};
 use super::super::interval_simd::WIDTH;
 use super::*;
-use crate::settings::CertificateSettings;
 use crate::{Bound, best};
 use stead_model::robot::{Joint, Spindle};
 use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
 
 /// Names of the margins, in the order of [`undecided`].
 const NAMES: [&str; 6] = ["elbow", "joint 2", "joint 3", "joint 5", "wrist", "conditioning"];

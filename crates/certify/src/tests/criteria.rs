@@ -6,7 +6,7 @@ use super::seeded;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use stead_planning::criterion::worst_force_error;
+use stead_problem::criterion::worst_force_error;
 
 fn vector(random: &mut ChaCha8Rng) -> [f64; 3] {
     std::array::from_fn(|_| random.random_range(-1.0..1.0))

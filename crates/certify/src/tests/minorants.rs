@@ -8,7 +8,7 @@ use super::super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, col
 use super::*;
 use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 /// The same with a table of other steps, of nodes about some radii and heights only.
 pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: Steps, levels: usize) -> Model {

@@ -29,10 +29,10 @@ use stead_model::robot::testing::robot_from;
 use stead_model::robot::{BaseCompliance, Compliance, Frames, PostureClass, Robot};
 use stead_model::stiffness::whole::WholeArm;
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
-use stead_planning::criterion::{Aggregate, Criterion, Weights};
 use stead_planning::feasibility::explain;
-use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::testing::{
+use stead_problem::criterion::{Aggregate, Criterion, Weights};
+use stead_problem::problem::{Interval, Placement, Problem};
+use stead_problem::testing::{
     Beside, compensated, five_segments, hanging, slanted, with_axes_2_3, with_beside, with_laws,
 };
 

@@ -8,11 +8,11 @@ use super::*;
 use crate::compliance_table::Steps;
 use stead_model::task::{PathPoint, ToolPath};
 use stead_numerics::monitor::Monitor;
-use stead_planning::beta_step::BetaStep;
-use stead_planning::criterion::{Over, StiffnessSets};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::testing::corners;
+use stead_problem::beta_step::BetaStep;
+use stead_problem::criterion::{Over, StiffnessSets};
+use stead_problem::sense::Sense;
+use stead_problem::testing::corners;
 
 #[test]
 fn windows_hold_the_least_of_their_neighbours() {

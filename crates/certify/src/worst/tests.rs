@@ -5,17 +5,17 @@ use super::*;
 use crate::compliance_table::{AffineModel, Node};
 use crate::cost::CORNERS;
 use crate::relaxed::{relaxed_value, score};
-use crate::settings::CertificateSettings;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::StopHandle;
-use stead_planning::problem::{Interval, Placement};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::testing::five_segments;
+use stead_problem::problem::{Interval, Placement};
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
+use stead_problem::testing::five_segments;
 
 /// A placement of a region; the azimuth is that of the middle of the paper's cell.
 fn placed(problem: &Problem, [radius, height, turn]: [f64; 3]) -> Placement {

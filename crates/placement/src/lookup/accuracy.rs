@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use stead_model::robot::{PostureClass, angles::wrap};
 use stead_planning::feasibility::without_clearance;
-use stead_planning::problem::{Placement, Redundancy};
+use stead_problem::problem::{Placement, Redundancy};
 
 /// Random placements, each with a path point.
 const DRAWN: u64 = 96;

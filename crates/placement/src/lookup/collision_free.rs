@@ -7,8 +7,8 @@ use super::objective::Workspace;
 use super::{BetaGrid, LookupTable};
 use stead_cell::Proximity;
 use stead_model::robot::PostureClass;
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::{StateSet, forbid, kinds_left};
+use stead_problem::problem::Placement;
 
 /// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 30;

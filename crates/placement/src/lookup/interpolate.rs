@@ -5,10 +5,10 @@
 //! fields; then the heading.
 
 use super::polar::PolarPoint;
-use super::shape::{Shape, cubic};
-use super::{BetaGrid, LookupTable, sample::field};
+use super::{BetaGrid, LookupTable};
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::turns::Range;
+use stead_problem::table_shape::{Shape, cubic, field};
 
 /// What scores are made of, over the headings of the table or over a grid of beta.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! A lookup table of the scores of upright tools: candidates are scored by interpolating it, at a tenth of the cost of
 //! planning them; only survivors are planned exactly.
 //!
-//! With the tool axis along axis 1 ([`stead_planning::symmetry`]), a state depends on four things alone: the tool
+//! With the tool axis along axis 1 ([`stead_problem::symmetry`]), a state depends on four things alone: the tool
 //! centre point's radius r and height z in the root frame, the heading of the spindle against the point's azimuth, and
 //! the posture class. The compliance there is sampled once per robot and spindle, by the reference geometry (`sample`,
 //! over the grid of `shape`). A placement is scored point by point (`polar`, `interpolate`), and the best plan through
@@ -29,28 +29,21 @@ mod interpolate;
 mod objective;
 mod polar;
 mod sample;
-mod shape;
 
 pub use accuracy::Accuracy;
 pub use objective::{CollisionEffort, Workspace};
-pub use shape::{Parts, Shape, TableAxis};
+pub use stead_problem::table_shape::{MAX_BYTES, Parts, Shape, TableAxis};
 
 use nalgebra::{Matrix3, Matrix6};
 use polar::WorkpiecePoint;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use stead_model::robot::{Pose, turns::Range};
+use stead_model::robot::Pose;
 use stead_numerics::monitor::Monitor;
-use stead_planning::constraints::{ConstraintKind, relaxed};
-use stead_planning::problem::{Problem, Redundancy};
 use stead_planning::redundancy::{BetaChange, Planner, StateSet, saved_changes};
-use stead_planning::symmetry::{
-    Unsupported, Upright, require_alike_flips, require_certain_compliances, require_constant, require_free_beta,
-    require_mean_wall, require_no_moment,
-};
-
-/// Largest size of a table. Bytes
-pub const MAX_BYTES: u64 = 1 << 30;
+use stead_problem::constraints::{ConstraintKind, relaxed};
+use stead_problem::problem::{Problem, Redundancy};
+use stead_problem::symmetry::{Unsupported, Upright};
 
 /// The compliance of an arm with an upright tool, and the room left to its limits, everywhere in a cell.
 #[derive(Debug, Clone)]
@@ -121,29 +114,6 @@ impl BetaGrid {
 }
 
 impl<'a> LookupTable<'a> {
-    /// The shape of the table of a problem, if the problem has the symmetry and the table fits in memory.
-    ///
-    /// # Errors
-    /// [`Unsupported`], with the reason.
-    pub fn shape_for(problem: &Problem) -> Result<Shape, Unsupported> {
-        Upright::of(problem)?;
-        require_mean_wall(problem)?;
-        require_free_beta(problem)?;
-        require_constant(problem, &[0, 3, 4, 5])?;
-        require_certain_compliances(problem)?;
-        require_alike_flips(problem)?;
-        let is_flat = problem.criterion.force_uncertainty == 0.0
-            && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
-        let parts = Parts {
-            vertical: !is_flat,
-            moment: require_no_moment(problem).is_err(),
-            first_joint: !Range::of(&problem.robot.joints()[0]).has_turns(),
-        };
-        let shape = Shape::new(problem, parts);
-        let bytes = shape.bytes();
-        if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(shape) }
-    }
-
     /// Samples the table of a problem.
     ///
     /// # Errors
@@ -157,7 +127,7 @@ impl<'a> LookupTable<'a> {
     /// # Errors
     /// [`Unsupported`], with the reason, one of which is [`Unsupported::Interrupted`].
     pub fn monitored(problem: &'a Problem, monitor: &Monitor) -> Result<Self, Unsupported> {
-        let shape = Self::shape_for(problem)?;
+        let shape = Shape::of(problem)?;
         let rotation_sign = Upright::of(problem)?.rotation_sign;
         let (data, alive) = sample::sample(problem, &shape, rotation_sign, monitor).ok_or(Unsupported::Interrupted)?;
         // Exactly upright, so that a level path is level to the last bit.

@@ -9,10 +9,10 @@ use super::{BetaGrid, LookupTable};
 use std::ops::Range as Span;
 use stead_cell::Proximity;
 use stead_model::robot::{Posture, PostureClass};
-use stead_planning::candidate::{Objective, best_of};
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::{BetaChange, StateSet};
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Objective, best_of};
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
 
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use super::LookupTable;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::stiffness::whole::of_matrix;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// A path point in the workpiece frame.
 #[derive(Debug, Clone)]

@@ -1,30 +1,13 @@
 //! Sampling a table by the reference geometry.
 
-use super::shape::{MAX_FIELDS, Shape};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use stead_model::robot::{Frames, Pose, PostureClass, Robot, conditioning::inverse_condition, turns::Range};
 use stead_model::stiffness::whole::{ByOrigin, WholeArm};
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::Problem;
-
-/// Fields of a row.
-pub(super) mod field {
-    /// Half the trace of the in-plane compliance of joints 2 to 6. m/N
-    pub const MEAN: usize = 0;
-    /// Half the difference of radial and tangential compliance. m/N
-    pub const DIFFERENCE: usize = 1;
-    /// Compliance between radial and tangential. m/N
-    pub const MIXED: usize = 2;
-    /// Room left to the nearest limit, below zero where it is passed (rad, or 1/kappa).
-    pub const ROOM: usize = 3;
-    /// Compliance between radial and vertical, then between tangential and vertical. m/N
-    pub const VERTICAL: usize = 4;
-    /// How many fields the moment has: compliance between radial, then tangential, and a moment about radial,
-    /// tangential and up. 1/N
-    pub const MOMENT: usize = 6;
-}
+use stead_problem::problem::Problem;
+use stead_problem::table_shape::{MAX_FIELDS, Shape, field};
 
 /// The smallest bound on 1/kappa that room is measured in units of.
 const MIN_SLOPE: f64 = 0.05;

@@ -1,6 +1,5 @@
 //! The table against the reference evaluator and the planner, and with parts of the formula broken on purpose.
 
-use super::sample::field;
 use super::*;
 use crate::coordinate_search::{Directions, coordinate_search};
 use crate::evaluator::Evaluator;
@@ -13,14 +12,15 @@ use stead_cell::{Attachment, Solid};
 use stead_model::robot::{Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::Objective;
-use stead_planning::candidate::rank;
-use stead_planning::constraints::ConstraintKind;
 use stead_planning::feasibility::explain;
-use stead_planning::problem::{Interval, Placement, Redundancy};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::testing::{
+use stead_problem::candidate::Objective;
+use stead_problem::candidate::rank;
+use stead_problem::constraints::ConstraintKind;
+use stead_problem::problem::{Interval, Placement, Redundancy};
+use stead_problem::sense::Sense;
+use stead_problem::table_shape::field;
+use stead_problem::testing::{
     Beside, compensated, corners, five_segments, hanging, slanted, with_axes_2_3, with_beside, with_laws,
     with_turn_limits, with_uncertainty,
 };
@@ -172,7 +172,7 @@ fn whatever_yields_is_in_the_table_or_added() {
         }
     }
     let pairs = with_beside(five_segments(), Beside::Pairs);
-    assert_eq!(LookupTable::shape_for(&pairs).unwrap_err(), Unsupported::UnlikeFlips);
+    assert_eq!(Shape::of(&pairs).unwrap_err(), Unsupported::UnlikeFlips);
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn the_same_table_for_any_number_of_threads() {
 
 #[test]
 fn what_a_table_cannot_hold_is_refused_with_the_reason() {
-    let refused = |problem: &Problem| LookupTable::shape_for(problem).unwrap_err();
+    let refused = |problem: &Problem| Shape::of(problem).unwrap_err();
     let with_axes = |axis_of: &dyn Fn(usize) -> Vector3<f64>| {
         let mut problem = five_segments();
         let path = problem.task.path();
@@ -403,7 +403,7 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
     }
 
     let mut uncertain = with_uncertainty(five_segments(), 0.1);
-    assert!(LookupTable::shape_for(&uncertain).is_ok());
+    assert!(Shape::of(&uncertain).is_ok());
     uncertain.criterion.confidence = 2.0;
     assert_eq!(refused(&uncertain), Unsupported::UncertainCompliances);
 

@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_planning::compass::CompassSteps;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
 use stead_planning::redundancy::axis_path::AxisGrid;
-use stead_planning::sense::Sense;
-use stead_planning::setup::{AxisPositions, Setup};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// Positions of an axis that are tried first, over its whole range.
 pub(super) const GRID: usize = 5;

@@ -7,12 +7,12 @@ use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
 use crate::refine::{found_again, planned, refine};
 use crate::search::SearchResult;
-use crate::settings::SearchSettings;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::candidate::Candidate;
-use stead_planning::sense::{BySense, Sense};
+use stead_problem::candidate::Candidate;
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::settings::SearchSettings;
 
 /// Basins whose means differ by less than this (relative) are equal: the one that the search ranked higher is taken, so
 /// that rounding does not choose between mirror images.

@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use stead_model::robot::Robot;
 use stead_model::robot::testing::robot_from;
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
-use stead_planning::criterion::{Aggregate, Direction};
-use stead_planning::problem::{Interval, Placement};
-use stead_planning::testing::five_segments;
+use stead_problem::criterion::{Aggregate, Direction};
+use stead_problem::problem::{Interval, Placement};
+use stead_problem::testing::five_segments;
 
 /// Three arms: that of the paper, a smaller one with other springs, and one with a lateral offset at the elbow.
 fn arms() -> [Robot; 3] {
@@ -73,7 +73,7 @@ fn no_placement_of_a_grid_is_better_than_the_best_or_worse_than_the_worst() {
             let mut problem = five_segments();
             (problem.robot, problem.task) = (robot.clone(), task);
             problem.redundancy.beta_count = 24;
-            problem = stead_planning::testing::with_beta_rate(problem, 2.0);
+            problem = stead_problem::testing::with_beta_rate(problem, 2.0);
             problem.cell.position =
                 [(-0.15, 0.15), (-1.75, -1.45), (-0.3, 0.0)].map(|(min, max)| Interval { min, max });
             problem.cell.yaw = Interval { min: 0.0, max: 1.2 };

@@ -3,11 +3,11 @@
 use crate::outcome::Plan;
 use stead_numerics::digits::figures;
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::joint_travel::joint_travel;
-use stead_planning::problem::{BetaPlan, Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::joint_travel::joint_travel;
+use stead_problem::problem::{BetaPlan, Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// A calmer plan costs less than this share of the objective.
 const COST: f64 = 0.02;

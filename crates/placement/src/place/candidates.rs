@@ -17,9 +17,9 @@ use super::searched::{Searched, search_cell};
 use super::sets::Sets;
 use crate::evaluator::Evaluator;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Cell, Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::setup::{AxisPositions, Setup, TriedSetup};
+use stead_problem::problem::{Cell, Placement, Problem};
+use stead_problem::setup::{AxisPositions, Setup, TriedSetup};
 
 /// Finds the best and the worst placement over all setups.
 ///

@@ -4,9 +4,9 @@ use super::job::Planned;
 use super::long_path::LongPath;
 use super::sets::Sets;
 use crate::outcome::{Generation, LookupSummary, Refinement};
-use stead_planning::candidate::{Candidate, Objective};
-use stead_planning::setup::TriedSetup;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::candidate::{Candidate, Objective};
+use stead_problem::setup::TriedSetup;
+use stead_problem::symmetry::Unsupported;
 
 /// What was found, and how.
 pub(super) struct Found {

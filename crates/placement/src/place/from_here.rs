@@ -6,10 +6,10 @@ use crate::path_subset::PathSubset;
 use crate::refine::refine;
 use crate::whole_path::WholePath;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::candidate::{Candidate, Objective};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Candidate, Objective};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// Longer paths are improved on some of their points, which the whole path then checks.
 const WHOLE: usize = 1000;
@@ -70,8 +70,8 @@ fn improved(planner: &Planner<'_>, start: &Placement, monitor: &Monitor) -> Opti
 mod tests {
     use super::*;
     use crate::place::score;
-    use stead_planning::testing::five_segments;
-    use stead_planning::transfer::TransferSettings;
+    use stead_problem::settings::TransferSettings;
+    use stead_problem::testing::five_segments;
 
     fn mean(problem: &Problem, placement: &Placement) -> f64 {
         let scored = score(problem, placement, &TransferSettings::default(), &Monitor::silent());
@@ -96,7 +96,7 @@ mod tests {
         assert!(mean(&problem, &start).is_infinite());
         let end = improve(&problem, &start, &Monitor::silent()).unwrap();
         assert!(mean(&problem, &end).is_finite() && problem.cell.contains(&end));
-        problem.cell.position[1] = stead_planning::problem::Interval { min: -9.0, max: -8.9 };
+        problem.cell.position[1] = stead_problem::problem::Interval { min: -9.0, max: -8.9 };
         let none = improve(&problem, &Placement::from([0.0, -9.0, -0.4, 0.0]), &Monitor::silent()).unwrap_err();
         assert!(none.to_string().contains("beyond the stretched arm"), "{none}");
     }

@@ -3,9 +3,9 @@
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
 use stead_planning::feasibility::{AFTER_STOP, Finding, diagnose};
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
 
 /// Two shapes, or a point of the arm and a zone, that come nearer than they may in all plans tried.
 #[derive(Debug, Clone, PartialEq, Eq)]

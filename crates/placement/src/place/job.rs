@@ -1,14 +1,14 @@
 //! What the placement job works on, and a placement with its plan as it goes from stage to stage.
 
 use crate::refine::{Solution, planned};
-use crate::settings::SearchSettings;
 use std::borrow::Cow;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::setup::Setup;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::settings::SearchSettings;
+use stead_problem::settings::TransferSettings;
+use stead_problem::setup::Setup;
 
 /// The job with its settings.
 pub(super) struct Job<'a> {

@@ -20,12 +20,12 @@ use super::thinned::{Thinned, path_of, points_needed, spread};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::cell::Cell;
-use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::motion::MotionGrid;
-use stead_planning::sense::Sense;
-use stead_planning::setup::Setup;
+use stead_problem::cell::Cell;
+use stead_problem::lean::{LeanSpace, MOST_PLANNED_POINTS};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::setup::Setup;
 
 /// Two starts are no nearer than this in one coordinate (m, rad).
 const APART: [f64; 2] = [0.05, 0.2];

@@ -12,14 +12,14 @@ use crate::outcome::{PathLevels, SubsetAccuracy};
 use crate::path_comparison::PathComparison;
 use crate::path_subset::PathSubset;
 use crate::search::{self, SearchResult};
-use crate::settings::SearchSettings;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::{Candidate, Objective, rank};
-use stead_planning::problem::Problem;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::{BySense, Sense};
+use stead_problem::candidate::{Candidate, Objective, rank};
+use stead_problem::problem::Problem;
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::settings::SearchSettings;
 
 /// Points of the subset for the search, beside one for every segment.
 const SEARCH_POINTS: usize = 60;

@@ -12,11 +12,11 @@ use crate::whole_path::WholePath;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::candidate::Candidate;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::{BySense, Sense};
-use stead_planning::symmetry::apart_about_axis_1;
+use stead_problem::candidate::Candidate;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::symmetry::apart_about_axis_1;
 
 /// How often a refinement is repeated with more points at the most.
 const REPEATS: usize = 5;

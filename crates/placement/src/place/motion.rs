@@ -10,10 +10,10 @@ use super::thinned::{Thinned, path_of, points_needed, spread};
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::lean::{LeanSpace, MOST_PLANNED_POINTS};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::motion::{Motion, MotionGrid, SettingSteps};
-use stead_planning::setup::{AxisPositions, Setup};
+use stead_problem::lean::{LeanSpace, MOST_PLANNED_POINTS};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// Settings of a point on the coarse grid at the most.
 const MOST_SETTINGS: usize = 200;

@@ -10,10 +10,10 @@ use stead_model::task::lean::{Lean, LeanForce};
 use stead_numerics::digits::figures;
 use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::{CANCELLATION, Criterion, SMALL_PART};
 use stead_planning::feed::CutFeed;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::{self, ShortLine, TransferPath};
+use stead_problem::criterion::{CANCELLATION, Criterion, SMALL_PART};
+use stead_problem::problem::{Placement, Problem};
 
 /// Warns of a plan that balances the deflection to nothing: a result of the criterion, not of the robot.
 pub(super) fn cancellation(problem: &Problem, mean: f64) -> Option<Warning> {

@@ -8,14 +8,15 @@ use std::ops::Range;
 use stead_model::robot::{Posture, angles::wrap};
 use stead_numerics::mean_max::percentile;
 use stead_numerics::monitor::Monitor;
-use stead_planning::collision::PlanClearance;
-use stead_planning::evaluate::reference::{ScoredByOrigin, scored_by_origin, scored_part_by_parameters};
 use stead_planning::feed::CutFeed;
-use stead_planning::joint_travel::{JointTravel, joint_travel};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan};
-use stead_planning::sense::Sense;
-use stead_planning::transfer::{TransferSettings, cycle};
+use stead_planning::transfer::cycle;
+use stead_problem::collision::PlanClearance;
+use stead_problem::evaluate::reference::{ScoredByOrigin, scored_by_origin, scored_part_by_parameters};
+use stead_problem::joint_travel::{JointTravel, joint_travel};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::settings::TransferSettings;
 
 /// What is stated at a refined placement: its best plan, or one within the tie whose moves are shorter, and its worst.
 pub(super) struct StatedPlans {
@@ -98,7 +99,9 @@ fn at_held_feed(
     if feed.slowed() == 0 {
         return Some(of(programmed));
     }
-    problem.at_held_feed(feed).map(|slower| of(&detailed(&slower, placement, plans)))
+    problem
+        .at_feed(|segment, programmed| feed.share(segment, programmed))
+        .map(|slower| of(&detailed(&slower, placement, plans)))
 }
 
 /// A plan with everything that there is to say of each point, from the reference evaluator.

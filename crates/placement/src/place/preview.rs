@@ -7,11 +7,12 @@ use crate::outcome::{DeflectionFigures, Plan, PlanPoint};
 use crate::path_subset::PathSubset;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_planning::feasibility::{Finding, diagnose};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{NoFeasiblePlan, Planner, SegmentPlan, Workspace};
-use stead_planning::sense::Sense;
-use stead_planning::setup::AxisPath;
-use stead_planning::transfer::{Cycle, TransferSettings, cut_alone};
+use stead_planning::transfer::{Cycle, cut_alone};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::settings::TransferSettings;
+use stead_problem::setup::AxisPath;
 
 /// Longer paths are previewed on some of their points.
 const WHOLE: usize = 1000;
@@ -174,7 +175,7 @@ mod tests {
     use super::*;
     use crate::place::score;
     use stead_numerics::monitor::Monitor;
-    use stead_planning::testing::five_segments;
+    use stead_problem::testing::five_segments;
 
     const PLACE: [f64; 4] = [0.0284e-3, -1.64, -0.214, 1.378];
 

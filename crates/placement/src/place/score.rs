@@ -9,11 +9,11 @@ use crate::refine::planned;
 use crate::setup_sheet::SetupSheet;
 use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::{BySense, Sense};
-use stead_planning::setup::Setup;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::settings::TransferSettings;
+use stead_problem::setup::Setup;
 
 /// What one given placement is worth.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,12 +5,12 @@ use crate::evaluator::Evaluator;
 use crate::lookup::LookupTable;
 use crate::outcome::LookupSummary;
 use crate::search::{self, SearchResult};
-use crate::settings::{LookupUse, SearchSettings};
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::Objective;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::{BySense, Sense};
-use stead_planning::symmetry::Unsupported;
+use stead_problem::candidate::Objective;
+use stead_problem::sense::{BySense, Sense};
+use stead_problem::settings::{LookupUse, SearchSettings};
+use stead_problem::symmetry::Unsupported;
 
 /// What the searches of both senses come to.
 pub(super) struct Searched<'a> {

@@ -8,11 +8,11 @@ use crate::evaluator::Evaluator;
 use crate::outcome::{Plan, SetBasin, SetOutcome};
 use crate::sensitivity::mean_by;
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::Candidate;
-use stead_planning::criterion::Over;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
+use stead_problem::candidate::Candidate;
+use stead_problem::criterion::Over;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// The stiffness sets of a criterion, each with what is best for it alone.
 #[derive(Default)]

@@ -13,7 +13,7 @@ use crate::sensitivity::{objective_by_stiffness, objective_with_force_errors};
 use stead_model::robot::angles::wrap;
 use stead_numerics::monitor::Progress;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::{BySense, Sense};
+use stead_problem::sense::{BySense, Sense};
 
 /// States what was found.
 pub(super) fn state(job: &Job<'_>, mut found: Found) -> Outcome {

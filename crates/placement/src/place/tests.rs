@@ -1,6 +1,5 @@
 //! The job as a whole: cases, refusals, stopping, and how the mean of a plan errs.
 
-use super::super::settings::{LookupUse, PostureSearch};
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::lookup::LookupTable;
@@ -9,12 +8,13 @@ use crate::search;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::robot::angles::yaw_from_q4;
-use stead_planning::criterion::{Over, StiffnessSets, Weights};
-use stead_planning::problem::{Cell, Interval, Placement};
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::Unsupported;
-use stead_planning::testing::{five_segments, with_uncertainty};
+use stead_problem::criterion::{Over, StiffnessSets, Weights};
+use stead_problem::problem::{Cell, Interval, Placement};
+use stead_problem::sense::Sense;
+use stead_problem::settings::{LookupUse, PostureSearch};
+use stead_problem::symmetry::Unsupported;
+use stead_problem::testing::{five_segments, with_uncertainty};
 
 mod choice;
 mod following;
@@ -73,7 +73,7 @@ fn the_best_placement_is_found_without_the_worst() {
 fn a_cell_out_of_reach_says_why() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 24;
-    problem.cell.position[1] = stead_planning::problem::Interval { min: -6.0, max: -5.0 };
+    problem.cell.position[1] = stead_problem::problem::Interval { min: -6.0, max: -5.0 };
     let nothing = place(&problem, &small(), &TransferSettings::default(), &Monitor::silent()).unwrap_err();
     assert!(nothing.searched && !nothing.findings.is_empty());
     assert!(nothing.to_string().contains("beyond the stretched arm"), "{nothing}");

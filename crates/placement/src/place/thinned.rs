@@ -3,9 +3,9 @@
 use super::axes::kept_points;
 use crate::path_subset::PathSubset;
 use stead_model::task::lean::Lean;
-use stead_planning::lean::{LeanSpace, lean_between};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner, PlannedMotion};
+use stead_problem::lean::{LeanSpace, lean_between};
+use stead_problem::problem::{Placement, Problem};
 
 /// An upright problem with the points on which lead and tilt are planned.
 pub(super) struct Thinned<'a> {

@@ -12,9 +12,9 @@ use super::subproblem::{StepRequest, SubproblemStep, solve};
 use super::{LENGTH_UNIT, Solution, UNITS, planned};
 use nalgebra::{DMatrix, Vector4};
 use stead_model::robot::Posture;
-use stead_planning::limit::{ActiveBound, Limit, Side};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::Planner;
+use stead_problem::limit::{ActiveBound, Limit, Side};
+use stead_problem::problem::{Placement, Problem};
 
 /// Half width of the neighbourhood in which bounds are seen, in scaled variables.
 const NEIGHBOURHOOD: f64 = 1e-3;

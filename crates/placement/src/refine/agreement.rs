@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
 use stead_planning::compass::CompassSteps;
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::Planner;
+use stead_problem::problem::Placement;
 
 /// Objectives that agree to this are the same to whoever reads a result file. m
 const PRINTED: f64 = 1e-10;

@@ -15,8 +15,8 @@ use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::{Planner, Workspace};
+use stead_problem::problem::{Placement, Problem};
 
 /// The trust region at the start, at the most and at the end, in scaled variables.
 const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);

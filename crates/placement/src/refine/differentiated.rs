@@ -3,9 +3,9 @@
 use super::{LOCAL, UNITS};
 use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
-use stead_planning::criterion::Criterion;
-use stead_planning::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores};
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::criterion::Criterion;
+use stead_problem::evaluate::reference::{SetScore, State, scored_part_by_parameters, scored_parts, set_scores};
+use stead_problem::problem::{Placement, Problem};
 
 /// A state, and what is scored of it under every set of compliances.
 pub(super) struct Differentiated {

@@ -6,8 +6,8 @@ use clarabel::solver::{SecondOrderConeT, SupportedConeT};
 use nalgebra::Vector3;
 use stead_model::task::PathPoint;
 use stead_model::task::lean::Lean;
-use stead_planning::lean::LeanSpace;
-use stead_planning::limit::{Limit, Side};
+use stead_problem::lean::LeanSpace;
+use stead_problem::limit::{Limit, Side};
 
 /// How far the leans are apart whose difference is the slope. rad
 const STEP: f64 = 1e-6;

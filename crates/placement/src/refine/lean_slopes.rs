@@ -8,9 +8,9 @@ use stead_model::robot::Posture;
 use stead_model::task::ToolPath;
 use stead_model::task::lean::Lean;
 use stead_numerics::scalar::Dual;
-use stead_planning::lean::LeanSpace;
-use stead_planning::problem::Problem;
-use stead_planning::setup::Setup;
+use stead_problem::lean::LeanSpace;
+use stead_problem::problem::Problem;
+use stead_problem::setup::Setup;
 
 /// How far the leans are apart whose difference is the slope. rad
 const STEP: f64 = 5e-4;

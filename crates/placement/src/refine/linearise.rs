@@ -9,9 +9,9 @@ use nalgebra::{Matrix5, SymmetricEigen};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
-use stead_planning::evaluate::reference::State;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::SegmentPlan;
+use stead_problem::evaluate::reference::State;
+use stead_problem::problem::{Placement, Problem};
 
 /// One path point of a solution, linearised in scaled variables.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,17 +34,17 @@ pub struct Local {
 /// What is scored of a path point under one set of compliances, linearised.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocalScore {
-    /// See [`scored`](stead_planning::evaluate::reference::SetScore::scored). m
+    /// See [`scored`](stead_problem::evaluate::reference::SetScore::scored). m
     pub scored: Dual<LOCAL>,
     /// What the score adds to |c_i| and is smooth here: what force errors add, and the margin, unless its kink is near.
     /// m
     pub added: Dual<LOCAL>,
     /// Where the margin has its kink near: changes of c_i by independent errors of the compliances, as often as the
-    /// criterion asks, whose Euclidean norm is [`margin`](stead_planning::evaluate::reference::SetScore::margin). Empty
+    /// criterion asks, whose Euclidean norm is [`margin`](stead_problem::evaluate::reference::SetScore::margin). Empty
     /// elsewhere. m
     pub changes: Vec<Dual<LOCAL>>,
     /// Where several directions are scored and their norm has its kink near: the parts along them, whose norm is
-    /// [`scored`](stead_planning::evaluate::reference::SetScore::scored). Empty elsewhere. m
+    /// [`scored`](stead_problem::evaluate::reference::SetScore::scored). Empty elsewhere. m
     pub parts: Vec<Dual<LOCAL>>,
 }
 

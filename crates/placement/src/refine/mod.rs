@@ -44,13 +44,13 @@ use super::outcome::{Refinement, RefinementStatus};
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::problem::{BetaPlan, Placement, Problem};
 use stead_planning::redundancy::{
     Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free, settled_together,
 };
-use stead_planning::sense::Sense;
 use stead_planning::transfer_path::whole_lines;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::problem::{BetaPlan, Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// The unit of position in scaled variables. m
 pub const LENGTH_UNIT: f64 = 0.1;

@@ -10,7 +10,7 @@ use clarabel::solver::{
 };
 use nalgebra::{Matrix4, Vector4};
 use stead_model::robot::angles::wrap;
-use stead_planning::problem::{Interval, Placement, Problem};
+use stead_problem::problem::{Interval, Placement, Problem};
 
 /// clarabel refused a programme or found no solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

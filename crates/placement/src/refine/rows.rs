@@ -2,7 +2,7 @@
 
 use super::linearise::Local;
 use clarabel::algebra::CscMatrix;
-use stead_planning::limit::{Limit, Side};
+use stead_problem::limit::{Limit, Side};
 
 /// Coefficients of inequalities `row . x <= bound`.
 #[derive(Default)]

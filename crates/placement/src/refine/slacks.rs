@@ -8,8 +8,8 @@ use super::{LOCAL, UNITS};
 use nalgebra::Vector4;
 use stead_cell::{Near, PairKind, Poses, Scene};
 use stead_model::robot::Posture;
-use stead_planning::limit::Limit;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::limit::Limit;
+use stead_problem::problem::{Placement, Problem};
 
 /// The slack of one pair of shapes, linearised in scaled variables.
 #[derive(Debug, Clone, PartialEq)]

@@ -17,8 +17,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::Setup;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::Setup;
 
 /// A solution, and how the tool leans at every point where lead and tilt are variables.
 #[derive(Debug, Clone)]

@@ -19,10 +19,10 @@ use super::variables::{BETA, Build, Kinked, Travel, beta_columns, lean_columns};
 use super::{LOCAL, Solution, UNITS};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{NonnegativeConeT, SupportedConeT, ZeroConeT};
-use stead_planning::criterion::Aggregate;
-use stead_planning::limit::{Limit, Side};
-use stead_planning::problem::Problem;
 use stead_planning::redundancy::SegmentPlan;
+use stead_problem::criterion::Aggregate;
+use stead_problem::limit::{Limit, Side};
+use stead_problem::problem::Problem;
 
 pub use super::variables::StepRequest;
 

@@ -7,8 +7,8 @@ use super::*;
 use nalgebra::DMatrix;
 use stead_model::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{BetaPlan, Interval};
-use stead_planning::testing::{
+use stead_problem::problem::{BetaPlan, Interval};
+use stead_problem::testing::{
     assert_sound, corners, five_segments, five_segments_compensated, with_axes_2_3, with_turn_limits,
 };
 

@@ -6,9 +6,9 @@ use super::rows::Rows;
 use super::{LOCAL, Solution};
 use std::ops::Range;
 use stead_numerics::scalar::Dual;
-use stead_planning::criterion::Aggregate;
-use stead_planning::limit::Limit;
-use stead_planning::problem::{BetaPlan, Problem};
+use stead_problem::criterion::Aggregate;
+use stead_problem::limit::Limit;
+use stead_problem::problem::{BetaPlan, Problem};
 
 /// What a subproblem is asked.
 #[derive(Debug, Clone, Copy, PartialEq)]

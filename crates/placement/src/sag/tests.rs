@@ -7,8 +7,8 @@ use proptest::prelude::*;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::rotation_from_zyx;
-use stead_planning::criterion::Weights;
-use stead_planning::setup::{AxisPositions, Setup};
+use stead_problem::criterion::Weights;
+use stead_problem::setup::{AxisPositions, Setup};
 
 fn problem() -> Problem {
     heavy(full_arm(Weights::TOTAL))

@@ -6,8 +6,8 @@ use crate::lookup::CollisionEffort;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use stead_numerics::monitor::Monitor;
-use stead_planning::candidate::{Candidate, Objective};
-use stead_planning::sense::Sense;
+use stead_problem::candidate::{Candidate, Objective};
+use stead_problem::sense::Sense;
 
 /// The bounds of the objectives of the better third of a sorted population: what is not within them even without
 /// collisions can become a parent, but is looked at more closely before it is refined. Where the worst placement is

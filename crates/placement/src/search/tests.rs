@@ -2,7 +2,7 @@ use super::super::lookup::LookupTable;
 use super::super::path_subset::PathSubset;
 use super::*;
 use stead_planning::redundancy::Planner;
-use stead_planning::testing::five_segments;
+use stead_problem::testing::five_segments;
 
 fn small() -> SearchSettings {
     SearchSettings { population: 24, generations: 6, ..SearchSettings::default() }

@@ -14,10 +14,10 @@ use stead_model::robot::turns::Range;
 use stead_model::robot::{ControllerKind, Pose, kuka_status_and_turn};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::redundancy::SegmentPlan;
 use stead_planning::transfer::Transfer;
 use stead_planning::transfer_path::{Space, transfer_path};
+use stead_problem::problem::{Placement, Problem};
 use tolerance::tolerances;
 
 /// The frame in which a sheet states places.
@@ -223,7 +223,7 @@ impl SetupSheet {
 
 /// The external axes with the ends of their positions.
 fn axes(problem: &Problem, plan: &Plan, sheet_from_cell: &Pose<f64>) -> Vec<AxisSetup> {
-    let one = |(axis, path): (&ExternalAxis, &stead_planning::setup::AxisPath)| {
+    let one = |(axis, path): (&ExternalAxis, &stead_problem::setup::AxisPath)| {
         let end = |of: fn(f64, f64) -> f64| path.positions.iter().copied().reduce(of).unwrap_or(0.0);
         AxisSetup {
             name: axis.name.clone(),

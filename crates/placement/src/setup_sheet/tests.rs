@@ -2,8 +2,8 @@ use super::*;
 use crate::place::score;
 use stead_model::robot::Robot;
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
-use stead_planning::testing::five_segments;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::settings::TransferSettings;
+use stead_problem::testing::five_segments;
 
 fn near_the_best() -> Placement {
     Placement::from([0.0, -1.64, -0.214, 1.3783])

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::constraints::{ConstraintKind, Measured, describe, joint_steps_hold, on_joints, on_state};
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::{AtPoint, LineEnd, Space};
+use stead_problem::constraints::{ConstraintKind, Measured, describe, joint_steps_hold, on_joints, on_state};
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::problem::{Placement, Problem};
 
 /// Shares by which the objective may grow, the smaller first.
 pub const RISES: [f64; 2] = [0.01, 0.05];

@@ -1,8 +1,8 @@
 //! The feed that external axes hold which move along the path.
 
 use super::{FeedLimit, FeedLimitKind};
-use crate::problem::Problem;
 use crate::redundancy::SegmentPlan;
+use stead_problem::problem::Problem;
 
 /// The highest feed of a segment (from 1) by the speeds of the external axes that move along it.
 pub(super) fn axis_limit(problem: &Problem, segment: usize, plan: &SegmentPlan) -> Option<FeedLimit> {

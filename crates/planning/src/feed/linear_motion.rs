@@ -1,11 +1,11 @@
 //! Linear moves of the tool as the arm drives them: joint angles and their rates along the way.
 
-use crate::problem::Problem;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::external_axis::robot_from_workpiece;
 use stead_model::robot::{Pose, Posture, angles::nearest_turns};
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 use stead_numerics::scalar::Dual;
+use stead_problem::problem::Problem;
 
 /// The largest turn of a joint between poses at which its speed is evaluated. rad
 const MAX_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;

@@ -1,15 +1,15 @@
 //! The highest feed in closed form, and against the joint speeds of random plans sampled densely.
 
 use super::*;
-use crate::problem::Placement;
-use crate::setup::AxisPositions;
-use crate::straight_move::StraightMove;
-use crate::testing::five_segments;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis, robot_from_workpiece};
 use stead_model::robot::testing::{kr270, robot_from};
 use stead_model::robot::{Pose, Posture, Robot, angles::nearest_turns};
+use stead_problem::problem::Placement;
+use stead_problem::setup::AxisPositions;
+use stead_problem::straight_move::StraightMove;
+use stead_problem::testing::five_segments;
 
 const BLEND: f64 = 5e-3;
 

@@ -6,22 +6,22 @@
 //! reference evaluator what they cost. The plan itself is made afterwards, with the axis led along the positions found
 //! here ([`AxisPositions::PerPoint`]), so nothing of what is printed rests on this grid.
 //!
-//! [`AxisPositions::PerPoint`]: crate::setup::AxisPositions::PerPoint
+//! [`AxisPositions::PerPoint`]: stead_problem::setup::AxisPositions::PerPoint
 
 use super::joint_turns::is_allowed;
 use super::layered::{Steps, cheapest_path};
 use super::rate_limit::BetaChange;
 use super::{Resolution, SegmentPlanner, Workspace};
-use crate::constraints::joint_steps_hold;
-use crate::evaluate::reference::State;
-use crate::joint_travel::joint_distance;
-use crate::problem::{Placement, Problem};
-use crate::sense::Sense;
-use crate::setup::{AxisPositions, Setup};
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::real_configurations;
+use stead_problem::constraints::joint_steps_hold;
+use stead_problem::evaluate::reference::State;
+use stead_problem::joint_travel::joint_distance;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// How far beyond its speed an axis may be, relative: rounding.
 const SPEED_ROUNDING: f64 = 1e-9;

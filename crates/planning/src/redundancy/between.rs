@@ -3,11 +3,11 @@
 //! Scores between values of the grid are interpolated linearly; a value beside a state that is not allowed is not
 //! allowed.
 
-use crate::criterion::Aggregate;
-use crate::sense::Sense;
 use pulp::{Simd, WithSimd};
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::{Instructions, Lanes};
+use stead_problem::criterion::Aggregate;
+use stead_problem::sense::Sense;
 
 /// Beta values nearer to the grid than this are on it. Steps of the grid
 const ON_GRID: f64 = 1e-9;

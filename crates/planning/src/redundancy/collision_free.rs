@@ -9,14 +9,14 @@
 
 use super::joint_turns::SegmentChoice;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace, joint_turns, off_grid};
-use crate::candidate::Objective;
-use crate::collision::Fault;
-use crate::problem::{Placement, Problem};
-use crate::sense::Sense;
 use crate::transfer_path::whole_lines;
 use std::collections::{BTreeMap, BTreeSet};
 use stead_cell::PairKind;
 use stead_model::robot::Posture;
+use stead_problem::candidate::Objective;
+use stead_problem::collision::Fault;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 60;

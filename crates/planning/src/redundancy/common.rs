@@ -7,12 +7,12 @@
 use super::forward_pass::Pass;
 use super::off_grid::{MIN_GAIN, Spacing, replay};
 use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace};
-use crate::candidate::Objective;
 use crate::compass::CompassSteps;
-use crate::problem::{BetaPlan, Placement, Problem};
-use crate::sense::Sense;
 use stead_model::robot::{Posture, PostureClass};
 use stead_numerics::monitor::Monitor;
+use stead_problem::candidate::Objective;
+use stead_problem::problem::{BetaPlan, Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// What the whole path comes to at one beta at the least.
 struct Bound {

@@ -6,14 +6,9 @@
 //! no steps small enough to find it from point to point; a corridor around the plan needs no more values with steps as
 //! small as the joints ask for.
 
-use super::super::evaluate::point_evaluator::PointEvaluator;
 use super::joint_turns::{inside_limits, is_allowed};
 use super::layered::{Steps, cheapest_path};
 use super::{SegmentPlanner, StateSet};
-use crate::beta_step::BetaStep;
-use crate::constraints::STEP_ROUNDING;
-use crate::problem::Placement;
-use crate::sense::Sense;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range as Span;
@@ -21,6 +16,11 @@ use stead_model::robot::{
     Posture,
     angles::{nearest_turns, wrap},
 };
+use stead_problem::beta_step::BetaStep;
+use stead_problem::constraints::STEP_ROUNDING;
+use stead_problem::evaluate::point_evaluator::PointEvaluator;
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
 
 /// Steps of the corridor that the joints allow from point to point, on average along the path.
 const STEPS_PER_POINT: f64 = 8.0;

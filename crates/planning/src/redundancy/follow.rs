@@ -2,11 +2,11 @@
 
 use super::SegmentPlanner;
 use super::joint_turns::is_allowed;
-use crate::constraints::STEP_ROUNDING;
-use crate::evaluate::reference::State;
-use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, angles::wrap};
+use stead_problem::constraints::STEP_ROUNDING;
+use stead_problem::evaluate::reference::State;
+use stead_problem::problem::Placement;
 
 /// Halvings of the way between a beta that can be reached and one that cannot.
 const HALVINGS: usize = 10;

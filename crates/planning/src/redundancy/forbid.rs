@@ -2,13 +2,13 @@
 //! follow.
 
 use super::{Planner, SegmentPlan, StateSet, kinds_left};
-use crate::collision::{Fault, PlanFault};
-use crate::problem::Placement;
 use crate::transfer_path::{AtPoint, Space, line_ends};
 use std::collections::BTreeSet;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
 use stead_model::robot::angles::{nearest_turns, wrap};
+use stead_problem::collision::{Fault, PlanFault};
+use stead_problem::problem::Placement;
 
 /// Of the moves to all values of beta, so many at the most are checked where one may not be.
 const MOVES_CHECKED: usize = 90;

@@ -8,15 +8,15 @@
 //! Where points are dense the pass goes from knot to knot ([`super::knots`]), and the points between add to what a step
 //! costs.
 
-use super::super::evaluate::batch::{BatchEvaluator, StateGrid};
 use super::between::{CyclicRow, Joining};
 use super::knots::{Knot, Place};
 use super::rate_limit::BetaChange;
 use super::transition::{JointStep, Step, advance, advance_over, begin};
 use super::{SegmentPlanner, Sense, Workspace};
-use crate::problem::{MAX_JOINT_STEP, Placement};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
+use stead_problem::evaluate::batch::{BatchEvaluator, StateGrid};
+use stead_problem::problem::{MAX_JOINT_STEP, Placement};
 
 /// What one pass over a segment found.
 #[derive(Debug, Clone)]

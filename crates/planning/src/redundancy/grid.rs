@@ -1,6 +1,6 @@
 //! How fine the grid of beta is that final plans are made on.
 
-use crate::problem::{Problem, Redundancy};
+use stead_problem::problem::{Problem, Redundancy};
 
 /// The grid of [`Planner::finer`], for limits on beta that may not be those of the problem.
 pub(super) fn finer(problem: &Problem, grid: Redundancy) -> Redundancy {

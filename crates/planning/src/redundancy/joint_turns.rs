@@ -1,16 +1,16 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
 use super::SegmentPlan;
-use crate::constraints::{STEP_ROUNDING, joint_steps_hold, on_joints, on_state};
-use crate::evaluate::reference::State;
-use crate::problem::{MAX_JOINT_STEP, Placement, Problem};
-use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{
     Posture,
     angles::{ANGLE_ROUNDING, wrap},
     turns::Range,
 };
+use stead_problem::constraints::{STEP_ROUNDING, joint_steps_hold, on_joints, on_state};
+use stead_problem::evaluate::reference::State;
+use stead_problem::problem::{MAX_JOINT_STEP, Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// A segment's plan with every flip and turn that it can be driven with at the same cost.
 #[derive(Debug, Clone, PartialEq)]

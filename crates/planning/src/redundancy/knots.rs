@@ -11,11 +11,11 @@
 //! spread.
 
 use super::rate_limit::BetaChange;
-use crate::constraints::STEP_ROUNDING;
-use crate::problem::{BetaPlan, MAX_JOINT_STEP, Problem, Redundancy};
 use std::f64::consts::PI;
 use std::ops::Range as Span;
 use stead_model::robot::angles::wrap;
+use stead_problem::constraints::STEP_ROUNDING;
+use stead_problem::problem::{BetaPlan, MAX_JOINT_STEP, Problem, Redundancy};
 
 /// How many steps of the grid must be allowed.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@
 //!
 //! The plan is made in steps:
 //! 1. [`transition`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles
-//!    modulo a turn (twice where the two flips of a class yield differently: [`Flips`](crate::evaluate::batch::Flips)).
+//!    modulo a turn (twice where the two flips of a class yield differently: [`Flips`](stead_problem::evaluate::batch::Flips)).
 //!    This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid. Where points are closer
 //!    than a few steps of the grid take, it goes from knot to knot, with the points between interpolated (`knots`).
 //! 2. `joint_turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it
@@ -53,10 +53,6 @@ pub use rate_limit::{BetaChange, saved_changes};
 pub use state_set::StateSet;
 pub use state_set::kinds_left;
 
-use super::candidate::{Objective, best_of};
-use super::problem::{BetaPlan, Placement, Problem, Redundancy};
-pub use super::segment_plan::SegmentPlan;
-use super::sense::Sense;
 use grid::finer;
 use off_grid::Spacing;
 use rayon::prelude::*;
@@ -66,6 +62,10 @@ use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::StopHandle;
+use stead_problem::candidate::{Objective, best_of};
+use stead_problem::problem::{BetaPlan, Placement, Problem, Redundancy};
+pub use stead_problem::segment_plan::SegmentPlan;
+use stead_problem::sense::Sense;
 use transition::Step;
 
 /// Why a placement has no plan.

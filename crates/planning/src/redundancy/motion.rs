@@ -3,11 +3,11 @@
 //! A state of a path point is a grid value of beta, one of the [settings](Setting) that the point may have, a lean with
 //! positions of the external axes, and a posture class, with joint angles modulo a turn. From one point to the next the
 //! tool axis may turn as far as the contact stays near its line
-//! ([`LeanSpace::allows_step`](crate::lean::LeanSpace::allows_step)), each external axis move as fast as it may, beta
+//! ([`LeanSpace::allows_step`](stead_problem::lean::LeanSpace::allows_step)), each external axis move as fast as it may, beta
 //! change as far as its limits allow between these two settings, and each joint go by its step. All states and all
 //! steps are evaluated, so that what is found is the cheapest of its grid but for what flips and turns of the wrist
 //! forbid. The plan itself is made afterwards, with tool and axes along the way found here
-//! ([`Setup`](crate::setup::Setup)), so nothing of what is printed rests on this grid.
+//! ([`Setup`](stead_problem::setup::Setup)), so nothing of what is printed rests on this grid.
 //!
 //! Where something hits, all states of the points at which the plan hits are checked for collisions, and the plan is
 //! made again without those that hit, until it is free.
@@ -19,15 +19,15 @@ pub use grid::{MotionGrid, Setting, SettingSteps};
 
 use super::transition::{self, advance};
 use super::{Resolution, SegmentPlanner, StateSet};
-use crate::evaluate::batch::StateGrid;
-use crate::problem::{Placement, Problem};
-use crate::sense::Sense;
 use grid::{Before, steps_to};
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass};
 use stead_model::task::lean::Lean;
+use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
 
 /// How the tool leans and the external axes move along the path.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,10 +4,10 @@
 //! the point that none gets to is what stops it.
 
 use super::{Resolution, SegmentPlanner, finer};
-use crate::constraints::ConstraintKind;
-use crate::problem::{MAX_JOINT_STEP, Placement, Problem, Redundancy};
-use crate::sense::Sense;
 use stead_model::robot::Posture;
+use stead_problem::constraints::ConstraintKind;
+use stead_problem::problem::{MAX_JOINT_STEP, Placement, Problem, Redundancy};
+use stead_problem::sense::Sense;
 
 /// A grid of beta finer than this tells no more, and takes long where every change of beta is allowed.
 const MAX_BETA_COUNT: usize = 180;

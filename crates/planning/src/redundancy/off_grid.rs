@@ -5,17 +5,17 @@
 //! the spacing is halved. The plan can only get better, kinks of the absolute value do not matter, and no constraint is
 //! ever left.
 
-use super::super::evaluate::point_evaluator::PointEvaluator;
-use super::super::problem::{Placement, Problem, Redundancy};
 use super::super::transfer_path::{AtPoint, Space};
 use super::joint_turns::{inside_limits, is_allowed};
 use super::layered::{Steps, cheapest_before};
 use super::{SegmentPlan, Sense};
-use crate::beta_step::BetaStep;
-use crate::constraints::joint_steps_hold;
-use crate::joint_travel::joint_distance;
 use rayon::prelude::*;
 use stead_model::robot::angles::nearest_turns;
+use stead_problem::beta_step::BetaStep;
+use stead_problem::constraints::joint_steps_hold;
+use stead_problem::evaluate::point_evaluator::PointEvaluator;
+use stead_problem::joint_travel::joint_distance;
+use stead_problem::problem::{Placement, Problem, Redundancy};
 
 /// Values of beta at each point of a level.
 const VALUES: usize = 5;

@@ -7,9 +7,9 @@
 //! follows the middle of the intervals on the grid, to the nearest step, for as many points as it takes to save up a
 //! step, and then makes one of those that the intervals together allow.
 
-use super::super::beta_step::BetaStep;
-use super::super::problem::{Problem, Redundancy};
-use crate::constraints::STEP_ROUNDING;
+use stead_problem::beta_step::BetaStep;
+use stead_problem::constraints::STEP_ROUNDING;
+use stead_problem::problem::{Problem, Redundancy};
 
 /// The changes of the beta number that a step may make: from `min` to `max`, none where `min` is above `max`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

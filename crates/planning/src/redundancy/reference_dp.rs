@@ -6,12 +6,12 @@
 
 use super::joint_turns::{JointPath, SegmentChoice, is_allowed};
 use super::{SegmentPlanner, Sense, Workspace};
-use crate::constraints::joint_steps_hold;
-use crate::joint_travel::joint_distance;
-use crate::problem::Placement;
 use std::ops::Range as Span;
 use stead_model::robot::turns::real_configurations;
 use stead_model::robot::{Posture, PostureClass};
+use stead_problem::constraints::joint_steps_hold;
+use stead_problem::joint_travel::joint_distance;
+use stead_problem::problem::Placement;
 
 /// One real configuration at one grid value of beta.
 #[derive(Debug, Clone)]

@@ -3,11 +3,11 @@
 use super::corridor::Corridor;
 use super::forward_pass::{ForwardPass, Pass};
 use super::{SegmentPlanner, Workspace, joint_turns};
-use crate::joint_travel::joint_travel;
-use crate::problem::Placement;
-use crate::sense::Sense;
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
+use stead_problem::joint_travel::joint_travel;
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
 
 /// What a segment offers.
 pub(super) struct SegmentOptions {

@@ -3,13 +3,13 @@
 use super::knots::{Knots, StepBudget};
 use super::rate_limit::{BetaChange, direct_changes};
 use super::{StateSet, between, forward_pass};
-use crate::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use crate::problem::{Problem, Redundancy};
-use crate::sense::Sense;
 use std::sync::Arc;
 use stead_model::robot::{PostureClass, turns::Range};
 use stead_numerics::monitor::StopHandle;
 use stead_numerics::simd::Instructions;
+use stead_problem::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_problem::problem::{Problem, Redundancy};
+use stead_problem::sense::Sense;
 
 /// What plans are made for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

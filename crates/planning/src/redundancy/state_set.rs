@@ -1,11 +1,11 @@
 //! Sets of states: those that a plan may not use though every constraint on them holds, since something hits.
 
-use super::super::evaluate::batch::StateGrid;
-use crate::problem::{Problem, Redundancy};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
+use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::problem::{Problem, Redundancy};
 
 /// A set of states: path point, posture class, number of beta.
 #[derive(Debug, Clone, Default)]

@@ -2,15 +2,16 @@
 
 use super::forward_pass::Pass;
 use super::*;
-use crate::criterion::{Aggregate, Weights};
-use crate::testing::{
-    assert_sound, compensated, five_segments, with_axes_2_3, with_beta_rate, with_laws, with_prototype_steps,
-};
 use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
+use stead_problem::criterion::{Aggregate, Weights};
+use stead_problem::testing::{
+    assert_sound, compensated, five_segments, with_axes_2_3, with_beta_rate, with_laws, with_prototype_steps,
+};
 
 mod calm;
+mod collisions;
 mod dense;
 mod spindle_turn;
 

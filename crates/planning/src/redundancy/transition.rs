@@ -5,17 +5,17 @@
 //! Joint steps are compared by sines and cosines, and first for the cheapest predecessor of each state only: mostly it
 //! is within every step, and then it is the cheapest of those that are.
 
-use super::super::evaluate::batch::StateGrid;
 use super::between::Between;
 use super::rate_limit::BetaChange;
-use crate::constraints::STEP_ROUNDING;
-use crate::criterion::Aggregate;
-use crate::sense::Sense;
 use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
 use stead_numerics::simd::{Instructions, Lanes, MAX_LANES, Mask};
+use stead_problem::constraints::STEP_ROUNDING;
+use stead_problem::criterion::Aggregate;
+use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::sense::Sense;
 
 /// What bounds a step from one point to the next.
 #[derive(Debug, Clone, Copy)]

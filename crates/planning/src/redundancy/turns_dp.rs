@@ -17,12 +17,12 @@ use super::forward_pass::Pass;
 use super::knots::{Knot, Place};
 use super::layered::{Stages, cheapest};
 use super::{SegmentPlanner, Workspace};
-use crate::constraints::STEP_ROUNDING;
-use crate::evaluate::batch::StateGrid;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::{PostureClass, Robot, turns};
+use stead_problem::constraints::STEP_ROUNDING;
+use stead_problem::evaluate::batch::StateGrid;
 
 /// Nodes whose predecessors are kept at the most; longer segments are gone through in blocks.
 const MAX_NODES: usize = 1 << 22;

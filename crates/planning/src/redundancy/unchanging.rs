@@ -1,8 +1,8 @@
 //! Plans in one posture all along, where the run does not allow it to change.
 
 use super::{NoFeasiblePlan, Planner, SegmentPlan, joint_turns};
-use crate::sense::Sense;
 use stead_model::robot::Posture;
+use stead_problem::sense::Sense;
 
 impl Planner<'_> {
     /// What `plan` finds for a scheme, or where the posture may not change, the best of what it finds for each posture:

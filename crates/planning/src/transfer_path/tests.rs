@@ -1,11 +1,11 @@
 use super::*;
 use crate::redundancy::Planner;
-use crate::sense::Sense;
-use crate::testing::five_segments;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
 use stead_cell::tool_scene::{Cylinder, SegmentMoves, ToolBody};
 use stead_cell::{Attachment, Solid};
 use stead_model::task::{Task, ToolPath, Wrench};
+use stead_problem::sense::Sense;
+use stead_problem::testing::five_segments;
 
 fn plans(problem: &Problem, placement: &Placement) -> Vec<SegmentPlan> {
     let free = problem.clone().with(|parts| parts.scene = None);

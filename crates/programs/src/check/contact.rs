@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use stead_disk::input::InputError;
 use stead_model::task::PathPoint;
 use stead_model::task::lean::{ContactRule, LeanRule};
-use stead_planning::lean::LeanSpace;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::lean::LeanSpace;
+use stead_problem::problem::{Placement, Problem};
 
 /// How far the decimals of a program may move a contact. mm
 const ROUNDING: f64 = 2e-3;

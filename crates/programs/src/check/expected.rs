@@ -8,8 +8,8 @@ use std::path::Path;
 use stead_disk::input::InputError;
 use stead_model::robot::Pose;
 use stead_model::task::PathPoint;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::TransferPath;
+use stead_problem::problem::{Placement, Problem};
 use stead_runs::plan::PlacedPlan;
 
 /// One move as it has to be.

@@ -6,8 +6,8 @@ use super::written::{Goal, Written};
 use super::{MoveHit, MovePlace};
 use crate::transfer_paths::TransferPaths;
 use stead_model::robot::Robot;
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer_path::Space;
+use stead_problem::problem::{Placement, Problem};
 
 /// The moves that hit: those of no free way, and joint moves of ways, straight between the angles of the program.
 pub(super) fn hits(

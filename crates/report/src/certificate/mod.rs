@@ -19,7 +19,7 @@ use crate::placement::{PLACE, SUMMARY};
 use std::path::PathBuf;
 use stead_certify::{Certificate, NoProof, Proof};
 use stead_disk::input::InputFile;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// The file that states what is proved.
 const CERTIFICATE: &str = "certificate.json";

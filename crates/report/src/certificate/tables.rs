@@ -5,7 +5,7 @@ use crate::figure::{AngleDeg, MmDeflection, PlaceMm};
 use crate::names;
 use crate::output::ReportError;
 use stead_certify::{Certificate, OpenBox, Proof};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 records! {
     /// A box of placements that may still hold one better (or worse) than the value found by more than the gap

@@ -1,10 +1,10 @@
 use super::super::testing::{outcome, problem};
 use super::*;
 use crate::units::Unit;
-use stead_certify::settings::CertificateSettings;
 use stead_certify::{BOUND_DECIMALS, Bound, NoProof, Proof, Region, Status};
-use stead_planning::problem::Problem;
-use stead_planning::sense::Sense;
+use stead_problem::problem::Problem;
+use stead_problem::sense::Sense;
+use stead_problem::settings::CertificateSettings;
 
 /// Bounds about the best placement of the result, in mm.
 fn proof(sense: Sense, value_mm: f64, bound_mm: f64, open: Vec<(Region, f64)>) -> Proof {

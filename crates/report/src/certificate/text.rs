@@ -3,7 +3,7 @@
 use crate::names;
 use crate::units::{Unit, fixed, lines_of};
 use stead_certify::{Certificate, Proof};
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 /// Widest line.
 const WIDTH: usize = 110;

@@ -5,8 +5,8 @@ use crate::figure::PlaceMm;
 use serde_json::Value;
 use stead_cell::{Clearance, Scene};
 use stead_placement::outcome::Case;
-use stead_planning::collision::{ChangingClearance, PointClearance};
-use stead_planning::problem::Problem;
+use stead_problem::collision::{ChangingClearance, PointClearance};
+use stead_problem::problem::Problem;
 
 records! {
     /// The least room along a plan without the pairs whose distance does not change along it.

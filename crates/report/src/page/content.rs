@@ -9,7 +9,7 @@ use crate::placement::{LEAN_MAP, SETUP_SHEET};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// `page-data.json`.
 pub(super) const DATA: &str = "page-data.json";

@@ -17,11 +17,11 @@ use serde_json::Value;
 use stead_model::robot::{Axes23, Compliance, Controller, Joint, Robot};
 use stead_numerics::message::{Note, NoteGroup};
 use stead_placement::outcome::Case;
-use stead_planning::criterion::Direction;
 use stead_planning::feasibility::DeflectionMap;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::Setup;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::criterion::Direction;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::settings::TransferSettings;
+use stead_problem::setup::Setup;
 use stead_removal::outcome::RemovalForces;
 
 /// A deflection map with the placement and the setup that it is of and the name of its table.

@@ -19,11 +19,11 @@ use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
 use stead_placement::outcome::{DeflectionFigures, Plan, PlanPoint};
 use stead_placement::place::{Preview, Score};
-use stead_planning::evaluate::reference::ScoredByOrigin;
 use stead_planning::feasibility::MapRow;
-use stead_planning::joint_travel::JointTravel;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::BySense;
+use stead_problem::evaluate::reference::ScoredByOrigin;
+use stead_problem::joint_travel::JointTravel;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::BySense;
 
 /// What the page shows of a placement.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,7 +8,7 @@ use serde_json::Value;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::Range;
 use stead_planning::feasibility::{DeflectionMap, MapRow};
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::problem::{Placement, Problem};
 
 /// Joint angles in the page are multiples of this. deg
 const ANGLE_STEP_DEG: f64 = 0.02;

@@ -4,9 +4,9 @@ use super::packed::singles;
 use crate::placement::setup::unit;
 use stead_placement::outcome::Case;
 use stead_planning::course::{MovePart, parts};
-use stead_planning::problem::Problem;
 use stead_planning::transfer::Transfer;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::Problem;
+use stead_problem::settings::TransferSettings;
 
 records! {
     /// A move between segments. Lists of numbers are in single precision, little endian, as Base64.

@@ -6,7 +6,7 @@ use super::shapes::{BodyFrame, BodyMesh};
 use super::thinned::thinned;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 use stead_removal::outcome::{PointForces, RemovalForces};
 use stead_removal::surface::Surface;
 
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
     use crate::document::value;
     use stead_model::task::Wrench;
-    use stead_planning::testing::five_segments;
+    use stead_problem::testing::five_segments;
     use stead_removal::outcome::ForcesDifference;
 
     /// A load that grows along the path, with one point in the air, and stock that is a tetrahedron.

@@ -5,8 +5,8 @@ use crate::placement::setup::{column, unit, word};
 use nalgebra::Matrix3;
 use stead_model::external_axis::{Carried, ExternalAxis};
 use stead_placement::outcome::Case;
-use stead_planning::problem::Problem;
-use stead_planning::setup::Setup;
+use stead_problem::problem::Problem;
+use stead_problem::setup::Setup;
 
 records! {
     /// An external axis; its positions along the plans are a column of the plans.

@@ -4,7 +4,7 @@ use super::shapes::{BodyFrame, BodyMesh};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 use stead_cell::{Attachment, Shape, Solid};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Corners about an axis.
 const AROUND: u32 = 28;

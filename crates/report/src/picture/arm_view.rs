@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use stead_cell::{Poses, Shape};
 use stead_model::robot::{Frames, Robot, Spindle};
 use stead_placement::overview::Overview;
-use stead_planning::problem::{Cell, Problem};
+use stead_problem::problem::{Cell, Problem};
 
 const SIZE: Pixel = (1110, 640);
 /// Left edges of the two panels.

@@ -7,7 +7,7 @@ use super::colour::{BLUE, GREY, INK, PALE};
 use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_placement::outcome::{Case, Outcome};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 const SIZE: Pixel = (1110, 1180);
 /// Left edges of the two columns of panels.

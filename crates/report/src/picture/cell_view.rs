@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use stead_model::robot::Frames;
 use stead_placement::outcome::{Case, PlanPoint};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Most segments whose numbers are all shown.
 const NUMBERS: usize = 12;

@@ -1,7 +1,7 @@
 //! Colours.
 
 use std::fmt;
-use stead_planning::constraints::ConstraintKind;
+use stead_problem::constraints::ConstraintKind;
 
 /// Red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use super::chart::charts;
 use crate::page::cards::{Axis, Chart, Mark, Series};
 use crate::units::fixed;
 use stead_placement::outcome::{Generation, Outcome};
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 /// Best and average mean deflection over the generations: the search for the best placement above, for the worst below.
 /// Dashed lines are the means after refinement.

@@ -9,9 +9,9 @@ use crate::names;
 use crate::units::fixed;
 use std::collections::BTreeSet;
 use stead_placement::outcome::{Case, Plan};
-use stead_planning::constraints::ConstraintKind;
 use stead_planning::feasibility::{DeflectionMap, MapCell};
-use stead_planning::problem::Problem;
+use stead_problem::constraints::ConstraintKind;
+use stead_problem::problem::Problem;
 
 const SIZE: Pixel = (1120, 710);
 const LEFT: i32 = 80;

@@ -8,9 +8,9 @@ use super::heat_map::HeatMap;
 use crate::units::fixed;
 use stead_certify::{OpenBox, Proof};
 use stead_model::robot::angles::wrap;
-use stead_planning::problem::Problem;
-use stead_planning::sense::Sense;
-use stead_planning::symmetry::about_axis_1;
+use stead_problem::problem::Problem;
+use stead_problem::sense::Sense;
+use stead_problem::symmetry::about_axis_1;
 
 /// Pixels between panels, and the side of a panel.
 const LEFT: [i32; 2] = [85, 635];

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use stead_cell::{Attachment, Poses, Scene, Shape, Solid};
 use stead_model::robot::Pose;
 use stead_placement::outcome::{Case, PlanPoint};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Left edges of the two views.
 const COLUMNS: [i32; 2] = [85, 635];

@@ -12,11 +12,11 @@ use stead_model::robot::Posture;
 use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
 use stead_placement::sag::{Sag, SagRange};
 use stead_placement::sensitivity::SpringSlope;
-use stead_planning::collision;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::limit::ActiveBound;
 use stead_planning::transfer::Transfer;
 use stead_planning::transfer_path;
+use stead_problem::collision;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::limit::ActiveBound;
 
 records! {
     /// A case: where the workpiece is, and how it is milled there.

@@ -17,8 +17,8 @@ use stead_model::robot::Posture;
 use stead_placement::outcome::Plan;
 use stead_placement::place::{BlockingPair, Infeasible, Preview, Score};
 use stead_planning::feasibility::{Explanation, Finding};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::BySense;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::BySense;
 
 records! {
     /// A placement that was evaluated.

@@ -19,8 +19,8 @@ use stead_disk::input::InputFile;
 use stead_placement::outcome::{
     ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome,
 };
-use stead_planning::problem::Problem;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::problem::Problem;
+use stead_problem::symmetry::Unsupported;
 
 /// What `stead place --json` prints.
 pub fn place_json(problem: &Problem, outcome: &Outcome, context: &Context, timing: &Timing) -> Value {

@@ -7,9 +7,9 @@ use crate::units::fixed;
 use stead_model::robot::Posture;
 use stead_model::stiffness::whole::ByOrigin;
 use stead_placement::outcome::Plan;
-use stead_planning::evaluate::reference::{ScoredByOrigin, scored_by_origin};
 use stead_planning::feasibility::Explanation;
-use stead_planning::problem::{Placement, Problem};
+use stead_problem::evaluate::reference::{ScoredByOrigin, scored_by_origin};
+use stead_problem::problem::{Placement, Problem};
 
 records! {
     /// What each thing that yields adds to the scored part; one below 0 takes from the others.

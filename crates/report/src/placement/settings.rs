@@ -9,10 +9,10 @@ use serde_json::Value;
 use stead_model::robot::Pose;
 use stead_model::robot::Posture;
 use stead_numerics::rotation::zyx_from_rotation;
-use stead_placement::settings::{LookupUse, PostureSearch};
-use stead_planning::criterion::{Criterion, Direction};
-use stead_planning::postures::PostureRules;
-use stead_planning::problem::{BetaPlan, Interval, Problem, Redundancy};
+use stead_problem::criterion::{Criterion, Direction};
+use stead_problem::postures::PostureRules;
+use stead_problem::problem::{BetaPlan, Interval, Problem, Redundancy};
+use stead_problem::settings::{LookupUse, PostureSearch};
 
 records! {
     /// Inputs and settings of a run.

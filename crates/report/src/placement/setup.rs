@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use stead_model::external_axis::AxisKind;
 use stead_placement::outcome::{Case, Outcome};
-use stead_planning::problem::Problem;
-use stead_planning::setup::{AxisPath, AxisPositions, Setup, TriedSetup};
+use stead_problem::problem::Problem;
+use stead_problem::setup::{AxisPath, AxisPositions, Setup, TriedSetup};
 
 /// The unit of the positions of an axis.
 pub(crate) fn unit(kind: AxisKind) -> Unit {

@@ -11,9 +11,9 @@ use stead_model::robot::PostureWord;
 use stead_numerics::message::{Note, NoteGroup};
 use stead_placement::outcome::{Case, Outcome, Plan};
 use stead_placement::place::Score;
-use stead_planning::criterion::{CANCELLATION, Weights};
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::sense::BySense;
+use stead_problem::criterion::{CANCELLATION, Weights};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::BySense;
 
 /// Bounds and springs that are named.
 const NAMED: usize = 2;

@@ -15,8 +15,8 @@ use stead_model::task::lean::Lean;
 use stead_placement::lean_map::{LeanMap, LeanReason, LeanState};
 use stead_placement::outcome::{Case, Cases, Generation, Plan, Refinement};
 use stead_planning::feasibility::{DeflectionMap, MapReason};
-use stead_planning::problem::{Placement, Problem};
 use stead_planning::transfer::Transfer;
+use stead_problem::problem::{Placement, Problem};
 
 /// `best.csv`, `worst.csv` and the like: one plan, a `PlanRow` per path point; behind it the positions of external
 /// axes, `e1_mm` or `e1_deg` and so on.

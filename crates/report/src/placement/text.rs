@@ -7,13 +7,13 @@ use crate::units::{figures, fixed};
 use stead_model::published::Published;
 use stead_placement::outcome::{Case, DeflectionFigures, ForceSensitivity, Outcome, PathLevels, Plan, SetBasin};
 use stead_placement::sensitivity::SpringSlope;
-use stead_planning::collision::PlanClearance;
-use stead_planning::criterion::CANCELLATION;
-use stead_planning::criterion::Over;
 use stead_planning::feed::{CutFeed, FeedLimit};
-use stead_planning::joint_travel::Swing;
-use stead_planning::problem::Problem;
-use stead_planning::symmetry::Unsupported;
+use stead_problem::collision::PlanClearance;
+use stead_problem::criterion::CANCELLATION;
+use stead_problem::criterion::Over;
+use stead_problem::joint_travel::Swing;
+use stead_problem::problem::Problem;
+use stead_problem::symmetry::Unsupported;
 
 /// Widest posture scheme that is written in full.
 const POSTURES_WIDTH: usize = 40;

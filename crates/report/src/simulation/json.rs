@@ -1,6 +1,6 @@
 //! The JSON documents of a simulated pass.
 
-use super::{Making, end_words};
+use super::end_words;
 use crate::document::Document;
 use crate::figure::{
     ForceN, FrequencyHz, HeightUm, MomentS, PlaceMm, RatePerS, Share, SpeedRpm, StepS, TimeS, each, some,
@@ -15,7 +15,7 @@ use stead_simulation::roughness::Roughness;
 
 records! {
     /// A simulated pass.
-    pub struct SimulationFigures of (run: &SimulationRun, found: &Simulation, making: &Making) {
+    pub struct SimulationFigures of (run: &SimulationRun, found: &Simulation) {
         let (end, reason) = end_words(&found.run.end);
         let forces =
             |forces: &Option<[Statistics; 2]>, axis: usize| forces.as_ref().map(|forces| (&forces[axis]).into());
@@ -158,18 +158,18 @@ fn document(run: &SimulationRun, found: &Simulation, figures: SimulationFigures)
 }
 
 /// The content of `summary.json`: byte for byte the same for the same inputs.
-pub fn simulation_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
-    document(run, found, SimulationFigures::of(run, found, making))
+pub fn simulation_json(run: &SimulationRun, found: &Simulation) -> Value {
+    document(run, found, SimulationFigures::of(run, found))
 }
 
 /// What `stead simulate --json` prints: the summary, and how long the run took.
-pub fn timed_json(run: &SimulationRun, found: &Simulation, making: &Making) -> Value {
+pub fn timed_json(run: &SimulationRun, found: &Simulation, wall: f64) -> Value {
     let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
-    let factor = (making.wall > 0.0).then(|| TimeS(duration / making.wall));
+    let factor = (wall > 0.0).then(|| TimeS(duration / wall));
     let timing = SimulationFigures {
-        wall_s: Some(making.wall.into()),
+        wall_s: Some(wall.into()),
         real_time_factor: Some(factor),
-        ..SimulationFigures::of(run, found, making)
+        ..SimulationFigures::of(run, found)
     };
     document(run, found, timing)
 }

@@ -19,25 +19,13 @@ use stead_runs::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::outcome::Simulation;
 
-/// How a run was made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Making {
-    /// Time on the clock that the run took. s
-    pub wall: f64,
-}
-
 /// Writes `series.csv`, `wall.csv`, `summary.json`, `forces.svg`, `turns.svg`, `wall.svg` and `report.html`. Returns
 /// their paths in that order.
 ///
 /// # Errors
 /// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_simulation(
-    folder: &Folder,
-    run: &SimulationRun,
-    found: &Simulation,
-    making: &Making,
-) -> Result<Vec<PathBuf>, ReportError> {
-    let files = simulation_files(run, found, making)?;
+pub fn write_simulation(folder: &Folder, run: &SimulationRun, found: &Simulation) -> Result<Vec<PathBuf>, ReportError> {
+    let files = simulation_files(run, found)?;
     folder.results("simulate", &run.inputs).write(&files)
 }
 
@@ -45,11 +33,11 @@ pub fn write_simulation(
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.
-pub fn simulation_files(run: &SimulationRun, found: &Simulation, making: &Making) -> Result<Files, ReportError> {
+pub fn simulation_files(run: &SimulationRun, found: &Simulation) -> Result<Files, ReportError> {
     Ok(named([
         ("series.csv", series(found)?),
         ("wall.csv", wall(found)?),
-        ("summary.json", crate::document::bytes(&simulation_json(run, found, making))),
+        ("summary.json", crate::document::bytes(&simulation_json(run, found))),
         ("forces.svg", picture::charts(&[page::forces(found)]).into_bytes()),
         ("turns.svg", picture::charts(&[page::turns(found, run.cut.spindle_speed)]).into_bytes()),
         ("wall.svg", picture::charts(&page::walls(found)).into_bytes()),

@@ -1,6 +1,6 @@
 //! The text for people.
 
-use super::{Making, end_words};
+use super::end_words;
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_runs::SimulationRun;
@@ -12,7 +12,7 @@ use stead_simulation::stability::{Kind, Verdict};
 
 /// Forces in the window and roughness of the wall, beside published figures where there are any; whether the cut stayed
 /// calm. Lines end with a line break.
-pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making) -> String {
+pub fn simulation_text(run: &SimulationRun, found: &Simulation, wall: f64) -> String {
     let duration = found.run.step * found.run.samples.len().saturating_sub(1) as f64;
     let mut text = format!(
         "{}, {}: {} s in {} steps, {} times as fast as the pass\n\n",
@@ -20,7 +20,7 @@ pub fn simulation_text(run: &SimulationRun, found: &Simulation, making: &Making)
         run.setup.variant.word(),
         fixed(duration, 3),
         found.run.samples.len().saturating_sub(1),
-        figures(duration / making.wall.max(1e-9)),
+        figures(duration / wall.max(1e-9)),
     );
     text.push_str(&forces(run, found));
     text.push_str(&roughness(run, found));

@@ -42,7 +42,7 @@ records! {
         /// Name of the column.
         column: String = measure.name.clone(),
         /// Whether smaller or larger values are better: `min` or `max`.
-        #[schemars(with = "String")] sense: stead_planning::sense::Sense = measure.sense,
+        #[schemars(with = "String")] sense: stead_problem::sense::Sense = measure.sense,
     }
 
     /// A layout.

@@ -6,8 +6,8 @@ use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series,
 use crate::units::figures;
 use std::collections::BTreeMap;
 use stead_disk::input::InputFile;
-use stead_planning::criterion::SMALL_PART;
-use stead_planning::sense::Sense;
+use stead_problem::criterion::SMALL_PART;
+use stead_problem::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure, Ranked};
 use stead_study::cases::TableCell;
 

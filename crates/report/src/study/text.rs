@@ -3,7 +3,7 @@
 use super::cases;
 use crate::columns::{aligned, line};
 use crate::units::{figures, fixed};
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Failures, Front, Layouts, Measure, Method, Ranking};
 use stead_study::cases::TableCell;
 

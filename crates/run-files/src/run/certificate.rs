@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Bound::{Excluded, Included};
-use stead_certify::settings::CertificateSettings;
 use stead_format::quantity::Quantity;
 use stead_format::units::{Gb, Percent, Positive, S, ranges};
+use stead_problem::settings::CertificateSettings;
 
 /// Which gaps can be requested, on the command line as well.
 pub const GAPS_ALLOWED: &str = "a number of per cent from 0.0001 (finer is within rounding) to below 100";

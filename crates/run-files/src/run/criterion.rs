@@ -14,7 +14,7 @@ use stead_model::plausibility;
 use stead_model::robot::{Joint, MeasuredFrom, Robot};
 use stead_model::task::Task;
 use stead_numerics::message::Note;
-use stead_planning::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
+use stead_problem::criterion::{Aggregate, Criterion, Direction, Over, StiffnessSets, Weights};
 use stead_removal::outcome::RemovalForces;
 
 ranges! {

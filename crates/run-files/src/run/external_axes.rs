@@ -12,7 +12,7 @@ use stead_format::scalars::words;
 use stead_format::shapes::{Interval, Vector};
 use stead_format::units::{Deg, DegPerS, Mm, MmPerS, Number, Positive};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 words!(AxisKind: "rail" => AxisKind::Rail, "turntable" => AxisKind::Turntable);
 words!(Carried: "robot" => Carried::Robot, "workpiece" => Carried::Workpiece);

@@ -20,8 +20,8 @@ use stead_model::task::Task;
 use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule};
 use stead_numerics::digits::figures;
 use stead_numerics::message::Note;
-use stead_planning::lean::{LeanRange, LeanSpace};
-use stead_planning::problem;
+use stead_problem::lean::{LeanRange, LeanSpace};
+use stead_problem::problem;
 
 words!(ContactRule: "centre" => ContactRule::Centre, "contact" => ContactRule::Contact, "plane" => ContactRule::Plane);
 words!(LeanForce: "feed" => LeanForce::Feed, "tool" => LeanForce::Tool);

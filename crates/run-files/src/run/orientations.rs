@@ -8,7 +8,7 @@ use stead_disk::quote::garbles;
 use stead_format::orientation::orientation_keys;
 use stead_format::place::Place;
 use stead_model::task::Task;
-use stead_planning::setup::Orientation;
+use stead_problem::setup::Orientation;
 
 /// What a name is.
 pub(super) const NAME: &str = "a text on one line that is not empty";

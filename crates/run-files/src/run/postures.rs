@@ -11,10 +11,10 @@ use stead_format::quantity::{Expects, Quantity, expecting, inline_schema};
 use stead_format::scalars::{Whole, words};
 use stead_format::units::{MmPerS, NotNegative, Percent, ranges};
 use stead_model::robot::{Posture, PostureWord, Robot};
-use stead_placement::settings::{PostureSearch, SearchSettings};
-use stead_planning::criterion::Aggregate;
-use stead_planning::postures::PostureRules;
-use stead_planning::problem::Problem;
+use stead_problem::criterion::Aggregate;
+use stead_problem::postures::PostureRules;
+use stead_problem::problem::Problem;
+use stead_problem::settings::{PostureSearch, SearchSettings};
 
 ranges! {
     /// From 0 to 20.
@@ -199,7 +199,7 @@ pub(super) fn check_postures(
 #[cfg(test)]
 mod tests {
     use crate::testing::{RUN, assert_refused, read_text as read};
-    use stead_planning::postures::PostureRules;
+    use stead_problem::postures::PostureRules;
 
     fn with(table: &str) -> String {
         format!("[postures]\n{table}\n[cell]")

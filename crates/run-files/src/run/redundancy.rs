@@ -8,7 +8,7 @@ use stead_format::place::Place;
 use stead_format::quantity::Quantity;
 use stead_format::scalars::words;
 use stead_format::units::{Deg, DegPerMm, DegPerS, MmPerS, Positive};
-use stead_planning::problem::{BetaPlan, Problem, Redundancy};
+use stead_problem::problem::{BetaPlan, Problem, Redundancy};
 
 words!(BetaPlan: "free" => BetaPlan::Free, "constant_per_segment" => BetaPlan::ConstantPerSegment,
     "constant" => BetaPlan::Constant);

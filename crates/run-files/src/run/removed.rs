@@ -11,7 +11,7 @@ use stead_model::task::lean::Lean;
 use stead_model::task::{LeanForces, PointLeanForces, Task, TaskError, ToolPath};
 use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
-use stead_planning::lean::LeanSpace;
+use stead_problem::lean::LeanSpace;
 use stead_removal::outcome::RemovalForces;
 use stead_runs::ReadError;
 use stead_runs::forces::ForcesRun;

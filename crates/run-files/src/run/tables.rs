@@ -20,11 +20,11 @@ use stead_model::published::Published;
 use stead_model::robot::{Robot, Spindle, angles::yaw_from_q4, turns::Range};
 use stead_model::task::ToolPath;
 use stead_numerics::digits::figures;
-use stead_placement::lookup::LookupTable;
-use stead_placement::place::planning_memory;
-use stead_placement::settings::{LookupUse, PostureSearch, SearchSettings};
-use stead_planning::problem::{self, Cell, Constraints, Problem};
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::{self, Cell, Constraints, Problem};
+use stead_problem::settings::TransferSettings;
+use stead_problem::settings::planning_memory;
+use stead_problem::settings::{LookupUse, PostureSearch, SearchSettings};
+use stead_problem::table_shape::Shape;
 
 ranges! {
     /// From -1 to 1.
@@ -224,7 +224,7 @@ pub(super) fn check_path_points(search: &SearchSettings, problem: &Problem, at: 
 /// Refuses to promise a lookup table where the problem does not allow one.
 pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Place<'_>) -> Result<(), InputError> {
     if search.tables == LookupUse::Always
-        && let Err(unsuited) = LookupTable::shape_for(problem)
+        && let Err(unsuited) = Shape::of(problem)
     {
         let reason = format!("asks for a table, but there can be none: {unsuited}");
         return Err(at.key("tables").error(reason, "\"auto\" or \"never\""));
@@ -299,7 +299,7 @@ mod tests {
     use super::{LookupUse, PostureSearch, SearchSettings, TransferSettings};
     use crate::testing::{RUN, assert_refused, read_text as read};
     use std::f64::consts::PI;
-    use stead_planning::problem::Interval;
+    use stead_problem::problem::Interval;
 
     #[test]
     fn optional_tables_override_the_defaults() {

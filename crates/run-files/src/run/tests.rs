@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use stead_disk::input::InputFile;
 use stead_format::task::read_csv;
 use stead_format::testing::root;
-use stead_placement::settings::SearchSettings;
-use stead_planning::problem::Interval;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::problem::Interval;
+use stead_problem::settings::SearchSettings;
+use stead_problem::settings::TransferSettings;
 
 fn shipped(name: &str) -> Run {
     read_run(&root().join("configs").join(name)).unwrap_or_else(|e| panic!("{e}"))
@@ -16,7 +16,7 @@ fn shipped(name: &str) -> Run {
 #[test]
 fn shipped_runs_are_the_published_case() {
     let run = shipped("caro-2013.toml");
-    let testing = stead_planning::testing::five_segments();
+    let testing = stead_problem::testing::five_segments();
     assert_eq!(run.problem.task, testing.task);
     assert_eq!(run.problem.constraints, testing.constraints);
     assert_eq!(run.problem.criterion, testing.criterion);

@@ -10,7 +10,7 @@ use std::path::Path;
 use stead_disk::files;
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Reads a plan (`best.csv` and the like) of a problem from the bytes of its file. It must fit: as many points, joint
 /// angles that bring the tool to the positions, one placement for all rows, the forces of the task.

@@ -8,7 +8,7 @@ use stead_disk::quote::shorten;
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::robot::Posture;
 use stead_model::task::lean::Lean;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// One row of a plan, in SI units and radians.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,8 +14,8 @@ use stead_disk::input::InputError;
 use stead_model::robot::{Frames, Pose, angles::wrap, point_from_tool};
 use stead_model::stiffness::whole::{WholeArm, of_part};
 use stead_model::task::lean::Lean;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::{AxisPositions, Setup};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// A plan that fits its run.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use super::layouts::{Layouts, text};
 use super::least_squares::LinearModel;
 use super::measure::Measure;
 use crate::cases::TableCell;
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 /// How an effect was computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

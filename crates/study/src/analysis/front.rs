@@ -73,7 +73,7 @@ mod tests {
     use super::super::testing::figures;
     use super::*;
     use proptest::prelude::*;
-    use stead_planning::sense::Sense;
+    use stead_problem::sense::Sense;
 
     /// The definition, word by word, over all pairs.
     fn by_definition(measures: &[Measure], rows: &[Vec<f64>]) -> Vec<(usize, bool)> {

@@ -2,7 +2,7 @@
 
 use super::AnalysisError;
 use crate::cases::{Column, ColumnKind, TableCell};
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 /// Figures of searches are not distinguished below this, in the unit of their column: means of 1e-6 mm are the same
 /// (guide, page `objective`), and figures are written with few more digits.

@@ -65,7 +65,7 @@ impl Ranking {
 mod tests {
     use super::super::testing::{layouts, measure};
     use super::*;
-    use stead_planning::sense::Sense;
+    use stead_problem::sense::Sense;
 
     fn ranks(ranking: &Ranking) -> Vec<(usize, usize)> {
         ranking.ranked.iter().map(|ranked| (ranked.layout, ranked.rank)).collect()

@@ -3,7 +3,7 @@
 use super::layouts::Layouts;
 use super::measure::Measure;
 use crate::cases::{Column, ColumnKind, Table, TableCell};
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 
 /// A table with axes and columns of figures: for each case the texts of its axes (numbers where all are), and its
 /// figures. A case without figures is infeasible.

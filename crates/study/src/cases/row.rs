@@ -8,8 +8,8 @@ use stead_model::robot::Posture;
 use stead_model::robot::turns::Range;
 use stead_numerics::unit::Unit;
 use stead_placement::outcome::{Case, DeflectionFigures, Plan};
-use stead_planning::limit::{ActiveBound, Limit, Side};
-use stead_planning::problem::Problem;
+use stead_problem::limit::{ActiveBound, Limit, Side};
+use stead_problem::problem::Problem;
 
 /// Whether a case has a placement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

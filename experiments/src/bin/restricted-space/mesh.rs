@@ -21,8 +21,8 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs;
 use std::path::Path;
-use stead_planning::constraints::{ConstraintKind, Measured};
 use stead_planning::feasibility::explain;
+use stead_problem::constraints::{ConstraintKind, Measured};
 
 /// Points of a line, and their distance. mm
 const LINE: (usize, f64) = (651, 2.0);

@@ -24,8 +24,8 @@ use stead_model::robot::Posture;
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::{Lean, between};
 use stead_planning::feasibility::without_clearance;
-use stead_planning::problem::{Placement, Problem};
-use stead_planning::setup::Setup;
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::Setup;
 
 const RUN: &str = "configs/restricted-space.toml";
 /// Where the lines begin and end along the box. mm

@@ -1,7 +1,7 @@
 use super::*;
 use crate::place::score;
-use stead_planning::testing::five_segments;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::settings::TransferSettings;
+use stead_problem::testing::five_segments;
 
 #[test]
 fn numbers_are_rounded_down_to_two_digits() {

@@ -3,18 +3,18 @@
 use super::{Leaning, Start, is_apart};
 use crate::coordinate_search::{Directions, coordinate_search};
 use crate::path_subset::PathSubset;
-use crate::settings::SearchSettings;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use stead_numerics::monitor::Progress;
-use stead_planning::candidate::{Objective, rank};
-use stead_planning::problem::{Interval, Placement, Problem};
 use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner};
-use stead_planning::sense::Sense;
-use stead_planning::setup::Setup;
+use stead_problem::candidate::{Objective, rank};
+use stead_problem::problem::{Interval, Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::settings::SearchSettings;
+use stead_problem::setup::Setup;
 
 /// Placements drawn for each individual of the search, and so many at a time.
 const DRAWN: (usize, usize) = (2, 16);

@@ -13,11 +13,11 @@ use crate::refine::{neighbours, solver};
 use rayon::prelude::*;
 use stead_model::task::lean::Lean;
 use stead_numerics::monitor::Progress;
-use stead_planning::lean::MOST_PLANNED_POINTS;
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner};
-use stead_planning::setup::Setup;
 use stead_planning::transfer_path::whole_lines;
+use stead_problem::lean::MOST_PLANNED_POINTS;
+use stead_problem::problem::Placement;
+use stead_problem::setup::Setup;
 
 /// Rounds of placement and leans at the most.
 const ROUNDS: usize = 24;

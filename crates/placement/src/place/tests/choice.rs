@@ -3,15 +3,15 @@
 use super::{Over, small, with_first_springs};
 use crate::outcome::Case;
 use crate::place::{place, score};
-use crate::settings::{LookupUse, SearchSettings};
 use nalgebra::Vector3;
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::Monitor;
-use stead_planning::postures::PostureRules;
-use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::testing::five_segments;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::postures::PostureRules;
+use stead_problem::problem::{Interval, Placement, Problem};
+use stead_problem::settings::TransferSettings;
+use stead_problem::settings::{LookupUse, SearchSettings};
+use stead_problem::testing::five_segments;
 
 #[test]
 fn of_the_refined_basins_the_one_of_least_regret_is_taken() {

@@ -8,10 +8,10 @@ use stead_model::robot::{Joint, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_numerics::mean_max::MeanAndMax;
 use stead_numerics::monitor::Monitor;
-use stead_planning::criterion::Aggregate;
-use stead_planning::problem::MAX_JOINT_STEP;
-use stead_planning::testing::five_segments;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::criterion::Aggregate;
+use stead_problem::problem::MAX_JOINT_STEP;
+use stead_problem::settings::TransferSettings;
+use stead_problem::testing::five_segments;
 
 fn scored(problem: &Problem) -> Result<Score, String> {
     let placement: Placement = published_optimum();

@@ -4,7 +4,7 @@ use super::*;
 use stead_model::robot::Robot;
 use stead_model::robot::testing::kr270;
 use stead_model::task::{Task, Wrench};
-use stead_planning::testing::five_segments;
+use stead_problem::testing::five_segments;
 
 /// A quarter of every force is of the edges.
 const EDGE: f64 = 0.25;

@@ -3,15 +3,15 @@
 use crate::outcome::{Case, Outcome};
 use crate::path_subset::PathSubset;
 use crate::place::{place, score};
-use crate::settings::{LookupUse, SearchSettings};
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 use stead_numerics::monitor::{Monitor, Progress};
-use stead_planning::criterion::{Aggregate, Weights};
-use stead_planning::problem::{Cell, Interval, Placement, Problem};
-use stead_planning::testing::five_segments;
-use stead_planning::transfer::TransferSettings;
+use stead_problem::criterion::{Aggregate, Weights};
+use stead_problem::problem::{Cell, Interval, Placement, Problem};
+use stead_problem::settings::TransferSettings;
+use stead_problem::settings::{LookupUse, SearchSettings};
+use stead_problem::testing::five_segments;
 
 /// Points between neighbours of the five segments, and their number then.
 const PARTS: usize = 7;

@@ -4,7 +4,6 @@ use super::with_first_springs;
 use crate::outcome::Case;
 use crate::place::{Score, place, score, setup_at};
 use crate::sensitivity::mean_by;
-use crate::settings::{LookupUse, SearchSettings};
 use nalgebra::{Vector3, vector};
 use std::sync::Arc;
 use stead_cell::Attachment;
@@ -14,14 +13,15 @@ use stead_model::robot::{Joint, Pose, Robot};
 use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule};
 use stead_numerics::monitor::Monitor;
 use stead_numerics::rotation::rotation_from_zyx;
-use stead_planning::cell::Cell;
-use stead_planning::criterion::Over;
-use stead_planning::lean::{LeanRange, LeanSpace};
-use stead_planning::problem::{Interval, Placement, Problem};
-use stead_planning::setup::{AxisPositions, Orientation, Setup};
-use stead_planning::symmetry::{Unsupported, Upright};
-use stead_planning::testing::{five_segments, slanted};
-use stead_planning::transfer::TransferSettings;
+use stead_problem::cell::Cell;
+use stead_problem::criterion::Over;
+use stead_problem::lean::{LeanRange, LeanSpace};
+use stead_problem::problem::{Interval, Placement, Problem};
+use stead_problem::settings::TransferSettings;
+use stead_problem::settings::{LookupUse, SearchSettings};
+use stead_problem::setup::{AxisPositions, Orientation, Setup};
+use stead_problem::symmetry::{Unsupported, Upright};
+use stead_problem::testing::{five_segments, slanted};
 
 fn scored(problem: &Problem, placement: &Placement) -> Score {
     score(problem, placement, &TransferSettings::default(), &Monitor::silent()).unwrap()
@@ -149,7 +149,7 @@ fn the_best_orientation_is_taken_and_named() {
         Orientation { name: name.to_owned(), rotation, task: Arc::new(task.turned(&rotation)) }
     };
     // With the yaw held, the part turned by a right angle is another problem.
-    problem.cell.yaw = stead_planning::problem::Interval { min: 0.0, max: 0.0 };
+    problem.cell.yaw = stead_problem::problem::Interval { min: 0.0, max: 0.0 };
     problem.orientations = [lying("as drawn", [0.0; 3]), lying("on its side", [90.0, 0.0, 0.0])].into();
     let outcome = place(&problem, &small(), &TransferSettings::default(), &Monitor::silent()).unwrap();
     let alone = [0, 1].map(|orientation| {

@@ -3,16 +3,16 @@
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::refine::{planned, refine};
-use stead_planning::problem::Placement;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::testing::five_segments;
+use stead_problem::problem::Placement;
+use stead_problem::sense::Sense;
+use stead_problem::testing::five_segments;
 
 #[test]
 fn gains_are_what_a_moved_wall_brings() {
     let mut problem = five_segments();
     problem.redundancy.beta_count = 60;
-    problem.criterion.weights = stead_planning::criterion::Weights::TOTAL;
+    problem.criterion.weights = stead_problem::criterion::Weights::TOTAL;
     let start = Placement::from([0.0, -1.65, -0.3, 0.7]);
     let best = |problem: &Problem, start: &Placement| {
         let planner = Planner::finer(problem);

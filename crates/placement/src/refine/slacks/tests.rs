@@ -8,11 +8,11 @@ use std::sync::Arc;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
 use stead_cell::{Attachment, Shape, Solid};
 use stead_numerics::monitor::Monitor;
-use stead_planning::limit::{ActiveBound, Limit};
-use stead_planning::problem::Interval;
 use stead_planning::redundancy::Planner;
-use stead_planning::sense::Sense;
-use stead_planning::testing::five_segments;
+use stead_problem::limit::{ActiveBound, Limit};
+use stead_problem::problem::Interval;
+use stead_problem::sense::Sense;
+use stead_problem::testing::five_segments;
 
 /// The five segments with the shapes of the KR 270 but the pillar and the fence, and one more that stands in the cell.
 fn among(more: Shape, clearance: f64) -> Problem {

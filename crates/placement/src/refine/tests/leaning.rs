@@ -7,9 +7,9 @@ use crate::refine::solver::{Ending, run, run_leaning};
 use nalgebra::SymmetricEigen;
 use std::sync::Arc;
 use stead_model::task::lean::{ContactRule, CutterEnd, Lean, LeanForce, LeanRule};
-use stead_planning::lean::{LeanRange, LeanSpace};
-use stead_planning::limit::Limit;
-use stead_planning::setup::Setup;
+use stead_problem::lean::{LeanRange, LeanSpace};
+use stead_problem::limit::Limit;
+use stead_problem::setup::Setup;
 
 fn range(min_deg: f64, max_deg: f64) -> Interval {
     Interval { min: min_deg.to_radians(), max: max_deg.to_radians() }
@@ -59,7 +59,7 @@ fn slopes_by_lead_and_tilt_are_those_of_a_tool_that_leans_a_little_more() {
                     there.at(&here.placement).state(point, plan.betas[place], plan.posture).unwrap()
                 };
                 let (ahead, behind) = (at(1.0), at(-1.0));
-                let slope = |of: &dyn Fn(&stead_planning::evaluate::reference::State<f64>) -> f64| {
+                let slope = |of: &dyn Fn(&stead_problem::evaluate::reference::State<f64>) -> f64| {
                     (of(&ahead) - of(&behind)) / (2.0 * h)
                 };
                 let scored = slope(&|state| state.own.scored);

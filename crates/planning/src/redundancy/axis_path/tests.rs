@@ -1,7 +1,6 @@
 //! The plan over (beta, axis) against a reference: every pair of neighbouring states, with the limits asked one by one.
 
 use super::*;
-use crate::testing::slanted;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -10,6 +9,7 @@ use stead_model::robot::angles::wrap;
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::{Task, ToolPath};
 use stead_numerics::rotation::rotation_vector;
+use stead_problem::testing::slanted;
 
 /// The cheapest cost of a segment over all postures: every state against every state of the point before.
 fn plain(grid: &AxisGrid<'_>, placement: &Placement, span: &Span<usize>) -> Option<f64> {

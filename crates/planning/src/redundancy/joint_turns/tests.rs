@@ -1,15 +1,15 @@
 //! The choice among plans of segments, against all combinations of them, and on a zigzag.
 
 use super::*;
-use crate::candidate::Objective;
-use crate::postures::PostureRules;
 use crate::redundancy::Planner;
-use crate::testing::five_segments;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use stead_model::robot::{Joint, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
+use stead_problem::candidate::Objective;
+use stead_problem::postures::PostureRules;
+use stead_problem::testing::five_segments;
 
 /// The five segments with joints of known speed.
 fn timed() -> Problem {

@@ -2,12 +2,12 @@
 
 use super::super::rate_limit::BetaChange;
 use super::Motion;
-use crate::lean::{LeanRange, LeanSpace};
-use crate::problem::Problem;
-use crate::setup::{AxisPositions, Setup};
 use nalgebra::Matrix3;
 use stead_model::external_axis::ExternalAxis;
 use stead_model::task::lean::Lean;
+use stead_problem::lean::{LeanRange, LeanSpace};
+use stead_problem::problem::Problem;
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// How far beyond its speed an external axis may be, relative: rounding.
 const SPEED_ROUNDING: f64 = 1e-9;

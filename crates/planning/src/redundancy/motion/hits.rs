@@ -3,12 +3,12 @@
 use super::super::StateSet;
 use super::super::state_set::kinds_left;
 use super::{Found, MotionPlanner};
-use crate::evaluate::batch::StateGrid;
-use crate::problem::Placement;
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use stead_cell::Proximity;
 use stead_model::robot::{Posture, PostureClass};
+use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::problem::Placement;
 
 /// Points to either side of one that hits that are checked with it: what hits at one mostly hits at the next.
 const NEIGHBOURS: usize = 3;

@@ -2,12 +2,7 @@
 //! limits tested one by one, and every state with the tool leaning there and nowhere else.
 
 use super::*;
-use crate::cell::Interval;
-use crate::lean::{LeanRange, LeanSpace, lean_between};
-use crate::problem::ProblemParts;
 use crate::redundancy::joint_turns::is_allowed;
-use crate::setup::{AxisPositions, Setup};
-use crate::testing::five_segments;
 use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -18,6 +13,11 @@ use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::angles::wrap;
 use stead_model::task::lean::{ContactRule, CutterEnd, LeanForce, LeanRule, between};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+use stead_problem::cell::Interval;
+use stead_problem::lean::{LeanRange, LeanSpace, lean_between};
+use stead_problem::problem::ProblemParts;
+use stead_problem::setup::{AxisPositions, Setup};
+use stead_problem::testing::five_segments;
 
 const BALL: LeanRule =
     LeanRule { end: CutterEnd { radius: 0.008, corner: 0.008 }, contact: ContactRule::Centre, force: LeanForce::Feed };

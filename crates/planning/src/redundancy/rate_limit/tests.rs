@@ -2,9 +2,9 @@
 
 use super::super::knots::{Knots, Place, StepBudget};
 use super::*;
-use crate::testing::five_segments;
 use proptest::prelude::*;
 use stead_model::task::{PathPoint, Task, ToolPath};
+use stead_problem::testing::five_segments;
 
 /// An arc of a circle (radius in m) that is turned by `turn` per point, the tool upright.
 fn arc(radius: f64, turn: f64, count: usize) -> Problem {

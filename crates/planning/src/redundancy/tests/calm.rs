@@ -1,8 +1,8 @@
 //! Joint travel in the cost of plans, and plans in which beta stays.
 
 use super::*;
-use crate::joint_travel::joint_distance;
-use crate::problem::BetaPlan;
+use stead_problem::joint_travel::joint_distance;
+use stead_problem::problem::BetaPlan;
 
 /// Placements of the five segments at which most of them can be followed.
 fn placements() -> impl Iterator<Item = Placement> {

@@ -1,9 +1,9 @@
 //! Limits on the turn of the spindle in space: the same judges as for the rate of beta, and corners.
 
 use super::*;
-use crate::constraints::ConstraintKind;
 use crate::feasibility::diagnose;
-use crate::testing::{corners, winding, with_turn_limits};
+use stead_problem::constraints::ConstraintKind;
+use stead_problem::testing::{corners, winding, with_turn_limits};
 
 #[test]
 fn fast_planner_agrees_with_plain_dynamic_programming() {

@@ -2,10 +2,10 @@
 
 use super::super::{Planner, reference_dp};
 use super::*;
-use crate::problem::{Placement, Problem};
-use crate::sense::Sense;
-use crate::testing::{five_segments, with_beta_rate};
 use stead_model::task::{PathPoint, Task, ToolPath};
+use stead_problem::problem::{Placement, Problem};
+use stead_problem::sense::Sense;
+use stead_problem::testing::{five_segments, with_beta_rate};
 
 /// Rounds of a circle with the tool upright, as a contour is milled in several depths.
 fn rounds(rounds: f64, count: usize) -> Problem {

@@ -14,7 +14,7 @@ use serde_json::Value;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Pose;
 use stead_planning::course::{MovePart, PlaceOnMove};
-use stead_planning::problem::Placement;
+use stead_problem::problem::Placement;
 
 /// `cell.glb` of the files of a run, `page-data.json` among them: its first plan.
 pub(crate) fn scene(files: &Files) -> Result<Vec<u8>, PageError> {

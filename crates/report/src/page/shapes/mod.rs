@@ -16,7 +16,7 @@ pub use attached::{block_of, spindle_bodies};
 pub use shading::{Shaded, shaded};
 
 use loft::Solid;
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// The frame that a body is fixed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

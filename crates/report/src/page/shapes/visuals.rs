@@ -60,7 +60,7 @@ mod tests {
     use std::sync::Arc;
     use stead_cell::{Scene, Shape, Solid, Surroundings, TriangleMesh};
     use stead_model::robot::Pose;
-    use stead_planning::testing::five_segments;
+    use stead_problem::testing::five_segments;
 
     /// A ball of many triangles, its corners on a grid of angles.
     fn ball(around: u32) -> Arc<TriangleMesh> {

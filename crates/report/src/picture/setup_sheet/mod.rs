@@ -13,7 +13,7 @@ use crate::units::{fixed, lines_of};
 use stead_disk::input::InputFile;
 use stead_placement::outcome::Case;
 use stead_placement::setup_sheet::{SetupSheet, SheetFrame};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// What stands in the title block beside the robot.
 #[derive(Debug, Clone, Copy)]

@@ -13,7 +13,7 @@ use stead_model::robot::Pose;
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_placement::outcome::Case;
 use stead_placement::setup_sheet::{SetupSheet, SheetFrame};
-use stead_planning::problem::Problem;
+use stead_problem::problem::Problem;
 
 /// Width of a view.
 const WIDTH: i32 = 368;

@@ -6,7 +6,7 @@ use super::super::colour::{BLACK, BLUE, Colour, INK, PALE, TEAL, WHITE};
 use super::super::labels::{Label, Labeller};
 use super::super::line_chart::{LineChart, Mark};
 use super::roomy;
-use stead_planning::sense::Sense;
+use stead_problem::sense::Sense;
 use stead_study::analysis::{Front, FrontMember, Layouts, Measure};
 
 /// Left edges, width, first upper edge, height, and distance of rows. Pixels

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use stead_disk::input::InputError;
 use stead_format::place::Place;
 use stead_format::task::{Imported, LEAN, PointLean};
-use stead_planning::lean::LeanRange;
-use stead_planning::problem::Interval;
+use stead_problem::lean::LeanRange;
+use stead_problem::problem::Interval;
 
 /// Angles of a task and of `[lean]` that differ by less are one. rad
 const ROUNDING: f64 = 1e-9;

@@ -1,9 +1,13 @@
-//! What a table is sampled over.
+//! The shape of a lookup table of scores: what it is sampled over, where a problem allows one.
 
-use super::sample::field;
+use crate::problem::Problem;
+use crate::symmetry::{
+    Unsupported, Upright, require_alike_flips, require_certain_compliances, require_constant, require_free_beta,
+    require_mean_wall, require_no_moment,
+};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
-use stead_planning::problem::Problem;
+use stead_model::robot::turns::Range;
 
 /// Step of radius and height. m
 const STEP: f64 = 0.07;
@@ -11,6 +15,26 @@ const STEP: f64 = 0.07;
 const HEADINGS: usize = 120;
 /// ... at least and at the most, where a number of the grid of beta can be had.
 const HEADING_COUNTS: (usize, usize) = (90, 180);
+
+/// Largest size of a table. Bytes
+pub const MAX_BYTES: u64 = 1 << 30;
+
+/// Fields of a row.
+pub mod field {
+    /// Half the trace of the in-plane compliance of joints 2 to 6. m/N
+    pub const MEAN: usize = 0;
+    /// Half the difference of radial and tangential compliance. m/N
+    pub const DIFFERENCE: usize = 1;
+    /// Compliance between radial and tangential. m/N
+    pub const MIXED: usize = 2;
+    /// Room left to the nearest limit, below zero where it is passed (rad, or 1/kappa).
+    pub const ROOM: usize = 3;
+    /// Compliance between radial and vertical, then between tangential and vertical. m/N
+    pub const VERTICAL: usize = 4;
+    /// How many fields the moment has: compliance between radial, then tangential, and a moment about radial,
+    /// tangential and up. 1/N
+    pub const MOMENT: usize = 6;
+}
 
 /// Evenly spaced values. m
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,10 +72,10 @@ pub struct Parts {
 }
 
 /// Fields of a table with all parts.
-pub(super) const MAX_FIELDS: usize = field::VERTICAL + 2 + field::MOMENT + 2;
+pub const MAX_FIELDS: usize = field::VERTICAL + 2 + field::MOMENT + 2;
 
 /// Weights of the four nodes around a place, for the cubic through them (Lagrange).
-pub(super) fn cubic(t: f64) -> [f32; 4] {
+pub fn cubic(t: f64) -> [f32; 4] {
     let (a, b, c, d) = (t + 1.0, t, t - 1.0, t - 2.0);
     [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0].map(|weight| weight as f32)
 }
@@ -68,7 +92,7 @@ impl TableAxis {
     }
 
     /// The first of the four nodes around a value, and their weights; `None` for a value that the axis does not cover.
-    pub(super) fn stencil(&self, value: f64) -> Option<(usize, [f32; 4])> {
+    pub fn stencil(&self, value: f64) -> Option<(usize, [f32; 4])> {
         let place = (value - self.first) / self.step;
         // Rounding may leave the ends by a little.
         if !(place > 1.0 - 1e-6 && place < self.count as f64 - 2.0 + 1e-6) {
@@ -91,7 +115,30 @@ fn headings(beta_count: usize) -> usize {
 }
 
 impl Shape {
-    pub(super) fn new(problem: &Problem, parts: Parts) -> Self {
+    /// The shape of the table of a problem, if the problem has the symmetry and the table fits in memory.
+    ///
+    /// # Errors
+    /// [`Unsupported`], with the reason.
+    pub fn of(problem: &Problem) -> Result<Self, Unsupported> {
+        Upright::of(problem)?;
+        require_mean_wall(problem)?;
+        require_free_beta(problem)?;
+        require_constant(problem, &[0, 3, 4, 5])?;
+        require_certain_compliances(problem)?;
+        require_alike_flips(problem)?;
+        let is_flat = problem.criterion.force_uncertainty == 0.0
+            && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
+        let parts = Parts {
+            vertical: !is_flat,
+            moment: require_no_moment(problem).is_err(),
+            first_joint: !Range::of(&problem.robot.joints()[0]).has_turns(),
+        };
+        let shape = Self::new(problem, parts);
+        let bytes = shape.bytes();
+        if bytes > MAX_BYTES { Err(Unsupported::TooLarge { bytes, max: MAX_BYTES }) } else { Ok(shape) }
+    }
+
+    fn new(problem: &Problem, parts: Parts) -> Self {
         let g = problem.robot.geometry();
         let [x, y, z] = problem.cell.position;
         let nearest =
@@ -128,17 +175,17 @@ impl Shape {
     }
 
     /// The first of the fields of the moment.
-    pub(super) fn moment(&self) -> usize {
+    pub fn moment(&self) -> usize {
         field::VERTICAL + 2 * usize::from(self.parts.vertical)
     }
 
     /// The first of the fields of joint 1: sine, then cosine.
-    pub(super) fn first_joint(&self) -> usize {
+    pub fn first_joint(&self) -> usize {
         self.moment() + field::MOMENT * usize::from(self.parts.moment)
     }
 
     /// Numbers in each row: all fields of one posture class over all headings.
-    pub(super) fn block(&self) -> usize {
+    pub fn block(&self) -> usize {
         self.fields() * self.headings
     }
 

@@ -1,14 +1,16 @@
+//! Plans among shapes: states that hit are forbidden, moves between them are free, and nothing else changes.
+
 use super::*;
 use crate::redundancy::{Planner, StateSet, forbid};
-use crate::sense::Sense;
-use crate::testing::five_segments;
 use nalgebra::{Vector3, vector};
 use std::sync::Arc;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
-use stead_cell::{Attachment, KeepOut, Shape, Solid, Surroundings, TrackedPoint, Zone};
-use stead_model::external_axis::{AxisKind, AxisUse, ExternalAxis};
+use stead_cell::{Attachment, KeepOut, PairKind, Poses, Scene, Shape, Solid, Surroundings, TrackedPoint, Zone};
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::rotation_from_zyx;
+use stead_problem::sense::Sense;
+use stead_problem::testing::five_segments;
 
 /// The five segments with the shapes of the KR 270, and more shapes in the cell.
 fn among(more: Vec<stead_cell::Shape>, clearance: f64) -> Problem {
@@ -163,7 +165,7 @@ fn a_mounted_arm_keeps_the_distances_of_its_base_frame_in_states_and_moves() {
             problem.robot = problem.robot.clone().mounted(mount);
             if position != 0.0 {
                 problem.external_axes = vec![rail(position)];
-                problem.setup = crate::setup::Setup::at_rest(&problem.external_axes);
+                problem.setup = stead_problem::setup::Setup::at_rest(&problem.external_axes);
             }
             let floor = (vector![0.0, 0.0, -2.5], vector![0.0, 0.0, -1.0]);
             let flange_from_tool = problem.spindle.flange_from_tool;

@@ -14,7 +14,7 @@ impl Problem {
     /// (rad): the arm cannot follow it, or a pair comes too near on the way. Where there is a scene, the poses at the
     /// ends are given, and nothing hits at the first, to which `known` has gone; that the end itself hits counts at its
     /// point.
-    pub(crate) fn move_fault(
+    pub fn move_fault(
         &self,
         placement: &Placement,
         point: usize,
@@ -53,7 +53,7 @@ impl Problem {
 
     /// Where the arm and all else is a share of the straight way of the joints (rad), the external axes moving evenly
     /// from where they stand at one path point to where they stand at another.
-    pub(crate) fn by_joints(
+    pub fn by_joints(
         &self,
         scene: &Scene,
         placement: &Placement,

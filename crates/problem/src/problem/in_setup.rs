@@ -44,7 +44,7 @@ impl Problem {
     }
 
     /// Positions of the external axes a share of the way from one path point to another. m or rad
-    pub(crate) fn positions_between(&self, points: [usize; 2], share: f64) -> Vec<f64> {
+    pub fn positions_between(&self, points: [usize; 2], share: f64) -> Vec<f64> {
         let [start, end] = points.map(|point| self.axis_positions(point));
         start.iter().zip(end).map(|(start, end)| start + (end - start) * share).collect()
     }

@@ -4,7 +4,7 @@
 use crate::criterion::Criterion;
 use crate::postures::PostureRules;
 use crate::problem::*;
-use crate::redundancy::SegmentPlan;
+use crate::segment_plan::SegmentPlan;
 use crate::setup::Setup;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 use std::f64::consts::PI;

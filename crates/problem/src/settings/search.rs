@@ -1,7 +1,7 @@
 //! How hard to search.
 
-use stead_planning::problem::Problem;
-use stead_planning::sense::Sense;
+use crate::problem::Problem;
+use crate::sense::Sense;
 
 /// How the posture scheme of a candidate placement is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub enum PostureSearch {
     Genetic,
 }
 
-/// Whether the search uses a lookup table ([`super::lookup`]).
+/// Whether the search uses a lookup table ([`crate::table_shape`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LookupUse {
     /// Where the task allows it and the table fits in memory.
@@ -97,7 +97,7 @@ impl Default for SearchSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stead_planning::testing::five_segments;
+    use crate::testing::five_segments;
 
     #[test]
     fn settings_of_a_problem_without_a_tool_that_leans_fit() {

@@ -77,7 +77,7 @@ impl Problem {
     }
 
     /// The same with the external axes at positions (m or rad).
-    pub(crate) fn poses_at(&self, scene: &Scene, positions: &[f64], placement: &Placement, joints: &[f64; 6]) -> Poses {
+    pub fn poses_at(&self, scene: &Scene, positions: &[f64], placement: &Placement, joints: &[f64; 6]) -> Poses {
         let axes = &self.external_axes;
         let part = self.turned(self.base_from_workpiece_at(positions, placement));
         let poses = scene.poses(joints, &part);
@@ -121,7 +121,7 @@ impl Problem {
     }
 
     /// Any such pair of some kinds, by what is known from states looked at before.
-    pub(crate) fn hit_after(
+    pub fn hit_after(
         &self,
         known: &mut Proximity,
         point: usize,
@@ -205,7 +205,7 @@ impl Problem {
 
     /// Whether spindle and holder are too near to the part or its fixture at a path point and free angle (rad),
     /// wherever the part stands, by what is known from the angles looked at before.
-    pub(crate) fn tool_hits_workpiece(&self, point: usize, beta: f64, known: &mut Proximity) -> bool {
+    pub fn tool_hits_workpiece(&self, point: usize, beta: f64, known: &mut Proximity) -> bool {
         let Some(scene) = self.scene.as_deref() else { return false };
         let at_origin = Placement::from([0.0; 4]);
         let part = self.base_from_part(point, &at_origin);
@@ -222,7 +222,7 @@ impl Problem {
 
     /// The same, by pairs of some kinds, of joint angles (rad) at path points of a segment, one after the other; moves
     /// from point to point are checked where a posture is given.
-    pub(crate) fn path_faults(
+    pub fn path_faults(
         &self,
         placement: &Placement,
         points: &Span<usize>,
@@ -258,5 +258,3 @@ impl Problem {
 }
 
 mod between;
-#[cfg(test)]
-mod tests;

@@ -8,7 +8,6 @@
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::Simd;
-use std::f64::consts::PI;
 use stead_numerics::simd::{Lanes, Mask};
 
 /// The error of the force, of size `size` (N), under which the parts `parts` (m) of a deflection along the scored
@@ -87,7 +86,6 @@ impl Scaled {
         }
         let cosine = (0.5 * (centred / spread).determinant()).clamp(-1.0, 1.0);
         let angle = libm::acos(cosine) / 3.0;
-        debug_assert!((0.0..=PI / 3.0 + 1e-12).contains(&angle));
         1.0 / 3.0 + 2.0 * spread * libm::cos(angle)
     }
 

@@ -104,7 +104,7 @@ impl AxisPositions {
     }
 
     /// At two points of a task.
-    pub(crate) fn spread_at(&self, task: &Task, points: [usize; 2]) -> [Vec<f64>; 2] {
+    pub fn spread_at(&self, task: &Task, points: [usize; 2]) -> [Vec<f64>; 2] {
         points.map(|point| match self {
             Self::Same(positions) => positions.clone(),
             Self::PerSegment(all) => all.get(task.path().segment_of(point)).cloned().unwrap_or_default(),

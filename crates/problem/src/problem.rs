@@ -1,6 +1,6 @@
 //! The placement problem: what may vary, what must hold, and what a placement is.
 
-mod held_feed;
+mod at_feed;
 mod in_setup;
 mod parts;
 mod placed_task;

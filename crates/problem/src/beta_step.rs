@@ -127,7 +127,7 @@ impl Problem {
     }
 
     /// The same from some positions of the axes to others (m or rad).
-    pub(crate) fn part_turn_between(&self, from: &[f64], to: &[f64]) -> Option<Matrix3<f64>> {
+    pub fn part_turn_between(&self, from: &[f64], to: &[f64]) -> Option<Matrix3<f64>> {
         let turns = |axis: &ExternalAxis| axis.kind == AxisKind::Turntable && axis.carries == Carried::Workpiece;
         if from == to || !self.external_axes.iter().any(turns) {
             return None;
@@ -178,7 +178,7 @@ impl Problem {
     }
 
     /// The change of beta from path point `point - 1` to `point` with which the spindle turns least in space. rad
-    pub(crate) fn still_change(&self, point: usize) -> f64 {
+    pub fn still_change(&self, point: usize) -> f64 {
         self.turn(point).middle
     }
 
@@ -202,13 +202,13 @@ impl Problem {
     }
 
     /// The same where the part itself turns in the cell by a rotation, in the frame that is placed.
-    pub(crate) fn beta_step_with(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> BetaStep {
+    pub fn beta_step_with(&self, point: usize, limits: &Redundancy, part: Option<&Matrix3<f64>>) -> BetaStep {
         self.beta_step_of(point, limits, || self.turn_with(point, part))
     }
 
     /// The same where the tool leans otherwise at both points, too: with axes (feed, left of the feed, tool axis) as
     /// columns in place of those of the points.
-    pub(crate) fn beta_step_between(
+    pub fn beta_step_between(
         &self,
         point: usize,
         limits: &Redundancy,

@@ -46,7 +46,7 @@ impl PostureRules {
     }
 
     /// Whether the best plan of a segment is always taken.
-    pub(crate) fn takes_the_best(&self) -> bool {
+    pub fn takes_the_best(&self) -> bool {
         self.move_weight == 0.0 && self.tie == 0.0
     }
 }

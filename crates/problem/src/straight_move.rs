@@ -58,7 +58,7 @@ const MOST_STEPS: f64 = 1.25;
 const HALVINGS: [i32; 2] = [3, 12];
 /// A joint that turns farther in such a step of a move, or in one of a line along the tool axis, swings round a
 /// singularity, which no controller follows at a useful speed. rad
-pub(crate) const MAX_SWING: f64 = 0.5;
+pub const MAX_SWING: f64 = 0.5;
 /// A joint that is by no more than this beyond its limit between two points, both inside, is not reported. rad
 const BULGE: f64 = 2e-3;
 /// A way of the wrist centre is as long as the chord but for this factor, where the tool turns by little.
@@ -67,7 +67,7 @@ const ARC: f64 = 1.05;
 const REACH_ROUNDING: f64 = 1e-5;
 
 /// Which limit of an arm joint angles (rad), real ones, are beyond by more than a margin (rad), a joint's first.
-pub(crate) fn limit_end(robot: &Robot, joints: &[f64; 6], margin: f64) -> Option<LineEnd> {
+pub fn limit_end(robot: &Robot, joints: &[f64; 6], margin: f64) -> Option<LineEnd> {
     let joint = (0..6).find(|j| robot.joints()[*j].is_beyond(joints[*j], margin));
     let sum = || (robot.beyond_sum(joints) > margin).then_some(LineEnd::AxesSum);
     joint.map(|joint| LineEnd::JointLimit(joint + 1)).or_else(sum)
@@ -81,7 +81,7 @@ impl Problem {
     ///
     /// # Errors
     /// What ends the path before.
-    pub(crate) fn follow<H>(
+    pub fn follow<H>(
         &self,
         posture: Posture,
         from: &[f64; 6],
@@ -132,7 +132,7 @@ impl Problem {
 /// A straight move of the tool in the frame of the part to a path point from the one before, while the external axes
 /// move evenly.
 #[derive(Debug)]
-pub(crate) struct StraightMove<'a> {
+pub struct StraightMove<'a> {
     problem: &'a Problem,
     placement: &'a Placement,
     /// The path point at its end.
