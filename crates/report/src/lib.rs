@@ -20,22 +20,18 @@
 //! ```
 
 #[macro_use]
-mod record;
+extern crate stead_document;
 
 pub mod assessment;
 pub mod certificate;
 pub mod check;
 pub mod circularity;
-mod columns;
 pub mod compensation;
-mod csv_file;
 pub mod cutting;
 pub mod document;
-pub mod figure;
 pub mod forces;
 pub mod identification;
 pub mod names;
-pub mod output;
 pub mod page;
 pub mod picture;
 pub mod placement;
@@ -45,13 +41,14 @@ pub mod schema;
 pub mod simulation;
 pub mod stability;
 pub mod study;
-pub mod units;
 mod word;
 
 #[cfg(test)]
 mod testing;
 
-pub use output::{Folder, ReportError};
+pub use stead_document::output::{self, Folder, ReportError};
+use stead_document::{columns, csv_file};
+pub use stead_document::{figure, units};
 
 /// Result files in memory: the name and the content of each.
 pub type Files = Vec<(String, Vec<u8>)>;

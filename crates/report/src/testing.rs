@@ -1,6 +1,8 @@
 //! A result for the tests of this room: the five-segment task at the published optimum and at a place chosen to be bad,
 //! planned by a shortest path over the grid, with an invented search.
 
+pub use stead_document::testing::assert_well_formed;
+
 use crate::placement::Context;
 use std::sync::OnceLock;
 use stead_disk::input::InputFile;
@@ -285,24 +287,6 @@ fn allowed(point: usize, placement: &Placement, k: usize, posture: Posture) -> R
         Some(measured) => Err(measured.kind()),
         None => Ok(found),
     }
-}
-
-/// A document whose tags nest and whose attributes are quoted; fails otherwise.
-pub fn assert_well_formed(svg: &str) {
-    let mut open = Vec::new();
-    let mut rest = svg;
-    while let Some(start) = rest.find('<') {
-        let end = rest[start..].find('>').unwrap() + start;
-        let tag = &rest[start + 1..end];
-        assert!(!tag.contains('<') && tag.matches('"').count().is_multiple_of(2), "{tag}");
-        if let Some(name) = tag.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(name));
-        } else if !tag.ends_with('/') {
-            open.push(tag.split(' ').next().unwrap());
-        }
-        rest = &rest[end + 1..];
-    }
-    assert!(open.is_empty() && svg.starts_with("<svg "));
 }
 
 /// The force of a cutter on both sides of a slot that is open over half its width.

@@ -6,9 +6,10 @@
 //!
 //! The plan is made in steps:
 //! 1. [`transition`]: dynamic programming over the grid of beta in the four posture classes at once, with joint angles
-//!    modulo a turn (twice where the two flips of a class yield differently: [`Flips`](stead_problem::evaluate::batch::Flips)).
-//!    This leaves out only what a wrist flip or a turn of joint 1, 4 or 6 could still forbid. Where points are closer
-//!    than a few steps of the grid take, it goes from knot to knot, with the points between interpolated (`knots`).
+//!    modulo a turn (twice where the two flips of a class yield differently:
+//!    [`Flips`](stead_problem::evaluate::batch::Flips)). This leaves out only what a wrist flip or a turn of joint 1, 4
+//!    or 6 could still forbid. Where points are closer than a few steps of the grid take, it goes from knot to knot,
+//!    with the points between interpolated (`knots`).
 //! 2. `joint_turns`: the path found is unwound. If a flip and turns exist that keep every joint inside its limits, it
 //!    is the optimum; they cost nothing, so a choice that makes the moves between segments short is taken.
 //! 3. `turns_dp`: only where that fails, dynamic programming over beta, the flip and the turns.

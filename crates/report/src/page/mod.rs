@@ -20,7 +20,6 @@ mod html;
 pub mod live;
 mod map_data;
 mod moves;
-mod packed;
 mod pose;
 mod removal;
 mod script;
@@ -34,6 +33,7 @@ mod thinned;
 
 pub use folder::{RewriteError, rewrite};
 pub use shapes::{BodyFrame, BodyMesh, bodies};
+use stead_document::packed;
 
 use crate::Files;
 use crate::output::ReportError;

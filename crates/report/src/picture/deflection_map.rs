@@ -2,7 +2,7 @@
 
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{BEST_LINE, Canvas, LineStyle, Pixel, Place, TextStyle, WORST_LINE, picture};
-use super::colour::{BEST, GREY, INK, WORST, ground, viridis};
+use super::colour::{BEST, Colour, GREY, INK, WHITE, WORST, viridis};
 use super::hatch::{Slope, hatch};
 use super::heat_map::{ColourBar, ColourRange, HeatMap};
 use crate::names;
@@ -269,6 +269,21 @@ fn plan_lines(plan: &Plan, place: impl Fn(f64, f64) -> Place) -> Vec<Vec<Place>>
     lines.push(line);
     lines.retain(|line| !line.is_empty());
     lines
+}
+
+/// The pale ground of states that are not allowed.
+fn ground(blocked: ConstraintKind) -> Colour {
+    match blocked {
+        ConstraintKind::Reach => WHITE,
+        ConstraintKind::JointLimit(1) => Colour(240, 240, 215),
+        ConstraintKind::JointLimit(2) => Colour(221, 230, 245),
+        ConstraintKind::JointLimit(3) => Colour(246, 224, 222),
+        ConstraintKind::JointLimit(4) => Colour(232, 224, 244),
+        ConstraintKind::JointLimit(5) => Colour(222, 222, 222),
+        ConstraintKind::AxesSum => Colour(244, 232, 214),
+        ConstraintKind::JointLimit(_) => Colour(222, 240, 228),
+        _ => Colour(248, 248, 248),
+    }
 }
 
 #[cfg(test)]

@@ -4,11 +4,9 @@
 //! A command says what it has found as a [`Page`]; one set of scripts draws whatever cards there are. Everything from
 //! an input file is text in the data of the page and is put into it as text alone.
 
-mod chart;
-mod table;
-
-pub use chart::{Axis, Chart, HeatMap, Mark, Outline, Polar, PolarChoice, Series, Style};
-pub use table::{Cell, Column, Table};
+pub use stead_document::cards::{
+    Axis, Cell, Chart, Column, HeatMap, Mark, Outline, Polar, PolarChoice, Series, Style, Table,
+};
 
 use super::html::{CARDS, html};
 use serde::Serialize;

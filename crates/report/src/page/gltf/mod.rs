@@ -6,7 +6,7 @@
 //! an external axis is a node whose place or rotation is animated, with all that it carries.
 
 mod axes;
-mod buffer;
+use stead_document::gltf_buffer as buffer;
 mod document;
 mod kept;
 mod motion;

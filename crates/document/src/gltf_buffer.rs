@@ -13,7 +13,7 @@ const INDICES: u32 = 34963;
 /// Where numbers begin in the buffer, and how they are to be read.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Accessor {
+pub struct Accessor {
     buffer_view: usize,
     component_type: u32,
     count: usize,
@@ -30,7 +30,7 @@ pub(super) struct Accessor {
 /// A stretch of the buffer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct BufferView {
+pub struct BufferView {
     buffer: usize,
     byte_offset: usize,
     byte_length: usize,
@@ -41,13 +41,13 @@ pub(super) struct BufferView {
 /// The buffer as the JSON part knows it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct BufferLength {
+pub struct BufferLength {
     byte_length: usize,
 }
 
 /// The buffer under construction, with a view and an accessor for each list of numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Buffer {
+pub struct Buffer {
     bytes: Vec<u8>,
     accessors: Vec<Accessor>,
     views: Vec<BufferView>,
@@ -144,7 +144,7 @@ impl Buffer {
 }
 
 /// Fills up to a multiple of four bytes.
-pub(super) fn pad(bytes: &mut Vec<u8>, filler: u8) {
+pub fn pad(bytes: &mut Vec<u8>, filler: u8) {
     bytes.resize(bytes.len().next_multiple_of(4), filler);
 }
 

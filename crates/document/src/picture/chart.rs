@@ -4,7 +4,7 @@ use super::axes::{Panel, Scale, Ticks, extent};
 use super::canvas::{Canvas, LineStyle, TextStyle, picture};
 use super::colour::{Colour, INK, PALE, SERIES};
 use super::line_chart::{LineChart, Mark, Sign, legend};
-use crate::page::cards::{Axis, Chart, Series, Style};
+use crate::cards::{Axis, Chart, Series, Style};
 
 /// Left and right edge of every chart. Pixels
 const SIDES: [i32; 2] = [95, 970];
@@ -144,7 +144,7 @@ fn line_chart(chart: &Chart, edges: [i32; 2]) -> LineChart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::page::cards::Mark as ChartMark;
+    use crate::cards::Mark as ChartMark;
     use crate::testing::assert_well_formed;
 
     /// A curve with a gap, over a panel of which 0 to 10 and 0 to 1 are the ends.

@@ -6,7 +6,7 @@ use super::colour::Colour;
 use crate::units::{figures, fixed};
 
 /// A whole number without decimals, any other as [`figures`].
-pub(super) fn whole_or_figures(value: f64) -> String {
+pub fn whole_or_figures(value: f64) -> String {
     let rounded = value.round();
     if (value - rounded).abs() < 1e-6 && rounded.abs() < 1e9 { fixed(rounded, 0) } else { figures(value) }
 }
@@ -15,7 +15,7 @@ pub(super) fn whole_or_figures(value: f64) -> String {
 const BETWEEN: &str = " · ";
 
 /// Phrases in lines of at most so many letters, with a dot between them; a longer phrase has a line of its own.
-pub(super) fn lines(phrases: &[String], max: usize) -> Vec<String> {
+pub fn lines(phrases: &[String], max: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for phrase in phrases {
         match lines.last_mut() {
@@ -30,10 +30,10 @@ pub(super) fn lines(phrases: &[String], max: usize) -> Vec<String> {
 }
 
 /// A rectangle of pixels: its upper left and its lower right corner.
-pub(super) type Area = (Pixel, Pixel);
+pub type Area = (Pixel, Pixel);
 
 /// A label on a ground of its own.
-pub(super) struct Label<'a> {
+pub struct Label<'a> {
     /// What it says.
     pub text: &'a str,
     /// Colour of the letters.
@@ -43,7 +43,7 @@ pub(super) struct Label<'a> {
 }
 
 /// Places labels where nothing else is.
-pub(super) struct Labeller {
+pub struct Labeller {
     /// Labels stay inside.
     within: Area,
     taken: Vec<Area>,

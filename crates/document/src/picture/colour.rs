@@ -1,11 +1,10 @@
 //! Colours.
 
 use std::fmt;
-use stead_problem::constraints::ConstraintKind;
 
 /// Red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Colour(pub u8, pub u8, pub u8);
+pub struct Colour(pub u8, pub u8, pub u8);
 
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -14,33 +13,33 @@ impl fmt::Display for Colour {
 }
 
 /// Text, and what is as it is.
-pub(super) const BLACK: Colour = Colour(0, 0, 0);
+pub const BLACK: Colour = Colour(0, 0, 0);
 /// The ground of every picture.
-pub(super) const WHITE: Colour = Colour(255, 255, 255);
+pub const WHITE: Colour = Colour(255, 255, 255);
 
 /// Frames, ticks and their labels.
-pub(super) const INK: Colour = Colour(60, 60, 60);
+pub const INK: Colour = Colour(60, 60, 60);
 /// Things of second rank.
-pub(super) const GREY: Colour = Colour(130, 130, 130);
+pub const GREY: Colour = Colour(130, 130, 130);
 /// Thin lines of second rank.
-pub(super) const PALE: Colour = Colour(175, 175, 175);
+pub const PALE: Colour = Colour(175, 175, 175);
 /// Grid lines.
-pub(super) const GRID: Colour = Colour(228, 228, 228);
+pub const GRID: Colour = Colour(228, 228, 228);
 /// What is best: that of the pages in daylight. No two things differ by red and green alone.
-pub(super) const BEST: Colour = Colour(0, 105, 166);
+pub const BEST: Colour = Colour(0, 105, 166);
 /// What is worst.
-pub(super) const WORST: Colour = Colour(184, 74, 0);
+pub const WORST: Colour = Colour(184, 74, 0);
 /// What is shown of a thing, beside orange distinct for the colour-blind too (Okabe and Ito 2008).
-pub(super) const TEAL: Colour = Colour(0, 158, 115);
+pub const TEAL: Colour = Colour(0, 158, 115);
 /// What stands out: loads, hits, points left out.
-pub(super) const ORANGE: Colour = Colour(213, 94, 0);
+pub const ORANGE: Colour = Colour(213, 94, 0);
 /// Means.
-pub(super) const BLUE: Colour = Colour(110, 140, 190);
+pub const BLUE: Colour = Colour(110, 140, 190);
 
 /// Components along x, y and z, distinct for the colour-blind too (Okabe and Ito 2008).
-pub(super) const COMPONENTS: [Colour; 3] = [Colour(0, 114, 178), Colour(213, 94, 0), Colour(0, 158, 115)];
+pub const COMPONENTS: [Colour; 3] = [Colour(0, 114, 178), Colour(213, 94, 0), Colour(0, 158, 115)];
 /// Series of a chart: those of the pages in daylight.
-pub(super) const SERIES: [Colour; 6] = [
+pub const SERIES: [Colour; 6] = [
     Colour(59, 76, 192),
     Colour(31, 143, 138),
     Colour(194, 106, 0),
@@ -49,13 +48,13 @@ pub(super) const SERIES: [Colour; 6] = [
     Colour(122, 74, 43),
 ];
 /// Indicators of a robot: accuracy, working radius, payload, price (Okabe and Ito 2008).
-pub(super) const INDICATORS: [Colour; 4] =
+pub const INDICATORS: [Colour; 4] =
     [Colour(0, 114, 178), Colour(0, 158, 115), Colour(230, 159, 0), Colour(204, 121, 167)];
 /// The ground of a part of an axis that is meant.
-pub(super) const SHADE: Colour = Colour(248, 244, 230);
+pub const SHADE: Colour = Colour(248, 244, 230);
 
 /// Levels of the colour scale of deflections.
-pub(super) const LEVELS: usize = 32;
+pub const LEVELS: usize = 32;
 
 /// Points of the colour map viridis (Smith and van der Walt), an eighth apart.
 const VIRIDIS: [[u8; 3]; 9] = [
@@ -71,7 +70,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
 ];
 
 /// The colour of a level, dark for the smallest.
-pub(super) fn viridis(level: usize) -> Colour {
+pub fn viridis(level: usize) -> Colour {
     let [red, green, blue] = at(level.min(LEVELS - 1) as f64 / (LEVELS - 1) as f64).map(|part| part.round() as u8);
     Colour(red, green, blue)
 }
@@ -91,31 +90,16 @@ fn at(place: f64) -> [f64; 3] {
 const DEFLECTIONS: [f64; 2] = [5e-6, 5e-3];
 
 /// The colour of a deflection (m) in scenes: red, green and blue, sRGB from 0 to 1.
-pub(crate) fn of_deflection(deflection: f64) -> [f32; 3] {
+pub fn of_deflection(deflection: f64) -> [f32; 3] {
     let [low, high] = DEFLECTIONS;
     let place = libm::log(deflection.abs().max(low) / low) / libm::log(high / low);
     at(place).map(|part| (part / 255.0) as f32)
 }
 
 /// Black or white, whichever stands out more from a ground.
-pub(super) fn contrast(Colour(red, green, blue): Colour) -> Colour {
+pub fn contrast(Colour(red, green, blue): Colour) -> Colour {
     let brightness = 0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue);
     if brightness > 130.0 { BLACK } else { WHITE }
-}
-
-/// The pale ground of states that are not allowed.
-pub(super) fn ground(blocked: ConstraintKind) -> Colour {
-    match blocked {
-        ConstraintKind::Reach => WHITE,
-        ConstraintKind::JointLimit(1) => Colour(240, 240, 215),
-        ConstraintKind::JointLimit(2) => Colour(221, 230, 245),
-        ConstraintKind::JointLimit(3) => Colour(246, 224, 222),
-        ConstraintKind::JointLimit(4) => Colour(232, 224, 244),
-        ConstraintKind::JointLimit(5) => Colour(222, 222, 222),
-        ConstraintKind::AxesSum => Colour(244, 232, 214),
-        ConstraintKind::JointLimit(_) => Colour(222, 240, 228),
-        _ => Colour(248, 248, 248),
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 /// Cells of one content in neighbouring rows, one run of them in each.
 #[derive(Debug, PartialEq)]
-pub(super) struct MergedCells<T> {
+pub struct MergedCells<T> {
     /// What is in them.
     pub content: T,
     /// The first row.
@@ -35,7 +35,7 @@ impl<T> MergedCells<T> {
 
 /// The polygons of a grid with `columns` cells to a row; cells without a content belong to none. Every other cell is in
 /// exactly one polygon.
-pub(super) fn merged_cells<T: Copy + PartialEq>(columns: usize, cells: &[Option<T>]) -> Vec<MergedCells<T>> {
+pub fn merged_cells<T: Copy + PartialEq>(columns: usize, cells: &[Option<T>]) -> Vec<MergedCells<T>> {
     let mut polygons: Vec<MergedCells<T>> = Vec::new();
     // Those with a run in the row before, in the order of their columns.
     let mut open: Vec<usize> = Vec::new();

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 /// A linear scale from numbers to pixels.
 #[derive(Clone, Copy)]
-pub(super) struct Scale {
+pub struct Scale {
     /// Number at the first pixel.
     pub from: f64,
     /// Number at the last pixel.
@@ -48,7 +48,7 @@ impl Scale {
 }
 
 /// Numbers at which an axis has ticks, and how many decimals their labels need.
-pub(super) struct Ticks {
+pub struct Ticks {
     /// The numbers, ascending.
     pub values: Vec<f64>,
     /// Decimals of the labels.
@@ -113,7 +113,7 @@ impl Ticks {
 }
 
 /// Two axes and what stands at them.
-pub(super) struct Panel {
+pub struct Panel {
     /// Horizontal scale.
     pub x: Scale,
     /// Vertical scale; its first pixel is at the bottom.
@@ -129,15 +129,15 @@ pub(super) struct Panel {
 }
 
 /// The smallest and the largest of some numbers and two given ones.
-pub(super) fn extent(given: [f64; 2], values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+pub fn extent(given: [f64; 2], values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     values.into_iter().fold(given, |[low, high], value| [low.min(value), high.max(value)])
 }
 
 /// A rectangle of the plane: its lowest and its highest coordinates.
-pub(super) type Window = [[f64; 2]; 2];
+pub type Window = [[f64; 2]; 2];
 
 /// The smallest rectangle around points; none around no points.
-pub(super) fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Option<Window> {
+pub fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Option<Window> {
     let windows = points.into_iter().map(|point| [point, point]);
     windows
         .reduce(|[low, high], [point, _]| [[0, 1].map(|k| low[k].min(point[k])), [0, 1].map(|k| high[k].max(point[k]))])

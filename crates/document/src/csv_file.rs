@@ -12,15 +12,12 @@ use std::borrow::Cow;
 use std::fmt::Display;
 
 /// A CSV file of at least one row.
-pub(crate) fn rows<T: Serialize>(
-    what: &'static str,
-    rows: impl IntoIterator<Item = T>,
-) -> Result<Vec<u8>, ReportError> {
+pub fn rows<T: Serialize>(what: &'static str, rows: impl IntoIterator<Item = T>) -> Result<Vec<u8>, ReportError> {
     written(what, None, rows)
 }
 
 /// A CSV file of rows; where there is none its columns are those of `blank`.
-pub(crate) fn rows_or<T: Serialize>(
+pub fn rows_or<T: Serialize>(
     what: &'static str,
     blank: &T,
     rows: impl IntoIterator<Item = T>,
@@ -52,7 +49,7 @@ fn written<T: Serialize>(
 
 /// Columns whose names only a run knows.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Columns<T>(pub Vec<(String, T)>);
+pub struct Columns<T>(pub Vec<(String, T)>);
 
 impl<T: Serialize> Serialize for Columns<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -26,7 +26,7 @@ pub struct Transaction<'a> {
 }
 
 /// The manifest of a folder, or an empty one.
-pub(super) fn manifest_in(folder: &Path) -> Result<Manifest, ReportError> {
+pub fn manifest_in(folder: &Path) -> Result<Manifest, ReportError> {
     let path = folder.join(MANIFEST);
     match Manifest::find(folder) {
         Ok(Found::Nothing) => Ok(Manifest::default()),
@@ -37,7 +37,7 @@ pub(super) fn manifest_in(folder: &Path) -> Result<Manifest, ReportError> {
 }
 
 /// Refuses to replace a file that no manifest lists: somebody's own.
-pub(super) fn check_listed(folder: &Path, manifest: &Manifest, name: &str) -> Result<(), ReportError> {
+pub fn check_listed(folder: &Path, manifest: &Manifest, name: &str) -> Result<(), ReportError> {
     let is_listed = || manifest.results.iter().flat_map(|set| &set.files).any(|file| file.name == name);
     let path = folder.join(name);
     if !path.is_file() || is_listed() {
@@ -55,7 +55,8 @@ enum Step {
 }
 
 impl<'a> Transaction<'a> {
-    pub(super) fn new(folder: &'a Path, command: &'a str, inputs: &'a [InputFile]) -> Self {
+    /// Nothing yet, in a folder, by a command from its inputs.
+    pub fn new(folder: &'a Path, command: &'a str, inputs: &'a [InputFile]) -> Self {
         Self {
             folder,
             command,

@@ -5,7 +5,7 @@ use super::colour::Colour;
 
 /// Which way the lines of a hatching run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Slope {
+pub enum Slope {
     /// From lower left to upper right.
     Up,
     /// From upper left to lower right.
@@ -16,7 +16,7 @@ pub(super) enum Slope {
 const SPACING: usize = 9;
 
 /// Hatches those pixels between two corners for which `inside` holds.
-pub(super) fn hatch(
+pub fn hatch(
     canvas: &mut Canvas,
     (from, to): (Pixel, Pixel),
     slope: Slope,

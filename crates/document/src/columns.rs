@@ -1,7 +1,7 @@
 //! Text in columns, for people.
 
 /// Columns with two blanks between them, to the right but for the given ones.
-pub(crate) fn aligned(rows: &[Vec<String>], to_the_left: &[usize]) -> String {
+pub fn aligned(rows: &[Vec<String>], to_the_left: &[usize]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
@@ -15,7 +15,8 @@ pub(crate) fn aligned(rows: &[Vec<String>], to_the_left: &[usize]) -> String {
     text
 }
 
-pub(crate) fn line(text: &mut String, words: &str) {
+/// Adds a line to a text.
+pub fn line(text: &mut String, words: &str) {
     text.push_str(words);
     text.push('\n');
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// A line through positions counted in steps of the grid, along the first axis and along the second. A closed line ends
 /// where it begins.
-pub(super) type Line = Vec<[f64; 2]>;
+pub type Line = Vec<[f64; 2]>;
 
 /// Edges of the grid, by number: that from node `k` along the first axis is `2 k`, that along the second axis
 /// `2 k + 1`.
@@ -16,7 +16,7 @@ type Edge = usize;
 /// none; a cell with such a corner is left out, so that lines end at its border. In a cell whose diagonals lie on
 /// different sides of the level the mean of its corners decides which corners belong together. Open lines come first,
 /// each group in the order of its first edges.
-pub(super) fn contour(columns: usize, values: &[f64], level: f64) -> Vec<Line> {
+pub fn contour(columns: usize, values: &[f64], level: f64) -> Vec<Line> {
     let mut links: BTreeMap<Edge, [Option<Edge>; 2]> = BTreeMap::new();
     if columns < 2 {
         return Vec::new();

@@ -15,6 +15,7 @@
 //! several fields share is computed by statements before them: `{ let .. } with { fields }`.
 
 /// Declares results, as the head of this module says.
+#[macro_export]
 macro_rules! records {
     () => {};
     (
@@ -24,14 +25,14 @@ macro_rules! records {
         }
         $($rest:tt)*
     ) => {
-        records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
+        $crate::records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
         impl From<$given> for $name {
             fn from($source: $given) -> Self {
                 $($shared)*
                 Self { $($field: $value),* }
             }
         }
-        records! { $($rest)* }
+        $crate::records! { $($rest)* }
     };
     (
         $(#[$about:meta])*
@@ -40,7 +41,7 @@ macro_rules! records {
         }
         $($rest:tt)*
     ) => {
-        records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
+        $crate::records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
         impl $name {
             /// It, as its fields say.
             pub(crate) fn of($($source: $given),*) -> Self {
@@ -48,7 +49,7 @@ macro_rules! records {
                 Self { $($field: $value),* }
             }
         }
-        records! { $($rest)* }
+        $crate::records! { $($rest)* }
     };
     (
         $(#[$about:meta])*
@@ -57,12 +58,12 @@ macro_rules! records {
         }
         $($rest:tt)*
     ) => {
-        records! {
+        $crate::records! {
             $(#[$about])* $seen struct $name from $source: $given {} with {
                 $($(#[$meaning])* $shown $field: $type = $value),*
             }
         }
-        records! { $($rest)* }
+        $crate::records! { $($rest)* }
     };
     (
         $(#[$about:meta])*
@@ -71,12 +72,12 @@ macro_rules! records {
         }
         $($rest:tt)*
     ) => {
-        records! {
+        $crate::records! {
             $(#[$about])* $seen struct $name of ($($source: $given),*) {} with {
                 $($(#[$meaning])* $shown $field: $type = $value),*
             }
         }
-        records! { $($rest)* }
+        $crate::records! { $($rest)* }
     };
     (
         @declare $(#[$about:meta])* $seen:vis struct $name:ident {
@@ -91,9 +92,9 @@ macro_rules! records {
 
 #[cfg(test)]
 mod tests {
-    use crate::document::value;
     use crate::figure::PlaceMm;
     use serde_json::json;
+    use serde_json::to_value;
 
     records! {
         /// From one thing.
@@ -116,9 +117,9 @@ mod tests {
 
     #[test]
     fn records_are_made_of_what_their_fields_say() {
-        assert_eq!(value(&Length::from(0.5)), json!({ "length_mm": 500.0 }));
-        assert_eq!(value(&Ends::of(1.0, 0.25)), json!({ "from_mm": 750.0, "to_mm": 1250.0 }));
-        assert_eq!(value(&Ends::of(1.0, 0.0)), json!({ "from_mm": 1000.0 }));
+        assert_eq!(to_value(Length::from(0.5)).unwrap(), json!({ "length_mm": 500.0 }));
+        assert_eq!(to_value(Ends::of(1.0, 0.25)).unwrap(), json!({ "from_mm": 750.0, "to_mm": 1250.0 }));
+        assert_eq!(to_value(Ends::of(1.0, 0.0)).unwrap(), json!({ "from_mm": 1000.0 }));
         assert_eq!(Ends::default().from_mm, PlaceMm(0.0));
     }
 }

@@ -3,12 +3,12 @@
 use super::colour::{BEST, BLACK, Colour, WHITE, WORST};
 
 /// A place on the picture: pixels to the right and down from the upper left corner.
-pub(super) type Pixel = (i32, i32);
+pub type Pixel = (i32, i32);
 /// The same, between the pixels too.
-pub(super) type Place = (f64, f64);
+pub type Place = (f64, f64);
 
 /// A picture being drawn: the SVG document so far.
-pub(super) struct Canvas {
+pub struct Canvas {
     document: String,
     /// Whether the document states once for all texts what most of them are: black, from the left, in one family.
     is_brief: bool,
@@ -24,7 +24,7 @@ enum Anchor {
 
 /// Where a text stands relative to its place, and how it looks. Its middle is at the height of the place.
 #[derive(Clone, Copy)]
-pub(super) struct TextStyle {
+pub struct TextStyle {
     /// Height of the letters in pixels.
     size: f64,
     colour: Colour,
@@ -35,8 +35,10 @@ pub(super) struct TextStyle {
 
 /// How a line is drawn: what is best is whole and what is worst in strokes, so that nobody needs the colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct LineStyle {
+pub struct LineStyle {
+    /// Its colour.
     pub colour: Colour,
+    /// Whether it is in strokes.
     pub is_dashed: bool,
 }
 
@@ -48,9 +50,9 @@ impl From<Colour> for LineStyle {
 }
 
 /// The line of what is best.
-pub(super) const BEST_LINE: LineStyle = LineStyle { colour: BEST, is_dashed: false };
+pub const BEST_LINE: LineStyle = LineStyle { colour: BEST, is_dashed: false };
 /// The line of what is worst.
-pub(super) const WORST_LINE: LineStyle = LineStyle { colour: WORST, is_dashed: true };
+pub const WORST_LINE: LineStyle = LineStyle { colour: WORST, is_dashed: true };
 
 /// Whole numbers of the SVG document to a pixel.
 const FINENESS: i32 = 4;
@@ -245,12 +247,12 @@ impl Canvas {
 }
 
 /// The place of a pixel.
-pub(super) fn exact(pixel: Pixel) -> Place {
+pub fn exact(pixel: Pixel) -> Place {
     (f64::from(pixel.0), f64::from(pixel.1))
 }
 
 /// The pixel nearest to a place.
-pub(super) fn nearest(place: Place) -> Pixel {
+pub fn nearest(place: Place) -> Pixel {
     (place.0.round() as i32, place.1.round() as i32)
 }
 
@@ -282,12 +284,12 @@ fn escaped(text: &str) -> String {
 }
 
 /// Draws a picture of the given size in pixels on white and returns the SVG document.
-pub(super) fn picture(size: Pixel, paint: impl FnOnce(&mut Canvas)) -> String {
+pub fn picture(size: Pixel, paint: impl FnOnce(&mut Canvas)) -> String {
     drawn(size, [size.0.to_string(), size.1.to_string()], false, paint)
 }
 
 /// Draws a page of A4, upright, with pixels of a quarter of a millimetre; all its texts are black.
-pub(super) fn paper(paint: impl FnOnce(&mut Canvas)) -> String {
+pub fn paper(paint: impl FnOnce(&mut Canvas)) -> String {
     drawn((840, 1188), ["210mm".to_owned(), "297mm".to_owned()], true, paint)
 }
 

@@ -4,7 +4,7 @@ pub use stead_numerics::digits::{figures, fixed};
 pub use stead_numerics::unit::Unit;
 
 /// A text in lines of so many letters at most, broken between words; a longer word has a line of its own.
-pub(crate) fn lines_of(text: &str, most: usize) -> Vec<String> {
+pub fn lines_of(text: &str, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {

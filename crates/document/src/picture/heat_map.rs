@@ -8,7 +8,7 @@ use super::merged_cells::merged_cells;
 use std::borrow::Cow;
 
 /// A grid of cells, each with a content that has a colour, or with none.
-pub(super) struct HeatMap<T> {
+pub struct HeatMap<T> {
     /// Edges of the columns, from left to right. Pixels
     pub columns: Vec<i32>,
     /// Edges of the rows, from the bottom up. Pixels
@@ -56,7 +56,7 @@ impl<T: Copy + PartialEq> HeatMap<T> {
 
 /// The range of values that the colours span.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ColourRange {
+pub struct ColourRange {
     /// Value at the dark end.
     pub from: f64,
     /// Value at the bright end.
@@ -90,7 +90,7 @@ impl ColourRange {
 }
 
 /// The bar of colours beside a map.
-pub(super) struct ColourBar {
+pub struct ColourBar {
     /// Left and right edge. Pixels
     pub sides: [i32; 2],
     /// Values from the lower edge to the upper one.

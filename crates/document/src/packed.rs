@@ -4,22 +4,22 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 /// Bytes as Base64 with padding (RFC 4648, section 4).
-pub(super) fn base64(bytes: &[u8]) -> String {
+pub fn base64(bytes: &[u8]) -> String {
     STANDARD.encode(bytes)
 }
 
 /// The bytes behind such a text; none where it is no Base64.
-pub(super) fn bytes_of(text: &str) -> Vec<u8> {
+pub fn bytes_of(text: &str) -> Vec<u8> {
     STANDARD.decode(text).unwrap_or_default()
 }
 
 /// Numbers in single precision, little endian, as Base64.
-pub(super) fn singles(values: impl IntoIterator<Item = f64>) -> String {
+pub fn singles(values: impl IntoIterator<Item = f64>) -> String {
     base64(&values.into_iter().flat_map(|value| (value as f32).to_le_bytes()).collect::<Vec<u8>>())
 }
 
 /// Those chosen of rows of so many singles in Base64.
-pub(super) fn chosen_singles(all: &str, chosen: &[usize], width: usize) -> String {
+pub fn chosen_singles(all: &str, chosen: &[usize], width: usize) -> String {
     let bytes = bytes_of(all);
     let row = |row: &usize| bytes.get(4 * width * row..4 * width * (row + 1)).unwrap_or_default();
     base64(&chosen.iter().flat_map(row).copied().collect::<Vec<u8>>())
@@ -28,11 +28,11 @@ pub(super) fn chosen_singles(all: &str, chosen: &[usize], width: usize) -> Strin
 /// Whole numbers that change little from one to the next: each as seven bits a byte, the lowest first, the sign in
 /// bit 0.
 #[derive(Debug, Default)]
-pub(super) struct Varints(Vec<u8>);
+pub struct Varints(Vec<u8>);
 
 impl Varints {
     /// Adds a number.
-    pub(super) fn push(&mut self, value: i64) {
+    pub fn push(&mut self, value: i64) {
         let mut rest = (value << 1 ^ value >> 63) as u64;
         while rest >= 128 {
             self.0.push(rest as u8 & 127 | 128);
@@ -42,21 +42,21 @@ impl Varints {
     }
 
     /// All of them as Base64.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         base64(&self.0)
     }
 }
 
 /// Numbers of which many that follow each other are the same: for each run how many, and the number.
 #[derive(Debug, Default)]
-pub(super) struct Runs {
+pub struct Runs {
     ended: Varints,
     run: Option<(i64, i64)>,
 }
 
 impl Runs {
     /// Adds a number.
-    pub(super) fn push(&mut self, value: i64) {
+    pub fn push(&mut self, value: i64) {
         match &mut self.run {
             Some((count, last)) if *last == value => *count += 1,
             run => {
@@ -69,7 +69,7 @@ impl Runs {
     }
 
     /// All of them as Base64.
-    pub(super) fn text(mut self) -> String {
+    pub fn text(mut self) -> String {
         if let Some((count, last)) = self.run {
             self.ended.push(count);
             self.ended.push(last);
@@ -81,13 +81,13 @@ impl Runs {
 /// The second differences of a sequence, which are small where it is smooth; [`SecondDifferences::restart`] begins a
 /// new one.
 #[derive(Debug, Default, Clone, Copy)]
-pub(super) struct SecondDifferences {
+pub struct SecondDifferences {
     last: Option<(i64, i64)>,
 }
 
 impl SecondDifferences {
     /// The difference of the next value to what the last two lead to expect.
-    pub(super) fn next(&mut self, value: i64) -> i64 {
+    pub fn next(&mut self, value: i64) -> i64 {
         let (last, step) = self.last.unwrap_or((0, 0));
         let surprise = value - last - step;
         let new_step = if self.last.is_some() { value - last } else { 0 };
@@ -96,7 +96,7 @@ impl SecondDifferences {
     }
 
     /// Forgets the sequence so far.
-    pub(super) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         self.last = None;
     }
 }

@@ -6,7 +6,7 @@ use super::colour::{Colour, INK, SHADE};
 use std::borrow::Cow;
 
 /// A chart of curves. The grid lies over the shaded ranges and under the marks, the frame over everything.
-pub(super) struct LineChart {
+pub struct LineChart {
     /// The axes.
     pub panel: Panel,
     /// Ranges of the horizontal axis whose ground is shaded.
@@ -16,7 +16,7 @@ pub(super) struct LineChart {
 }
 
 /// Something drawn on a chart, in the numbers of its axes.
-pub(super) enum Mark {
+pub enum Mark {
     /// A heading over the upper left corner of the chart.
     Heading(Cow<'static, str>, Colour),
     /// A curve through points; a single point is a dot.
@@ -98,7 +98,7 @@ impl LineChart {
 }
 
 /// What stands before a label in a legend.
-pub(super) enum Sign {
+pub enum Sign {
     /// A piece of a curve.
     Line(LineStyle),
     /// A piece of a dashed line.
@@ -110,7 +110,7 @@ pub(super) enum Sign {
 }
 
 /// A legend in one line at a height: from where, the sign, and the label.
-pub(super) fn legend(canvas: &mut Canvas, y: i32, entries: &[(i32, Sign, &str)]) {
+pub fn legend(canvas: &mut Canvas, y: i32, entries: &[(i32, Sign, &str)]) {
     for (left, sign, label) in entries {
         let (from, to) = ((*left, y), (left + 28, y));
         match sign {
