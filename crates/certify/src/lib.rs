@@ -26,10 +26,10 @@
 //!    `relaxed` is the objective of a placement then.
 //!
 //! ```
-//! use stead_certify::{certify, settings::CertificateSettings};
+//! use stead_certify::certify;
 //! use stead_numerics::monitor::Monitor;
 //! use stead_problem::problem::{Cell, Interval, Placement};
-//! use stead_problem::testing::five_segments;
+//! use stead_problem::{settings::CertificateSettings, testing::five_segments};
 //! // The published case where the workpiece may be moved by 2 mm and turned by 2 deg: nothing in there is better than
 //! // the placement found, with 0.1075 mm in the mean, by more than a twentieth.
 //! let range = |min, max| Interval { min, max };

@@ -2,8 +2,7 @@
 //!
 //! - [`lookup`]: scores of upright tools sampled once over the cell; [`evaluator`]: the objective of a placement, by
 //!   table or planner.
-//! - [`search`]: the global search; [`refine`]: gradients from its basins to the optimum; [`settings`]: how hard to
-//!   search.
+//! - [`search`]: the global search; [`refine`]: gradients from its basins to the optimum.
 //! - [`sensitivity`]: how a result answers to the stiffness of the joints and to errors of the force.
 //! - [`setup_sheet`]: what a fitter needs to set a placement up.
 //! - [`place`]: the job as a whole; [`outcome`]: what it returns; [`overview`]: what a run states, before any search.
@@ -12,8 +11,9 @@
 //!
 //! ```
 //! use stead_numerics::monitor::Monitor;
-//! use stead_placement::{place::place, settings::SearchSettings};
-//! use stead_problem::{settings::TransferSettings, testing::five_segments};
+//! use stead_placement::place::place;
+//! use stead_problem::settings::{SearchSettings, TransferSettings};
+//! use stead_problem::testing::five_segments;
 //! // The published case with a search that is too small to be trusted, for the best placement alone.
 //! let (usual, worst) = (SearchSettings::default(), false);
 //! let settings = SearchSettings { population: 16, generations: 3, basins: 1, worst, ..usual };

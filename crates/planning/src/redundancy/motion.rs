@@ -3,8 +3,8 @@
 //! A state of a path point is a grid value of beta, one of the [settings](Setting) that the point may have, a lean with
 //! positions of the external axes, and a posture class, with joint angles modulo a turn. From one point to the next the
 //! tool axis may turn as far as the contact stays near its line
-//! ([`LeanSpace::allows_step`](stead_problem::lean::LeanSpace::allows_step)), each external axis move as fast as it may,
-//! beta change as far as its limits allow between these two settings, and each joint go by its step. All states and all
+//! ([`LeanSpace::allows_step`](stead_problem::lean::LeanSpace::allows_step)), each axis move as fast as it may, beta
+//! change as far as its limits allow between these two settings, and each joint go by its step. All states and all
 //! steps are evaluated, so that what is found is the cheapest of its grid but for what flips and turns of the wrist
 //! forbid. The plan itself is made afterwards, with tool and axes along the way found here
 //! ([`Setup`](stead_problem::setup::Setup)), so nothing of what is printed rests on this grid.

@@ -4,7 +4,6 @@ use super::*;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis, carried};
 use stead_model::robot::angles::wrap;
 use stead_model::robot::{Joint, Robot};
