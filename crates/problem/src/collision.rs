@@ -2,7 +2,7 @@
 //! the moves between points at all.
 //!
 //! Constraints on single states are evaluated for every candidate; collisions are not. A plan is made as if nothing
-//! stood around, and looked at; what hits is forbidden, and the plan made again ([`crate::redundancy`]). Forbidding
+//! stood around, and looked at; what hits is forbidden, and the plan made again by the planner. Forbidding
 //! states makes no plan cheaper, so a plan that is free is as good as if all states had been looked at.
 
 use crate::constraints::Measured;

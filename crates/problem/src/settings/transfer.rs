@@ -8,7 +8,7 @@ pub struct TransferSettings {
     pub acceleration_time: f64,
     /// Time from no to full acceleration at full jerk; the jerk limit is acceleration over this. s
     pub jerk_time: f64,
-    /// Distance over which the controller blends changes of the joint speeds along the cut . m
+    /// Distance over which the controller blends changes of the joint speeds along the cut. m
     pub blend: f64,
 }
 
