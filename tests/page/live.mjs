@@ -273,20 +273,20 @@ const tests = {
     await page.locator('#edit-wrong').waitFor({ state: 'visible' });
     assert.match(await text(page, 'edit-wrong'), /cell\.x_mm/);
     await page.locator('#edit-cell-x_mm').fill('[-200, 200]');
-    await Promise.all([page.waitForNavigation(), page.locator('#edit-apply').click()]);
+    await Promise.all([page.waitForEvent('load'), page.locator('#edit-apply').click()]);
     await page.waitForFunction(() => window.stead?.first > 0);
     assert.equal(await page.locator('#edit-cell-x_mm').inputValue(), '[-200, 200]');
     assert.match(await page.locator('#log').textContent(), /the values of the run were changed: cell\.x_mm=\[-200, 200\]/);
     await page.locator('#edit-cell-z_mm').fill('[-600, -214]');
-    await Promise.all([page.waitForNavigation(), page.locator('#edit-apply').click()]);
+    await Promise.all([page.waitForEvent('load'), page.locator('#edit-apply').click()]);
     await page.waitForFunction(() => window.stead?.first > 0);
     // A field that is empty has the value of the file.
     await page.locator('#edit-cell-x_mm').fill('');
-    await Promise.all([page.waitForNavigation(), page.locator('#edit-apply').click()]);
+    await Promise.all([page.waitForEvent('load'), page.locator('#edit-apply').click()]);
     await page.waitForFunction(() => window.stead?.first > 0);
     const values = () => Promise.all(['x', 'z'].map((axis) => page.locator(`#edit-cell-${axis}_mm`).inputValue()));
     assert.deepEqual(await values(), ['[-300, 300]', '[-600, -214]']);
-    await Promise.all([page.waitForNavigation(), page.locator('#edit-reset').click()]);
+    await Promise.all([page.waitForEvent('load'), page.locator('#edit-reset').click()]);
     await page.waitForFunction(() => window.stead?.first > 0);
     assert.deepEqual(await values(), ['[-300, 300]', '[-602, -214]']);
     await page.locator('#save-name').fill('caro-2013');
@@ -346,7 +346,7 @@ if (isMain) {
     // Values that are changed in one leave part, steps back and comparison of the other.
     await page.locator('#side-a').selectOption('placement-1');
     await other.page.locator('#edit-cell-x_mm').fill('[-250, 250]');
-    await Promise.all([page.waitForNavigation(), other.page.locator('#edit-apply').click()]);
+    await Promise.all([page.waitForEvent('load'), other.page.locator('#edit-apply').click()]);
     await page.waitForFunction(() => window.stead?.first > 0);
     await atRest(page);
     assert.match(await page.locator('#log li').first().textContent(), /values of the run were changed: cell\.x_mm=\[-250, 250\]/);
