@@ -344,7 +344,6 @@ class SimulatedPass(Result):
 
     robot: str
     variant: str
-    fast: bool
     end: str
     end_reason: str | None
     judgement: str
