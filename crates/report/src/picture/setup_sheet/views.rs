@@ -190,9 +190,10 @@ impl View {
         named.extend(self.check_points(canvas, problem, sheet));
         let corner = (self.corner.0 + self.size[0], self.corner.1 + self.size[1]);
         let mut labeller = Labeller::new((self.corner, corner));
-        for (_, at) in &named {
-            let (x, y) = nearest(*at);
-            labeller.take(((x - 3, y - 3), (x + 3, y + 3)));
+        let stands = [sheet.part.translation, sheet.robot.translation].map(|point| (self.place(&point), 6));
+        for (at, half) in named.iter().map(|(_, at)| (*at, 3)).chain(stands) {
+            let (x, y) = nearest(at);
+            labeller.take(((x - half, y - half), (x + half, y + half)));
         }
         // Beside what it names, on the side that is free, to the lower right first.
         for (name, at) in &named {
@@ -203,7 +204,7 @@ impl View {
                     nearest((at.0 + radius * libm::cos(turn), at.1 + radius * libm::sin(turn)))
                 })
             };
-            labeller.put(canvas, &label, [11.0, 15.0, 20.0, 26.0].into_iter().flat_map(around));
+            labeller.put(canvas, &label, [11.0, 15.0, 20.0, 26.0, 34.0, 44.0].into_iter().flat_map(around));
         }
     }
 
