@@ -1,9 +1,9 @@
 //! Collisions of states and plans: whether the shapes of the scene keep their distance, and whether the arm can follow
 //! the moves between points at all.
 //!
-//! Constraints on single states are evaluated for every candidate; collisions are not. A plan is made as if nothing
-//! stood around, and looked at; what hits is forbidden, and the plan made again by the planner. Forbidding
-//! states makes no plan cheaper, so a plan that is free is as good as if all states had been looked at.
+//! Constraints on single states are evaluated for every candidate; collisions are not. A plan is made
+//! without them, and then checked; what hits is forbidden, and the planner makes it again. Forbidding states makes no
+//! plan cheaper, so a plan that is free is as good as if all states had been checked.
 
 use crate::constraints::Measured;
 use crate::problem::{Placement, Problem};
@@ -77,7 +77,7 @@ impl Problem {
     }
 
     /// The same with the external axes at positions (m or rad).
-    pub fn poses_at(&self, scene: &Scene, positions: &[f64], placement: &Placement, joints: &[f64; 6]) -> Poses {
+    pub(crate) fn poses_at(&self, scene: &Scene, positions: &[f64], placement: &Placement, joints: &[f64; 6]) -> Poses {
         let axes = &self.external_axes;
         let part = self.turned(self.base_from_workpiece_at(positions, placement));
         let poses = scene.poses(joints, &part);

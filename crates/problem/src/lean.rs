@@ -113,7 +113,7 @@ impl LeanSpace {
     }
 
     /// For some points of the path alone, ascending.
-    pub fn on_points(&self, points: &[usize]) -> Self {
+    pub(crate) fn on_points(&self, points: &[usize]) -> Self {
         Self { ranges: points.iter().map(|point| self.ranges[*point]).collect(), ..self.clone() }
     }
 

@@ -3,7 +3,7 @@
 use super::{Problem, ProblemParts};
 
 impl Problem {
-    /// The same problem with the forces at another feed, told as its share of the programmed one (m/s) in a segment;
+    /// The same problem with the forces at another feed, given as its share of the programmed one (m/s) in a segment;
     /// `None` where it is not known which part of them grows with the feed
     /// ([`Task::with_edge_parts`](stead_model::task::Task::with_edge_parts)).
     pub fn at_feed(&self, share_of: impl Fn(usize, f64) -> f64) -> Option<Self> {

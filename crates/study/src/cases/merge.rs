@@ -4,7 +4,7 @@ use super::StudyError;
 use super::keeping::Keeping;
 use super::plan::Plan;
 use super::row::result_columns;
-use super::store::{Rows, Store};
+use super::store::{Entries, Store};
 use super::table::{Column, ColumnKind, Table, TableCell};
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use std::path::Path;
 pub fn merged(plan: &Plan, folder: &Path) -> Result<Option<Table>, StudyError> {
     let store = Store::at(folder);
     store.check(plan)?;
-    Ok(table(plan, &store.rows(&mut Vec::new())?))
+    Ok(table(plan, &store.finished(&mut Vec::new())?))
 }
 
 /// The file that holds the table of results.
@@ -30,15 +30,16 @@ pub fn merge(plan: &Plan, folder: &Path, keeping: &dyn Keeping) -> Result<bool, 
     let store = Store::at(folder);
     store.check(plan)?;
     let _lock = store.lock()?;
-    let Some(table) = table(plan, &store.rows(&mut Vec::new())?) else { return Ok(false) };
-    store.write("study-timing.csv", &timing(plan, &store)?.to_csv()?)?;
+    let finished = store.finished(&mut Vec::new())?;
+    let Some(table) = table(plan, &finished) else { return Ok(false) };
+    store.write("study-timing.csv", &timing(plan, &finished).to_csv()?)?;
     keeping.publish(&[(TABLE, table.to_csv()?)]).map_err(StudyError::Keep)?;
     Ok(true)
 }
 
-fn table(plan: &Plan, rows: &Rows) -> Option<Table> {
+fn table(plan: &Plan, finished: &Entries) -> Option<Table> {
     let columns = plan.columns();
-    let row = |case| Some([plan.cells(case, &columns), rows.get(&case.id)?.clone()].concat());
+    let row = |case| Some([plan.cells(case, &columns), finished.get(&case.id)?.row.clone()].concat());
     let rows = plan.cases.iter().map(row).collect::<Option<Vec<_>>>()?;
     Some(Table { columns: columns.into_iter().chain(result_columns()).collect(), rows })
 }
@@ -57,8 +58,7 @@ pub(super) fn best(plan: &Plan, folder: &Path, count: usize) -> Result<Vec<usize
 }
 
 /// How long each case took, where, on how many threads.
-fn timing(plan: &Plan, store: &Store) -> Result<Table, StudyError> {
-    let timings = store.timings()?;
+fn timing(plan: &Plan, finished: &Entries) -> Table {
     let kinds = [
         ("case", ColumnKind::Count),
         ("seconds", ColumnKind::Number),
@@ -66,7 +66,7 @@ fn timing(plan: &Plan, store: &Store) -> Result<Table, StudyError> {
         ("host", ColumnKind::Text),
     ];
     let rows = plan.cases.iter().map(|case| {
-        let timing = timings.get(&case.id).cloned().unwrap_or_default();
+        let timing = finished.get(&case.id).map(|entry| entry.timing.clone()).unwrap_or_default();
         vec![
             TableCell::Count(case.case.number as i64),
             TableCell::Number(timing.seconds),
@@ -75,5 +75,5 @@ fn timing(plan: &Plan, store: &Store) -> Result<Table, StudyError> {
         ]
     });
     let rows = rows.collect();
-    Ok(Table { columns: kinds.map(|(name, kind)| Column::new(name, kind)).to_vec(), rows })
+    Table { columns: kinds.map(|(name, kind)| Column::new(name, kind)).to_vec(), rows }
 }

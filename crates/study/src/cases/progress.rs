@@ -4,7 +4,7 @@ use super::StudyError;
 use super::lock::Lock;
 use super::plan::Plan;
 use super::row::CaseStatus;
-use super::store::{Rows, Shard, Store};
+use super::store::{Entries, Shard, Store};
 use super::table::TableCell;
 use std::path::Path;
 
@@ -51,8 +51,8 @@ pub fn status(plan: &Plan, folder: &Path) -> Result<StudyStatus, StudyError> {
     let store = Store::at(folder);
     store.check(plan)?;
     let mut problems = Vec::new();
-    let rows = store.rows(&mut problems)?;
-    let count = |status: CaseStatus| plan.cases.iter().filter(|case| has(&rows, &case.id, status)).count();
+    let finished = store.finished(&mut problems)?;
+    let count = |status: CaseStatus| plan.cases.iter().filter(|case| has(&finished, &case.id, status)).count();
     let mut counts: Vec<usize> = store.found().into_iter().map(|shard| shard.count).collect();
     counts.dedup();
     let shards = counts.into_iter().flat_map(|count| (1..=count).map(move |index| Shard { index, count }));
@@ -62,23 +62,23 @@ pub fn status(plan: &Plan, folder: &Path) -> Result<StudyStatus, StudyError> {
         done: count(CaseStatus::Placed) + infeasible + failed,
         infeasible,
         failed,
-        shards: shards.map(|shard| status_of(plan, &store, &rows, shard)).collect(),
+        shards: shards.map(|shard| status_of(plan, &store, &finished, shard)).collect(),
         problems,
         stale: Vec::new(),
     })
 }
 
-fn has(rows: &Rows, id: &str, status: CaseStatus) -> bool {
-    rows.get(id).is_some_and(|row| matches!(&row[0], TableCell::Text(word) if word == status.word()))
+fn has(finished: &Entries, id: &str, status: CaseStatus) -> bool {
+    finished.get(id).is_some_and(|entry| matches!(&entry.row[0], TableCell::Text(word) if word == status.word()))
 }
 
-fn status_of(plan: &Plan, store: &Store, rows: &Rows, shard: Shard) -> ShardStatus {
+fn status_of(plan: &Plan, store: &Store, finished: &Entries, shard: Shard) -> ShardStatus {
     let mine = || plan.cases.iter().filter(|case| shard.has(case.case.number));
-    let without = |id: &str| has(rows, id, CaseStatus::Infeasible) || has(rows, id, CaseStatus::Failed);
+    let without = |id: &str| has(finished, id, CaseStatus::Infeasible) || has(finished, id, CaseStatus::Failed);
     ShardStatus {
         shard,
         planned: mine().count(),
-        done: mine().filter(|case| rows.contains_key(&case.id)).count(),
+        done: mine().filter(|case| finished.contains_key(&case.id)).count(),
         without: mine().filter(|case| without(&case.id)).count(),
         is_running: Lock::is_held(&store.of_shard(shard, ".lock")),
     }

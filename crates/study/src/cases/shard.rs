@@ -6,7 +6,7 @@ use super::keeping::Keeping;
 use super::merge::{best, merge};
 use super::plan::{Plan, PlannedCase};
 use super::row::{CaseStatus, row_of, row_without};
-use super::store::{Rows, Shard, Store};
+use super::store::{Shard, Store};
 use super::table::TableCell;
 use crate::run::{RunError, place};
 use std::collections::{HashMap, HashSet};
@@ -60,14 +60,15 @@ pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result
     store.begin(plan)?;
     let _lock = store.lock_shard(settings.shard)?;
     let mut finished = Finished::default();
-    let mut rows = store.rows(&mut finished.problems)?;
+    let known = store.finished(&mut finished.problems)?;
     let mine: Vec<&PlannedCase> = unique(plan.cases.iter().filter(|case| settings.shard.has(case.case.number)));
     finished.planned = mine.len();
-    let is_done = |case: &PlannedCase, rows: &Rows| {
-        rows.get(&case.id)
-            .is_some_and(|row| plan.study.keep != Keep::All || !is_placed(row) || settings.keeping.is_kept(case))
+    let is_done = |case: &PlannedCase| {
+        known.get(&case.id).is_some_and(|entry| {
+            plan.study.keep != Keep::All || !is_placed(&entry.row) || settings.keeping.is_kept(case)
+        })
     };
-    let pending: Vec<&PlannedCase> = mine.iter().copied().filter(|case| !is_done(case, &rows)).collect();
+    let pending: Vec<&PlannedCase> = mine.iter().copied().filter(|case| !is_done(case)).collect();
     finished.before = mine.len() - pending.len();
     if !pending.is_empty() {
         let whole = store.journal(settings.shard)?.whole;
@@ -75,7 +76,6 @@ pub fn run(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Result
         let is_kept = plan.study.keep == Keep::All;
         side_by_side(plan, &pending, settings, is_kept, monitor, &mut |entry| {
             journal.push(&entry)?;
-            rows.insert(entry.id, entry.row);
             finished.now += 1;
             let done = finished.before + finished.now;
             monitor.report(Progress::Steps { stage: "cases", done, total: mine.len() });

@@ -1,11 +1,10 @@
 //! The folder of a study: what is where, and which rows are done.
 
 use super::StudyError;
-use super::journal::{self, JournalRead, Timing};
+use super::journal::{self, Entry, JournalRead};
 use super::lock::Lock;
 use super::plan::Plan;
 use super::row::result_columns;
-use super::table::TableCell;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -181,33 +180,24 @@ impl Store {
     }
 
     /// What all shards have finished.
-    pub fn rows(&self, problems: &mut Vec<String>) -> Result<Rows, StudyError> {
-        let mut rows = Rows::default();
+    pub fn finished(&self, problems: &mut Vec<String>) -> Result<Entries, StudyError> {
+        let mut finished = Entries::default();
         for shard in self.found() {
             let read = self.journal(shard)?;
             problems.extend(read.problem);
-            rows.extend(read.entries.into_iter().map(|entry| (entry.id, entry.row)));
+            finished.extend(read.entries.into_iter().map(|entry| (entry.id.clone(), entry)));
         }
-        Ok(rows)
+        Ok(finished)
     }
 
     /// The journal of a shard, as it was left.
     pub fn journal(&self, shard: Shard) -> Result<JournalRead, StudyError> {
         journal::read(&self.of_shard(shard, ".jsonl"), &result_columns())
     }
-
-    /// How long finished cases took, by their digests.
-    pub fn timings(&self) -> Result<HashMap<String, Timing>, StudyError> {
-        let mut timings = HashMap::new();
-        for shard in self.found() {
-            timings.extend(self.journal(shard)?.entries.into_iter().map(|entry| (entry.id, entry.timing)));
-        }
-        Ok(timings)
-    }
 }
 
-/// Rows of results by the digests of their cases.
-pub(super) type Rows = HashMap<String, Vec<TableCell>>;
+/// Finished cases by their digests.
+pub(super) type Entries = HashMap<String, Entry>;
 
 /// Temporary files of the folder itself, which are written under its lock.
 const OF_FOLDER: &str = ".stead-study-";
