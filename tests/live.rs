@@ -111,13 +111,13 @@ fn only_who_knows_the_token_and_comes_from_the_page_is_answered() {
     // The address with the token leads to one without it, and leaves a cookie that no script reads.
     let (status, head, page) = live.raw("GET", &format!("/?token={token}"), &[("Host", &own)], "");
     let cookie = format!("stead-{}={token}", live.port);
-    assert!(status == 303 && page.is_empty() && head.contains("Location: /\r\n"), "{status} {head}");
-    assert!(head.contains(&format!("Set-Cookie: {cookie}; HttpOnly; SameSite=Strict; Path=/\r\n")), "{head}");
+    assert!(status == 303 && page.is_empty() && head.contains("location: /\r\n"), "{status} {head}");
+    assert!(head.contains(&format!("set-cookie: {cookie}; HttpOnly; SameSite=Strict; Path=/\r\n")), "{head}");
     let (status, head, page) = live.raw("GET", "/", &[("Host", &own), ("Cookie", &cookie)], "");
     assert!(status == 200 && !page.contains(token));
     assert_eq!(ask(&[("Host", &own), ("Cookie", &cookie)]).0, 403);
     assert_eq!(ask(&[("Host", &own), ("Origin", &origin), ("Cookie", &cookie)]).0, 200);
-    for part in ["Cache-Control: no-store", "Referrer-Policy: no-referrer", "frame-ancestors 'none'"] {
+    for part in ["cache-control: no-store", "referrer-policy: no-referrer", "frame-ancestors 'none'"] {
         assert!(head.contains(part), "{part} in {head}");
     }
     assert!(page.contains("default-src 'none'; script-src 'sha256-") && page.contains("connect-src 'self'"));
@@ -197,7 +197,7 @@ fn nobody_else_stops_a_session_or_reads_beyond_its_folder() {
     let mut large = begun("POST /job HTTP/1.1\r\nContent-Length: 60000000000\r\n\r\n");
     let mut answer = String::new();
     large.read_to_string(&mut answer).unwrap();
-    assert!(answer.starts_with("HTTP/1.1 413 ") && answer.contains("Connection: close"), "{answer}");
+    assert!(answer.starts_with("HTTP/1.1 413 ") && answer.contains("connection: close"), "{answer}");
     let token = &live.token;
     let slow = format!(
         "POST /whole HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nX-Stead-Token: {token}\r\nContent-Length: 90\r\n\r\n{{",
@@ -215,7 +215,7 @@ fn nobody_else_stops_a_session_or_reads_beyond_its_folder() {
     assert_eq!((kept("best.csv").0, live.get("/kept/placement-2/score.json").0), (404, 404));
     let policy = |name: &str, policy: &str| {
         let (status, head, _) = kept(name);
-        let all: Vec<&str> = head.lines().filter(|line| line.starts_with("Content-Security-Policy: ")).collect();
+        let all: Vec<&str> = head.lines().filter(|line| line.starts_with("content-security-policy: ")).collect();
         assert!(status == 200 && all.len() == 1 && all[0].contains(policy), "{name}: {head}");
     };
     policy("score.json", "sandbox; default-src 'none'");

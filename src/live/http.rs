@@ -1,33 +1,84 @@
-//! HTTP as the page of one browser needs it, and no more: requests with a head of limited length, whose body is read
+//! HTTP as the page of one browser needs it, within limits: requests with a head of limited length, whose body is read
 //! once it is known that they may ask, on a limited number of connections, each in a limited time.
 //!
 //! A client that sends slowly, or nothing, holds a connection and nothing else; where all are held, the one that has
 //! waited longest is closed, first among those that were refused, then among those without a request that was allowed,
 //! which are left a moment for it.
 
-mod message;
-
-pub(super) use message::{Answer, Head};
-
-use message::Refused;
+use http_body_util::{BodyExt, Full, Limited};
+use hyper::body::{Body, Bytes, Incoming};
+use hyper::header::{CONNECTION, CONTENT_TYPE, HeaderValue};
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper::{Request, Response, StatusCode};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind, Read, Write};
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::convert::Infallible;
+use std::future::poll_fn;
+use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{TcpListener, TcpSocket, TcpStream};
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::watch;
+use tokio::task::AbortHandle;
+use tokio::time::{sleep, timeout};
 
 /// The longest head that is read. Bytes
 const LONGEST_HEAD: usize = 16_384;
-/// A request is whole within this time from its first byte, and an answer is taken within it.
+/// The longest body that is read: a placement whose axes move from point to point has megabytes. Bytes
+const LONGEST_BODY: u64 = 16_000_000;
+/// Head and body of a request have arrived within this time each; a connection on which nothing is asked is closed.
 const TIME_OF_REQUEST: Duration = Duration::from_secs(10);
-/// Connections on which nothing is asked stay open so long.
-const IDLE: Duration = Duration::from_secs(60);
 /// Connections that are open side by side.
 const MOST_CONNECTIONS: usize = 64;
 /// One that is new is not closed for another.
 const MOMENT: Duration = Duration::from_millis(10);
+/// Connections that wait to be taken up: as many as the system allows, since one that finds no place is only tried
+/// again a second later.
+const MOST_WAITING: u32 = 4096;
+/// What is still sent behind the last answer is taken for so long and up to so many bytes, so that the system does not
+/// throw away the answer with it.
+const LAST: (Duration, u64) = (Duration::from_millis(200), 65_536);
+
+/// The head of a request.
+pub(super) type Head = hyper::http::request::Parts;
+/// An answer of the server.
+pub(super) type Answer = Response<Full<Bytes>>;
+
+pub(super) const JSON: &str = "application/json; charset=utf-8";
+/// What every answer says: it is for this page alone, and not to be kept. The page itself states what it may load.
+const HEADERS: [(&str, &str); 6] = [
+    ("cache-control", "no-store"),
+    ("x-content-type-options", "nosniff"),
+    ("referrer-policy", "no-referrer"),
+    ("x-frame-options", "DENY"),
+    ("cross-origin-resource-policy", "same-origin"),
+    ("content-security-policy", "frame-ancestors 'none'"),
+];
+
+/// An answer of one kind of content.
+pub(super) fn answer_of(status: StatusCode, kind: &'static str, body: Vec<u8>) -> Answer {
+    let mut answer = Response::new(Full::from(body));
+    *answer.status_mut() = status;
+    let headers = HEADERS.into_iter().chain([(CONTENT_TYPE.as_str(), kind)]);
+    answer.headers_mut().extend(
+        headers.map(|(name, value)| (hyper::header::HeaderName::from_static(name), HeaderValue::from_static(value))),
+    );
+    answer
+}
+
+pub(super) fn json_of(status: StatusCode, value: &Value) -> Answer {
+    answer_of(status, JSON, value.to_string().into_bytes())
+}
+
+/// Something that is not done, and why.
+pub(super) fn error(status: StatusCode, message: &str) -> Answer {
+    json_of(status, &json!({ "error": message }))
+}
 
 /// What answers.
 pub(super) trait Site: Send + Sync + 'static {
@@ -35,15 +86,6 @@ pub(super) trait Site: Send + Sync + 'static {
     fn refuses(&self, head: &Head) -> Option<Answer>;
     /// The answer to a request that may ask.
     fn answer(&self, head: &Head, body: &[u8]) -> Answer;
-}
-
-/// A connection that is open.
-#[derive(Debug)]
-struct Open {
-    stream: TcpStream,
-    /// Since when it has been waiting for a request.
-    since: Instant,
-    stage: Stage,
 }
 
 /// How far a connection has come; the first are given up first.
@@ -59,248 +101,210 @@ enum Stage {
     Answered,
 }
 
+/// A connection that is open.
+#[derive(Debug)]
+struct Open {
+    task: AbortHandle,
+    /// Since when it has been waiting for a request.
+    since: Instant,
+    stage: Stage,
+}
+
+/// The connections that are open, by number.
+#[derive(Debug, Clone, Default)]
+struct Connections(Arc<Mutex<BTreeMap<u64, Open>>>);
+
+impl Connections {
+    fn open(&self) -> MutexGuard<'_, BTreeMap<u64, Open>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn set(&self, number: u64, stage: Stage) {
+        if let Some(one) = self.open().get_mut(&number) {
+            (one.stage, one.since) = (stage, Instant::now());
+        }
+    }
+
+    /// Where there are too many, closes one that waits, as the module says; whether there is a place then.
+    fn give_way(&self) -> bool {
+        let mut open = self.open();
+        if open.len() < MOST_CONNECTIONS {
+            return true;
+        }
+        let waiting = open.iter().filter(|(_, one)| one.stage != Stage::Answered);
+        let first = waiting.min_by_key(|(_, one)| (one.stage, one.since));
+        let may_go = |one: &Open| one.stage != Stage::Unknown || one.since.elapsed() >= MOMENT;
+        let first = first.filter(|(_, one)| may_go(one)).map(|(number, _)| *number);
+        let gone = first.and_then(|number| open.remove(&number));
+        gone.iter().for_each(|one| one.task.abort());
+        gone.is_some()
+    }
+}
+
 /// A listener with its connections.
 #[derive(Debug)]
 pub(super) struct Listener {
-    address: SocketAddr,
-    shared: Arc<Shared>,
-    accepting: Option<JoinHandle<()>>,
+    closing: watch::Sender<Option<Duration>>,
+    thread: JoinHandle<()>,
+    #[cfg(test)]
+    connections: Connections,
 }
 
-#[derive(Debug, Default)]
-struct Shared {
-    is_closing: AtomicBool,
-    open: Mutex<BTreeMap<u64, Open>>,
+/// A port of 127.0.0.1 that is listened to, 0 for any that is free.
+pub(super) struct Bound {
+    runtime: Runtime,
+    listener: TcpListener,
+    pub port: u16,
 }
 
-impl Shared {
-    fn open(&self) -> MutexGuard<'_, BTreeMap<u64, Open>> {
-        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+impl Bound {
+    /// # Errors
+    /// What the system says.
+    pub fn to(port: u16) -> io::Result<Self> {
+        let runtime = Builder::new_current_thread().enable_io().enable_time().build()?;
+        let listener = {
+            let _entered = runtime.enter();
+            let socket = TcpSocket::new_v4()?;
+            #[cfg(unix)]
+            socket.set_reuseaddr(true)?;
+            socket.bind(([127, 0, 0, 1], port).into())?;
+            socket.listen(MOST_WAITING)?
+        };
+        Ok(Self { port: listener.local_addr()?.port(), listener, runtime })
     }
 
-    /// Takes up a connection; where there are too many, one that waits is closed for it, as the module says.
-    fn enter(&self, number: u64, stream: &TcpStream) -> bool {
-        let Ok(stream) = stream.try_clone() else { return false };
-        let is_new = |one: &Open| one.stage == Stage::Unknown && one.since.elapsed() < MOMENT;
-        let mut open = self.open();
-        while open.len() >= MOST_CONNECTIONS {
-            let waiting = open.iter().filter(|(_, one)| one.stage != Stage::Answered);
-            let Some((first, one)) = waiting.min_by_key(|(_, one)| (one.stage, one.since)) else { return false };
-            if is_new(one) {
-                drop(open);
-                std::thread::sleep(Duration::from_millis(1));
-                open = self.open();
-                continue;
-            }
-            let first = *first;
-            if let Some(one) = open.remove(&first) {
-                // It is being given up.
-                let _ = one.stream.shutdown(Shutdown::Both);
-            }
-        }
-        open.insert(number, Open { stream, since: Instant::now(), stage: Stage::Unknown });
-        true
-    }
-
-    fn set(&self, number: u64, change: impl FnOnce(&mut Open)) {
-        if let Some(one) = self.open().get_mut(&number) {
-            change(one);
-        }
-    }
-}
-
-impl Listener {
     /// Answers what comes in.
     ///
     /// # Errors
     /// What the system says.
-    pub fn start(listener: TcpListener, site: impl Site) -> io::Result<Self> {
-        let address = listener.local_addr()?;
-        let (shared, site) = (Arc::<Shared>::default(), Arc::new(site));
-        let accepted = Arc::clone(&shared);
-        let accept = move || {
-            for (stream, number) in listener.incoming().zip(0..) {
-                if accepted.is_closing.load(Ordering::SeqCst) {
-                    break;
-                }
-                // A connection that has gone by now, or that is beyond the limit, is left alone.
-                let Ok(stream) = stream else {
-                    std::thread::sleep(Duration::from_millis(10));
-                    continue;
-                };
-                if !accepted.enter(number, &stream) {
-                    continue;
-                }
-                let (shared, site) = (Arc::clone(&accepted), Arc::clone(&site));
-                let work = move || {
-                    // It ends with the connection, however that ends.
-                    let _ = Connection { stream, shared: &shared, number, rest: Vec::new() }.serve(&*site);
-                };
-                let started = std::thread::Builder::new().name("connection".to_owned()).spawn(work);
-                if started.is_err() {
-                    accepted.open().remove(&number);
-                }
+    pub fn start(self, site: impl Site) -> io::Result<Listener> {
+        let Self { runtime, listener, .. } = self;
+        let (closing, seen) = watch::channel(None);
+        let connections = Connections::default();
+        let work = {
+            let connections = connections.clone();
+            move || {
+                runtime.block_on(accept(listener, Arc::new(site), connections, seen));
+                // Answers that are still being made are not waited for.
+                runtime.shutdown_background();
             }
         };
-        let accepting = Some(std::thread::Builder::new().name("connections".to_owned()).spawn(accept)?);
-        Ok(Self { address, shared, accepting })
-    }
-
-    /// Closes all connections, but for answers that are being made, which are waited for as long as given.
-    pub fn close(mut self, wait: Duration) {
-        self.shared.is_closing.store(true, Ordering::SeqCst);
-        // Wakes the thread that waits for connections.
-        let _ = TcpStream::connect(self.address);
-        if let Some(accepting) = self.accepting.take() {
-            // A thread that has failed accepts nothing any more.
-            let _ = accepting.join();
-        }
-        let end = Instant::now() + wait;
-        loop {
-            let mut open = self.shared.open();
-            open.retain(|_, one| one.stage == Stage::Answered || one.stream.shutdown(Shutdown::Both).is_err());
-            if open.is_empty() || Instant::now() > end {
-                open.values().for_each(|one| drop(one.stream.shutdown(Shutdown::Both)));
-                return;
-            }
-            drop(open);
-            std::thread::sleep(Duration::from_millis(10));
-        }
+        let thread = std::thread::Builder::new().name("connections".to_owned()).spawn(work)?;
+        Ok(Listener {
+            closing,
+            thread,
+            #[cfg(test)]
+            connections,
+        })
     }
 }
 
-/// One connection with what was read of it and belongs to no request yet.
-struct Connection<'c> {
-    stream: TcpStream,
-    shared: &'c Shared,
+impl Listener {
+    /// Closes all connections, but for requests that were allowed, which are waited for as long as given.
+    pub fn close(self, wait: Duration) {
+        self.closing.send_replace(Some(wait));
+        // A thread that has failed accepts nothing any more.
+        let _ = self.thread.join();
+    }
+}
+
+/// Takes up connections until the server closes.
+async fn accept(
+    listener: TcpListener,
+    site: Arc<impl Site>,
+    connections: Connections,
+    closing: watch::Receiver<Option<Duration>>,
+) {
+    let taking_up = async {
+        for number in 0.. {
+            // A connection that has gone by now is left alone.
+            let Ok((stream, _)) = listener.accept().await else {
+                sleep(MOMENT).await;
+                continue;
+            };
+            while !connections.give_way() {
+                sleep(MOMENT / 10).await;
+            }
+            let entry = Entry { number, connections: connections.clone() };
+            let task = tokio::spawn(serve(stream, entry, Arc::clone(&site), closing.clone())).abort_handle();
+            connections.open().insert(number, Open { task, since: Instant::now(), stage: Stage::Unknown });
+        }
+    };
+    let mut until = closing.clone();
+    let wait = tokio::select! {
+        wait = until.wait_for(Option::is_some) => wait.ok().and_then(|wait| *wait),
+        () = taking_up => None,
+    };
+    connections.open().values().filter(|one| one.stage < Stage::Allowed).for_each(|one| one.task.abort());
+    let ended = async {
+        while !connections.open().is_empty() {
+            sleep(MOMENT / 10).await;
+        }
+    };
+    // What has not ended by then ends with the runtime.
+    let _ = timeout(wait.unwrap_or_default(), ended).await;
+}
+
+/// A connection among those that are open: however it ends, it is open no more.
+struct Entry {
     number: u64,
-    rest: Vec<u8>,
+    connections: Connections,
 }
 
-impl Drop for Connection<'_> {
-    /// However it ends, it is open no more.
+impl Drop for Entry {
     fn drop(&mut self) {
-        self.shared.open().remove(&self.number);
+        self.connections.open().remove(&self.number);
     }
 }
 
-impl Connection<'_> {
-    /// Answers one request after another.
-    fn serve(mut self, site: &impl Site) -> io::Result<()> {
-        self.stream.set_nodelay(true)?;
-        self.stream.set_write_timeout(Some(TIME_OF_REQUEST))?;
-        while !self.shared.is_closing.load(Ordering::SeqCst) {
-            let head = match self.head()? {
-                Some(Ok(head)) => head,
-                Some(Err(Refused(status, why))) => return self.refuse(Answer::error(status, why)),
-                None => return Ok(()),
-            };
-            let began = Instant::now();
-            // Without its body read, nothing more can be read of a connection.
-            let length = match head.body_length() {
-                Ok(length) => length,
-                Err(Refused(status, why)) => return self.refuse(Answer::error(status, why)),
-            };
-            if let Some(refusal) = site.refuses(&head) {
-                return self.refuse(refusal);
-            }
-            self.shared.set(self.number, |one| one.stage = Stage::Allowed);
-            if length > 0 && head.header("expect").is_some_and(|value| value.eq_ignore_ascii_case("100-continue")) {
-                self.stream.write_all(b"HTTP/1.1 100 Continue\r\n\r\n")?;
-            }
-            let Some(body) = self.body(length, began + TIME_OF_REQUEST)? else {
-                return self.refuse(Answer::error(408, "the request took longer than 10 s"));
-            };
-            self.shared.set(self.number, |one| one.stage = Stage::Answered);
-            let is_last = head.is_last() || self.shared.is_closing.load(Ordering::SeqCst);
-            self.stream.write_all(&site.answer(&head, &body).bytes(&head.method, is_last))?;
-            self.shared.set(self.number, |one| (one.stage, one.since) = (Stage::Allowed, Instant::now()));
-            if is_last {
-                break;
-            }
+/// Answers one request after another.
+async fn serve(stream: TcpStream, entry: Entry, site: Arc<impl Site>, mut closing: watch::Receiver<Option<Duration>>) {
+    // Otherwise the second packet of an answer waits some 40 ms, until the first is acknowledged.
+    let _ = stream.set_nodelay(true);
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(TIME_OF_REQUEST).max_buf_size(LONGEST_HEAD);
+    let answers = service_fn(|request| Box::pin(respond(request, &entry, &site)));
+    let mut connection = http.serve_connection(TokioIo::new(stream), answers);
+    let closes = async { drop(closing.wait_for(Option::is_some).await) };
+    tokio::select! {
+        _ = poll_fn(|context| connection.poll_without_shutdown(context)) => {}
+        () = closes => {
+            std::pin::Pin::new(&mut connection).graceful_shutdown();
+            let _ = poll_fn(|context| connection.poll_without_shutdown(context)).await;
         }
-        self.stream.shutdown(Shutdown::Both)
     }
+    let mut stream = connection.into_parts().io.into_inner();
+    let _ = stream.shutdown().await;
+    let _ = timeout(LAST.0, tokio::io::copy(&mut stream.take(LAST.1), &mut tokio::io::sink())).await;
+}
 
-    /// The head of the next request; none where the connection ends, or nothing comes.
-    fn head(&mut self) -> io::Result<Option<Result<Head, Refused>>> {
-        let mut end = Instant::now() + if self.rest.is_empty() { IDLE } else { TIME_OF_REQUEST };
-        loop {
-            // Lines that are empty before a request are left out.
-            let blank = self.rest.iter().take_while(|byte| [b'\r', b'\n'].contains(byte)).count();
-            self.rest.drain(..blank);
-            if let Some(at) = self.rest.windows(4).position(|four| four == b"\r\n\r\n").filter(|at| *at <= LONGEST_HEAD)
-            {
-                let head = Head::parse(&self.rest[..at]);
-                self.rest.drain(..at + 4);
-                return Ok(Some(head));
-            }
-            if self.rest.len() > LONGEST_HEAD {
-                return Ok(Some(Err(Refused(431, "the head is too long; allowed: 16384 bytes"))));
-            }
-            let was_empty = self.rest.is_empty();
-            match self.more(LONGEST_HEAD, end)? {
-                0 if self.rest.is_empty() => return Ok(None),
-                0 if Instant::now() >= end => {
-                    return Ok(Some(Err(Refused(408, "the request took longer than 10 s"))));
-                }
-                0 => return Ok(None),
-                _ if was_empty => end = Instant::now() + TIME_OF_REQUEST,
-                _ => {}
-            }
-        }
+/// The answer to a request. Where it is refused, nothing more can be read of the connection, which ends.
+async fn respond(request: Request<Incoming>, entry: &Entry, site: &Arc<impl Site>) -> Result<Answer, Infallible> {
+    let set = |stage| entry.connections.set(entry.number, stage);
+    let refused = |mut answer: Answer| {
+        set(Stage::Refused);
+        answer.headers_mut().insert(CONNECTION, HeaderValue::from_static("close"));
+        Ok(answer)
+    };
+    let too_long = || error(StatusCode::PAYLOAD_TOO_LARGE, "the body is too long; allowed: 16000000 bytes");
+    let (head, body) = request.into_parts();
+    if body.size_hint().lower() > LONGEST_BODY {
+        return refused(too_long());
     }
-
-    /// So many bytes of a body, before a time.
-    fn body(&mut self, length: usize, end: Instant) -> io::Result<Option<Vec<u8>>> {
-        while self.rest.len() < length {
-            if self.more(length - self.rest.len(), end)? == 0 {
-                return Ok(None);
-            }
-        }
-        let later = self.rest.split_off(length);
-        Ok(Some(std::mem::replace(&mut self.rest, later)))
+    if let Some(refusal) = site.refuses(&head) {
+        return refused(refusal);
     }
-
-    /// Reads some more bytes, how many: none where the connection has ended or the time is over.
-    fn more(&mut self, most: usize, end: Instant) -> io::Result<usize> {
-        let mut buffer = [0; 16_384];
-        let most = most.clamp(1, buffer.len());
-        loop {
-            let left = end.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                return Ok(0);
-            }
-            self.stream.set_read_timeout(Some(left))?;
-            match self.stream.read(&mut buffer[..most]) {
-                Ok(count) => {
-                    self.rest.extend_from_slice(&buffer[..count]);
-                    return Ok(count);
-                }
-                Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) if [ErrorKind::WouldBlock, ErrorKind::TimedOut].contains(&error.kind()) => return Ok(0),
-                Err(error) => return Err(error),
-            }
-        }
-    }
-
-    /// Says no, and closes the connection.
-    fn refuse(mut self, answer: Answer) -> io::Result<()> {
-        self.shared.set(self.number, |one| one.stage = Stage::Refused);
-        self.stream.write_all(&answer.bytes("GET", true))?;
-        self.stream.shutdown(Shutdown::Write)?;
-        // What was sent meanwhile is taken for a moment, so that the system does not throw away the answer with it.
-        let end = Instant::now() + Duration::from_millis(200);
-        let mut taken = 0;
-        while taken < 4 * LONGEST_HEAD {
-            self.rest.clear();
-            match self.more(LONGEST_HEAD, end)? {
-                0 => break,
-                count => taken += count,
-            }
-        }
-        self.stream.shutdown(Shutdown::Both)
-    }
+    set(Stage::Allowed);
+    let body = match timeout(TIME_OF_REQUEST, Limited::new(body, LONGEST_BODY as usize).collect()).await {
+        Ok(Ok(body)) => body.to_bytes(),
+        Ok(Err(_)) => return refused(too_long()),
+        Err(_) => return refused(error(StatusCode::REQUEST_TIMEOUT, "the request took longer than 10 s")),
+    };
+    set(Stage::Answered);
+    let site = Arc::clone(site);
+    let made = tokio::task::spawn_blocking(move || site.answer(&head, &body)).await;
+    set(Stage::Allowed);
+    Ok(made.unwrap_or_else(|_| error(StatusCode::INTERNAL_SERVER_ERROR, "there is no answer to this request")))
 }
 
 #[cfg(test)]

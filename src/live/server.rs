@@ -1,9 +1,8 @@
 //! The server of a session: on the loopback address of this machine alone, for the page that knows the token.
 
-use super::http::{Answer, Head, Listener, Site};
+use super::http::{Answer, Bound, Head, Listener, Site};
 use super::routes::{Guard, answer};
 use super::session::Session;
-use std::net::TcpListener;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -46,17 +45,12 @@ impl Server {
     pub fn start(session: Session, port: u16) -> Result<Self, StartError> {
         let taken = |cause: std::io::Error| StartError::Port { port, cause: cause.to_string() };
         let system = |cause: std::io::Error| StartError::System(cause.to_string());
-        let listener = TcpListener::bind(("127.0.0.1", port)).map_err(taken)?;
-        #[cfg(unix)]
-        // As many may wait to be accepted as the system allows, not the 128 of the standard library: one that finds no
-        // place is only tried again a second later.
-        rustix::net::listen(&listener, 4096).map_err(|cause| taken(cause.into()))?;
-        let port = listener.local_addr().map_err(taken)?.port();
+        let bound = Bound::to(port).map_err(taken)?;
         let session = Arc::new(session);
-        let guard = Guard { port, token: token()? };
+        let guard = Guard { port: bound.port, token: token()? };
         let threads = session.start().map_err(|error| StartError::System(error.to_string()))?;
         let service = Service { session: Arc::clone(&session), guard: guard.clone() };
-        let listener = Listener::start(listener, service).map_err(system)?;
+        let listener = bound.start(service).map_err(system)?;
         Ok(Self { guard, listener, session, threads })
     }
 
