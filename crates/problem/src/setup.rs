@@ -103,15 +103,6 @@ impl AxisPositions {
         Self::PerPoint(rows)
     }
 
-    /// At two points of a task.
-    pub fn spread_at(&self, task: &Task, points: [usize; 2]) -> [Vec<f64>; 2] {
-        points.map(|point| match self {
-            Self::Same(positions) => positions.clone(),
-            Self::PerSegment(all) => all.get(task.path().segment_of(point)).cloned().unwrap_or_default(),
-            Self::PerPoint(all) => all.get(point).cloned().unwrap_or_default(),
-        })
-    }
-
     /// At every point of a task.
     pub fn spread(&self, task: &Task) -> Vec<Vec<f64>> {
         let count = task.points().len();

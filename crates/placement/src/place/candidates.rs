@@ -2,16 +2,16 @@
 //! lies, where the external axes stand.
 //!
 //! Every orientation, and in it a grid of positions of each axis in turn, is searched with the same settings; the best
-//! and the worst of all are kept. Then the axes of the best are improved ([`super::motion`]).
+//! and the worst of all are kept. Then the axes of the best are improved ([`super::descent`]).
 
-use super::axes::GRID;
 use super::basins::{choose, refine_basins};
+use super::block::axis::GRID;
+use super::descent::{Descent, Improver};
 use super::found::{Found, Record};
 use super::infeasible::{Infeasible, infeasible};
 use super::job::{Job, Planned, shifted_back};
 use super::lean::leaned_at;
 use super::long_path::LongPath;
-use super::motion::with_better_axes;
 use super::plan::stated_objective;
 use super::searched::{Searched, search_cell};
 use super::sets::Sets;
@@ -176,8 +176,11 @@ pub(super) fn with_axes(job: &Job<'_>, mut found: Found) -> Found {
     let known = found.best.clone().with_its_axes();
     let planned = Planned::at(&problem, problem.setup.clone(), &known.solution.placement);
     let start = planned.map_or_else(|| known.clone(), |planned| known.clone().better(planned));
-    if let Some(better) = with_better_axes(&problem, &start, None, job.monitor) {
-        (found.best, found.is_improved) = (better, true);
+    let before = start.solution.objective;
+    let improver = Improver { problem: &problem, space: None, monitor: job.monitor };
+    let best = Descent::of_axes(&problem).run(&improver, start);
+    if best.solution.objective < before {
+        (found.best, found.is_improved) = (best, true);
     }
     found
 }
@@ -206,7 +209,7 @@ pub fn setup_at(problem: &Problem, placement: &Placement, monitor: &Monitor) -> 
         }
     }
     let set_up = pinned.in_setup(&setup);
-    let improved = best.and_then(|start| with_better_axes(&set_up, &start, None, monitor));
-    let setup = improved.map_or(setup, |found| found.setup);
+    let improver = Improver { problem: &set_up, space: None, monitor };
+    let setup = best.map_or(setup, |start| Descent::of_axes(&set_up).run(&improver, start).setup);
     leaned_at(&pinned.in_setup(&setup), placement, monitor).map_or(setup, |found| found.setup)
 }

@@ -1,12 +1,10 @@
-//! An external axis that moves along the path: dynamic programming over (beta, position of the axis).
+//! An external axis that moves along the path: dynamic programming over (beta, position of the axis), the slow twin of
+//! [`super::motion`], with real joint angles where that takes them modulo a turn.
 //!
 //! A state of a path point is a grid value of beta, one of the positions that the axis may have there, a posture and
 //! real joint angles. From one point to the next beta may change by its rate, the axis by its speed, and each joint by
 //! its own; the posture stays all along a segment. The batch evaluator tells which states are worth a look, the
-//! reference evaluator what they cost. The plan itself is made afterwards, with the axis led along the positions found
-//! here ([`AxisPositions::PerPoint`]), so nothing of what is printed rests on this grid.
-//!
-//! [`AxisPositions::PerPoint`]: stead_problem::setup::AxisPositions::PerPoint
+//! reference evaluator what they cost.
 
 use super::joint_turns::is_allowed;
 use super::layered::{Steps, cheapest_path};
@@ -157,7 +155,8 @@ impl AxisSteps<'_, '_> {
     fn allowed_changes(&self) -> Vec<BetaChange> {
         let (problem, axis, point) = (self.search.grid.problem, self.search.grid.axis, self.point);
         let (grid, step) = (&problem.redundancy, self.search.grid.step(point));
-        let mut rows = problem.setup.positions.spread_at(&problem.task, [point - 1, point]);
+        let all = problem.setup.positions.spread(&problem.task);
+        let mut rows = [all[point - 1].clone(), all[point].clone()];
         let mut changes = Vec::with_capacity(self.search.planners.len().pow(2));
         for from in &self.search.grid.positions[point - 1] {
             for to in &self.search.grid.positions[point] {

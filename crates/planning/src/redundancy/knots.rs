@@ -210,9 +210,15 @@ impl Knots {
 
     /// The largest change of the beta number over a run.
     pub fn widest(&self) -> usize {
-        // In between beta may be farther from the knot than the knot before it is.
+        // In between beta may be farther from the knot than the knot before it is, most of all where the part turns to
+        // and fro.
         let reach = |knot: Knot| knot.change.widest() + 2 + knot.middle.abs() as usize;
-        self.wide().map(reach).max().unwrap_or(0).min(self.grid.beta_count)
+        let between = self.places.iter().map(|place| match place {
+            Place::Between { middle, .. } => middle.abs() as usize,
+            Place::Knot(_) => 0,
+        });
+        let widest = self.wide().map(reach).max().unwrap_or(0) + between.max().unwrap_or(0);
+        widest.min(self.grid.beta_count)
     }
 
     /// The largest number of changes over a run.
@@ -221,12 +227,12 @@ impl Knots {
     }
 
     /// By how many steps of the grid beta at a point between knots is beside that of the knot, for each change up to
-    /// it.
+    /// it; half a turn at the most.
     pub fn offsets(&self, knot: Knot, middle: f64, share: f64) -> impl Iterator<Item = f64> + use<> {
         let count = self.grid.beta_count as f64;
         (knot.change.min..=knot.change.max).map(move |change| {
-            let beside = f64::from(change) - knot.middle;
-            -(middle + (beside - count * (beside / count).round()) * share)
+            let within_half = |change: f64| change - count * (change / count).round();
+            -within_half(middle + within_half(f64::from(change) - knot.middle) * share)
         })
     }
 

@@ -19,7 +19,8 @@
 //! All dynamic programming but the vector kernel goes through `layered`, which asks for the states of a point, the
 //! steps between them and what both cost.
 
-pub mod axis_path;
+#[cfg(test)]
+mod axis_path;
 mod between;
 mod collision_free;
 mod common;

@@ -1,6 +1,7 @@
 //! The plan over (beta, axis) against a reference: every pair of neighbouring states, with the limits asked one by one.
 
 use super::*;
+use crate::redundancy::motion::{MotionGrid, MotionPlanner};
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -165,4 +166,23 @@ fn equal_to_the_reference_on_fifty_small_problems() {
         }
     }
     assert!(feasible > 20 && moving > 5, "{feasible} {moving}");
+}
+
+/// Joint angles modulo a turn allow no less; where the turns decide nothing, the ways cost the same.
+#[test]
+fn the_planner_of_motions_leads_one_axis_as_cheaply() {
+    let of_seed = |seed| {
+        let (problem, placement, positions) = drawn(seed);
+        let own = AxisGrid { problem: &problem, axis: 0, positions: positions.clone() }.paths(&placement);
+        let grid = MotionGrid::product(&problem, None, &[(0, positions[0].clone())]);
+        let problems = grid.problems();
+        let motion = MotionPlanner::new(&grid, &problems).path(&placement);
+        let own = own.map_or(f64::INFINITY, |paths| problem.objective(paths.iter().map(|path| path.cost)));
+        let motion = motion.map_or(f64::INFINITY, |motion| motion.objective);
+        assert!(motion <= own * (1.0 + 1e-9), "{seed}: {motion} {own}");
+        [own.is_finite(), own.is_finite() && motion >= own * (1.0 - 1e-9)]
+    };
+    let found: Vec<[bool; 2]> = (0..50).into_par_iter().map(of_seed).collect();
+    let [feasible, equal] = [0, 1].map(|k| found.iter().filter(|found| found[k]).count());
+    assert!(feasible > 20 && 10 * equal >= 9 * feasible, "{feasible} {equal}");
 }

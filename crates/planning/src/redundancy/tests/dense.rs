@@ -3,8 +3,10 @@
 
 use super::*;
 use nalgebra::{Matrix3, Vector3};
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_model::robot::Spindle;
 use stead_model::task::Wrench;
+use stead_problem::setup::{AxisPositions, Setup};
 
 /// Numbers from 0 to 1.
 struct Numbers(u64);
@@ -179,6 +181,39 @@ fn five_segments_of_dense_points_are_planned_no_worse_at_a_higher_rate() {
     assert!(fast.0 < slow.0 * (1.0 + 1e-4), "{slow:?} {fast:?}");
     // The coarse grid of the search tells the same.
     assert!((fast.1 / fast.0 - 1.0).abs() < 0.01, "{fast:?}");
+}
+
+/// A turntable that turns the part to and fro between the knots takes beta farther than from knot to knot.
+#[test]
+fn plans_follow_a_part_that_turns_to_and_fro_between_points_that_are_close() {
+    let case = |kind: usize| {
+        let mut numbers = Numbers(5 + 1000 * kind as u64);
+        let base = winding(&mut numbers, CLOSE);
+        let limits = Limits { rate: None, turn: Some(numbers.between(0.5, 2.0)), joints: 200.0 };
+        let swing = numbers.between(0.1, 1.5);
+        let every = 2 + kind % 5;
+        let problem = limits.applied(&base).with(|parts| {
+            parts.external_axes = vec![ExternalAxis {
+                name: "table".to_owned(),
+                kind: AxisKind::Turntable,
+                carries: Carried::Workpiece,
+                direction: Vector3::z(),
+                point: Vector3::new(0.0, -1.75, 0.0),
+                min: -2.0,
+                max: 2.0,
+                max_speed: None,
+                axis_use: AxisUse::Continuous,
+            }];
+            let at = |point: usize| vec![if (point / every).is_multiple_of(2) { swing } else { -swing }];
+            let rows = (0..parts.task.points().len()).map(at).collect();
+            parts.setup = Setup { positions: AxisPositions::PerPoint(rows), ..Setup::default() };
+        });
+        let placement = Placement::from([0.0, -1.75, -0.4, numbers.between(-3.0, 3.0)]);
+        let searched = objective(&problem, &placement, Sense::Min).mean();
+        usize::from(searched.is_some() && fine(&problem, &placement).is_some())
+    };
+    let feasible: usize = (0..20).into_par_iter().map(case).sum();
+    assert!(feasible >= 8, "{feasible}");
 }
 
 /// A problem with speeds of the joints in deg/mm at the feed, and no limit on beta.

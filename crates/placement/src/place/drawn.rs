@@ -1,6 +1,7 @@
 //! Placements drawn over the cell from which the tool is led along the path.
 
-use super::{Leaning, Start, is_apart};
+use super::descent::Improver;
+use super::lean::{Start, is_apart};
 use crate::coordinate_search::{Directions, coordinate_search};
 use crate::path_subset::PathSubset;
 use rand::{RngExt, SeedableRng};
@@ -11,6 +12,7 @@ use std::sync::Arc;
 use stead_numerics::monitor::Progress;
 use stead_planning::redundancy::motion::{MotionGrid, MotionPlanner};
 use stead_problem::candidate::{Objective, rank};
+use stead_problem::lean::LeanSpace;
 use stead_problem::problem::{Interval, Placement, Problem};
 use stead_problem::sense::Sense;
 use stead_problem::settings::SearchSettings;
@@ -24,12 +26,12 @@ const ON: (usize, usize, f64) = (40, 2, PI / 12.0);
 /// Of the best so many are led to the bottom of their basins for each start.
 const LED: usize = 3;
 
-impl Leaning<'_> {
+impl Improver<'_> {
     /// The problem on few points and a coarse grid of leans and beta.
-    fn coarse(&self, upright: &Problem) -> Problem {
+    fn coarse(upright: &Problem, space: &LeanSpace) -> Problem {
         let (points, half, step) = ON;
         let few = PathSubset::new(&upright.task, points).of(upright);
-        let [lead, tilt] = self.space.half_counts().map(|all| all.max(half) as f64 / half as f64);
+        let [lead, tilt] = space.half_counts().map(|all| all.max(half) as f64 / half as f64);
         let coarse = few.changed(|parts| {
             parts.redundancy.beta_count = parts.redundancy.beta_count.min((2.0 * PI / step) as usize);
             if let Some(space) = &mut parts.lean {
@@ -48,7 +50,8 @@ impl Leaning<'_> {
         if let Some(placement) = self.problem.cell.pinned() {
             return vec![Start { setup, placement, coarse: None }];
         }
-        let coarse = self.coarse(&self.problem.in_setup(&setup));
+        let Some(space) = self.space else { return Vec::new() };
+        let coarse = Self::coarse(&self.problem.in_setup(&setup), space);
         let Some(grid) = MotionGrid::new(&coarse) else { return Vec::new() };
         let problems = grid.problems();
         let planner = MotionPlanner::new(&grid, &problems);
