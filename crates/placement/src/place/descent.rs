@@ -5,7 +5,8 @@
 //! little. A step is only taken to a plan that is better, so that a richer use of the axes is never worse than a poorer
 //! one, and a tool that leans no worse than one that does not.
 
-use super::block::{axis, gradient, motion, neighbours};
+use super::block::motion::Moving;
+use super::block::{axis, gradient, neighbours};
 use super::job::Planned;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
 use stead_numerics::monitor::{Monitor, Progress};
@@ -35,7 +36,7 @@ pub(super) enum Block {
     /// One external axis, for the path or for each segment.
     AxisBySegment(usize),
     /// External axes along the path and the leans, together.
-    Motion(motion::Moving),
+    Motion(Moving),
     /// The placements beside the known one, each with leans of its own.
     Neighbours,
 }
@@ -43,6 +44,8 @@ pub(super) enum Block {
 /// Blocks, level by level, until a round gains too little.
 pub(super) struct Descent {
     levels: Vec<Vec<Block>>,
+    /// So many blocks of a level have been gone through before the first round.
+    begun: usize,
     /// Rounds at the most.
     rounds: usize,
     /// A round that gains less (relative) is the last of its level.
@@ -67,32 +70,27 @@ impl Block {
 impl Descent {
     /// The external axes and, with them, the placement.
     pub fn of_axes(problem: &Problem) -> Self {
-        let moving = moving(problem);
-        let alone = moving.iter().filter(|_| moving.len() > 1).map(|number| vec![*number]);
-        let motions = alone.chain((!moving.is_empty()).then(|| moving.clone()));
-        let motions = motions.map(|axes| Block::Motion(motion::Moving { axes, is_whole: true }));
-        let level = by_segments(problem).chain(motions).chain([Block::Placement]).collect();
-        Self { levels: vec![level], rounds: 3, gain: GAIN, stage: "external axes" }
+        let level = axes(problem, false).chain([Block::Placement]).collect();
+        Self { levels: vec![level], begun: 0, rounds: 8, gain: GAIN, stage: "external axes" }
     }
 
-    /// Leans and placement, from a start.
+    /// Leans and placement, from a [start](Improver::start), which has planned the leans.
     pub fn of_leans() -> Self {
-        let level = vec![Block::Gradient, Block::Placement, leans(true)];
-        Self { levels: vec![level], rounds: 4, gain: GAIN, stage: "lead and tilt" }
+        let level = vec![leans(true), Block::Gradient, Block::Placement];
+        Self { levels: vec![level], begun: 1, rounds: 4, gain: GAIN, stage: "lead and tilt" }
     }
 
     /// Placement, leans and external axes, from one of the best.
     pub fn of_all(problem: &Problem) -> Self {
-        let moving = moving(problem);
-        let together =
-            (!moving.is_empty()).then(|| Block::Motion(motion::Moving { axes: moving.clone(), is_whole: true }));
+        // Where the placement stays, so do the leans that are near.
+        let near = problem.cell.pinned().is_none().then(|| leans(false));
         let levels = vec![
-            vec![Block::Gradient, Block::Placement, leans(false)],
+            [Block::Gradient, Block::Placement].into_iter().chain(near).collect(),
             vec![Block::Neighbours],
-            by_segments(problem).chain(together).collect(),
+            axes(problem, true).collect(),
             vec![leans(true)],
         ];
-        Self { levels, rounds: 48, gain: 1e-5, stage: "placement, lead and tilt together" }
+        Self { levels, begun: 0, rounds: 48, gain: 1e-5, stage: "placement, lead and tilt together" }
     }
 
     /// Improves a placement until nothing gains, or the caller asks to stop.
@@ -102,7 +100,7 @@ impl Descent {
             job.monitor.report(Progress::Steps { stage: self.stage, done, total: self.rounds });
             let gains = |best: &mut Planned, level: &Vec<Block>| {
                 let before = best.solution.objective;
-                for block in level {
+                for block in level.iter().skip(if done == 0 { self.begun } else { 0 }) {
                     if !job.monitor.should_stop()
                         && let Some(better) = block.better(job, best)
                     {
@@ -125,22 +123,23 @@ impl Improver<'_> {
         let upright = Setup { leans: [].into(), ..setup.clone() };
         let holds_path = self.space.is_none_or(|space| space.holds_path(self.problem.task.upright().path()));
         let known = holds_path.then(|| Planned::at(self.problem, upright.clone(), placement)).flatten();
-        motion::Moving { axes: Vec::new(), is_whole: true }.best(self, &upright, placement, known)
+        Moving { axes: Vec::new(), leans: true, is_whole: true }.best(self, &upright, placement, known)
     }
 }
 
 fn leans(is_whole: bool) -> Block {
-    Block::Motion(motion::Moving { axes: Vec::new(), is_whole })
+    Block::Motion(Moving { axes: Vec::new(), leans: true, is_whole })
 }
 
-/// A block for each external axis that has somewhere to go.
-fn by_segments(problem: &Problem) -> impl Iterator<Item = Block> {
-    let axes = problem.external_axes.iter().enumerate().filter(|(_, axis)| axis.max > axis.min);
-    axes.map(|(number, _)| Block::AxisBySegment(number))
-}
-
-/// The external axes of a problem that move along the path, by their numbers.
-fn moving(problem: &Problem) -> Vec<usize> {
-    let moves = |(_, axis): &(usize, &ExternalAxis)| axis.axis_use == AxisUse::Continuous && axis.max > axis.min;
-    problem.external_axes.iter().enumerate().filter(moves).map(|(number, _)| number).collect()
+/// The external axes that have somewhere to go, one by one, then those that move along the path with the leans.
+fn axes(problem: &Problem, is_leaning: bool) -> impl Iterator<Item = Block> {
+    let has_range = |(_, axis): &(usize, &ExternalAxis)| axis.max > axis.min;
+    let axes = || problem.external_axes.iter().enumerate().filter(has_range);
+    let moving = axes().filter(|(_, axis)| axis.axis_use == AxisUse::Continuous).map(|(number, _)| number);
+    let moving: Vec<usize> = moving.collect();
+    let along = |axes, leans| Block::Motion(Moving { axes, leans, is_whole: true });
+    let is_joint = moving.len() > 1 || (!moving.is_empty() && is_leaning);
+    let alone = moving.clone().into_iter().map(move |number| along(vec![number], false));
+    let together = is_joint.then(|| along(moving, true));
+    axes().map(|(number, _)| Block::AxisBySegment(number)).chain(alone).chain(together)
 }

@@ -2,7 +2,7 @@
 //!
 //! What is planned axis by axis and then in lead and tilt is where one alone gains nothing; both may gain together. So
 //! all of them are planned at once ([`MotionGrid`]): on a coarse grid over their whole ranges, and about what is known,
-//! in ever smaller steps.
+//! in ever smaller steps; beside it one axis alone, on a finer grid.
 //!
 //! Where the contact, the joints or the axes do not allow a step of the grid from one point to the next, the motion is
 //! planned on fewer points, leans then on all of them too.
@@ -12,7 +12,7 @@ use crate::place::job::Planned;
 use crate::place::thinned::{Thinned, between, kept_points, path_of, points_needed, spread};
 use stead_model::external_axis::ExternalAxis;
 use stead_planning::redundancy::motion::{Motion, MotionGrid, SettingSteps};
-use stead_problem::lean::MOST_PLANNED_POINTS;
+use stead_problem::lean::{LeanSpace, MOST_PLANNED_POINTS};
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::setup::{AxisPositions, Setup};
 
@@ -22,18 +22,27 @@ const POSITIONS: usize = 13;
 const MOST_SETTINGS: usize = 200;
 /// Steps of lead and of tilt to either side on the coarse grid of axes.
 const COARSE_LEANS: usize = 1;
-/// How often the steps are halved.
-const HALVINGS: usize = 5;
-/// How often axes are followed with the same steps at the most.
-const FOLLOWED: usize = 3;
 
 /// What moves along the path.
 #[derive(Debug, Clone)]
 pub(in crate::place) struct Moving {
-    /// External axes, by number; leans always, where the tool may lean.
+    /// External axes, by number.
     pub axes: Vec<usize>,
+    /// Whether the leans are planned, where the tool may lean; else they stay.
+    pub leans: bool,
     /// Whether whole ranges are planned: of leans in place of what is near to those that are known, of axes beside it.
     pub is_whole: bool,
+}
+
+/// How what is near to a motion is planned.
+struct Narrowing {
+    /// Steps to either side.
+    half: i32,
+    /// By how much the steps shrink, and how often they are planned with.
+    shrink: f64,
+    levels: usize,
+    /// How often a motion is followed with the same steps at the most.
+    followed: usize,
 }
 
 /// A motion is planned at a placement in a setup, on an upright problem.
@@ -63,12 +72,11 @@ impl Moving {
         let steps = at.steps();
         let dense = kept_points(&upright, MOST_PLANNED_POINTS, |_| 0.0);
         let sparse = kept_points(&upright, MOST_PLANNED_POINTS, |time| at.points_needed(&upright, &steps, time));
-        // Leans have been planned on the grid of their first steps by then, or on a finer one.
-        let (of_leans, near) = if self.axes.is_empty() { (true, steps.divided(2.0)) } else { (false, steps) };
+        let of_leans = self.axes.is_empty();
         let mut best = known;
         if best.is_some() && !(of_leans && self.is_whole) {
             let on = Thinned::new(&upright, if of_leans { dense.clone() } else { sparse.clone() });
-            best = at.narrowed(&on, at.known_motion(&on), near.clone(), best);
+            best = at.narrowed(&on, at.known_motion(&on), &steps, best);
         }
         let is_two = of_leans && sparse != dense;
         let points = [Some(sparse), is_two.then_some(dense)].into_iter().flatten().filter(|_| self.is_whole);
@@ -79,13 +87,26 @@ impl Moving {
             let on = Thinned::new(&upright, kept);
             let Some(motion) = at.coarse_motion(&on) else { continue };
             best = at.better(&on, &motion, best);
-            best = at.narrowed(&on, motion, near.clone(), best);
+            best = at.narrowed(&on, motion, &steps, best);
         }
         best
     }
 }
 
 impl At<'_> {
+    /// The leans that are planned.
+    fn space(&self) -> Option<&LeanSpace> {
+        self.job.space.filter(|_| self.moving.leans)
+    }
+
+    fn narrowing(&self) -> Narrowing {
+        match (self.moving.axes.len(), self.space().is_some()) {
+            (0, _) => Narrowing { half: 1, shrink: 2.0, levels: 8, followed: 1 },
+            (1, false) => Narrowing { half: 6, shrink: 4.0, levels: 4, followed: 1 },
+            _ => Narrowing { half: 1, shrink: 2.0, levels: 6, followed: 3 },
+        }
+    }
+
     /// First steps.
     fn steps(&self) -> SettingSteps {
         let step = |(number, axis): (usize, &ExternalAxis)| match self.moving.axes.contains(&number) {
@@ -93,7 +114,7 @@ impl At<'_> {
             false => 0.0,
         };
         SettingSteps {
-            lean: self.job.space.map_or([0.0; 2], |space| space.steps),
+            lean: self.space().map_or([0.0; 2], |space| space.steps),
             axes: self.job.problem.external_axes.iter().enumerate().map(step).collect(),
         }
     }
@@ -105,7 +126,7 @@ impl At<'_> {
             .iter()
             .zip(&steps.axes)
             .map(|(axis, step)| axis.max_speed.map_or(0.0, |speed| step / (speed * time)));
-        let by_lean = self.job.space.map(|space| points_needed(space, upright, time));
+        let by_lean = self.space().map(|space| points_needed(space, upright, time));
         by_axes.chain(by_lean).fold(0.0, f64::max)
     }
 
@@ -113,7 +134,7 @@ impl At<'_> {
     fn known_motion(&self, on: &Thinned<'_>) -> Motion {
         let rows = self.setup.positions.spread(&on.upright.task);
         Motion {
-            leans: self.job.space.map_or_else(Vec::new, |_| on.leans_of(self.setup)),
+            leans: if self.job.space.is_some() { on.leans_of(self.setup) } else { Vec::new() },
             axes: on.kept.iter().map(|point| rows[*point].clone()).collect(),
         }
     }
@@ -122,30 +143,35 @@ impl At<'_> {
     fn coarse_motion(&self, on: &Thinned<'_>) -> Option<Motion> {
         let (problem, axes) = (on.problem(), &self.moving.axes);
         let most = if axes.is_empty() { usize::MAX } else { COARSE_LEANS };
-        let half = self.job.space.map(|space| space.half_counts().map(|half| half.min(most)));
+        let half = self.space().map(|space| space.half_counts().map(|half| half.min(most)));
         let leans: usize = half.map_or(1, |half| half.iter().map(|half| 2 * half + 1).product());
         let each = libm::floor(libm::pow((MOST_SETTINGS / leans.min(MOST_SETTINGS)) as f64, 1.0 / axes.len() as f64));
         let positions = |number: &usize| (*number, problem.external_axes[*number].grid(POSITIONS.min(each as usize)));
-        let grid = MotionGrid::product(problem, half, &axes.iter().map(positions).collect::<Vec<_>>());
+        let positions: Vec<_> = axes.iter().map(positions).collect();
+        let grid = match half {
+            Some(half) => MotionGrid::product(problem, Some(half), &positions),
+            None => MotionGrid::of_axes(problem, &self.known_motion(on), &positions),
+        };
         Some(path_of(&grid, self.placement)?.motion)
     }
 
-    /// The best of motions near one, in ever smaller steps.
+    /// The best of motions near one, in ever smaller steps, from half the first ones where these have been planned.
     fn narrowed(
         &self,
         on: &Thinned<'_>,
         mut motion: Motion,
-        mut steps: SettingSteps,
+        first: &SettingSteps,
         mut best: Option<Planned>,
     ) -> Option<Planned> {
+        let Narrowing { half, shrink, levels, followed } = self.narrowing();
+        let mut steps = if followed == 1 { first.divided(2.0) } else { first.clone() };
         let mut last = f64::INFINITY;
-        let followed = if self.moving.axes.is_empty() { 1 } else { FOLLOWED };
-        for _ in 0..=HALVINGS {
+        for _ in 0..levels {
             for _ in 0..followed {
                 if best.is_some() && self.job.monitor.should_stop() {
                     return best;
                 }
-                let grid = MotionGrid::near(on.problem(), &motion, &steps, 1);
+                let grid = MotionGrid::near(on.problem(), &motion, &steps, half);
                 let Some(found) = path_of(&grid, self.placement).filter(|found| found.objective < last) else { break };
                 let gains = found.objective <= last * (1.0 - GAIN);
                 (last, motion) = (found.objective, found.motion);
@@ -154,7 +180,7 @@ impl At<'_> {
                     break;
                 }
             }
-            steps = steps.divided(2.0);
+            steps = steps.divided(shrink);
         }
         best
     }
@@ -162,7 +188,7 @@ impl At<'_> {
     /// The plan with a motion over all points, or what is known where it is no better.
     fn better(&self, on: &Thinned<'_>, motion: &Motion, known: Option<Planned>) -> Option<Planned> {
         let setup = || {
-            let leans = match self.job.space {
+            let leans = match self.space() {
                 Some(space) => spread(space, on, &motion.leans)?.into(),
                 None => self.setup.leans.clone(),
             };

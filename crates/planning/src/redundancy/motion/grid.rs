@@ -62,21 +62,22 @@ impl<'a> MotionGrid<'a> {
     /// the external axes of some numbers, the others as they are.
     pub fn product(problem: &'a Problem, half: Option<[usize; 2]>, axes: &[(usize, Vec<f64>)]) -> Self {
         let leaning = problem.lean.as_deref().zip(half);
-        let all = problem.setup.positions.spread(&problem.task);
         let of_point = |(point, own): (usize, Vec<f64>)| {
-            let mut rows = vec![own];
-            for (number, positions) in axes {
-                let at = |row: &Vec<f64>, position: &f64| {
-                    let mut row = row.clone();
-                    row[*number] = *position;
-                    row
-                };
-                rows = rows.iter().flat_map(|row| positions.iter().map(move |position| at(row, position))).collect();
-            }
             let leans = leaning.map_or_else(|| vec![Lean::NONE], |(space, half)| space.grid(point, half));
-            settings_of(&leans, &rows)
+            settings_of(&leans, &rows_with(own, axes))
         };
-        Self::of_rows(problem, leaning.map(|(space, _)| space), all.into_iter().enumerate().map(of_point).collect())
+        let all = problem.setup.positions.spread(&problem.task).into_iter().enumerate();
+        Self::of_rows(problem, leaning.map(|(space, _)| space), all.map(of_point).collect())
+    }
+
+    /// All positions of the external axes of some numbers, the others and the leans as in a known motion.
+    pub fn of_axes(problem: &'a Problem, known: &Motion, axes: &[(usize, Vec<f64>)]) -> Self {
+        let of_point = |(point, own): (usize, &Vec<f64>)| {
+            let lean = known.leans.get(point).copied().unwrap_or(Lean::NONE);
+            settings_of(&[lean], &rows_with(own.clone(), axes))
+        };
+        let space = problem.lean.as_deref().filter(|_| !known.leans.is_empty());
+        Self::of_rows(problem, space, known.axes.iter().enumerate().map(of_point).collect())
     }
 
     /// What is near to a known motion: with up to `half` steps to either side. A motion without leans keeps the axis of
@@ -152,6 +153,18 @@ impl<'a> MotionGrid<'a> {
         };
         self.problem.external_axes.iter().zip(from.axes.iter().zip(&to.axes)).all(reaches)
     }
+}
+
+/// A row of positions with all those of some axes.
+fn rows_with(own: Vec<f64>, axes: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
+    axes.iter().fold(vec![own], |rows, (number, positions)| {
+        let at = |row: &Vec<f64>, position: &f64| {
+            let mut row = row.clone();
+            row[*number] = *position;
+            row
+        };
+        rows.iter().flat_map(|row| positions.iter().map(move |position| at(row, position))).collect()
+    })
 }
 
 /// Every lean with every row of positions.
