@@ -45,4 +45,5 @@ pub mod roughness;
 pub mod setup;
 pub mod stability;
 pub mod stability_analysis;
+mod stability_error;
 pub mod surface;

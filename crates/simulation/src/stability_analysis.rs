@@ -1,18 +1,19 @@
 //! Stability analysis of a cut: modes of the arm, frequency response of the tool tip, critical depth of cut over the
 //! spindle speed.
 
-use super::arm::{AnyArm, Arm, Missing, Variant};
+use super::arm::{AnyArm, Arm, Variant};
 use super::modes::{LinearArm, Mode};
 use super::setup::Setup;
-use super::stability::{Lobe, Plant, PlantError, SemiDiscretisation, Verdict, ZeroOrder, ZeroOrderError, lobes};
+use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, ZeroOrderError, lobes};
+pub use super::stability_error::StabilityError;
 use nalgebra::{Complex, Matrix3, Vector3};
 use serde::Serialize;
 use stead_model::cutting::PassCut;
-use stead_model::cutting::{CutFrame, Cutter, EngagementError};
+use stead_model::cutting::{CutFrame, Cutter};
 use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
 use stead_numerics::message::{Note, Warning};
-use stead_numerics::monitor::{Monitor, Stop};
+use stead_numerics::monitor::Monitor;
 
 /// Settings of a stability analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,29 +150,6 @@ pub fn cut_stability(
         zero_order: ZeroOrder::new(plant).critical_depth(cutter, cut, max_depth)?,
         verdict: motion.verdict(cut.section.axial_depth),
     })
-}
-
-/// Why a stability analysis is not possible.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum StabilityError {
-    /// The robot file says too little.
-    #[error("{0}")]
-    Missing(#[from] Missing),
-    /// The mass matrix is not positive definite, or the arm without damping is in resonance with the force.
-    #[error("the arm has no mass matrix that is positive definite")]
-    Singular,
-    /// The cut has no width.
-    #[error("{0}")]
-    Engagement(#[from] EngagementError),
-    /// The motion of the arm cannot be computed.
-    #[error("{0}")]
-    Plant(#[from] PlantError),
-    /// There is no zero-order solution.
-    #[error("{0}")]
-    ZeroOrder(#[from] ZeroOrderError),
-    /// The caller asked to stop.
-    #[error("{0}")]
-    Stopped(#[from] Stop),
 }
 
 /// The arm of a setup, linearised at a distance (m) along its pass.

@@ -5,7 +5,7 @@ use super::distribution::{half_width, tail};
 use super::error::IdentifyError;
 use super::gauge::Gauge;
 use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
-use super::made::made;
+use super::made::{NEGATIVE, made};
 use super::model::{Layout, Noise, Observation, Parameter};
 use super::normal_equations::FreeParameters;
 use super::outcome::{Estimate, Held, HeldReason, Identified, RowResult};
@@ -17,8 +17,6 @@ use super::springs::{FitModel, stated_normal};
 use nalgebra::Vector6;
 use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
 
-/// A compliance so many standard deviations below zero is not negative by chance.
-pub(super) const NEGATIVE: f64 = 6.0;
 /// What to try where springs about the axes alone do not fit.
 pub(super) const FULL_HINT: &str = "; springs normal to the axes may explain the readings: fit.model = \"full\"";
 

@@ -1,6 +1,5 @@
 //! The arm of a full fit: what was found, split among the springs that cannot be told apart.
 
-use super::assemble::NEGATIVE;
 use super::bounded::non_negative;
 use super::error::IdentifyError;
 use super::gauge::Gauge;
@@ -10,6 +9,9 @@ use super::problem::Problem;
 use super::springs::{AXES, FULL, bearings, column, compliances_of, spring};
 use nalgebra::{DMatrix, DVector};
 use stead_model::robot::{Compensator, Compliance, NormalSprings, Robot, SpringModel};
+
+/// A compliance so many standard deviations below zero is not negative by chance.
+pub(super) const NEGATIVE: f64 = 6.0;
 
 /// The least compliance about an axis, as a share of the largest one: a robot file has none that is zero there.
 const STIFFEST: f64 = 1e-6;

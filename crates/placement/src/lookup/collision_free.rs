@@ -3,7 +3,7 @@
 //!
 //! The table does not tell the two flips of the wrist apart, so a state is forbidden where something hits in both.
 
-use super::objective::Workspace;
+use super::objective::{PathCheck, Workspace};
 use super::{BetaGrid, LookupTable};
 use stead_cell::Proximity;
 use stead_model::robot::PostureClass;
@@ -15,14 +15,6 @@ const MAX_ROUNDS: usize = 30;
 
 /// Where not all points are looked at, not all values of beta are either, but at least so many of a turn: every 15 deg.
 const LEAST_LOOKS: usize = 24;
-
-/// How the states of a path are checked for collisions.
-pub(super) struct PathCheck<'s> {
-    pub placement: &'s Placement,
-    pub grid: &'s BetaGrid,
-    /// See [`CollisionEffort::stride`](super::CollisionEffort::stride).
-    pub stride: usize,
-}
 
 impl LookupTable<'_> {
     /// The class that gets through a segment in ways in which nothing hits with the smallest sum of scores, and that

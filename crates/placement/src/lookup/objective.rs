@@ -2,7 +2,6 @@
 //!
 //! The rules are those of [`stead_planning::redundancy::transition`], but for the steps and turns of the joints.
 
-use super::collision_free::PathCheck;
 use super::interpolate::Scratch;
 use super::polar::{PlacedPath, PolarPoint};
 use super::{BetaGrid, LookupTable};
@@ -13,6 +12,14 @@ use stead_planning::redundancy::{BetaChange, StateSet};
 use stead_problem::candidate::{Objective, best_of};
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
+
+/// How the states of a path are checked for collisions.
+pub(super) struct PathCheck<'s> {
+    pub placement: &'s Placement,
+    pub grid: &'s BetaGrid,
+    /// See [`CollisionEffort::stride`](CollisionEffort::stride).
+    pub stride: usize,
+}
 
 /// Scratch space of one thread.
 #[derive(Debug, Clone)]

@@ -6,8 +6,9 @@
 
 use super::basins::{choose, refine_basins};
 use super::block::axis::GRID;
-use super::descent::{Descent, Improver};
+use super::descent::Descent;
 use super::found::{Found, Record};
+use super::improver::Improver;
 use super::infeasible::{Infeasible, infeasible};
 use super::job::{Job, Planned, shifted_back};
 use super::lean::leaned_at;

@@ -7,25 +7,12 @@
 
 use super::block::motion::Moving;
 use super::block::{axis, gradient, neighbours};
+use super::improver::{GAIN, Improver};
 use super::job::Planned;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
-use stead_numerics::monitor::{Monitor, Progress};
-use stead_problem::lean::LeanSpace;
+use stead_numerics::monitor::Progress;
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::setup::Setup;
-
-/// A step that gains less (relative) ends what repeats it.
-pub(super) const GAIN: f64 = 1e-4;
-/// With more path points the placement is not refined again for other axes or leans.
-pub(super) const MOST_REFINED: usize = 5000;
-
-/// What is improved.
-pub(super) struct Improver<'a> {
-    pub problem: &'a Problem,
-    /// How the tool may lean, where leans are planned as well.
-    pub space: Option<&'a LeanSpace>,
-    pub monitor: &'a Monitor,
-}
 
 /// What is improved by itself, the rest held.
 pub(super) enum Block {

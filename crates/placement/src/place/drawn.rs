@@ -1,6 +1,6 @@
 //! Placements drawn over the cell from which the tool is led along the path.
 
-use super::descent::Improver;
+use super::improver::Improver;
 use super::lean::{Start, is_apart};
 use crate::coordinate_search::{Directions, coordinate_search};
 use crate::path_subset::PathSubset;

@@ -5,8 +5,9 @@
 //! beta, and placement and leans are improved by turns; the best of these are improved further, with their external
 //! axes ([`Descent`]).
 
-use super::descent::{Descent, Improver};
+use super::descent::Descent;
 use super::found::Found;
+use super::improver::Improver;
 use super::infeasible::Infeasible;
 use super::job::{Job, Planned};
 use super::plan::stated_objective;

@@ -2,7 +2,7 @@
 //!
 //! Point by point: the batch evaluator fills a fresh set of states, and each state takes its cheapest predecessor. Only
 //! the last two points are kept, and for each state the way it came: of a long segment only for a block of points,
-//! since the joint_paths of the others can be found again from the costs at the start of their block. So memory grows
+//! since the ways of the others can be found again from the costs at the start of their block. So memory grows
 //! with the square root of the number of points, and time with their number.
 //!
 //! Where points are dense the pass goes from knot to knot ([`super::knots`]), and the points between add to what a step
@@ -11,11 +11,12 @@
 use super::between::{CyclicRow, Joining};
 use super::knots::{Knot, Place};
 use super::rate_limit::BetaChange;
+use super::record::{MAX_REACHED, Record};
 use super::transition::{JointStep, Step, advance, advance_over, begin};
 use super::{SegmentPlanner, Sense, Workspace};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
-use stead_problem::evaluate::batch::{BatchEvaluator, StateGrid};
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::problem::{MAX_JOINT_STEP, Placement};
 
 /// What one pass over a segment found.
@@ -39,73 +40,6 @@ impl ForwardPass {
         } else {
             self.stuck.iter().flatten().copied().max().unwrap_or(last)
         }
-    }
-}
-
-/// The joint_paths by which states were reached, and the costs from which they can be found again.
-#[derive(Debug, Clone)]
-pub(super) struct Record {
-    count: usize,
-    /// Number of steps whose joint_paths are kept.
-    block: usize,
-    /// For each step of a block and each class the shifts to the predecessors, over beta.
-    joint_paths: Vec<i16>,
-    /// For the first point of each block and each class the costs over beta; nothing of segments of one block.
-    costs: Vec<f64>,
-    /// For each knot of the segment last gone through and each class the costs over beta up to there; nothing of long
-    /// segments.
-    reached: Vec<f64>,
-}
-
-/// Costs of all knots are kept of segments with no more numbers than this.
-const MAX_REACHED: usize = 1 << 21;
-
-/// Segments whose joint_paths take no more numbers than this are kept whole.
-const MAX_WAYS: usize = 1 << 25;
-
-impl Record {
-    /// Room for segments of up to `longest` points with `count` values of beta.
-    pub fn new(longest: usize, count: usize) -> Self {
-        Self::with_capacity_of(longest, count, MAX_WAYS)
-    }
-
-    /// The same with at most so many numbers kept, if a block may be that short.
-    pub fn with_capacity_of(longest: usize, count: usize, max_numbers: usize) -> Self {
-        let block = (max_numbers / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
-        Self { count, block, joint_paths: vec![0; block * 4 * count], costs: Vec::new(), reached: Vec::new() }
-    }
-
-    /// The row for the way to the point at `place` of its segment.
-    fn way(&mut self, place: usize, class: PostureClass) -> &mut [i16] {
-        let row = place.wrapping_sub(1) % self.block;
-        &mut self.joint_paths[(row * 4 + class.index()) * self.count..][..self.count]
-    }
-
-    /// Whether a block begins at this place of a segment of `length` points.
-    fn begins(&self, place: usize, length: usize) -> bool {
-        length > self.block + 1 && place.is_multiple_of(self.block)
-    }
-
-    /// Adds the costs of all classes at a knot.
-    fn keep(costs: &mut Vec<f64>, states: &StateGrid) {
-        for class in PostureClass::ALL {
-            if states.is_alive(class) {
-                costs.extend_from_slice(states.inner_scores(class));
-            } else {
-                costs.resize(costs.len() + states.count(), f64::INFINITY);
-            }
-        }
-    }
-
-    /// The costs over beta of a class up to a knot, without regard to flips and turns, where they are kept: signed,
-    /// infinite where a state is not reached.
-    pub fn reached(&self, knot: usize, class: PostureClass) -> Option<&[f64]> {
-        self.reached.get((knot * 4 + class.index()) * self.count..)?.get(..self.count)
-    }
-
-    /// The costs at the beginning of a block.
-    fn kept(&self, block: usize, class: PostureClass) -> &[f64] {
-        &self.costs[(block * 4 + class.index()) * self.count..][..self.count]
     }
 }
 
@@ -343,7 +277,7 @@ impl SegmentPlanner<'_> {
         betas
     }
 
-    /// Finds the joint_paths of one class in one block again.
+    /// Finds the ways of one class in one block again.
     fn repeat_block(&self, pass: Pass<'_>, class: PostureClass, block: usize, workspace: &mut Workspace) {
         let mut requested = [false; 4];
         requested[class.index()] = true;

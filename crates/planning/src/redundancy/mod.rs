@@ -37,6 +37,7 @@ pub mod motion;
 mod obstruction;
 pub mod off_grid;
 mod rate_limit;
+mod record;
 #[cfg(test)]
 mod reference_dp;
 mod segment;

@@ -2,7 +2,8 @@
 
 use super::knots::{Knots, StepBudget};
 use super::rate_limit::{BetaChange, direct_changes};
-use super::{StateSet, between, forward_pass};
+use super::record::Record;
+use super::{StateSet, between};
 use std::sync::Arc;
 use stead_model::robot::{PostureClass, turns::Range};
 use stead_numerics::monitor::StopHandle;
@@ -61,7 +62,7 @@ pub(super) struct SegmentPlanner<'a> {
 pub struct Workspace {
     pub(super) before: StateGrid,
     pub(super) now: StateGrid,
-    pub(super) record: forward_pass::Record,
+    pub(super) record: Record,
     pub(super) run_costs: between::RunCosts,
     /// States that hit, of the placement that is planned.
     pub(super) forbidden: StateSet,
@@ -153,7 +154,7 @@ impl<'a> SegmentPlanner<'a> {
         Workspace {
             now: before.clone(),
             before,
-            record: forward_pass::Record::new(longest, count),
+            record: Record::new(longest, count),
             run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
             forbidden: StateSet::default(),
             only_beta: None,

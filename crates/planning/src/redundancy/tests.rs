@@ -242,7 +242,7 @@ fn plans_of_blocks_are_those_of_whole_segments() {
             // Blocks that end with the segment, that do not, and of the least length.
             for most in [5, 7, 1, 19, 20, 21].map(|steps| steps * 4 * 60) {
                 let mut blocks = planner.workspace();
-                blocks.record = forward_pass::Record::with_capacity_of(span.len(), 60, most);
+                blocks.record = record::Record::with_capacity_of(span.len(), 60, most);
                 let again = planner.segments.forward_pass(pass, None, &mut blocks, false);
                 assert_eq!(again.ends, forward_pass.ends);
                 for class in PostureClass::ALL.into_iter().filter(|class| forward_pass.ends[class.index()].is_some()) {

@@ -234,11 +234,13 @@ pub fn score_files(
 ) -> Result<Files, ReportError> {
     let BySense { best, worst } = score.cases();
     let scene = problem.scene.as_deref();
+    let summary = score_summary(problem, score, context);
+    let said = summary::notes_text(&summary, &evaluation::score_text(problem, score, context), context);
     let mut files = vec![
         ("best-plan.csv", tables::plan(&best.plan, scene)?),
         ("worst-plan.csv", tables::plan(&worst.plan, scene)?),
         ("score.json", bytes(&evaluation::score_json(problem, score, context))),
-        (NOTES, summary::score_notes(problem, score, context).into_bytes()),
+        (NOTES, said.into_bytes()),
         ("placement.svg", picture::cell_with(problem, &best).into_bytes()),
     ];
     files.extend(setup_sheet(problem, &best, score.sheet.as_ref(), context));

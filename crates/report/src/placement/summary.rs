@@ -1,6 +1,5 @@
 //! A result in a few lines: what it is, what holds it, what it rests on, what was not checked, what looks wrong.
 
-use super::evaluation::score_text;
 use super::text::{placement_text, short_name};
 use super::{Context, setup};
 use crate::names;
@@ -193,13 +192,8 @@ pub(super) fn placement_notes(problem: &Problem, outcome: &Outcome, context: &Co
     notes_text(&summary, &placement_text(problem, outcome, context), context)
 }
 
-/// Everything that there is to say of a given placement: the text of `notes.txt`.
-pub(super) fn score_notes(problem: &Problem, score: &Score, context: &Context) -> String {
-    notes_text(&score_summary(problem, score, context), &score_text(problem, score, context), context)
-}
-
 /// The summary and the tables, then warnings and notes by their groups.
-fn notes_text(summary: &[SummaryLine], tables: &str, context: &Context) -> String {
+pub(super) fn notes_text(summary: &[SummaryLine], tables: &str, context: &Context) -> String {
     let mut text = format!("{}\n{}", summary_text(summary), tables);
     let mut part = |title: &str, sentences: Vec<&str>| {
         if !sentences.is_empty() {

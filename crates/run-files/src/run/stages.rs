@@ -78,6 +78,12 @@ struct Scoring {
     of_sets: Vec<Note>,
 }
 
+/// What stands around the arm, and the axes that carry it or the part.
+struct Around {
+    scene: SceneRead,
+    axes: Vec<ExternalAxis>,
+}
+
 impl<'r> Reading<'r> {
     /// The run with all that it rests on.
     pub fn run(&self) -> Result<Run, ReadError> {
@@ -88,10 +94,9 @@ impl<'r> Reading<'r> {
         let arm = self.arm(stability.as_ref().map(|analysis| analysis.variant >= Variant::Orthogonal))?;
         let mut load = self.load(cutting.as_ref())?;
         let scoring = self.scoring(&arm.robot, &load)?;
-        let axes = external_axes(run.external_axis.as_deref().unwrap_or_default(), &at.key("external_axis"))?;
-        let around = self.around(&arm, &axes)?;
+        let around = self.around(&arm)?;
         let (lean, of_lean) = self.leaning(&mut load)?;
-        let problem = self.problem((&arm, &load), scoring.criterion, &around, lean, axes)?;
+        let problem = self.problem(&arm, &load, scoring.criterion, &around, lean)?;
         self.checked(&problem)?;
 
         let of_cutter = cutter_notes(run.tool.as_ref(), cutting.as_ref(), run.stock.is_some());
@@ -105,14 +110,14 @@ impl<'r> Reading<'r> {
         notes.extend(problem.notes());
         // The robot of the run may be a set too.
         let of_sets: Vec<Note> = scoring.of_sets.into_iter().filter(|note| !notes.contains(note)).collect();
-        notes.extend(of_sets.into_iter().chain(around.notes.into_iter().map(Note::from)));
+        notes.extend(of_sets.into_iter().chain(around.scene.notes.into_iter().map(Note::from)));
         let of_task = direction_note(&problem.task).into_iter().chain(force_note(&problem.task, load.has_columns));
         notes.extend(of_task.map(Note::may_be_wrong));
         notes.extend(stability.as_ref().and_then(|analysis| runout_note(&analysis.cutter)));
         notes.extend(problem.unchecked_collisions());
 
         let first = [source.as_config(), arm.input, load.input];
-        let others = load.inputs.into_iter().chain(scoring.inputs).chain(arm.lender).chain(around.inputs);
+        let others = load.inputs.into_iter().chain(scoring.inputs).chain(arm.lender).chain(around.scene.inputs);
         let output = run.output.unwrap_or_default();
         Ok(Run {
             search: run.search.unwrap_or_default().settings(),
@@ -252,10 +257,12 @@ impl<'r> Reading<'r> {
         Ok(Scoring { criterion, inputs, notes: about.map(Note::from).into_iter().collect(), of_sets })
     }
 
-    fn around(&self, arm: &Arm, axes: &[ExternalAxis]) -> Result<SceneRead, InputError> {
+    fn around(&self, arm: &Arm) -> Result<Around, InputError> {
         let RunFile { shape, keep_out, collision, .. } = self.run.clone();
         let own = SurroundingsFile { shape, keep_out, collision, ..SurroundingsFile::default() };
-        read_scene(own, &self.at, &arm.robot, &arm.spindle, axes)
+        let tables = self.run.external_axis.as_deref().unwrap_or_default();
+        let axes = external_axes(tables, &self.at.key("external_axis"))?;
+        Ok(Around { scene: read_scene(own, &self.at, &arm.robot, &arm.spindle, &axes)?, axes })
     }
 
     /// Where the tool may lean, with what is to be said of it; forces that change with the lean are made for it.
@@ -277,14 +284,14 @@ impl<'r> Reading<'r> {
 
     fn problem(
         &self,
-        (arm, load): (&Arm, &Load),
+        arm: &Arm,
+        load: &Load,
         criterion: Criterion,
-        around: &SceneRead,
+        around: &Around,
         lean: Option<Arc<LeanSpace>>,
-        external_axes: Vec<ExternalAxis>,
     ) -> Result<Problem, InputError> {
         let Self { run, at, .. } = self;
-        let (scene, transfer) = (around.scene.clone(), run.transfer.unwrap_or_default());
+        let (scene, transfer) = (around.scene.scene.clone(), run.transfer.unwrap_or_default());
         let (tool, tool_at, path) = (run.tool.as_ref(), &at.key("tool"), load.task.path());
         let orientations = run.cell.orientations(&load.task, &at.key("cell"))?;
         let parts = ProblemParts {
@@ -300,8 +307,8 @@ impl<'r> Reading<'r> {
             scene,
             orientations,
             lean,
-            setup: Setup::at_rest(&external_axes),
-            external_axes,
+            setup: Setup::at_rest(&around.axes),
+            external_axes: around.axes.clone(),
         };
         parts.build().map_err(|error| at.error(error.to_string(), "parts that agree"))
     }

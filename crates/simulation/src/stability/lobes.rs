@@ -3,7 +3,7 @@
 use super::floquet::SemiDiscretisation;
 use super::plant::Plant;
 use super::zero_order::ZeroOrder;
-use crate::stability_analysis::StabilityError;
+use crate::stability_error::StabilityError;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};

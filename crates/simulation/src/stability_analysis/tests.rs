@@ -1,11 +1,12 @@
 use super::*;
+use crate::arm::Missing;
 use crate::arm::testing::{spindle, start, tx200};
 use crate::motion::{Motion, Pass, Ramp};
 use crate::path_stability::{PathConfiguration, PathStabilityAnalysis, smallest};
 use crate::stability::Kind;
 use std::f64::consts::{PI, TAU};
 use stead_model::cutting::{Coefficients, Cut, MillingDirection, Rotation, Tooth};
-use stead_numerics::monitor::{Progress, StopHandle};
+use stead_numerics::monitor::{Progress, Stop, StopHandle};
 
 fn setup(variant: Variant, damping_scale: f64) -> Setup {
     let pass = Pass { start: start(), direction: Vector3::x(), length: 0.1 };

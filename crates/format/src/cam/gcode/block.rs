@@ -7,18 +7,6 @@ use stead_disk::input::InputError;
 /// A letter, in upper case, with its number.
 pub(super) type Word = (char, f64);
 
-/// How the tool moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Motion {
-    Rapid,
-    Line,
-    /// A hole at each position, by a canned cycle.
-    Cycle,
-    /// Seen against the normal of the plane.
-    Clockwise,
-    CounterClockwise,
-}
-
 /// One block.
 pub(super) struct Block<'a> {
     pub file: &'a Path,

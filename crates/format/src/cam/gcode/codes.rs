@@ -2,7 +2,7 @@
 
 use super::super::LengthUnit;
 use super::super::refusals::TILTED_OTHERWISE;
-use super::block::Motion;
+use super::motion::Motion;
 use Code::{
     Absolute, Control, Cycle, CycleEnd, Dwell, Home, InverseTime, Machine, Mode, Motion as Moves, Nothing, Offset,
     Plane, Refused, ToPlane, Unit,

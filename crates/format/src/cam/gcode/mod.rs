@@ -8,6 +8,7 @@ mod block;
 mod codes;
 mod comment;
 mod machine;
+mod motion;
 mod reader;
 
 pub(super) use block::foreign;

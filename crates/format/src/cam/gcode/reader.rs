@@ -7,9 +7,10 @@ use super::super::course::{Course, Frame};
 use super::super::refusals::*;
 use super::super::tool::ProgramTool;
 use super::super::{CamFormat, LARGEST, LengthUnit, Program, ReadSettings};
-use super::block::{Block, Motion, Word};
+use super::block::{Block, Word};
 use super::codes::{CODES, Code, Tilt};
 use super::comment;
+use super::motion::Motion;
 use nalgebra::{Rotation3, Vector3};
 use stead_disk::input::InputError;
 

@@ -1,6 +1,6 @@
 //! Where an external axis stands: at one position for the path, or at one for each segment.
 
-use crate::place::descent::Improver;
+use crate::place::improver::Improver;
 use crate::place::job::Planned;
 use rayon::prelude::*;
 use stead_model::external_axis::{AxisUse, ExternalAxis};

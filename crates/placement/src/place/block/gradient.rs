@@ -1,7 +1,7 @@
 //! The placement by the gradient: alone, its plan found anew, or together with betas, leads and tilts.
 
 use crate::evaluator::Evaluator;
-use crate::place::descent::{Improver, MOST_REFINED};
+use crate::place::improver::{Improver, MOST_REFINED};
 use crate::place::job::Planned;
 use crate::refine::{refine, solver};
 use stead_planning::redundancy::Planner;

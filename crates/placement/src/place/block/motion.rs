@@ -7,7 +7,7 @@
 //! Where the contact, the joints or the axes do not allow a step of the grid from one point to the next, the motion is
 //! planned on fewer points, leans then on all of them too.
 
-use crate::place::descent::{GAIN, Improver};
+use crate::place::improver::{GAIN, Improver};
 use crate::place::job::Planned;
 use crate::place::thinned::{Thinned, between, kept_points, path_of, points_needed, spread};
 use stead_model::external_axis::ExternalAxis;

@@ -3,7 +3,7 @@
 //! Where this gains nothing, no placement before or behind along x, y, z and yaw is better with the best leans near the
 //! ones known.
 
-use crate::place::descent::{Improver, MOST_REFINED};
+use crate::place::improver::{Improver, MOST_REFINED};
 use crate::place::job::Planned;
 use crate::place::thinned::{Thinned, spread};
 use crate::refine::neighbours;

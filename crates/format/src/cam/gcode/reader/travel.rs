@@ -3,8 +3,9 @@
 use super::super::super::arc::Arc;
 use super::super::super::refusals::*;
 use super::super::super::{LARGEST, Move};
-use super::super::block::{Block, Motion, Word};
+use super::super::block::{Block, Word};
 use super::super::codes::Code;
+use super::super::motion::Motion;
 use super::{Reader, code_of};
 use nalgebra::{Rotation3, Unit, Vector3};
 use stead_disk::input::InputError;

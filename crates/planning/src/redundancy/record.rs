@@ -1,0 +1,71 @@
+//! What a pass remembers of the ways to its states.
+
+use stead_model::robot::PostureClass;
+use stead_problem::evaluate::batch::StateGrid;
+
+/// The ways by which states were reached, and the costs from which they can be found again.
+#[derive(Debug, Clone)]
+pub(super) struct Record {
+    pub count: usize,
+    /// Number of steps whose ways are kept.
+    pub block: usize,
+    /// For each step of a block and each class the shifts to the predecessors, over beta.
+    pub ways: Vec<i16>,
+    /// For the first point of each block and each class the costs over beta; nothing of segments of one block.
+    pub costs: Vec<f64>,
+    /// For each knot of the segment last gone through and each class the costs over beta up to there; nothing of long
+    /// segments.
+    pub reached: Vec<f64>,
+}
+
+/// Costs of all knots are kept of segments with no more numbers than this.
+pub(super) const MAX_REACHED: usize = 1 << 21;
+
+/// Segments whose ways take no more numbers than this are kept whole.
+const MAX_WAYS: usize = 1 << 25;
+
+impl Record {
+    /// Room for segments of up to `longest` points with `count` values of beta.
+    pub fn new(longest: usize, count: usize) -> Self {
+        Self::with_capacity_of(longest, count, MAX_WAYS)
+    }
+
+    /// The same with at most so many numbers kept, if a block may be that short.
+    pub fn with_capacity_of(longest: usize, count: usize, max_numbers: usize) -> Self {
+        let block = (max_numbers / (4 * count)).max(longest.isqrt()).max(1).min(longest.max(1));
+        Self { count, block, ways: vec![0; block * 4 * count], costs: Vec::new(), reached: Vec::new() }
+    }
+
+    /// The row for the way to the point at `place` of its segment.
+    pub fn way(&mut self, place: usize, class: PostureClass) -> &mut [i16] {
+        let row = place.wrapping_sub(1) % self.block;
+        &mut self.ways[(row * 4 + class.index()) * self.count..][..self.count]
+    }
+
+    /// Whether a block begins at this place of a segment of `length` points.
+    pub fn begins(&self, place: usize, length: usize) -> bool {
+        length > self.block + 1 && place.is_multiple_of(self.block)
+    }
+
+    /// Adds the costs of all classes at a knot.
+    pub fn keep(costs: &mut Vec<f64>, states: &StateGrid) {
+        for class in PostureClass::ALL {
+            if states.is_alive(class) {
+                costs.extend_from_slice(states.inner_scores(class));
+            } else {
+                costs.resize(costs.len() + states.count(), f64::INFINITY);
+            }
+        }
+    }
+
+    /// The costs over beta of a class up to a knot, without regard to flips and turns, where they are kept: signed,
+    /// infinite where a state is not reached.
+    pub fn reached(&self, knot: usize, class: PostureClass) -> Option<&[f64]> {
+        self.reached.get((knot * 4 + class.index()) * self.count..)?.get(..self.count)
+    }
+
+    /// The costs at the beginning of a block.
+    pub fn kept(&self, block: usize, class: PostureClass) -> &[f64] {
+        &self.costs[(block * 4 + class.index()) * self.count..][..self.count]
+    }
+}
