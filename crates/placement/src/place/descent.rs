@@ -6,7 +6,7 @@
 //! one, and a tool that leans no worse than one that does not.
 
 use super::block::motion::Moving;
-use super::block::{axis, gradient, neighbours};
+use super::block::{ahead, axis, gradient, neighbours};
 use super::improver::{GAIN, Improver};
 use super::job::Planned;
 use stead_model::external_axis::{AxisUse, ExternalAxis};
@@ -86,13 +86,17 @@ impl Descent {
         for done in 0..self.rounds {
             job.monitor.report(Progress::Steps { stage: self.stage, done, total: self.rounds });
             let gains = |best: &mut Planned, level: &Vec<Block>| {
-                let before = best.solution.objective;
+                let from = best.clone();
                 for block in level.iter().skip(if done == 0 { self.begun } else { 0 }) {
                     if !job.monitor.should_stop()
                         && let Some(better) = block.better(job, best)
                     {
                         *best = better;
                     }
+                }
+                let before = from.solution.objective;
+                if best.solution.objective < before {
+                    *best = ahead::ahead(job, &from, best.clone());
                 }
                 before - best.solution.objective >= self.gain * before
             };
