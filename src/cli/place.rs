@@ -102,9 +102,9 @@ pub(super) const MANUAL: Manual = Manual {
     ..Manual::NEW
 };
 
-pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
-    let terminal = Terminal::start(None);
-    let mut run = options.run.read_with(options.certify, &terminal, options.threads)?;
+/// The run as the options have it.
+fn read(options: &PlaceOptions, terminal: &Terminal) -> Result<Run, Failure> {
+    let mut run = options.run.read_with(options.certify, terminal, options.threads)?;
     if let Some(seconds) = options.time_limit {
         run = run.with_time_limit(seconds)?;
     }
@@ -117,26 +117,17 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     if options.no_worst {
         run = run.without_worst();
     }
-    if options.no_page {
-        run = run.without_page();
-    }
-    let mut out = out_folder(options.out.as_deref(), &options.run.config, &MANUAL)?;
-    out.folder = out.folder.keeping_partial(options.keep_partial);
-    terminal.holds(&out.folder);
-    let is_short = !options.notes && !options.json;
-    if !is_short {
-        say_notes(run.notes());
-        say_warnings(run.warnings());
-    }
-    say_warnings(run.certificate_warning().as_slice());
-    say_notes(run.certificate_note().as_slice());
+    Ok(if options.no_page { run.without_page() } else { run })
+}
 
+/// The placements that are found; where there are none, what was read is said with the error.
+fn search(options: &PlaceOptions, run: &Run, terminal: &Terminal) -> Result<Placements, Failure> {
     let shown = terminal.show(None);
     let found = on_threads(options.threads, || run.search(&shown.monitor))?;
     let was_stopped = shown.monitor.should_stop();
     drop(shown);
-    let mut placements = found.inspect_err(|error| {
-        if is_short {
+    let placements = found.inspect_err(|error| {
+        if is_short(options) {
             say_notes(run.notes());
             say_warnings(run.warnings());
         }
@@ -148,6 +139,29 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
             say("interrupted: this is what was found so far, not the end of the search");
         }
     })?;
+    Ok(placements)
+}
+
+/// Whether the result is told in a few lines.
+fn is_short(options: &PlaceOptions) -> bool {
+    !options.notes && !options.json
+}
+
+pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
+    let terminal = Terminal::start(None);
+    let run = read(options, &terminal)?;
+    let mut out = out_folder(options.out.as_deref(), &options.run.config, &MANUAL)?;
+    out.folder = out.folder.keeping_partial(options.keep_partial);
+    terminal.holds(&out.folder);
+    let is_short = is_short(options);
+    if !is_short {
+        say_notes(run.notes());
+        say_warnings(run.warnings());
+    }
+    say_warnings(run.certificate_warning().as_slice());
+    say_notes(run.certificate_note().as_slice());
+
+    let mut placements = search(options, &run, &terminal)?;
     let waits = placements.waits_for_certificate(&out.folder)?;
     let (mut written, mut left) = (Ok(()), String::new());
     if waits {

@@ -6,11 +6,12 @@ use crate::moves::{Move, MoveKind};
 use crate::piece::Piece;
 use crate::quadrature::Quadrature;
 use crate::solid_lines::{Body, tile_of};
-use crate::sums::{Event, GOUGE, Requested, Sums};
+use crate::sums::{Event, Found, GOUGE, Requested, Sums};
 use crate::tile::{NANO, Tile};
 use crate::turn::{Arcs, TurnGrid};
 use nalgebra::Vector3;
 use std::cell::OnceCell;
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, VecDeque};
 
 /// Points of a removed piece of a line, over its length in cells.
@@ -72,6 +73,24 @@ pub struct OfTile {
     pub sums: Vec<(u32, Sums)>,
     pub turns: Vec<(u32, Arcs)>,
     pub events: BTreeMap<(Event, u32), f64>,
+}
+
+impl OfTile {
+    /// Adds it to what is found in all; arcs stay open until their turn has ended.
+    pub fn add_to(self, found: &mut Found, open: &mut BTreeMap<u32, Arcs>) {
+        for (node, sums) in &self.sums {
+            found.sums[*node as usize].add(sums, 1.0);
+        }
+        for (node, arcs) in self.turns {
+            match open.entry(node) {
+                Entry::Vacant(place) => _ = place.insert(arcs),
+                Entry::Occupied(mut place) => place.get_mut().add(&arcs),
+            }
+        }
+        for (event, volume) in self.events {
+            *found.events.entry(event).or_default() += volume;
+        }
+    }
 }
 
 /// What a move adds to the nodes of a tile, from the first that it meets to the last.

@@ -26,7 +26,6 @@ use crate::turn::{Arcs, Turn, TurnGrid};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
 
 /// Moves that all tiles go through before the next ones.
@@ -94,27 +93,8 @@ impl Workpiece {
             let end = (start + 1..most).find(|next| moves[*next].turns[1] > far).unwrap_or(most);
             let chunk = &moves[start..end];
             let reaches: Vec<Reach> = chunk.iter().map(|one| one.reach(&size, &self.body.extent)).collect();
-            let held: Vec<Reach> = if tool.holder.is_empty() {
-                Vec::new()
-            } else {
-                chunk.iter().map(|one| one.reach(&holder, &self.body.extent)).collect()
-            };
-            let mut jobs: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-            for (index, reach) in reaches.iter().enumerate() {
-                let held = held.get(index).filter(|held| !held.is_empty());
-                let whole = held.map_or(*reach, |held| reach.with(held));
-                if whole.is_empty() {
-                    continue;
-                }
-                for axis in 0..3 {
-                    let [a, b] = others(axis).map(|k| lattice::tiles(whole.0[k], self.cell));
-                    for i in a.clone() {
-                        for j in b.clone() {
-                            jobs.entry((axis, i, j)).or_default().push(index as u32);
-                        }
-                    }
-                }
-            }
+            let of_holder = chunk.iter().filter(|_| !tool.holder.is_empty());
+            let held: Vec<Reach> = of_holder.map(|one| one.reach(&holder, &self.body.extent)).collect();
             let job = Job {
                 tool,
                 moves: chunk,
@@ -127,7 +107,7 @@ impl Workpiece {
                 requested,
                 grid: &grid,
             };
-            let jobs: Vec<(TileKey, Vec<u32>)> = jobs.into_iter().collect();
+            let jobs = self.tiles_met(&reaches, &held);
             // A chunk of few moves may meet many tiles: of it as many moves count as done as of its tiles are.
             let mut known = 0;
             for batch in jobs.chunks(BATCH * rayon::current_num_threads()) {
@@ -148,18 +128,7 @@ impl Workpiece {
                     .collect();
                 for ((key, _), (tile, of_tile)) in batch.iter().zip(done) {
                     self.tiles.insert(*key, tile);
-                    for (node, sums) in &of_tile.sums {
-                        found.sums[*node as usize].add(sums, 1.0);
-                    }
-                    for (node, arcs) in of_tile.turns {
-                        match open.entry(node) {
-                            Entry::Vacant(place) => _ = place.insert(arcs),
-                            Entry::Occupied(mut place) => place.get_mut().add(&arcs),
-                        }
-                    }
-                    for (event, volume) in of_tile.events {
-                        *found.events.entry(event).or_default() += volume;
-                    }
+                    of_tile.add_to(&mut found, &mut open);
                 }
             }
             let still = moves.get(end).map_or(u32::MAX, |next| next.turns[0].floor() as u32);
@@ -174,6 +143,25 @@ impl Workpiece {
             start = end;
         }
         Ok(found)
+    }
+
+    /// The tiles that moves reach, with the holder too where its reaches are given, each with the numbers of its moves.
+    fn tiles_met(&self, reaches: &[Reach], held: &[Reach]) -> Vec<(TileKey, Vec<u32>)> {
+        let mut met: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
+        for (index, reach) in reaches.iter().enumerate() {
+            let held = held.get(index).filter(|held| !held.is_empty());
+            let whole = held.map_or(*reach, |held| reach.with(held));
+            if whole.is_empty() {
+                continue;
+            }
+            for axis in 0..3 {
+                let [a, b] = others(axis).map(|k| lattice::tiles(whole.0[k], self.cell));
+                for (i, j) in a.flat_map(|i| b.clone().map(move |j| (i, j))) {
+                    met.entry((axis, i, j)).or_default().push(index as u32);
+                }
+            }
+        }
+        met.into_iter().collect()
     }
 
     /// What is removed, by the lines along each axis (m3), and how many of them have lost something.

@@ -23,6 +23,21 @@ const CELLS: f64 = 8.0;
 
 /// Adds warnings, notes and the share of the path in air.
 pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, events: &Events) {
+    of_events(all, problem, events);
+    let scored: Vec<usize> = (0..all.points.len()).filter(|point| all.path.is_scored(*point)).collect();
+    of_air(all, &scored);
+    of_thin_chips(all, &scored);
+    let path = &all.path;
+    let cutting = path.scored_where(|point| !is_air(all, point));
+    all.cut = CutFigures::of(path, &all.points, &problem.operation, all.air);
+    let of_cut = all.cut.map(|cut| cut.warnings(path, &all.points));
+    all.warnings.extend(of_cut.into_iter().flatten());
+    all.path = cutting;
+    notes(all, problem);
+}
+
+/// What the cutter, its shank and the finished part meet where they should not.
+fn of_events(all: &mut RemovalForces, problem: &ForcesProblem, events: &Events) {
     let (original, mill) = (&problem.operation.path, &problem.operation.mill);
     let least = CELLS * all.cell.powi(3);
     // Points are told by their numbers in the results, which count those that were added.
@@ -66,14 +81,19 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, events: &Event
     });
     warn(Event::Holder, "holder-in-stock", &|| "shank or holder are in the stock".to_owned());
     warn(Event::Gouge, "gouge", &|| format!("the finished part is cut into by more than about {} mm", GOUGE * 1e3));
+}
 
+fn is_air(all: &RemovalForces, point: usize) -> bool {
+    all.points[point].heights.is_none()
+}
+
+/// Scored points that cut nothing, and their share of the scored length.
+fn of_air(all: &mut RemovalForces, scored: &[usize]) {
     let path = &all.path;
     let starts: Vec<usize> = path.segments().iter().map(|range| range.start).collect();
     let step = |point: usize| if starts.binary_search(&point).is_ok() { 0.0 } else { path.step_length(point) };
-    let is_air = |point: usize| all.points[point].heights.is_none();
-    let scored: Vec<usize> = (0..all.points.len()).filter(|point| path.is_scored(*point)).collect();
     let weight: f64 = scored.iter().map(|point| step(*point)).sum();
-    let in_air: Vec<usize> = scored.iter().copied().filter(|point| is_air(*point)).collect();
+    let in_air: Vec<usize> = scored.iter().copied().filter(|point| is_air(all, *point)).collect();
     if weight > 0.0 {
         all.air = in_air.iter().map(|point| step(*point)).sum::<f64>() / weight;
     }
@@ -92,10 +112,14 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, events: &Event
             false => all.notes.push(text.into()),
         }
     }
-    let thin = |point: &usize| !is_air(*point) && all.points[*point].chip_thickness < THIN;
+}
+
+/// Scored points whose chips are rubbed.
+fn of_thin_chips(all: &mut RemovalForces, scored: &[usize]) {
+    let thin = |point: &usize| !is_air(all, *point) && all.points[*point].chip_thickness < THIN;
     let thin: Vec<usize> = scored.iter().copied().filter(thin).collect();
     if let Some(first) = thin.first() {
-        let at = place(&path.points()[*first].position);
+        let at = place(&all.path.points()[*first].position);
         let text = format!(
             "chips are thinner than {} um at {} scored points, first at point {}, {at}: the teeth may rub",
             THIN * 1e6,
@@ -104,12 +128,6 @@ pub fn warnings(all: &mut RemovalForces, problem: &ForcesProblem, events: &Event
         );
         all.warnings.push(Warning::new("thin-chip", text));
     }
-    let cutting = path.scored_where(|point| !is_air(point));
-    all.cut = CutFigures::of(path, &all.points, &problem.operation, all.air);
-    let of_cut = all.cut.map(|cut| cut.warnings(path, &all.points));
-    all.warnings.extend(of_cut.into_iter().flatten());
-    all.path = cutting;
-    notes(all, problem);
 }
 
 /// What was assumed and done.
