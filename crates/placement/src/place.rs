@@ -1,8 +1,8 @@
 //! The placement job: search, refine, improve, state.
 //!
 //! Three stages hand on placements with their plans (`job`, `found`): `candidates` searches (`searched`) and refines
-//! (`basins`) in every setup, then a `descent` through blocks of variables (`block`) improves external axes and leans of
-//! what it finds (`lean`, from there and from placements `drawn`), and `state` says what there is to say of the end
+//! (`basins`) in every setup, then a `descent` through blocks of variables (`block`) improves external axes and leans
+//! of what it finds (`lean`, from there and from placements `drawn`), and `state` says what there is to say of the end
 //! alone (`plan`, `notes`, `sets` for several stiffnesses, `calmer` for plans whose joints turn less). `long_path` and
 //! `long_refinement` search by subsets of a long path, `infeasible` says what blocks a placement that is refused,
 //! `preview` and `from_here` are for a placement that is moved by hand: what it comes to at once, and the best one near
