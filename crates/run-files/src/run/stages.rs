@@ -296,7 +296,7 @@ impl<'r> Reading<'r> {
         let orientations = run.cell.orientations(&load.task, &at.key("cell"))?;
         let parts = ProblemParts {
             robot: arm.robot.clone(),
-            spindle: arm.spindle.clone(),
+            spindle: arm.spindle,
             task: orientations.first().map_or_else(|| load.task.clone(), |first| (*first.task).clone()),
             cell: run.cell.cell(&at.key("cell"))?,
             constraints: run.constraints.constraints(),
