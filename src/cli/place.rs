@@ -142,7 +142,7 @@ fn search(options: &PlaceOptions, run: &Run, terminal: &Terminal) -> Result<Plac
     Ok(placements)
 }
 
-/// Whether the result is told in a few lines.
+/// Whether the result is printed in a few lines.
 fn is_short(options: &PlaceOptions) -> bool {
     !options.notes && !options.json
 }

@@ -31,7 +31,7 @@ use tokio::time::{sleep, timeout};
 const LONGEST_HEAD: usize = 16_384;
 /// The longest body that is read: a placement whose axes move from point to point has megabytes. Bytes
 const LONGEST_BODY: u64 = 16_000_000;
-/// Head and body of a request have arrived within this time each; a connection on which nothing is asked is closed.
+/// Head and body of a request have arrived within this time each; a connection without a request is closed.
 const TIME_OF_REQUEST: Duration = Duration::from_secs(10);
 /// Connections that are open side by side.
 const MOST_CONNECTIONS: usize = 64;
@@ -80,11 +80,11 @@ pub(super) fn error(status: StatusCode, message: &str) -> Answer {
     json_of(status, &json!({ "error": message }))
 }
 
-/// What answers.
+/// A site behind the server.
 pub(super) trait Site: Send + Sync + 'static {
-    /// What a request that may not be answered is told, before its body is read.
+    /// The answer to a request that is not allowed, before its body is read.
     fn refuses(&self, head: &Head) -> Option<Answer>;
-    /// The answer to a request that may ask.
+    /// The answer to a request that is allowed.
     fn answer(&self, head: &Head, body: &[u8]) -> Answer;
 }
 

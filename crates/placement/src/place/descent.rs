@@ -1,7 +1,7 @@
-//! Placements improved in what the search leaves as it is: where the external axes stand, and how the tool leans.
+//! Placements improved in what the search leaves as it is: positions of the external axes, and leans of the tool.
 //!
 //! A [`Descent`] goes through blocks of variables, each of which improves its own with the others held: a variable
-//! neighbourhood descent. What costs more stands in a later level, which is tried where those before it gain too
+//! neighbourhood descent. What costs more is in a later level, which is tried where those before it gain too
 //! little. A step is only taken to a plan that is better, so that a richer use of the axes is never worse than a poorer
 //! one, and a tool that leans no worse than one that does not.
 
@@ -14,7 +14,7 @@ use stead_numerics::monitor::Progress;
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::setup::Setup;
 
-/// What is improved by itself, the rest held.
+/// Variables that are improved by themselves, the others held.
 pub(super) enum Block {
     /// Placement, betas, leads and tilts by the gradient in all of them.
     Gradient,
@@ -35,7 +35,7 @@ pub(super) struct Descent {
     begun: usize,
     /// Rounds at the most.
     rounds: usize,
-    /// A round that gains less (relative) is the last of its level.
+    /// A round that gains no more (relative) is the last of its level.
     gain: f64,
     stage: &'static str,
 }
@@ -64,7 +64,7 @@ impl Descent {
     /// Leans and placement, from a [start](Improver::start), which has planned the leans.
     pub fn of_leans() -> Self {
         let level = vec![leans(true), Block::Gradient, Block::Placement];
-        Self { levels: vec![level], begun: 1, rounds: 4, gain: GAIN, stage: "lead and tilt" }
+        Self { levels: vec![level], begun: 1, rounds: 4, gain: GAIN, stage: "lead and tilt from a start" }
     }
 
     /// Placement, leans and external axes, from one of the best.
@@ -98,7 +98,7 @@ impl Descent {
                 if best.solution.objective < before {
                     *best = ahead::ahead(job, &from, best.clone());
                 }
-                before - best.solution.objective >= self.gain * before
+                before - best.solution.objective > self.gain * before
             };
             if !self.levels.iter().any(|level| gains(&mut best, level)) {
                 break;

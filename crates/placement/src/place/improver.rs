@@ -1,4 +1,4 @@
-//! What a [descent](super::descent) and its blocks improve.
+//! The problem that a [descent](super::descent) and its blocks work on.
 
 use stead_numerics::monitor::Monitor;
 use stead_problem::lean::LeanSpace;
@@ -9,7 +9,7 @@ pub(super) const GAIN: f64 = 1e-4;
 /// With more path points the placement is not refined again for other axes or leans.
 pub(super) const MOST_REFINED: usize = 5000;
 
-/// What is improved.
+/// The problem, with what may be varied in it.
 pub(super) struct Improver<'a> {
     pub problem: &'a Problem,
     /// How the tool may lean, where leans are planned as well.

@@ -25,7 +25,7 @@ pub(super) const MAX_REACHED: usize = 1 << 21;
 const MAX_WAYS: usize = 1 << 25;
 
 impl Record {
-    /// Room for segments of up to `longest` points with `count` values of beta.
+    /// For segments of up to `longest` points with `count` values of beta.
     pub fn new(longest: usize, count: usize) -> Self {
         Self::with_capacity_of(longest, count, MAX_WAYS)
     }

@@ -162,5 +162,7 @@ pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monito
         Some(kind @ (FileKind::RobotFile | FileKind::ForcesFile)) => kind.refused(source.file()),
         _ => at_the_top::<RunFile>(error),
     })?;
-    Reading { source, run: &run, at: document.root(), monitor }.run()
+    let at = document.root();
+    let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
+    Reading { source, run: &run, at, monitor, redundancy }.run()
 }

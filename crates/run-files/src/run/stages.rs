@@ -1,5 +1,5 @@
-//! A run file read stage by stage: the arm, the forces along the path, by what it is scored, what stands around it and
-//! how the tool leans, each with its own notes and input files, and the problem of them all.
+//! A run file read stage by stage: the arm, the forces along the path, the scoring, the surroundings and
+//! the leans of the tool, each with its own notes and input files, and the problem of them all.
 
 use super::criterion::ReadSets;
 use super::external_axes::{check_axes, external_axes};
@@ -30,22 +30,23 @@ use stead_numerics::message::{Note, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_problem::criterion::Criterion;
 use stead_problem::lean::LeanSpace;
-use stead_problem::problem::{Problem, ProblemParts};
+use stead_problem::problem::{Problem, ProblemParts, Redundancy};
 use stead_problem::setup::Setup;
 use stead_runs::{ReadError, Run};
 use stead_simulation::arm::Variant;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 use stead_simulation::stability_analysis::runout_note;
 
-/// What is read.
+/// A run file with all that reading it needs.
 pub(super) struct Reading<'r> {
     pub source: &'r TomlFile,
     pub run: &'r RunFile,
     pub at: Place<'r>,
     pub monitor: &'r Monitor,
+    pub redundancy: Redundancy,
 }
 
-/// The arm with its spindle, where it stands.
+/// The arm on its mount, with its spindle.
 struct Arm {
     robot: Robot,
     spindle: Spindle,
@@ -55,9 +56,8 @@ struct Arm {
     notes: Vec<Note>,
 }
 
-/// The path with the forces along it.
+/// Where the path and the forces along it come from.
 struct Load {
-    task: Task,
     of_points: PointLeans,
     /// Whether the task file states forces.
     has_columns: bool,
@@ -78,10 +78,16 @@ struct Scoring {
     of_sets: Vec<Note>,
 }
 
-/// What stands around the arm, and the axes that carry it or the part.
+/// The surroundings of the arm, and the axes that carry it or the part.
 struct Around {
     scene: SceneRead,
     axes: Vec<ExternalAxis>,
+}
+
+/// How the tool may lean.
+struct Leaning {
+    space: Option<Arc<LeanSpace>>,
+    notes: Vec<Note>,
 }
 
 impl<'r> Reading<'r> {
@@ -92,11 +98,11 @@ impl<'r> Reading<'r> {
         let cutting = if run.cut.is_some() { Cutting::of(&run.tool, &run.cut, at)? } else { None };
         let stability = self.stability(cutting.as_ref())?;
         let arm = self.arm(stability.as_ref().map(|analysis| analysis.variant >= Variant::Orthogonal))?;
-        let mut load = self.load(cutting.as_ref())?;
-        let scoring = self.scoring(&arm.robot, &load)?;
+        let (task, load) = self.load(cutting.as_ref())?;
+        let scoring = self.scoring(&arm.robot, &task, &load)?;
         let around = self.around(&arm)?;
-        let (lean, of_lean) = self.leaning(&mut load)?;
-        let problem = self.problem(&arm, &load, scoring.criterion, &around, lean)?;
+        let (task, leaning) = self.leaning(task, &load)?;
+        let problem = self.problem(&arm, task, scoring.criterion, &around, leaning.space)?;
         self.checked(&problem)?;
 
         let of_cutter = cutter_notes(run.tool.as_ref(), cutting.as_ref(), run.stock.is_some());
@@ -105,7 +111,7 @@ impl<'r> Reading<'r> {
         let mut notes: Vec<Note> = source.overrides().iter().map(|(field, _)| override_note(field).into()).collect();
         notes.extend(guesses(run.guesses.as_deref().unwrap_or_default(), at)?);
         notes.extend(radians.chain(of_spindle).chain(load.of_path).chain(speed_note(&arm.robot)));
-        notes.extend(load.notes.into_iter().chain(scoring.notes).chain(of_lean));
+        notes.extend(load.notes.into_iter().chain(scoring.notes).chain(leaning.notes));
         notes.extend(base_note(&problem.robot).map(Note::may_be_wrong));
         notes.extend(problem.notes());
         // The robot of the run may be a set too.
@@ -143,7 +149,7 @@ impl<'r> Reading<'r> {
         self.run.stability.as_ref().map(analysis).transpose()
     }
 
-    /// The arm: one that moves where its stability is asked, with springs normal to the axes or without.
+    /// The arm: one that moves where its stability is analysed, with springs normal to the axes or without.
     fn arm(&self, moving: Option<bool>) -> Result<Arm, ReadError> {
         let Self { run, at, .. } = self;
         let spindle_at = at.key("spindle");
@@ -192,7 +198,7 @@ impl<'r> Reading<'r> {
     }
 
     /// The path with the forces along it, as the tool axis of the task has them.
-    fn load(&self, cutting: Option<&Cutting<'_>>) -> Result<Load, ReadError> {
+    fn load(&self, cutting: Option<&Cutting<'_>>) -> Result<(Task, Load), ReadError> {
         let Self { run, at, .. } = self;
         let file = at.key("task").named_file()?;
         let mut imported = self.source.sources.task(&file.file, &file.bytes)?;
@@ -203,8 +209,7 @@ impl<'r> Reading<'r> {
         let has_columns = imported.wrenches.is_some();
         let (task, removal, inputs, notes) = match self.removal_tables()? {
             Some(tables) => {
-                let feed = run.redundancy.redundancy(&at.key("redundancy"))?.feed;
-                let removed = removed(&tables, imported, &file, feed, self.source, at, self.monitor)?;
+                let removed = removed(&tables, imported, &file, self.redundancy.feed, self.source, at, self.monitor)?;
                 (removed.task, Some(removed.removal), removed.inputs, removed.notes)
             }
             None => {
@@ -215,7 +220,7 @@ impl<'r> Reading<'r> {
             }
         };
         let task = part.of(task, at)?;
-        Ok(Load { task, of_points, has_columns, removal, input, inputs, of_path, notes })
+        Ok((task, Load { of_points, has_columns, removal, input, inputs, of_path, notes }))
     }
 
     /// Stock, and what goes with it.
@@ -245,7 +250,7 @@ impl<'r> Reading<'r> {
         }))
     }
 
-    fn scoring(&self, robot: &Robot, load: &Load) -> Result<Scoring, InputError> {
+    fn scoring(&self, robot: &Robot, task: &Task, load: &Load) -> Result<Scoring, InputError> {
         let Self { run, at, .. } = self;
         let table = run.criterion.clone().unwrap_or_default();
         let narrowed = |robot| run.constraints.narrowed(robot, &at.key("constraints"));
@@ -253,57 +258,62 @@ impl<'r> Reading<'r> {
         let forces = load.removal.as_ref().map(|removal| &*removal.forces);
         let (force_uncertainty, about) = table.force_errors(forces, &at.key("criterion"))?;
         let segments = run.segment.as_deref().unwrap_or_default();
-        let criterion = table.criterion(segments, robot, &load.task, force_uncertainty, robots, at)?;
+        let criterion = table.criterion(segments, robot, task, force_uncertainty, robots, at)?;
         Ok(Scoring { criterion, inputs, notes: about.map(Note::from).into_iter().collect(), of_sets })
     }
 
     fn around(&self, arm: &Arm) -> Result<Around, InputError> {
-        let RunFile { shape, keep_out, collision, .. } = self.run.clone();
-        let own = SurroundingsFile { shape, keep_out, collision, ..SurroundingsFile::default() };
+        let own = SurroundingsFile {
+            shape: self.run.shape.clone(),
+            keep_out: self.run.keep_out.clone(),
+            collision: self.run.collision.clone(),
+            ..SurroundingsFile::default()
+        };
         let tables = self.run.external_axis.as_deref().unwrap_or_default();
         let axes = external_axes(tables, &self.at.key("external_axis"))?;
         Ok(Around { scene: read_scene(own, &self.at, &arm.robot, &arm.spindle, &axes)?, axes })
     }
 
-    /// Where the tool may lean, with what is to be said of it; forces that change with the lean are made for it.
-    fn leaning(&self, load: &mut Load) -> Result<(Option<Arc<LeanSpace>>, Vec<Note>), ReadError> {
+    /// Where the tool may lean, with notes on it; forces that change with the lean are made for it.
+    fn leaning(&self, task: Task, load: &Load) -> Result<(Task, Leaning), ReadError> {
         let Some(table) = &self.run.lean else {
-            return Ok((None, load.of_points.unused().map(Note::from).into_iter().collect()));
+            let notes = load.of_points.unused().map(Note::from).into_iter().collect();
+            return Ok((task, Leaning { space: None, notes }));
         };
         let at = self.at.key("lean");
-        let redundancy = self.run.redundancy.redundancy(&self.at.key("redundancy"))?;
-        let (tool, beta_count) = (self.run.tool.as_ref(), redundancy.beta_count);
-        let space = table.space(&load.task, &load.of_points, tool, beta_count, load.has_columns, &at)?;
-        let has_unscored = load.task.path().first_unscored().is_some();
-        let notes = table.notes(&space, load.removal.is_some(), has_unscored);
-        if let Some(removal) = load.removal.as_ref().filter(|_| table.computes_forces() && !space.is_closed()) {
-            load.task = removal.leaning(load.task.clone(), &space, self.source, self.monitor)?;
-        }
-        Ok((Some(space).filter(|space| !space.is_closed()), notes))
+        let (tool, beta_count) = (self.run.tool.as_ref(), self.redundancy.beta_count);
+        let space = table.space(&task, &load.of_points, tool, beta_count, load.has_columns, &at)?;
+        let notes = table.notes(&space, load.removal.is_some(), task.path().first_unscored().is_some());
+        let task = match load.removal.as_ref().filter(|_| table.computes_forces() && !space.is_closed()) {
+            Some(removal) => removal.leaning(task, &space, self.source, self.monitor)?,
+            None => task,
+        };
+        Ok((task, Leaning { space: Some(space).filter(|space| !space.is_closed()), notes }))
     }
 
     fn problem(
         &self,
         arm: &Arm,
-        load: &Load,
+        task: Task,
         criterion: Criterion,
         around: &Around,
         lean: Option<Arc<LeanSpace>>,
     ) -> Result<Problem, InputError> {
         let Self { run, at, .. } = self;
         let (scene, transfer) = (around.scene.scene.clone(), run.transfer.unwrap_or_default());
-        let (tool, tool_at, path) = (run.tool.as_ref(), &at.key("tool"), load.task.path());
-        let orientations = run.cell.orientations(&load.task, &at.key("cell"))?;
+        let (tool, tool_at, path) = (run.tool.as_ref(), &at.key("tool"), task.path());
+        let segment_moves = transfer.segment_moves(&arm.robot, &arm.spindle, scene.as_deref(), path, tool, tool_at)?;
+        let orientations = run.cell.orientations(&task, &at.key("cell"))?;
         let parts = ProblemParts {
             robot: arm.robot.clone(),
             spindle: arm.spindle,
-            task: orientations.first().map_or_else(|| load.task.clone(), |first| (*first.task).clone()),
+            task: orientations.first().map_or(task, |first| (*first.task).clone()),
             cell: run.cell.cell(&at.key("cell"))?,
             constraints: run.constraints.constraints(),
             criterion,
-            redundancy: run.redundancy.redundancy(&at.key("redundancy"))?,
+            redundancy: self.redundancy,
             postures: run.postures.clone().unwrap_or_default().rules(&arm.robot, &at.key("postures"))?,
-            segment_moves: transfer.segment_moves(&arm.robot, &arm.spindle, scene.as_deref(), path, tool, tool_at)?,
+            segment_moves,
             scene,
             orientations,
             lean,
@@ -326,7 +336,7 @@ impl<'r> Reading<'r> {
         table.check_memory(problem, &at("search"))
     }
 
-    /// What the user should see to in what the path removes, and what a model of the arm leaves out.
+    /// Faults of the cut that the user should see to, and parts of the arm that its model leaves out.
     fn warnings(
         &self,
         removal: Option<&Removal>,

@@ -1,4 +1,4 @@
-//! Where an external axis stands: at one position for the path, or at one for each segment.
+//! The position of an external axis: one for the path, or one for each segment.
 
 use crate::place::improver::Improver;
 use crate::place::job::Planned;

@@ -9,7 +9,7 @@ use stead_planning::transfer_path::whole_lines;
 use stead_problem::sense::Sense;
 use stead_problem::setup::Setup;
 
-/// The placement refined with axes and leans where they stand.
+/// The placement refined, axes and leans held.
 pub(in crate::place) fn of_placement(job: &Improver<'_>, known: &Planned) -> Option<Planned> {
     if job.problem.cell.pinned().is_some() || job.problem.task.points().len() > MOST_REFINED {
         return None;
