@@ -221,31 +221,11 @@ impl<'a> Evaluator<'a> {
         ends.sort_by(|a, b| rank(sense, a.1.objective, b.1.objective));
         let ends = distinct(table, ends, max_count);
         let promised = ends.first().and_then(|(_, end)| end.objective.mean());
-        let planned: Vec<(Candidate, usize)> = ends
-            .par_iter()
-            .map_init(
-                || self.workspace(),
-                |workspace, (start, end)| {
-                    if monitor.should_stop() {
-                        return (end.clone(), 0);
-                    }
-                    let mut plan = |from: &Candidate| Candidate {
-                        objective: self.planned_objective(&from.placement, from.scheme.as_deref(), workspace),
-                        ..from.clone()
-                    };
-                    let planned = plan(end);
-                    let is_as_promised = match (planned.objective.mean(), end.objective.mean()) {
-                        (Some(found), Some(promised)) => (found - promised).abs() < LOOKUP_TOLERANCE * promised,
-                        _ => false,
-                    };
-                    if is_as_promised {
-                        return (planned, 1);
-                    }
-                    let start = plan(start);
-                    (if rank(sense, start.objective, planned.objective).is_lt() { start } else { planned }, 2)
-                },
-            )
-            .collect();
+        let plan = |workspace: &mut Workspace, (start, end): &(&Candidate, Candidate)| match monitor.should_stop() {
+            true => (end.clone(), 0),
+            false => self.planned_candidate(start, end, sense, workspace),
+        };
+        let planned: Vec<(Candidate, usize)> = ends.par_iter().map_init(|| self.workspace(), plan).collect();
         evaluations += planned.iter().map(|(_, evaluations)| evaluations).sum::<usize>();
         let mut selected: Vec<Candidate> = planned.into_iter().map(|(candidate, _)| candidate).collect();
         selected.sort_by(|a, b| rank(sense, a.objective, b.objective));
@@ -259,6 +239,31 @@ impl<'a> Evaluator<'a> {
             _ => true,
         };
         SelectedBasins { basins: selected, evaluations, lookup_rejected }
+    }
+
+    /// An improved candidate as the planner finds it, or where that is not what the table promised, and it is better,
+    /// the one it started from; and the number of placements evaluated.
+    fn planned_candidate(
+        &self,
+        start: &Candidate,
+        end: &Candidate,
+        sense: Sense,
+        workspace: &mut Workspace,
+    ) -> (Candidate, usize) {
+        let mut plan = |from: &Candidate| Candidate {
+            objective: self.planned_objective(&from.placement, from.scheme.as_deref(), workspace),
+            ..from.clone()
+        };
+        let planned = plan(end);
+        let is_as_promised = match (planned.objective.mean(), end.objective.mean()) {
+            (Some(found), Some(promised)) => (found - promised).abs() < LOOKUP_TOLERANCE * promised,
+            _ => false,
+        };
+        if is_as_promised {
+            return (planned, 1);
+        }
+        let start = plan(start);
+        (if rank(sense, start.objective, planned.objective).is_lt() { start } else { planned }, 2)
     }
 
     /// A candidate improved by coordinate search, by the table where there is one, and the number of placements

@@ -70,7 +70,7 @@ pub struct Yields {
 impl Yields {
     /// At a path point with the arm in a configuration (rad); none where springs about the axes alone yield, or nothing
     /// does.
-    fn of(problem: &Problem, placement: &Placement, (point, joints): (usize, [f64; 6])) -> Option<Self> {
+    fn of(problem: &Problem, placement: &Placement, point: usize, joints: [f64; 6]) -> Option<Self> {
         let (robot, spindle) = (&problem.robot, &problem.spindle);
         let frames = Frames::new(robot, &joints);
         let tip = frames.base_from_flange.point(&spindle.flange_from_tool.translation);
@@ -169,7 +169,7 @@ impl Overview {
             moment: sizes(|wrench| wrench.moment.norm()),
             reach: problem.robot.geometry().reach(),
             cell_distances: cell_distances(problem),
-            yields: Yields::of(problem, &middle.placement, (point, joints)),
+            yields: Yields::of(problem, &middle.placement, point, joints),
             sag,
             middle,
             shapes,

@@ -125,19 +125,16 @@ pub fn generations(
     report(first, None);
     evaluate(evaluator, &mut population, 0, CollisionEffort::ALL.within, monitor);
     let mut evaluations = population.len();
-    let mut history = Vec::new();
-    let mut best = Vec::new();
-    let mut archive = Vec::new();
+    let (mut history, mut best, mut archive) = (Vec::new(), Vec::new(), Vec::new());
     let mut interrupted = false;
     for generation in generations {
         if generation > first {
             let elite = ((population.len() as f64 * ELITE).ceil() as usize).min(population.len() - 1);
-            let children = (elite..settings.population)
-                .map(|index| {
-                    let mut random = stream(settings.seed, sense, generation, index);
-                    breed(problem, settings, &population, sense, generation, &mut random)
-                })
-                .collect::<Vec<_>>();
+            let child = |index: usize| {
+                let mut random = stream(settings.seed, sense, generation, index);
+                breed(problem, settings, &population, sense, generation, &mut random)
+            };
+            let children: Vec<Candidate> = (elite..settings.population).map(child).collect();
             let within = better_third(&population, sense);
             population.truncate(elite);
             population.extend(children);
@@ -152,8 +149,8 @@ pub fn generations(
         history.push(figures);
         best.push(population[0].clone());
         report(generation, figures.best);
-        if monitor.should_stop() {
-            interrupted = true;
+        interrupted = monitor.should_stop();
+        if interrupted {
             break;
         }
     }
@@ -163,13 +160,8 @@ pub fn generations(
     evaluator.check(&mut history, &best, sense, monitor);
     let selected = evaluator.select_basins(archive, sense, settings.basins, monitor);
     evaluations += selected.evaluations;
-    SearchResult {
-        basins: selected.basins,
-        history,
-        evaluations,
-        lookup_rejected: selected.lookup_rejected,
-        interrupted,
-    }
+    let (basins, lookup_rejected) = (selected.basins, selected.lookup_rejected);
+    SearchResult { basins, history, evaluations, lookup_rejected, interrupted }
 }
 
 /// In place of a search, the only placement of a cell that leaves no other, on a planner's grid.
@@ -343,8 +335,8 @@ pub fn distinct(problem: &Problem, sorted: &[Candidate], max_count: usize) -> Ve
             break;
         }
         let is_near = |known: &Candidate| {
-            let pair = [&known.placement, &candidate.placement];
-            is_near(&problem.cell, pair) || (is_up_to_turn && is_near_after_turn(problem, pair))
+            let (a, b) = (&known.placement, &candidate.placement);
+            is_near(&problem.cell, a, b) || (is_up_to_turn && is_near_after_turn(problem, a, b))
         };
         if !basins.iter().any(is_near) {
             basins.push(candidate.clone());
@@ -354,7 +346,7 @@ pub fn distinct(problem: &Problem, sorted: &[Candidate], max_count: usize) -> Ve
 }
 
 /// Whether two placements are in one basin.
-fn is_near(cell: &Cell, [a, b]: [&Placement; 2]) -> bool {
+fn is_near(cell: &Cell, a: &Placement, b: &Placement) -> bool {
     let near = |k: usize| {
         let width = cell.position[k].width();
         width <= 0.0 || (a[k] - b[k]).abs() / width <= BASIN.0
@@ -363,7 +355,7 @@ fn is_near(cell: &Cell, [a, b]: [&Placement; 2]) -> bool {
 }
 
 /// Whether they are when one of them is turned about axis 1 to the azimuth of the other.
-fn is_near_after_turn(problem: &Problem, [a, b]: [&Placement; 2]) -> bool {
+fn is_near_after_turn(problem: &Problem, a: &Placement, b: &Placement) -> bool {
     let [x, y, z] = &problem.cell.position;
     let [distance, height, yaw] = apart_about_axis_1(problem, a, b);
     distance <= BASIN.0 * x.width().max(y.width()) && height <= BASIN.0 * z.width() && yaw <= BASIN.1

@@ -275,10 +275,26 @@ pub fn diagnose(
     scheme: Option<&[Posture]>,
     none: &NoFeasiblePlan,
 ) -> Vec<Finding> {
-    let beta_count = problem.redundancy.beta_count;
+    let mut findings = blocked(problem, placement, scheme, &none.blocked_points);
+    let obstruction = (!none.broken_segments.is_empty()).then(|| Obstruction::new(problem));
+    let broken = none.broken_segments.par_iter().map(|(segment, point)| Finding {
+        segment: segment + 1,
+        points: (problem.task.segments()[*segment].start, *point),
+        nearest: None,
+        stopped_by: obstruction.as_ref().map(|o| o.at(placement, scheme, *segment, *point)).unwrap_or_default(),
+        beta: problem.redundancy.beta,
+    });
+    findings.extend(broken.collect::<Vec<_>>());
+    findings.sort_by_key(|finding| (finding.segment, finding.points));
+    findings
+}
+
+/// The points without an allowed state, those that follow one another and fail by the same constraints together, with
+/// the state of them all that comes nearest to being allowed.
+fn blocked(problem: &Problem, placement: &Placement, scheme: Option<&[Posture]>, points: &[usize]) -> Vec<Finding> {
     let nearest_of = |point: usize| {
         let only = scheme.map(|postures| postures[problem.task.path().segment_of(point)]);
-        let states = (0..beta_count).flat_map(|k| {
+        let states = (0..problem.redundancy.beta_count).flat_map(|k| {
             let beta = problem.redundancy.beta(k);
             explain(problem, placement, point, beta).map(|e| (beta, e))
         });
@@ -286,7 +302,7 @@ pub fn diagnose(
             .filter(|(_, e)| only.is_none_or(|posture| e.posture == posture) && problem.postures.allows(e.posture));
         states.min_by(|a, b| a.1.severity().total_cmp(&b.1.severity()))
     };
-    let nearest: Vec<_> = none.blocked_points.par_iter().map(|point| (*point, nearest_of(*point))).collect();
+    let nearest: Vec<_> = points.par_iter().map(|point| (*point, nearest_of(*point))).collect();
     let mut findings: Vec<(f64, Finding)> = Vec::new();
     for (point, found) in nearest {
         let Some((beta, explanation)) = found else { continue };
@@ -306,40 +322,12 @@ pub fn diagnose(
                 last.nearest = Some(nearest);
             }
         } else {
-            findings.push((
-                severity,
-                Finding {
-                    segment,
-                    points: (point, point),
-                    nearest: Some(nearest),
-                    stopped_by: Vec::new(),
-                    beta: problem.redundancy.beta,
-                },
-            ));
+            let (nearest, beta) = (Some(nearest), problem.redundancy.beta);
+            let finding = Finding { segment, points: (point, point), nearest, stopped_by: Vec::new(), beta };
+            findings.push((severity, finding));
         }
     }
-    let mut findings: Vec<Finding> = findings.into_iter().map(|(_, finding)| finding).collect();
-    let obstruction = (!none.broken_segments.is_empty()).then(|| Obstruction::new(problem));
-    findings.extend(
-        none.broken_segments
-            .par_iter()
-            .map(|(segment, point)| {
-                let only = scheme.map(|postures| postures[*segment]);
-                Finding {
-                    segment: segment + 1,
-                    points: (problem.task.segments()[*segment].start, *point),
-                    nearest: None,
-                    stopped_by: obstruction
-                        .as_ref()
-                        .map(|o| o.at(placement, *segment, *point, only))
-                        .unwrap_or_default(),
-                    beta: problem.redundancy.beta,
-                }
-            })
-            .collect::<Vec<_>>(),
-    );
-    findings.sort_by_key(|finding| (finding.segment, finding.points));
-    findings
+    findings.into_iter().map(|(_, finding)| finding).collect()
 }
 
 #[cfg(test)]

@@ -146,7 +146,8 @@ pub fn duration(problem: &Problem, settings: &TransferSettings, from: &[f64; 6],
 
 /// Shortest time in which the external axes move from rest to rest between positions (m or rad), each by itself, beside
 /// the joints; `None` when one that has to move has no speed. s
-fn axis_duration(problem: &Problem, settings: &TransferSettings, [from, to]: [&[f64]; 2]) -> Option<f64> {
+fn axis_duration(problem: &Problem, settings: &TransferSettings, positions: [&[f64]; 2]) -> Option<f64> {
+    let [from, to] = positions;
     let moved = problem.external_axes.iter().zip(from.iter().zip(to)).filter(|(_, (from, to))| from != to);
     moved
         .map(|(axis, (from, to))| {

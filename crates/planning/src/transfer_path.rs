@@ -102,51 +102,25 @@ pub fn transfer_path(
     let space = Space::among_shapes(problem, placement)?;
     let [from, to] = plans;
     let (end, start) = (AtPoint::last(from)?, AtPoint::first(to)?);
-    let retract = problem.segment_moves.retract;
     let are_axes_moved = problem.axis_positions(end.point) != problem.axis_positions(start.point);
     // External axes that stand elsewhere for the next segment move with the joints on the direct move, and before them
     // on any other.
-    let points = (end.point, start.point);
-    let lowest = [end, start].map(|at| space.line(at, retract));
+    let lowest = [end, start].map(|at| space.line(at, problem.segment_moves.retract));
     let short_lines = lowest.each_ref().map(|line| line.short.clone());
-    let is_too_short = |line: &Line| line.joints.len() < 2;
-    let mut blocked = None;
-    let mut lines: Vec<[Line; 2]> = Vec::new();
-    for lift in LIFTS {
-        // A higher line is looked at in other steps, and may so end a little before the lowest one, where that is
-        // whole: then that is taken.
-        let raised = |k: usize| {
-            let line = space.line([end, start][k], retract + lift);
-            let is_short = line.short.as_ref().is_some_and(|short| short.length < retract);
-            if is_short && lowest[k].short.is_none() { lowest[k].clone() } else { line }
-        };
-        let pair = [raised(0), raised(1)];
-        // A line that a shorter one has ended already leads no farther.
-        if lines.last().is_some_and(|known| *known == pair || (lift > 0.0 && pair.iter().all(is_too_short))) {
-            break;
-        }
-        if let Some(names) = [end, start].iter().find_map(|at| space.tool_hit(at.point, retract + lift)) {
-            blocked = blocked.or(Some(names));
-            break;
-        }
-        let [out, into] = &pair;
-        let (Some(high), Some(low)) = (out.joints.last(), into.joints.last()) else { break };
-        match space.hit((high, points.0), (low, points.1)) {
-            None => {
-                return Some(TransferPath { short_lines, ..joined(&out.joints, &[], &into.joints, are_axes_moved) });
-            }
-            Some(names) => blocked = blocked.or(Some(names)),
-        }
-        lines.push(pair);
+    let lifts = space.lifted([end, start], lowest);
+    if let Some([out, into]) = &lifts.free {
+        return Some(TransferPath { short_lines, ..joined(&out.joints, &[], &into.joints, are_axes_moved) });
     }
     let mut random = ChaCha8Rng::seed_from_u64(number as u64);
     // Trees grow from the lowest lift at which nothing hits at either end.
-    let free_ends = lines.iter().find(|[out, into]| {
+    let points = (end.point, start.point);
+    let is_free = |joints: &[f64; 6]| space.hit((joints, points.0), (joints, points.1)).is_none();
+    let free_ends = lifts.blocked.iter().find(|[out, into]| {
         let (Some(high), Some(low)) = (out.joints.last(), into.joints.last()) else { return false };
-        space.hit((high, points.0), (high, points.1)).is_none() && space.hit((low, points.1), (low, points.1)).is_none()
+        is_free(high) && is_free(low)
     });
     let around = free_ends.and_then(|[out, into]| {
-        let over = space.around((*out.joints.last()?, *into.joints.last()?), points.1, &mut random)?;
+        let over = space.around(*out.joints.last()?, *into.joints.last()?, points.1, &mut random)?;
         Some(joined(&out.joints, &over, &into.joints, are_axes_moved))
     });
     Some(match around {
@@ -156,9 +130,20 @@ pub fn transfer_path(
             axes_from: 1,
             along_axis: [false; 2],
             short_lines,
-            blocked_by: blocked,
+            blocked_by: lifts.blocked_by,
         },
     })
+}
+
+/// Lines along the tool axis out of one segment and into the next, from low to high.
+#[derive(Debug, Default)]
+struct Lifts {
+    /// The lowest between whose ends the arm can move directly.
+    free: Option<[Line; 2]>,
+    /// Those between whose ends it cannot.
+    blocked: Vec<[Line; 2]>,
+    /// The first shapes that hit.
+    blocked_by: Option<Arc<[String; 2]>>,
 }
 
 /// Whether the lines into and out of a segment have their whole length, in this order.
@@ -358,9 +343,45 @@ impl<'a> Space<'a> {
         Line { joints: all, short: None }
     }
 
+    /// Lines of growing length away from the end of a segment and the start of the next, of which the `lowest` are
+    /// known, until there is a direct move between two.
+    fn lifted(&self, ends: [AtPoint; 2], lowest: [Line; 2]) -> Lifts {
+        let retract = self.problem.segment_moves.retract;
+        let is_too_short = |line: &Line| line.joints.len() < 2;
+        let mut lifts = Lifts::default();
+        for lift in LIFTS {
+            // A higher line is looked at in other steps, and may so end a little before the lowest one, where that is
+            // whole: then that is taken.
+            let raised = |k: usize| {
+                let line = self.line(ends[k], retract + lift);
+                let is_short = line.short.as_ref().is_some_and(|short| short.length < retract);
+                if is_short && lowest[k].short.is_none() { lowest[k].clone() } else { line }
+            };
+            let pair = [raised(0), raised(1)];
+            // A line that a shorter one has ended already leads no farther.
+            let is_known = |known: &[Line; 2]| *known == pair || (lift > 0.0 && pair.iter().all(is_too_short));
+            if lifts.blocked.last().is_some_and(is_known) {
+                break;
+            }
+            if let Some(names) = ends.iter().find_map(|at| self.tool_hit(at.point, retract + lift)) {
+                lifts.blocked_by = lifts.blocked_by.or(Some(names));
+                break;
+            }
+            let [out, into] = &pair;
+            let (Some(high), Some(low)) = (out.joints.last(), into.joints.last()) else { break };
+            let Some(names) = self.hit((high, ends[0].point), (low, ends[1].point)) else {
+                lifts.free = Some(pair);
+                break;
+            };
+            lifts.blocked_by = lifts.blocked_by.or(Some(names));
+            lifts.blocked.push(pair);
+        }
+        lifts
+    }
+
     /// A free way from one configuration to another, by trees from both, the external axes where they stand at a path
     /// point: the configurations on it, shortened.
-    fn around(&self, (from, to): ([f64; 6], [f64; 6]), point: usize, random: &mut ChaCha8Rng) -> Option<Vec<[f64; 6]>> {
+    fn around(&self, from: [f64; 6], to: [f64; 6], point: usize, random: &mut ChaCha8Rng) -> Option<Vec<[f64; 6]>> {
         let mut trees = [vec![(from, 0)], vec![(to, 0)]];
         let mut grown = 0;
         while trees[0].len() + trees[1].len() < MAX_STATES {

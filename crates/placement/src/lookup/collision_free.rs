@@ -3,12 +3,11 @@
 //!
 //! The table does not tell the two flips of the wrist apart, so a state is forbidden where something hits in both.
 
+use super::LookupTable;
 use super::objective::{PathCheck, Workspace};
-use super::{BetaGrid, LookupTable};
 use stead_cell::Proximity;
 use stead_model::robot::PostureClass;
-use stead_planning::redundancy::{StateSet, forbid, kinds_left};
-use stead_problem::problem::Placement;
+use stead_planning::redundancy::{BetaRing, Lazy, StateSet, kinds_left, until_free};
 
 /// Ways through a segment that are looked at, at the most; one that still hits after that counts as none.
 const MAX_ROUNDS: usize = 30;
@@ -16,69 +15,90 @@ const MAX_ROUNDS: usize = 30;
 /// Where not all points are looked at, not all values of beta are either, but at least so many of a turn: every 15 deg.
 const LEAST_LOOKS: usize = 24;
 
+/// Ways through a segment with more and more states forbidden.
+struct FreeWays<'s, F> {
+    table: &'s LookupTable<'s>,
+    check: &'s PathCheck<'s>,
+    /// The segment.
+    index: usize,
+    /// The class that gets through with the smallest sum of scores, and that sum, where it is known. m
+    found: Option<(f64, usize)>,
+    /// What finds that again.
+    again: F,
+    workspace: &'s mut Workspace,
+    /// States of earlier ways in which nothing hits.
+    free: StateSet,
+}
+
+impl<F> FreeWays<'_, F> {
+    /// Whether something hits in a state of a way; then it is forbidden with its neighbours.
+    fn is_hit(&mut self, point: usize, class: usize, beta: usize) -> bool {
+        let PathCheck { grid, stride, .. } = *self.check;
+        let of_class = PostureClass::ALL[class];
+        if self.free.contains(point, of_class, beta) {
+            return false;
+        }
+        let Workspace { known: [along, across], forbidden, .. } = &mut *self.workspace;
+        let is_hit = self.table.hits(self.check, point, class, beta, along);
+        if is_hit {
+            across.begin_with(along);
+            let ring = BetaRing { count: grid.count, stride: stride.min(grid.count / LEAST_LOOKS).max(1) };
+            let hits = |k| self.table.hits(self.check, point, class, k, across);
+            forbidden.add_around(point, of_class, beta, ring, hits);
+        } else {
+            self.free.add(point, of_class, beta);
+        }
+        is_hit
+    }
+}
+
+impl<F: FnMut(&mut Workspace) -> Option<(f64, usize)>> Lazy for FreeWays<'_, F> {
+    type Plan = (f64, usize);
+    type Refused = ();
+
+    fn plan(&mut self) -> Result<(f64, usize), ()> {
+        self.found.take().or_else(|| (self.again)(self.workspace)).ok_or(())
+    }
+
+    fn forbid(&mut self, found: &(f64, usize)) -> bool {
+        let (span, class) = (&self.table.problem.task.segments()[self.index], found.1);
+        let PathCheck { grid, stride, .. } = *self.check;
+        let costs = &self.workspace.segments[self.index].rows.costs;
+        let betas = traced(costs, &grid.changes[span.clone()], grid.count);
+        let mut is_any = false;
+        let last = betas.len() - 1;
+        for place in (0..last).step_by(stride).chain([last]) {
+            if self.is_hit(span.start + place, class, betas[place]) {
+                is_any = true;
+                let near = place.saturating_sub(stride - 1)..(place + stride).min(betas.len());
+                for near in near.filter(|near| *near != place) {
+                    self.is_hit(span.start + near, class, betas[near]);
+                }
+            }
+        }
+        is_any
+    }
+}
+
 impl LookupTable<'_> {
     /// The class that gets through a segment in ways in which nothing hits with the smallest sum of scores, and that
     /// sum (m): first the one that was `found`, then what is found `again` without the states that hit.
     pub(super) fn best_free_class(
         &self,
-        PathCheck { placement, grid, stride }: &PathCheck<'_>,
+        check: &PathCheck<'_>,
         index: usize,
-        mut found: Option<(f64, usize)>,
-        again: impl Fn(&mut Workspace) -> Option<(f64, usize)>,
+        found: Option<(f64, usize)>,
+        again: impl FnMut(&mut Workspace) -> Option<(f64, usize)>,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
-        let (span, stride) = (&self.problem.task.segments()[index], *stride);
-        // States met on earlier ways in which nothing hits.
-        let mut free = StateSet::default();
-        for _ in 0..MAX_ROUNDS {
-            let (_, class) = found?;
-            let betas = traced(&workspace.segments[index].rows.costs, &grid.changes[span.clone()], grid.count);
-            let Workspace { known: [along, across], forbidden, .. } = workspace;
-            let mut is_hit = |place: usize| {
-                let (point, beta) = (span.start + place, betas[place]);
-                if free.contains(point, PostureClass::ALL[class], beta) {
-                    return false;
-                }
-                let is_hit = self.hits(placement, point, class, grid, beta, along);
-                if is_hit {
-                    across.begin_with(along);
-                    let hits = |k| self.hits(placement, point, class, grid, k, across);
-                    let across = stride.min(grid.count / LEAST_LOOKS).max(1);
-                    forbid(point, PostureClass::ALL[class], beta, grid.count, across, hits, forbidden);
-                } else {
-                    free.add(point, PostureClass::ALL[class], beta);
-                }
-                is_hit
-            };
-            let mut is_free = true;
-            let last = betas.len() - 1;
-            for place in (0..last).step_by(stride).chain([last]) {
-                if is_hit(place) {
-                    is_free = false;
-                    let near = place.saturating_sub(stride - 1)..(place + stride).min(betas.len());
-                    near.filter(|near| *near != place).for_each(|near| {
-                        is_hit(near);
-                    });
-                }
-            }
-            if is_free {
-                return found;
-            }
-            found = again(workspace);
-        }
-        None
+        found?;
+        let mut job = FreeWays { table: self, check, index, found, again, workspace, free: StateSet::default() };
+        until_free(&mut job, MAX_ROUNDS).ok().filter(|(_, is_free)| *is_free).map(|(found, _)| found)
     }
 
     /// Whether something hits at a path point and beta in both flips of a posture class.
-    fn hits(
-        &self,
-        placement: &Placement,
-        point: usize,
-        class: usize,
-        grid: &BetaGrid,
-        beta: usize,
-        known: &mut Proximity,
-    ) -> bool {
+    fn hits(&self, check: &PathCheck<'_>, point: usize, class: usize, beta: usize, known: &mut Proximity) -> bool {
+        let PathCheck { placement, grid, .. } = *check;
         let [plain, flipped] = PostureClass::ALL[class].postures();
         let kinds = kinds_left(grid.tool_hits.as_deref());
         let mut hit = |posture| self.problem.next_hit(point, grid.beta(beta), placement, posture, kinds, known);

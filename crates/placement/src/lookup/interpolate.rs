@@ -132,7 +132,8 @@ impl LookupTable<'_> {
     }
 
     /// Makes scores infinite where joint 1 is outside its limits.
-    fn exclude_first_joint(&self, point: &PolarPoint, [sine, cosine]: &[Vec<f32>; 2], scores: &mut [f32]) {
+    fn exclude_first_joint(&self, point: &PolarPoint, first_joint: &[Vec<f32>; 2], scores: &mut [f32]) {
+        let [sine, cosine] = first_joint;
         let range = Range::of(&self.problem.robot.joints()[0]);
         for (k, score) in scores.iter_mut().enumerate().filter(|(_, score)| score.is_finite()) {
             let angle = point.azimuth + libm::atan2(f64::from(sine[k]), f64::from(cosine[k]));

@@ -60,6 +60,13 @@ pub(super) struct Rows {
     is_whole: bool,
 }
 
+/// The path at a placement, and the grid of beta on which ways along it are found.
+#[derive(Clone, Copy)]
+struct BetaPath<'s> {
+    placed: &'s PlacedPath,
+    grid: &'s BetaGrid,
+}
+
 /// A posture class with its scores over beta, point by point, as far as they are known.
 struct ClassScores<'s> {
     class: usize,
@@ -113,6 +120,7 @@ impl LookupTable<'_> {
             return best_of(Sense::Min, schemes.into_iter().map(of));
         }
         let placed = self.place(placement);
+        let path = BetaPath { placed: &placed, grid };
         let rules = &self.problem.postures;
         let is_requested = |index: usize, class: usize| {
             let only = scheme.map(|s| s[index].class().index());
@@ -124,7 +132,7 @@ impl LookupTable<'_> {
         for index in 0..spans.len() {
             workspace.segments[index].least = [f64::NEG_INFINITY; 4];
             workspace.segments[index].rows.is_whole = false;
-            found.push(self.best_class(&placed, index, &|class| is_requested(index, class), grid, workspace));
+            found.push(self.best_class(path, index, &|class| is_requested(index, class), workspace));
         }
         let objective = |found: &[Option<(f64, usize)>]| {
             let cost = |(index, found): (usize, &Option<(f64, usize)>)| {
@@ -143,13 +151,13 @@ impl LookupTable<'_> {
             let check = PathCheck { placement, grid, stride: effort.stride };
             for (index, found) in found.iter_mut().enumerate() {
                 let again = |workspace: &mut Workspace| {
-                    self.best_class(&placed, index, &|class| is_requested(index, class), grid, workspace)
+                    self.best_class(path, index, &|class| is_requested(index, class), workspace)
                 };
                 *found = self.best_free_class(&check, index, *found, again, workspace);
             }
         }
         let Some(mean) = objective(&found) else {
-            return self.blocked(&placed, is_requested, grid, &found, workspace);
+            return self.blocked(path, is_requested, &found, workspace);
         };
         Objective::Feasible(mean)
     }
@@ -158,12 +166,12 @@ impl LookupTable<'_> {
     /// way.
     fn blocked(
         &self,
-        placed: &PlacedPath,
+        path: BetaPath<'_>,
         is_requested: impl Fn(usize, usize) -> bool,
-        grid: &BetaGrid,
         found: &[Option<(f64, usize)>],
         workspace: &mut Workspace,
     ) -> Objective {
+        let BetaPath { placed, grid } = path;
         let (mut points, mut segments) = (0, 0);
         let open = self.problem.task.segments().iter().enumerate().filter(|(index, _)| found[*index].is_none());
         for (index, span) in open {
@@ -190,10 +198,9 @@ impl LookupTable<'_> {
     /// The class that gets through a segment with the smallest sum of scores, and that sum. m
     fn best_class(
         &self,
-        placed: &PlacedPath,
+        path: BetaPath<'_>,
         index: usize,
         is_requested: &impl Fn(usize) -> bool,
-        grid: &BetaGrid,
         workspace: &mut Workspace,
     ) -> Option<(f64, usize)> {
         let span = &self.problem.task.segments()[index];
@@ -210,7 +217,7 @@ impl LookupTable<'_> {
             // The scores of the class that won last are kept.
             let is_kept = class == first && workspace.segments[index].rows.is_whole;
             let known = if is_kept { std::mem::take(&mut workspace.segments[index].rows.scores) } else { Vec::new() };
-            let cost = self.through(placed, span.clone(), ClassScores { class, known: &known }, grid, bound, workspace);
+            let cost = self.through(path, span.clone(), ClassScores { class, known: &known }, bound, workspace);
             if is_kept {
                 workspace.segments[index].rows.scores = known;
             }
@@ -229,13 +236,13 @@ impl LookupTable<'_> {
     /// are interpolated where they are not known. m
     fn through(
         &self,
-        placed: &PlacedPath,
+        path: BetaPath<'_>,
         span: Span<usize>,
-        ClassScores { class, known }: ClassScores<'_>,
-        grid: &BetaGrid,
+        scores_of: ClassScores<'_>,
         bound: f64,
         workspace: &mut Workspace,
     ) -> Option<f64> {
+        let (BetaPath { placed, grid }, ClassScores { class, known }) = (path, scores_of);
         let Workspace { scratch, scores, costs, windows, kept, forbidden, .. } = workspace;
         let has_scene = self.problem.scene.is_some();
         kept.costs.clear();

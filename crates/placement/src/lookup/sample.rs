@@ -72,6 +72,66 @@ pub(super) fn base_from_flange(
     base_from_tool.then(&problem.spindle.flange_from_tool.inverse())
 }
 
+/// How the tip yields to a unit force radial and one tangential to axis 1, axis 1 itself held: by displacements along
+/// these, radial (`r`), tangential (`t`) and along axis 1 (`z`). m/N
+#[derive(Default)]
+struct HorizontalForces {
+    rr: f64,
+    tt: f64,
+    rt: f64,
+    rz: f64,
+    tz: f64,
+    /// How it turns by the radial force, in the root frame. rad/N
+    radial: Vector3<f64>,
+    /// The same by the tangential one. rad/N
+    tangential: Vector3<f64>,
+}
+
+impl HorizontalForces {
+    /// Of springs about the axes 2 to 6 alone, and how the tip turns only where that is needed.
+    fn of_axes(robot: &Robot, frames: &Frames<f64>, joints: &[f64; 6], tip: &Vector3<f64>, turns: bool) -> Self {
+        let compliances = robot.compliances_at(joints);
+        let root_from_base = robot.geometry().base_from_root.transpose();
+        let mut by = Self::default();
+        for j in 1..6 {
+            let (velocity, axis) = frames.twist_yielding(j, tip);
+            let v = root_from_base * velocity;
+            let k = compliances[j];
+            by.rr += k * v.x * v.x;
+            by.tt += k * v.y * v.y;
+            by.rt += k * v.x * v.y;
+            by.rz += k * v.x * v.z;
+            by.tz += k * v.y * v.z;
+            if turns {
+                let axis = root_from_base * axis;
+                by.radial += axis * (k * v.x);
+                by.tangential += axis * (k * v.y);
+            }
+        }
+        by
+    }
+
+    /// Of all that yields but axis 1 and base: with the load in the base frame.
+    fn of_whole_arm(problem: &Problem, frames: &Frames<f64>, joints: &[f64; 6], tip: Vector3<f64>) -> Self {
+        let (robot, g) = (&problem.robot, problem.robot.geometry());
+        let root_from_base = g.base_from_root.transpose();
+        let compliances = robot.compliances_at(joints);
+        let behind_first = std::array::from_fn(|j| if j == 0 { 0.0 } else { compliances[j] });
+        let arm = WholeArm::new(robot, &problem.spindle, frames, behind_first, tip);
+        let answer = |force: Vector3<f64>| {
+            let ByOrigin { axes, normal, mount, tip, .. } = arm.by_origin(&force, &Vector3::zeros());
+            let parts = [axes, normal, mount, tip];
+            let linear: Vector3<f64> = parts.iter().map(|part| part.linear).sum();
+            let angular: Vector3<f64> = parts.iter().map(|part| part.angular).sum();
+            (root_from_base * linear, root_from_base * angular)
+        };
+        let [(by_radial, radial), (by_tangential, tangential)] =
+            [0, 1].map(|k| answer(g.base_from_root.column(k).into_owned()));
+        let (rr, rt, rz) = (by_radial.x, by_radial.y, by_radial.z);
+        Self { rr, rt, rz, tt: by_tangential.y, tz: by_tangential.z, radial, tangential }
+    }
+}
+
 /// The fields of one state. Out of reach, the room is NaN and the first field says by how much (m).
 fn state(
     problem: &Problem,
@@ -94,57 +154,25 @@ fn state(
     };
     let frames = Frames::new(robot, &joints);
     let tip = g.root_in_base + g.base_from_root * Vector3::new(radius, 0.0, height);
-    let compliances = robot.compliances_at(&joints);
-    let (mut rr, mut tt, mut rt, mut rz, mut tz) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    let (mut radial, mut tangential) = (Vector3::zeros(), Vector3::zeros());
-    let root_from_base = g.base_from_root.transpose();
-    if problem.yields_beside() {
-        // All but axis 1 and base: with the load in the base frame, radial and tangential.
-        let behind_first = std::array::from_fn(|j| if j == 0 { 0.0 } else { compliances[j] });
-        let arm = WholeArm::new(robot, &problem.spindle, &frames, behind_first, tip);
-        let answer = |force: Vector3<f64>| {
-            let ByOrigin { axes, normal, mount, tip, .. } = arm.by_origin(&force, &Vector3::zeros());
-            let parts = [axes, normal, mount, tip];
-            let linear: Vector3<f64> = parts.iter().map(|part| part.linear).sum();
-            let angular: Vector3<f64> = parts.iter().map(|part| part.angular).sum();
-            (root_from_base * linear, root_from_base * angular)
-        };
-        let [(by_radial, about_radial), (by_tangential, about_tangential)] =
-            [0, 1].map(|k| answer(g.base_from_root.column(k).into_owned()));
-        (rr, rt, rz) = (by_radial.x, by_radial.y, by_radial.z);
-        (tt, tz) = (by_tangential.y, by_tangential.z);
-        (radial, tangential) = (about_radial, about_tangential);
-    }
-    let axial_alone = if problem.yields_beside() { 6..6 } else { 1..6 };
-    for j in axial_alone {
-        let (velocity, axis) = frames.twist_yielding(j, &tip);
-        let v = root_from_base * velocity;
-        let k = compliances[j];
-        rr += k * v.x * v.x;
-        tt += k * v.y * v.y;
-        rt += k * v.x * v.y;
-        rz += k * v.x * v.z;
-        tz += k * v.y * v.z;
-        if shape.parts.moment {
-            let axis = root_from_base * axis;
-            radial += axis * (k * v.x);
-            tangential += axis * (k * v.y);
-        }
-    }
+    let by = if problem.yields_beside() {
+        HorizontalForces::of_whole_arm(problem, &frames, &joints, tip)
+    } else {
+        HorizontalForces::of_axes(robot, &frames, &joints, &tip, shape.parts.moment)
+    };
     let condition = inverse_condition(&frames, &tip, problem.constraints.characteristic_length);
     // In squares, which run straight through the limit of the reach, where 1/kappa comes to nothing like a root.
     let bound = problem.constraints.min_inverse_condition;
     let conditioned = (condition * condition - bound * bound) / (2.0 * bound.max(MIN_SLOPE));
-    values[field::MEAN] = 0.5 * (rr + tt);
-    values[field::DIFFERENCE] = 0.5 * (rr - tt);
-    values[field::MIXED] = rt;
+    values[field::MEAN] = 0.5 * (by.rr + by.tt);
+    values[field::DIFFERENCE] = 0.5 * (by.rr - by.tt);
+    values[field::MIXED] = by.rt;
     values[field::ROOM] = conditioned.min(joint_room(robot, &joints)).min(MAX_ROOM);
     if shape.parts.vertical {
-        values[field::VERTICAL] = rz;
-        values[field::VERTICAL + 1] = tz;
+        values[field::VERTICAL] = by.rz;
+        values[field::VERTICAL + 1] = by.tz;
     }
     if shape.parts.moment {
-        let all = radial.iter().chain(&tangential);
+        let all = by.radial.iter().chain(&by.tangential);
         values[shape.moment()..].iter_mut().zip(all).for_each(|(value, part)| *value = *part);
     }
     if shape.parts.first_joint {

@@ -140,7 +140,9 @@ impl LongPath {
             let mut deciding = Vec::new();
             let mut is_refused = false;
             for (sense, found) in found.iter_mut() {
-                is_refused |= self.promote(&whole, sense, found, settings.basins, &mut deciding, monitor);
+                let (is_first_refused, points) = self.promote(&whole, sense, found, settings.basins, monitor);
+                is_refused |= is_first_refused;
+                deciding.extend(points);
             }
             self.comparison.add_deciding(&deciding);
             let is_larger = self.search.add(&deciding);
@@ -196,18 +198,18 @@ impl LongPath {
     }
 
     /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct
-    /// basins, at most `basins`; returns whether the first has none. Candidates for the best placement that a subset
-    /// judged better than the whole path does are improved on a subset that knows the points in their way, and planned
-    /// again.
+    /// basins, at most `basins`; returns whether the first has none, and the points that decided. Candidates for the best
+    /// placement that a subset judged better than the whole path does are improved on a subset that knows the points in
+    /// their way, and planned again.
     fn promote(
         &mut self,
         whole: &WholePath<'_, '_>,
         sense: Sense,
         found: &mut SearchResult,
         basins: usize,
-        deciding: &mut Vec<usize>,
         monitor: &Monitor,
-    ) -> bool {
+    ) -> (bool, Vec<usize>) {
+        let mut deciding = Vec::new();
         found.basins.truncate(PROMOTED * basins);
         let mut candidates = std::mem::take(&mut found.basins);
         let mut allowed = Vec::new();
@@ -241,7 +243,7 @@ impl LongPath {
             found.evaluations += candidates.len();
         }
         found.basins = search::distinct(&self.search.of(whole.problem()), &allowed, basins);
-        is_refused.unwrap_or_default()
+        (is_refused.unwrap_or_default(), deciding)
     }
 
     /// Candidates as the subset for the refinement has them; those of which it differs are improved there.

@@ -56,7 +56,8 @@ impl Sets {
         sets
     }
 
-    fn basin(&self, problem: &Problem, Planned { solution, .. }: &Planned) -> SetBasin {
+    fn basin(&self, problem: &Problem, planned: &Planned) -> SetBasin {
+        let solution = &planned.solution;
         let plan = detailed(problem, &solution.placement, &solution.plans);
         let regrets = self.alone.iter().filter_map(|(alone, best)| {
             SetOutcome { mean: mean_by(alone, &solution.placement, &plan), alone: *best }.regret()

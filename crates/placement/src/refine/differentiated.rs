@@ -22,8 +22,32 @@ pub(super) struct DifferentiatedSet {
     pub parts: Vec<Dual<LOCAL>>,
 }
 
-/// The state at `at` (x, y, z in m, yaw, beta in rad) with its gradient in scaled variables.
-pub(super) fn gradient(problem: &Problem, point: usize, at: [f64; LOCAL], posture: Posture) -> Option<Differentiated> {
+/// A state of a path point by its variables.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PointState {
+    pub point: usize,
+    /// x, y, z in m, yaw and beta in rad.
+    pub at: [f64; LOCAL],
+    pub posture: Posture,
+}
+
+impl PointState {
+    /// The same with one of the variables moved by a step, in scaled units.
+    pub fn moved(mut self, variable: usize, step: f64) -> Self {
+        self.at[variable] += step * UNITS[variable];
+        self
+    }
+
+    /// Placement and beta (rad).
+    pub fn split(&self) -> (Placement, f64) {
+        let [x, y, z, yaw, beta] = self.at;
+        (Placement::from([x, y, z, yaw]), beta)
+    }
+}
+
+/// A state with its gradient in scaled variables.
+pub(super) fn gradient(problem: &Problem, state: PointState) -> Option<Differentiated> {
+    let PointState { point, at, posture } = state;
     let variables: [Dual<LOCAL>; LOCAL] = std::array::from_fn(|k| {
         let mut variable = Dual::variable(at[k], k);
         variable.gradient[k] = UNITS[k];

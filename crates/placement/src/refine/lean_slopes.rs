@@ -2,9 +2,8 @@
 //! leaning a little otherwise, beta counting from the feed as it is seen from each of these axes.
 
 use super::LOCAL;
-use super::differentiated::{Differentiated, DifferentiatedSet, Followed, gradient};
+use super::differentiated::{Differentiated, DifferentiatedSet, Followed, PointState, gradient};
 use nalgebra::{Matrix2, Matrix5, SMatrix, SymmetricEigen};
-use stead_model::robot::Posture;
 use stead_model::task::ToolPath;
 use stead_model::task::lean::Lean;
 use stead_numerics::scalar::Dual;
@@ -63,17 +62,17 @@ impl LeanNeighbours {
         Some(Self { problems: NEIGHBOURS.map(at) })
     }
 
-    /// The slopes at a point (x, y, z in m, yaw, beta in rad) in a posture, of which vectors whose kink is not near are
-    /// left out here; none where a neighbour is out of reach.
+    /// The slopes at a state, of which vectors whose kink is not near are left out here; none where a neighbour is out
+    /// of reach.
     pub fn slopes(
         &self,
-        (point, at, posture): (usize, [f64; LOCAL], Posture),
+        state: PointState,
         followed: &Followed,
         centre: &Differentiated,
         raw: Option<&Matrix5<f64>>,
     ) -> Option<LeanSlopes> {
         let there: Vec<Differentiated> =
-            self.problems.iter().map(|problem| gradient(problem, point, at, posture)).collect::<Option<_>>()?;
+            self.problems.iter().map(|problem| gradient(problem, state)).collect::<Option<_>>()?;
         let slope =
             |of: &dyn Fn(&Differentiated) -> f64| [0, 2].map(|k| (of(&there[k]) - of(&there[k + 1])) / (2.0 * STEP));
         let entries = |set: usize, of: &dyn Fn(&DifferentiatedSet) -> &Vec<Dual<LOCAL>>| {
@@ -144,7 +143,7 @@ pub(super) fn moved_leans(problem: &Problem, steps: &[[f64; 2]]) -> Option<Vec<L
     let path = problem.task.upright().path();
     let moved = |(point, (lean, step)): (usize, (&Lean, &[f64; 2]))| {
         let to = space.ranges[point].nearest(&Lean { lead: lean.lead + step[0], tilt: lean.tilt + step[1] });
-        allowed_towards(space, path, point, [lean, &to])
+        allowed_towards(space, path, point, lean, &to)
     };
     let leans: Vec<Lean> = problem.setup.leans.iter().zip(steps).enumerate().map(moved).collect::<Option<_>>()?;
     let mut steps = path.segments().iter().flat_map(|span| span.clone().skip(1));
@@ -153,7 +152,7 @@ pub(super) fn moved_leans(problem: &Problem, steps: &[[f64; 2]]) -> Option<Vec<L
 
 /// A lean near one that is wanted, if that is not allowed: on the way to it from the axis of the path, or where that is
 /// not allowed either, from the lean that is known. Along a limit that is curved a straight step leaves by its square.
-fn allowed_towards(space: &LeanSpace, path: &ToolPath, point: usize, [known, to]: [&Lean; 2]) -> Option<Lean> {
+fn allowed_towards(space: &LeanSpace, path: &ToolPath, point: usize, known: &Lean, to: &Lean) -> Option<Lean> {
     if space.allows(path, point, to) {
         return Some(*to);
     }

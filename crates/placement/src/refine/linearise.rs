@@ -1,13 +1,12 @@
 //! First derivatives of everything that the subproblem needs, exact but those of distances, and the curvature of the
 //! scores.
 
-use super::differentiated::{Differentiated, DifferentiatedSet, Followed, gradient};
+use super::differentiated::{Differentiated, DifferentiatedSet, Followed, PointState, gradient};
 use super::lean_slopes::{LeanNeighbours, LeanSlopes};
 use super::slacks::{Slack, slacks};
-use super::{LOCAL, Solution, UNITS};
+use super::{LOCAL, Solution};
 use nalgebra::{Matrix5, SymmetricEigen};
 use rayon::prelude::*;
-use stead_model::robot::Posture;
 use stead_numerics::scalar::{Dual, Scalar};
 use stead_planning::redundancy::SegmentPlan;
 use stead_problem::evaluate::reference::State;
@@ -68,69 +67,66 @@ const MIN_SHARE: usize = 200;
 /// All path points of a solution, in order, with as much curvature as requested and the shapes that have less slack
 /// than a limit (m); `None` when one cannot be reached, which a solution rules out.
 pub fn linearise(problem: &Problem, solution: &Solution, order: Curvature, within: f64) -> Option<Vec<Local>> {
-    of_all(problem, solution, order, within, None)
+    Linearisation { problem, order, within, leaning: None }.of_all(solution)
 }
 
 /// The same with how they change with lead and tilt, where the tool of the problem leans.
 pub fn linearise_leaning(problem: &Problem, solution: &Solution, order: Curvature, within: f64) -> Option<Vec<Local>> {
-    of_all(problem, solution, order, within, LeanNeighbours::of(problem).as_ref())
+    let leaning = LeanNeighbours::of(problem);
+    Linearisation { problem, order, within, leaning: leaning.as_ref() }.of_all(solution)
 }
 
-fn of_all(
-    problem: &Problem,
-    solution: &Solution,
+/// What is linearised of every path point.
+struct Linearisation<'a> {
+    problem: &'a Problem,
     order: Curvature,
+    /// The slack of shapes that count. m
     within: f64,
-    leaning: Option<&LeanNeighbours>,
-) -> Option<Vec<Local>> {
-    let of_plan = |plan: &'_ SegmentPlan| {
-        let points: Vec<usize> = plan.points.clone().collect();
-        let local = |(place, point): (usize, usize)| {
-            local(problem, &solution.placement, plan, (place, point), order, within, leaning)
+    /// The tool leaning otherwise, where that matters.
+    leaning: Option<&'a LeanNeighbours>,
+}
+
+impl Linearisation<'_> {
+    fn of_all(&self, solution: &Solution) -> Option<Vec<Local>> {
+        let of_plan = |plan: &'_ SegmentPlan| {
+            let places = (0..plan.points.len()).into_par_iter().with_min_len(MIN_SHARE);
+            places.map(|place| self.local(&solution.placement, plan, place)).collect::<Option<Vec<_>>>()
         };
-        points.into_par_iter().enumerate().with_min_len(MIN_SHARE).map(local).collect::<Option<Vec<_>>>()
-    };
-    let plans: Option<Vec<_>> = solution.plans.par_iter().map(of_plan).collect();
-    plans.map(|plans| plans.into_iter().flatten().collect())
-}
+        let plans: Option<Vec<_>> = solution.plans.par_iter().map(of_plan).collect();
+        plans.map(|plans| plans.into_iter().flatten().collect())
+    }
 
-/// A path point of a plan, linearised.
-fn local(
-    problem: &Problem,
-    placement: &Placement,
-    plan: &SegmentPlan,
-    (place, point): (usize, usize),
-    order: Curvature,
-    within: f64,
-    leaning: Option<&LeanNeighbours>,
-) -> Option<Local> {
-    let at = [placement.x, placement.y, placement.z, placement.yaw, plan.betas[place]];
-    let posture = plan.posture;
-    let mut centre = gradient(problem, point, at, posture)?;
-    for set in &mut centre.sets {
-        for kinked in [&mut set.changes, &mut set.parts] {
-            if !is_near_kink(kinked) {
-                kinked.clear();
+    /// A place of a plan.
+    fn local(&self, placement: &Placement, plan: &SegmentPlan, place: usize) -> Option<Local> {
+        let Self { problem, order, within, leaning } = *self;
+        let at = [placement.x, placement.y, placement.z, placement.yaw, plan.betas[place]];
+        let state = PointState { point: plan.points.start + place, at, posture: plan.posture };
+        let mut centre = gradient(problem, state)?;
+        for set in &mut centre.sets {
+            for kinked in [&mut set.changes, &mut set.parts] {
+                if !is_near_kink(kinked) {
+                    kinked.clear();
+                }
             }
         }
+        let followed = Followed::of(problem, &centre);
+        let raw = second_derivatives(problem, state, &followed, &centre, order);
+        let may_lean = problem.lean.as_deref().is_some_and(|space| !space.ranges[state.point].is_none());
+        let neighbours = leaning.filter(|_| may_lean);
+        let leaning = neighbours.and_then(|neighbours| {
+            let raw = raw.as_ref().filter(|_| order == Curvature::Full);
+            neighbours.slopes(state, &followed, &centre, raw)
+        });
+        let curvature = raw.map_or_else(Matrix5::zeros, |raw| convex(&raw, order));
+        let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
+            let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
+            LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
+        });
+        let ahead = neighbours.map(LeanNeighbours::ahead);
+        let slacks = slacks(problem, ahead, state, within);
+        let (sets, joints) = (sets.collect(), plan.joints[place]);
+        Some(Local { state: centre.state, sets, joints, slacks, curvature, leaning })
     }
-    let followed = Followed::of(problem, &centre);
-    let raw = second_derivatives(problem, point, at, posture, &followed, &centre, order);
-    let may_lean = problem.lean.as_deref().is_some_and(|space| !space.ranges[point].is_none());
-    let neighbours = leaning.filter(|_| may_lean);
-    let leaning = neighbours.and_then(|neighbours| {
-        let raw = raw.as_ref().filter(|_| order == Curvature::Full);
-        neighbours.slopes((point, at, posture), &followed, &centre, raw)
-    });
-    let curvature = raw.map_or_else(Matrix5::zeros, |raw| convex(&raw, order));
-    let sets = centre.sets.into_iter().map(|DifferentiatedSet { score, changes, parts }| {
-        let margin = if changes.is_empty() { score.margin } else { Dual::constant(0.0) };
-        LocalScore { scored: score.scored, added: score.uncertainty + margin, changes, parts }
-    });
-    let ahead = neighbours.map(LeanNeighbours::ahead);
-    let slacks = slacks(problem, ahead, point, plan.betas[place], placement, posture, within);
-    let (sets, joints) = (sets.collect(), plan.joints[place]);
-    Some(Local { state: centre.state, sets, joints, slacks, curvature, leaning })
 }
 
 /// A norm that steps of this size could bring to zero has its kink near; in scaled variables.
@@ -148,9 +144,7 @@ fn is_near_kink(changes: &[Dual<LOCAL>]) -> bool {
 /// Differences of exact gradients, as many as requested.
 fn second_derivatives(
     problem: &Problem,
-    point: usize,
-    at: [f64; LOCAL],
-    posture: Posture,
+    state: PointState,
     followed: &Followed,
     centre: &Differentiated,
     order: Curvature,
@@ -162,9 +156,7 @@ fn second_derivatives(
     };
     let mut hessian = Matrix5::zeros();
     for k in from..LOCAL {
-        let mut moved = at;
-        moved[k] += CURVATURE_STEP * UNITS[k];
-        let there = gradient(problem, point, moved, posture)?;
+        let there = gradient(problem, state.moved(k, CURVATURE_STEP))?;
         for j in 0..LOCAL {
             hessian[(j, k)] = (followed.slope(&there, j) - followed.slope(centre, j)) / CURVATURE_STEP;
         }

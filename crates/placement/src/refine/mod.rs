@@ -106,35 +106,22 @@ pub fn refine(
     let problem = planner.problem();
     let mut workspace = planner.workspace();
     let mut best = planned(planner, start, scheme, &mut workspace)?;
-    let mut report = Refinement {
-        sense,
-        start: best.placement,
-        start_mean: best.objective,
-        end: best.placement,
-        end_mean: best.objective,
-        rounds: 0,
-        iterations: 0,
-        kkt_residual: None,
-        statuses: Vec::new(),
-    };
-    let is_cancelled = |solution: &Solution| solution.objective <= CANCELLATION;
+    let mut report = begun(sense, &best);
     if is_cancelled(&best) {
         report.statuses.push(RefinementStatus::Cancelled);
     }
     while report.rounds < ROUNDS && !is_cancelled(&best) && !monitor.should_stop() {
         report.rounds += 1;
-        let before = best.objective;
-        let signature = signature(&best);
-        let (status, iterations) = match sense {
+        let (before, signature) = (best.objective, signature(&best));
+        let (status, iterations);
+        (best, status, iterations) = match sense {
             Sense::Min => {
                 let run = solver::run(problem, &best, solver::Ending::TIGHT, monitor);
-                best = run.solution;
-                (run.status, run.iterations)
+                (run.solution, run.status, run.iterations)
             }
             Sense::Max => {
                 let run = ascent::run(planner, &best, scheme, &mut workspace, monitor);
-                best = run.solution;
-                (run.status, run.iterations)
+                (run.solution, run.status, run.iterations)
             }
         };
         report.iterations += iterations;
@@ -157,19 +144,49 @@ pub fn refine(
             }
         }
     }
-    report.kkt_residual = match sense {
-        _ if monitor.should_stop() => None,
-        // At zero deflection the residual is zero by definition.
-        _ if is_cancelled(&best) => Some(0.0),
-        Sense::Min => Some(subproblem::kkt_residual(problem, &best)),
-        Sense::Max => ascent::kkt_residual(planner, &best, scheme, monitor),
-    };
+    report.kkt_residual = kkt_residual(planner, &best, sense, scheme, monitor);
     if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
         report.statuses.push(RefinementStatus::Interrupted);
     }
     report.end = best.placement;
     report.end_mean = best.objective;
     Some((best, report))
+}
+
+/// The report of a refinement at its start.
+fn begun(sense: Sense, start: &Solution) -> Refinement {
+    Refinement {
+        sense,
+        start: start.placement,
+        start_mean: start.objective,
+        end: start.placement,
+        end_mean: start.objective,
+        rounds: 0,
+        iterations: 0,
+        kkt_residual: None,
+        statuses: Vec::new(),
+    }
+}
+
+/// Whether the deflections cancel all along the path.
+fn is_cancelled(solution: &Solution) -> bool {
+    solution.objective <= CANCELLATION
+}
+
+/// The KKT residual of a solution, zero by definition where the deflection is; none once the caller asks to stop.
+fn kkt_residual(
+    planner: &Planner<'_>,
+    solution: &Solution,
+    sense: Sense,
+    scheme: Option<&[Posture]>,
+    monitor: &Monitor,
+) -> Option<f64> {
+    match sense {
+        _ if monitor.should_stop() => None,
+        _ if is_cancelled(solution) => Some(0.0),
+        Sense::Min => Some(subproblem::kkt_residual(planner.problem(), solution)),
+        Sense::Max => ascent::kkt_residual(planner, solution, scheme, monitor),
+    }
 }
 
 /// Distances of the neighbours that are planned anew before a refinement ends, in scaled variables.

@@ -2,6 +2,7 @@
 
 use super::linearise::Local;
 use clarabel::algebra::CscMatrix;
+use std::ops::RangeInclusive;
 use stead_problem::limit::{Limit, Side};
 
 /// Coefficients of inequalities `row . x <= bound`.
@@ -27,7 +28,15 @@ impl Rows {
     }
 
     /// `low <= terms <= high` at a point, each side only if a change of at most `swing` can reach it.
-    pub fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64, swing: f64) {
+    pub fn add_between(
+        &mut self,
+        limit: Limit,
+        point: usize,
+        terms: &[(usize, f64)],
+        range: RangeInclusive<f64>,
+        swing: f64,
+    ) {
+        let (low, high) = range.into_inner();
         if high < swing {
             self.bounds.push((self.bound.len(), (Side { limit, is_upper: true }, point)));
             self.add(terms.iter().copied(), high);

@@ -4,7 +4,8 @@
 //! to first order exactly, unless they are as near elsewhere too. Slopes are differences between the state and states
 //! moved a little.
 
-use super::{LOCAL, UNITS};
+use super::LOCAL;
+use super::differentiated::PointState;
 use nalgebra::Vector4;
 use stead_cell::{Near, PairKind, Poses, Scene};
 use stead_model::robot::Posture;
@@ -53,24 +54,22 @@ const KEPT: f64 = 1e-6;
 pub(super) fn slacks(
     problem: &Problem,
     leaning: Option<([&Problem; 2], f64)>,
-    point: usize,
-    beta: f64,
-    placement: &Placement,
-    posture: Posture,
+    state: PointState,
     within: f64,
 ) -> Vec<Slack> {
     let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
-    let kinds = if problem.axes_moved_to(point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
-    let poses_in = |problem: &Problem, placement: &Placement, beta: f64| {
-        let joints = problem.robot.inverse(&problem.at(placement).base_from_flange(point, beta), posture).ok()?;
-        Some(problem.poses(scene, point, placement, &joints))
+    let kinds = if problem.axes_moved_to(state.point) { &PairKind::ALL[..] } else { &PairKind::OF_STATES };
+    let poses_in = |problem: &Problem, state: PointState| {
+        let (placement, beta) = state.split();
+        let flange = problem.at(&placement).base_from_flange(state.point, beta);
+        let joints = problem.robot.inverse(&flange, state.posture).ok()?;
+        Some(problem.poses(scene, state.point, &placement, &joints))
     };
-    let poses = |placement: &Placement, beta: f64| poses_in(problem, placement, beta);
     let leaned = || match leaning {
-        Some((ahead, step)) => ahead.map(|problem| poses_in(problem, placement, beta).map(|there| (there, step))),
+        Some((ahead, step)) => ahead.map(|problem| poses_in(problem, state).map(|there| (there, step))),
         None => [None, None],
     };
-    linearised(scene, kinds, within, placement, beta, poses, leaned)
+    linearised(scene, kinds, within, state, |state| poses_in(problem, state), leaned)
 }
 
 /// The slacks of the part against what stands in the cell, which depend on the placement alone.
@@ -78,33 +77,29 @@ pub(super) fn placement_rooms(problem: &Problem, placement: &Placement) -> Vec<S
     let Some(scene) = problem.scene.as_deref() else { return Vec::new() };
     let joints = problem.robot.mid_range();
     let at = |point| {
-        let poses = |placement: &Placement, _: f64| Some(problem.poses(scene, point, placement, &joints));
-        linearised(scene, &[PairKind::WorkpieceCell], NEAR_STEPS, placement, 0.0, poses, || [None, None])
+        let at = [placement.x, placement.y, placement.z, placement.yaw, 0.0];
+        let state = PointState { point, at, posture: Posture::ALL[0] };
+        let poses = |state: PointState| Some(problem.poses(scene, point, &state.split().0, &joints));
+        linearised(scene, &[PairKind::WorkpieceCell], NEAR_STEPS, state, poses, || [None, None])
     };
     problem.points_after_axes_moved().flat_map(at).collect()
 }
 
-/// The pairs with little slack at a placement and beta, with the slopes of that slack.
+/// The pairs with little slack in a state, with the slopes of that slack.
 fn linearised(
     scene: &Scene,
     kinds: &[PairKind],
     within: f64,
-    placement: &Placement,
-    beta: f64,
-    poses: impl Fn(&Placement, f64) -> Option<Poses>,
+    state: PointState,
+    poses: impl Fn(PointState) -> Option<Poses>,
     leaned: impl Fn() -> [Option<(Poses, f64)>; 2],
 ) -> Vec<Slack> {
-    let Some(here) = poses(placement, beta) else { return Vec::new() };
+    let Some(here) = poses(state) else { return Vec::new() };
     let near = scene.near(&here, kinds, within);
     if near.is_empty() {
         return Vec::new();
     }
-    let moved = |k: usize, step: f64| {
-        let mut moved = *placement;
-        let mut turned = beta;
-        *(if k < 4 { &mut moved[k] } else { &mut turned }) += step * UNITS[k];
-        poses(&moved, turned).map(|there| (there, step))
-    };
+    let moved = |k: usize, step: f64| poses(state.moved(k, step)).map(|there| (there, step));
     // At the end of the reach there is a state on one side alone.
     let moved: [_; LOCAL] = std::array::from_fn(|k| moved(k, STEP).or_else(|| moved(k, -STEP)));
     let leaned = leaned();

@@ -160,6 +160,6 @@ impl Build<'_> {
     /// safety.
     pub fn add_between(&mut self, limit: Limit, point: usize, terms: &[(usize, f64)], low: f64, high: f64) {
         let swing = 2.0 * self.request.trust * terms.iter().map(|(_, v)| v.abs()).sum::<f64>();
-        self.rows.add_between(limit, point, terms, low, high, swing);
+        self.rows.add_between(limit, point, terms, low..=high, swing);
     }
 }

@@ -5,7 +5,7 @@ mod tolerance;
 
 pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances};
 
-use crate::case::{Case, Plan};
+use crate::case::{Case, Plan, PlanPoint};
 use nalgebra::Vector3;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid};
@@ -161,41 +161,16 @@ impl SetupSheet {
         let (placement, plan) = (&case.placement, &case.plan);
         let robot = &problem.robot;
         let root_from_base = robot.controller().and_then(|controller| controller.root_from_base);
-        let is_carried = problem.external_axes.iter().any(|axis| axis.carries == Carried::Robot);
-        let upright = root_from_base.filter(|root| root.rotation[(2, 2)].abs() > 1.0 - 1e-9);
-        let (frame, sheet_from_cell) = match upright {
-            _ if robot.is_mounted() || is_carried => (SheetFrame::Cell, Pose::identity()),
-            Some(root) => (SheetFrame::Root, root),
-            None => (SheetFrame::Base, Pose::identity()),
-        };
+        let (frame, sheet_from_cell) = frame(problem);
         let all_at_zero = placement.base_from_workpiece();
         let part = Pose {
             rotation: all_at_zero.rotation
                 * problem.orientation().map_or(nalgebra::Matrix3::identity(), |of| of.rotation),
             ..all_at_zero
         };
-        let cell_from_base =
-            |point: usize| carried(&problem.external_axes, problem.axis_positions(point), Carried::Robot);
         let base_from_root = root_from_base.map_or_else(Pose::identity, |root| root.inverse());
-        let stands = cell_from_base(0).then(&robot.cell_from_base()).then(&base_from_root);
-        let check = |point: &usize| {
-            let of = plan.points.get(*point)?;
-            // With a mounted robot positions are in the cell frame, as it is with all axes at zero.
-            let tool = robot.forward(&of.joints).then(&problem.spindle.flange_from_tool);
-            let in_root = robot.controller_root_from_cell().filter(|_| frame != SheetFrame::Root);
-            let counted = robot.controller().map(|controller| (controller, controller.angles(robot, &of.joints)));
-            let kuka = counted.filter(|(controller, _)| controller.kind == ControllerKind::Kuka);
-            Some(CheckPoint {
-                point: of.point,
-                tool: sheet_from_cell.then(&cell_from_base(of.point)).then(&tool),
-                in_root: in_root.map(|root| root.then(&tool)),
-                joints: of.joints,
-                controller: counted.map(|(_, angles)| angles),
-                status_and_turn: kuka
-                    .map(|(controller, angles)| kuka_status_and_turn(of.posture, controller.sign[2], &angles)),
-                axes: problem.axis_positions(of.point).to_vec(),
-            })
-        };
+        let cell_from_base = carried(&problem.external_axes, problem.axis_positions(0), Carried::Robot);
+        let stands = cell_from_base.then(&robot.cell_from_base()).then(&base_from_root);
         let tolerances = match monitor.should_stop() {
             true => Err(INTERRUPTED.to_owned()),
             false => tolerances(problem, case, sheet_from_cell.rotation.transpose(), monitor),
@@ -210,7 +185,10 @@ impl SetupSheet {
             cutter_diameter: problem.segment_moves.cutter_diameter,
             floor: floor(problem).map(|height| sheet_from_cell.point(&Vector3::new(0.0, 0.0, height)).z),
             axes: axes(problem, plan, &sheet_from_cell),
-            check_points: order.iter().filter_map(check).collect(),
+            check_points: order
+                .iter()
+                .filter_map(|point| Some(check_point(problem, plan.points.get(*point)?, frame, &sheet_from_cell)))
+                .collect(),
             ways,
             room_on_moves: room_on_moves(problem, case),
             has_shapes: problem.scene.is_some(),
@@ -218,6 +196,39 @@ impl SetupSheet {
             tolerances,
             sheet_from_cell,
         }
+    }
+}
+
+/// The frame of a sheet, and its pose.
+fn frame(problem: &Problem) -> (SheetFrame, Pose<f64>) {
+    let robot = &problem.robot;
+    let root_from_base = robot.controller().and_then(|controller| controller.root_from_base);
+    let is_carried = problem.external_axes.iter().any(|axis| axis.carries == Carried::Robot);
+    let upright = root_from_base.filter(|root| root.rotation[(2, 2)].abs() > 1.0 - 1e-9);
+    match upright {
+        _ if robot.is_mounted() || is_carried => (SheetFrame::Cell, Pose::identity()),
+        Some(root) => (SheetFrame::Root, root),
+        None => (SheetFrame::Base, Pose::identity()),
+    }
+}
+
+/// A state of the plan as the controller shows it.
+fn check_point(problem: &Problem, of: &PlanPoint, frame: SheetFrame, sheet_from_cell: &Pose<f64>) -> CheckPoint {
+    let robot = &problem.robot;
+    // With a mounted robot positions are in the cell frame, as it is with all axes at zero.
+    let tool = robot.forward(&of.joints).then(&problem.spindle.flange_from_tool);
+    let in_root = robot.controller_root_from_cell().filter(|_| frame != SheetFrame::Root);
+    let counted = robot.controller().map(|controller| (controller, controller.angles(robot, &of.joints)));
+    let kuka = counted.filter(|(controller, _)| controller.kind == ControllerKind::Kuka);
+    let cell_from_base = carried(&problem.external_axes, problem.axis_positions(of.point), Carried::Robot);
+    CheckPoint {
+        point: of.point,
+        tool: sheet_from_cell.then(&cell_from_base).then(&tool),
+        in_root: in_root.map(|root| root.then(&tool)),
+        joints: of.joints,
+        controller: counted.map(|(_, angles)| angles),
+        status_and_turn: kuka.map(|(controller, angles)| kuka_status_and_turn(of.posture, controller.sign[2], &angles)),
+        axes: problem.axis_positions(of.point).to_vec(),
     }
 }
 

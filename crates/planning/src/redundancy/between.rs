@@ -67,12 +67,13 @@ pub(super) struct RunCosts {
     data: Vec<f64>,
     changes: usize,
     stride: usize,
+    instructions: Instructions,
 }
 
 impl RunCosts {
     /// For so many changes, and rows as long as those of the states.
-    pub fn new(changes: usize, stride: usize) -> Self {
-        Self { data: vec![0.0; 4 * changes * stride], changes, stride }
+    pub fn new(changes: usize, stride: usize, instructions: Instructions) -> Self {
+        Self { data: vec![0.0; 4 * changes * stride], changes, stride, instructions }
     }
 
     /// The costs of a class for changes from `min` upwards.
@@ -89,12 +90,11 @@ impl RunCosts {
         offsets: impl Iterator<Item = f64>,
         is_first: bool,
         joining: Joining,
-        instructions: Instructions,
     ) {
         let size = self.changes * self.stride;
         let rows = self.data[class.index() * size..][..size].chunks_exact_mut(self.stride);
         for (costs, offset) in rows.zip(offsets) {
-            instructions.run(Add { costs, row, offset, is_first, joining });
+            self.instructions.run(Add { costs, row, offset, is_first, joining });
         }
     }
 }

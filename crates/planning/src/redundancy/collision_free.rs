@@ -7,7 +7,10 @@
 //! as there are states with whole ones. Both flips of the wrist count as one: a state is forbidden where that of the
 //! plan hits.
 
+use super::forbid::Forbidding;
 use super::joint_turns::SegmentChoice;
+use super::segment_planner::Request;
+use super::until_free::{Lazy, until_free};
 use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace, joint_turns, off_grid};
 use crate::transfer_path::whole_lines;
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,48 +53,219 @@ pub fn settled_among_free(
     kept: Kept,
     plan: &SegmentPlan,
 ) -> SegmentPlan {
-    let count = plan.points.len();
-    let lines = kept.lines;
-    let refined = |watched: &[off_grid::Watch]| {
-        let mut refined = plan.clone();
-        off_grid::refine(problem, placement, sense, spacing, watched, &mut refined);
-        refined
-    };
-    let watch = |place: usize, held: bool| off_grid::Watch {
-        collisions: true,
-        line: (place == 0 && lines[0]) || (place + 1 == count && lines[1]),
-        held,
-    };
-    let mut watched = vec![off_grid::Watch::default(); count];
-    for round in 0..=WATCHES {
-        let refined = refined(&watched);
+    let watched = vec![off_grid::Watch::default(); plan.points.len()];
+    let mut settling = Settling { problem, placement, sense, spacing, kept, plan, watched, round: 0 };
+    match until_free(&mut settling, WATCHES + 1) {
+        Ok((settled, is_free)) if is_free || !kept.moves => settled,
+        Ok(_) => plan.clone(),
+        Err(never) => match never {},
+    }
+}
+
+/// A plan that is taken off the grid with more and more of its states watched.
+struct Settling<'a> {
+    problem: &'a Problem,
+    placement: &'a Placement,
+    sense: Sense,
+    spacing: off_grid::Spacing,
+    kept: Kept,
+    plan: &'a SegmentPlan,
+    /// By the places of the plan.
+    watched: Vec<off_grid::Watch>,
+    round: usize,
+}
+
+impl Settling<'_> {
+    /// Watches a place of the plan.
+    fn watch(&mut self, place: usize) {
+        let lines = self.kept.lines;
+        self.watched[place] = off_grid::Watch {
+            collisions: true,
+            line: (place == 0 && lines[0]) || (place + 1 == self.watched.len() && lines[1]),
+            held: self.watched[place].held,
+        };
+    }
+}
+
+impl Lazy for Settling<'_> {
+    type Plan = SegmentPlan;
+    type Refused = std::convert::Infallible;
+
+    fn plan(&mut self) -> Result<SegmentPlan, Self::Refused> {
+        let mut refined = self.plan.clone();
+        off_grid::refine(self.problem, self.placement, self.sense, self.spacing, &self.watched, &mut refined);
+        Ok(refined)
+    }
+
+    fn forbid(&mut self, refined: &SegmentPlan) -> bool {
+        let (count, kept) = (self.watched.len(), self.kept);
         // Places of the plan where something is wrong, and whether beta is held there for that.
         let mut places: Vec<(usize, bool)> = Vec::new();
         if refined.cost.is_finite() {
-            for fault in problem.plan_faults(placement, &refined, kept.moves) {
-                let place = fault.point - plan.points.start;
+            for fault in self.problem.plan_faults(self.placement, refined, kept.moves) {
+                let place = fault.point - self.plan.points.start;
                 places.push((place, fault.is_between));
                 places.extend(fault.is_between.then(|| (place - 1, true)));
             }
-            let whole = whole_lines(problem, placement, &refined);
-            places.extend((lines[0] && !whole[0]).then_some((0, false)));
-            places.extend((lines[1] && !whole[1]).then_some((count - 1, false)));
+            let whole = whole_lines(self.problem, self.placement, refined);
+            places.extend((kept.lines[0] && !whole[0]).then_some((0, false)));
+            places.extend((kept.lines[1] && !whole[1]).then_some((count - 1, false)));
         }
-        if places.is_empty() || (round == WATCHES && !kept.moves) {
-            return refined;
-        }
-        for (place, held) in places {
+        for (place, held) in &places {
             // What hits at one point mostly hits at the next.
-            for place in place.saturating_sub(1)..(place + 2).min(count) {
-                watched[place] = watch(place, watched[place].held);
-            }
-            watched[place].held |= held;
+            (place.saturating_sub(1)..(place + 2).min(count)).for_each(|near| self.watch(near));
+            self.watched[*place].held |= held;
         }
-        if round + 1 == WATCHES {
-            watched = (0..count).map(|place| watch(place, watched[place].held)).collect();
+        self.round += 1;
+        if self.round == WATCHES {
+            (0..count).for_each(|place| self.watch(place));
+        }
+        !places.is_empty()
+    }
+}
+
+/// What is wanted of the plans: that no move asks more of the joints than they can follow, or of the end of a segment
+/// that its line is whole.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Demand {
+    /// So far nothing was forbidden for it.
+    #[default]
+    Met,
+    /// States were forbidden for it.
+    Bound,
+    /// It is given up, since no plan satisfies it.
+    Waived,
+}
+
+/// Plans of all segments in which more and more states are forbidden ([`Planner::collision_free_plans`]).
+struct FreePlans<'s, P> {
+    planner: &'s Planner<'s>,
+    request: Request<'s>,
+    workspace: &'s mut Workspace,
+    /// What makes the plans of some segments.
+    plan: P,
+    /// Of every segment.
+    choices: Vec<Vec<SegmentChoice>>,
+    /// Segments that are planned next.
+    requested: Vec<usize>,
+    /// Plans in which nothing is wrong, as far as they were looked at.
+    free: Vec<Option<SegmentPlan>>,
+    collisions: Collisions,
+    /// How often the move to a point was faulty.
+    faulty: BTreeMap<usize, u32>,
+    moves: Demand,
+    /// The lines at the ends of segments, by their points.
+    lines: BTreeMap<usize, Demand>,
+    round: usize,
+}
+
+impl<P> FreePlans<'_, P> {
+    /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
+    fn lines_in_the_way(&self, none: &NoFeasiblePlan) -> Vec<usize> {
+        let path = self.planner.problem.task.path();
+        let blocked = none.blocked_points.iter().map(|point| path.segment_of(*point));
+        let failed: BTreeSet<usize> = blocked.chain(none.broken_segments.iter().map(|(segment, _)| *segment)).collect();
+        let is_bound = |end: &(&usize, &Demand)| *end.1 == Demand::Bound && failed.contains(&path.segment_of(*end.0));
+        self.lines.iter().filter(is_bound).map(|(point, _)| *point).collect()
+    }
+
+    /// Plans anew as if some demands were none.
+    fn waive(&mut self, lines: &[usize], moves: bool) {
+        self.lines.retain(|_, demand| *demand == Demand::Waived);
+        self.lines.extend(lines.iter().map(|point| (*point, Demand::Waived)));
+        if moves {
+            self.moves = Demand::Waived;
+        }
+        self.workspace.forbidden.clear();
+        self.free.fill(None);
+        self.requested = (0..self.choices.len()).collect();
+    }
+
+    /// Forbids states of a plan in which something is wrong; whether anything is.
+    fn forbid_in(&mut self, plan: &SegmentPlan) -> bool {
+        let checks_moves = self.planner.segments.checks_moves();
+        let mut forbidding = Forbidding {
+            planner: self.planner,
+            placement: self.request.placement,
+            plan,
+            forbidden: &mut self.workspace.forbidden,
+        };
+        let (mut is_free, mut hit) = (true, Vec::new());
+        for fault in self.planner.problem.plan_faults(self.request.placement, plan, checks_moves) {
+            match fault.fault {
+                Fault::Hit(pair) => drop(self.collisions.entry(pair).or_default().insert(fault.point)),
+                Fault::Unfollowed(_) if self.moves == Demand::Waived => continue,
+                Fault::Unfollowed(_) => self.moves = Demand::Bound,
+            }
+            is_free = false;
+            let times = if fault.is_between { self.faulty.entry(fault.point).or_default() } else { &mut 0 };
+            let ends = forbidding.fault(&fault, *times);
+            hit.extend(ends.filter(|_| !fault.is_between).map(|betas| (fault.point, betas)));
+            *times += 1;
+        }
+        forbidding.around(hit);
+        if !is_free || !checks_moves {
+            return !is_free;
+        }
+        let is_waived = |point: usize| self.lines.get(&point) == Some(&Demand::Waived);
+        let short = forbidding.short_lines(is_waived);
+        self.lines.extend(short.iter().map(|point| (*point, Demand::Bound)));
+        !short.is_empty()
+    }
+}
+
+impl<P> Lazy for FreePlans<'_, P>
+where
+    P: FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
+{
+    /// None where demands were given up, so that all is planned anew.
+    type Plan = Option<Vec<SegmentPlan>>;
+    type Refused = NoFeasiblePlan;
+
+    fn plan(&mut self) -> Result<Self::Plan, NoFeasiblePlan> {
+        if self.planner.is_unwanted() {
+            return Err(NoFeasiblePlan::empty());
+        }
+        let found = (self.plan)(self.workspace, &self.requested);
+        let lines = found.as_ref().err().map_or_else(Vec::new, |none| self.lines_in_the_way(none));
+        let is_late = self.round >= FOLLOW_ROUNDS;
+        let waives_moves = self.moves == Demand::Bound && (found.is_err() || is_late);
+        self.round += 1;
+        match found {
+            Err(none) if lines.is_empty() && !waives_moves => {
+                Err(NoFeasiblePlan { collisions: std::mem::take(&mut self.collisions), ..none })
+            }
+            Ok(found) if !waives_moves => {
+                for (segment, found) in self.requested.drain(..).zip(found) {
+                    self.choices[segment] = found;
+                }
+                let choices = self.choices.clone();
+                Ok(Some(joint_turns::select_joint_paths(self.planner.problem, self.request.sense, choices)))
+            }
+            _ => {
+                self.waive(&lines, waives_moves);
+                Ok(None)
+            }
         }
     }
-    plan.clone()
+
+    fn forbid(&mut self, plans: &Self::Plan) -> bool {
+        let Some(plans) = plans else { return true };
+        if self.planner.problem.scene.is_none() && !self.planner.segments.checks_moves() {
+            return false;
+        }
+        for (segment, plan) in plans.iter().enumerate() {
+            if self.free[segment].as_ref() == Some(plan) {
+                continue;
+            }
+            if self.forbid_in(plan) {
+                self.requested.push(segment);
+            } else {
+                self.free[segment] = Some(plan.clone());
+            }
+        }
+        !self.requested.is_empty()
+    }
 }
 
 impl Planner<'_> {
@@ -99,106 +273,42 @@ impl Planner<'_> {
     /// that hit until nothing does.
     pub(super) fn collision_free_plans(
         &self,
-        placement: &Placement,
-        sense: Sense,
+        request: Request<'_>,
         workspace: &mut Workspace,
-        mut plan: impl FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
+        plan: impl FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
-        let all: Vec<usize> = (0..self.problem.task.segments().len()).collect();
+        let count = self.problem.task.segments().len();
         workspace.forbidden.clear();
-        if let Some(pair) = self.problem.placement_hit(placement) {
+        if let Some(pair) = self.problem.placement_hit(request.placement) {
             return Err(self.blocked_by(pair));
         }
-        let is_checked = self.problem.scene.is_some() || self.segments.checks_moves();
-        let mut choices = vec![Vec::new(); all.len()];
-        let mut collisions = Collisions::new();
-        let mut requested = all.clone();
-        // Ends of segments, by their points, at which no state of a plan has a whole line, and those at which some were
-        // forbidden for that.
-        let (mut waived, mut bound) = (BTreeSet::new(), BTreeSet::new());
-        // Plans in which nothing hits, as far as they were looked at.
-        let mut free: Vec<Option<SegmentPlan>> = vec![None; choices.len()];
-        // How often the move to a point was faulty.
-        let mut faulty: BTreeMap<usize, u32> = BTreeMap::new();
-        // Whether states were forbidden for moves that the arm cannot follow, and whether such moves are let pass.
-        let (mut are_moves_bound, mut are_moves_waived) = (false, false);
-        for round in 0..MAX_ROUNDS {
-            if self.is_unwanted() {
-                return Err(NoFeasiblePlan::empty());
-            }
-            let found = plan(workspace, &requested);
-            let lines = found.as_ref().err().map_or_else(Vec::new, |none| self.lines_of(none, &bound));
-            let waives_moves = are_moves_bound && !are_moves_waived && (found.is_err() || round >= FOLLOW_ROUNDS);
-            let found = match found {
-                Err(none) if lines.is_empty() && !waives_moves => return Err(NoFeasiblePlan { collisions, ..none }),
-                Ok(found) if !waives_moves => found,
-                _ => {
-                    // Without a state that has its whole line, or that the arm can go on from, it is planned as if none
-                    // were needed.
-                    bound.clear();
-                    waived.extend(lines);
-                    are_moves_waived |= waives_moves;
-                    workspace.forbidden.clear();
-                    free.fill(None);
-                    requested.clone_from(&all);
-                    continue;
-                }
-            };
-            if !is_checked {
-                return Ok(joint_turns::select_joint_paths(self.problem, sense, found));
-            }
-            for (segment, found) in requested.drain(..).zip(found) {
-                choices[segment] = found;
-            }
-            let plans = joint_turns::select_joint_paths(self.problem, sense, choices.clone());
-            for (segment, plan) in plans.iter().enumerate() {
-                if free[segment].as_ref() == Some(plan) {
-                    continue;
-                }
-                let (mut is_free, mut hit) = (true, Vec::new());
-                for fault in self.problem.plan_faults(placement, plan, self.segments.checks_moves()) {
-                    match fault.fault {
-                        Fault::Hit(pair) => drop(collisions.entry(pair).or_default().insert(fault.point)),
-                        Fault::Unfollowed(_) if are_moves_waived => continue,
-                        Fault::Unfollowed(_) => are_moves_bound = true,
-                    }
-                    is_free = false;
-                    let times = if fault.is_between { faulty.entry(fault.point).or_default() } else { &mut 0 };
-                    let ends = self.forbid_fault(placement, plan, &fault, *times, &mut workspace.forbidden);
-                    hit.extend(ends.filter(|_| !fault.is_between).map(|betas| (fault.point, betas)));
-                    *times += 1;
-                }
-                self.forbid_around(placement, plan, hit, &mut workspace.forbidden);
-                let lines = match is_free && self.segments.checks_moves() {
-                    true => self.forbid_short_lines(placement, plan, &waived, &mut workspace.forbidden),
-                    false => Vec::new(),
-                };
-                bound.extend(&lines);
-                if is_free && lines.is_empty() {
-                    free[segment] = Some(plan.clone());
-                } else {
-                    requested.push(segment);
-                }
-            }
-            if requested.is_empty() {
-                return Ok(plans);
-            }
+        let mut job = FreePlans {
+            planner: self,
+            request,
+            workspace,
+            plan,
+            choices: vec![Vec::new(); count],
+            requested: (0..count).collect(),
+            free: vec![None; count],
+            collisions: Collisions::new(),
+            faulty: BTreeMap::new(),
+            moves: Demand::Met,
+            lines: BTreeMap::new(),
+            round: 0,
+        };
+        if let (Some(plans), true) = until_free(&mut job, MAX_ROUNDS)? {
+            return Ok(plans);
         }
+        let collisions = job.collisions;
         let points: BTreeSet<usize> = collisions.values().flatten().copied().collect();
         Err(NoFeasiblePlan { blocked_points: points.into_iter().collect(), collisions, ..NoFeasiblePlan::empty() })
     }
 
     /// The mean score under the best or worst plan on the grid in which nothing hits ([`Planner::objective`]).
-    pub(super) fn free_objective(
-        &self,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
-        workspace: &mut Workspace,
-    ) -> Objective {
-        let plans = self.collision_free_plans(placement, sense, workspace, |workspace, requested| {
-            let choices = self.choices(placement, sense, scheme, workspace, requested, 0.0)?;
-            Ok(self.without_hitting_ways(placement, choices))
+    pub(super) fn free_objective(&self, request: Request<'_>, workspace: &mut Workspace) -> Objective {
+        let plans = self.collision_free_plans(request, workspace, |workspace, requested| {
+            let choices = self.choices(request, workspace, requested, 0.0)?;
+            Ok(self.without_hitting_ways(request.placement, choices))
         });
         match plans {
             Ok(plans) => Objective::Feasible(self.problem.objective(plans.iter().map(|plan| plan.cost))),
@@ -267,13 +377,5 @@ impl Planner<'_> {
             collisions: Collisions::from([(pair, points.collect())]),
             ..NoFeasiblePlan::empty()
         }
-    }
-
-    /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
-    fn lines_of(&self, none: &NoFeasiblePlan, bound: &BTreeSet<usize>) -> Vec<usize> {
-        let path = self.problem.task.path();
-        let blocked = none.blocked_points.iter().map(|point| path.segment_of(*point));
-        let failed: BTreeSet<usize> = blocked.chain(none.broken_segments.iter().map(|(segment, _)| *segment)).collect();
-        bound.iter().copied().filter(|point| failed.contains(&path.segment_of(*point))).collect()
     }
 }

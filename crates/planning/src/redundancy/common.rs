@@ -6,6 +6,7 @@
 
 use super::forward_pass::Pass;
 use super::off_grid::{MIN_GAIN, Spacing, replay};
+use super::segment_planner::Request;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace};
 use crate::compass::CompassSteps;
 use stead_model::robot::{Posture, PostureClass};
@@ -31,33 +32,24 @@ impl Planner<'_> {
     }
 
     /// [`Planner::objective`] where one beta stays all along the path.
-    pub(super) fn common_objective(
-        &self,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
-        workspace: &mut Workspace,
-    ) -> Objective {
-        let sign = sense.sign();
-        let bounds = self.bounds(placement, sense, scheme, workspace);
+    pub(super) fn common_objective(&self, request: Request<'_>, workspace: &mut Workspace) -> Objective {
+        let sign = request.sense.sign();
+        let bounds = self.bounds(request, workspace);
         let mut best: Option<f64> = None;
         for bound in Self::open(&bounds) {
             if best.is_some_and(|best| self.problem.objective([bound.cost * sign]) * sign >= best * sign) {
                 break;
             }
             workspace.only_beta = Some(bound.beta);
-            let found = self.objective(placement, sense, scheme, workspace).mean();
+            let found = self.objective(request.placement, request.sense, request.scheme, workspace).mean();
             best = best.into_iter().chain(found).min_by(|a, b| (a * sign).total_cmp(&(b * sign)));
         }
         workspace.only_beta = None;
         if let Some(best) = best {
             return Objective::Feasible(best);
         }
-        let mut blocked = |(index, span): (usize, &std::ops::Range<usize>)| {
-            let only = scheme.map(|scheme| scheme[index]);
-            self.segments.segment(span.clone(), placement, sense, only, workspace, None).blocked.len()
-        };
-        match self.problem.task.segments().iter().enumerate().map(&mut blocked).sum() {
+        let mut blocked = |segment: usize| self.segments.segment(segment, request, workspace, None).blocked.len();
+        match (0..self.problem.task.segments().len()).map(&mut blocked).sum() {
             // Where no beta does, the one with the fewest failed segments gives their number.
             0 => {
                 let segments = bounds.first().map_or(0, |bound| bound.failed.len()).max(1);
@@ -70,16 +62,15 @@ impl Planner<'_> {
     /// What `plan` finds, or where one beta stays all along the path, the best of what it finds for each.
     pub(super) fn with_common_beta(
         &self,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
+        request: Request<'_>,
         workspace: &mut Workspace,
         mut plan: impl FnMut(&mut Workspace) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         if !self.chooses_common_beta(workspace) {
             return plan(workspace);
         }
-        let bounds = self.bounds(placement, sense, scheme, workspace);
+        let bounds = self.bounds(request, workspace);
+        let sense = request.sense;
         let cost = |plans: &[SegmentPlan]| self.signed_cost(sense, plans.iter().map(|plan| plan.cost * sense.sign()));
         let mut best: Option<(f64, Vec<SegmentPlan>)> = None;
         for bound in Self::open(&bounds) {
@@ -123,27 +114,18 @@ impl Planner<'_> {
     }
 
     /// All betas of the grid: those by which the most segments can be gone through first, and of these the cheapest.
-    fn bounds(
-        &self,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
-        workspace: &mut Workspace,
-    ) -> Vec<Bound> {
-        let rules = &self.problem.postures;
+    fn bounds(&self, request: Request<'_>, workspace: &mut Workspace) -> Vec<Bound> {
+        let Request { placement, sense, .. } = request;
         workspace.forbidden.clear();
         let spans = self.problem.task.segments();
         let mut costs = vec![vec![f64::INFINITY; self.segments.grid.beta_count]; spans.len()];
         for (index, span) in spans.iter().enumerate() {
-            let only = scheme.map(|scheme| scheme[index]);
-            let is_requested =
-                |posture: &Posture| only.is_none_or(|requested| requested == *posture) && rules.allows(*posture);
             for evaluator in &self.segments.evaluators {
-                if !Posture::ALL.iter().any(|posture| evaluator.flips().contains(*posture) && is_requested(posture)) {
+                let pass = Pass { evaluator, span, placement, sense, only: request.posture(index), is_by_knots: false };
+                if !Posture::ALL.iter().any(|posture| self.segments.is_requested(pass, *posture)) {
                     continue;
                 }
-                let pass = Pass { evaluator, span, placement, sense, is_by_knots: false };
-                let found = self.segments.forward_pass(pass, only, workspace, false);
+                let found = self.segments.forward_pass(pass, workspace, false);
                 for class in PostureClass::ALL.into_iter().filter(|class| found.ends[class.index()].is_some()) {
                     let ends = workspace.before.inner_scores(class);
                     costs[index].iter_mut().zip(ends).for_each(|(known, cost)| *known = known.min(*cost));

@@ -43,13 +43,15 @@ impl ForwardPass {
     }
 }
 
-/// What is planned in a pass: for the workpiece at `placement`, one segment.
+/// A pass over a segment, with the workpiece at a placement.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pass<'p> {
     pub evaluator: &'p BatchEvaluator<'p>,
     pub span: &'p Span<usize>,
     pub placement: &'p Placement,
     pub sense: Sense,
+    /// The posture, where one is given.
+    pub only: Option<Posture>,
     /// Whether it goes from knot to knot, or else from point to point.
     pub is_by_knots: bool,
 }
@@ -122,15 +124,8 @@ impl SegmentPlanner<'_> {
         }
         now.wrap_around(class);
         let offsets = self.knots.offsets(end, middle, share);
-        let joining = self.joining(pass);
-        run_costs.add(
-            class,
-            CyclicRow { scores: now.scores(class), pad: now.pad() },
-            offsets,
-            is_first,
-            joining,
-            self.instructions,
-        );
+        let row = CyclicRow { scores: now.scores(class), pad: now.pad() };
+        run_costs.add(class, row, offsets, is_first, self.joining(pass));
         true
     }
 
@@ -160,19 +155,19 @@ impl SegmentPlanner<'_> {
         forbidden.apply(point, now);
     }
 
-    /// Passes over the points of a segment with one of the evaluators, in every posture class or in that of one
-    /// posture. With `count_only`, only the blocked points are found.
-    pub(super) fn forward_pass(
-        &self,
-        pass: Pass<'_>,
-        only: Option<Posture>,
-        workspace: &mut Workspace,
-        count_only: bool,
-    ) -> ForwardPass {
+    /// Whether a pass is made for a posture.
+    pub(super) fn is_requested(&self, pass: Pass<'_>, posture: Posture) -> bool {
+        let is_given = pass.only.is_none_or(|requested| requested == posture);
+        is_given && pass.evaluator.flips().contains(posture) && self.problem.postures.allows(posture)
+    }
+
+    /// Passes over the points of a segment, in every posture class or in that of the posture given. With `count_only`,
+    /// only the blocked points are found.
+    pub(super) fn forward_pass(&self, pass: Pass<'_>, workspace: &mut Workspace, count_only: bool) -> ForwardPass {
         let mut forward_pass = ForwardPass { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
         let rules = &self.problem.postures;
         let requested = PostureClass::ALL
-            .map(|class| only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
+            .map(|class| pass.only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
         workspace.record.costs.clear();
         workspace.record.reached.clear();
         let keeps_all = !count_only && self.knot_count(pass) * 4 * self.grid.beta_count <= MAX_REACHED;

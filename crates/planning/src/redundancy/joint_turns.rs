@@ -1,6 +1,6 @@
 //! Flips and turns: which real joint angles a planned segment can be driven with.
 
-use super::SegmentPlan;
+use super::{SegmentPlan, SegmentPlanner};
 use std::ops::Range as Span;
 use stead_model::robot::{
     Posture,
@@ -39,48 +39,45 @@ pub(super) struct JointPath {
     pub joints: Vec<[f64; 6]>,
 }
 
-/// Unwinds a path of beta in the given postures; `None` when in none of them every joint can stay inside its limits
-/// moving by less than half a turn and its largest step from point to point.
-pub(super) fn unwind(
-    problem: &Problem,
-    span: &Span<usize>,
-    placement: &Placement,
-    betas: &[f64],
-    postures: &[Posture],
-    cost: f64,
-    steps: &[[f64; 6]],
-) -> Option<SegmentChoice> {
-    let mut joint_paths = Vec::new();
-    for posture in postures {
-        let solve = |(point, beta): (usize, &f64)| {
-            problem.robot.inverse(&problem.at(placement).base_from_flange(point, *beta), *posture).ok()
-        };
-        let Some(wrapped) = span.clone().zip(betas).map(solve).collect::<Option<Vec<[f64; 6]>>>() else { continue };
-        let steps = &steps[span.clone()];
-        // On an arm with a linkage a motor turns the sum of joints 2 and 3, and none joint 3 by itself.
-        let is_alone = |j: usize| j != 2 || !problem.robot.has_linkage();
-        let tracks: [Vec<Vec<f64>>; 6] = std::array::from_fn(|j| {
-            let range = Range::of(&problem.robot.joints()[j]);
-            let angles: Vec<f64> = wrapped.iter().map(|theta| theta[j]).collect();
-            let limits: Vec<f64> =
-                steps.iter().map(|step| if is_alone(j) { step[j] } else { MAX_JOINT_STEP }).collect();
-            tracks(range, &angles, &limits)
-        });
-        let first = joint_paths.len();
-        combine(*posture, &tracks, wrapped.len(), &mut joint_paths);
-        if problem.robot.has_linkage() {
-            let holds = |way: &JointPath| {
-                let pairs = way.joints.windows(2).zip(&steps[1..]);
-                pairs.into_iter().all(|(pair, limits)| joint_steps_hold(&problem.robot, &pair[0], &pair[1], limits))
-            };
-            let kept = joint_paths.split_off(first).into_iter().filter(holds);
-            joint_paths.extend(kept.collect::<Vec<_>>());
+impl SegmentPlanner<'_> {
+    /// Unwinds a path of beta in the given postures; `None` when in none of them every joint can stay inside its limits
+    /// moving by less than half a turn and its largest step from point to point.
+    pub(super) fn unwind(
+        &self,
+        span: &Span<usize>,
+        placement: &Placement,
+        betas: &[f64],
+        postures: &[Posture],
+        cost: f64,
+    ) -> Option<SegmentChoice> {
+        let (robot, at) = (&self.problem.robot, self.problem.at(placement));
+        let steps = &self.steps[span.clone()];
+        let mut joint_paths = Vec::new();
+        for posture in postures {
+            let solve = |(point, beta): (usize, &f64)| robot.inverse(&at.base_from_flange(point, *beta), *posture).ok();
+            let Some(wrapped) = span.clone().zip(betas).map(solve).collect::<Option<Vec<[f64; 6]>>>() else { continue };
+            // On an arm with a linkage a motor turns the sum of joints 2 and 3, and none joint 3 by itself.
+            let is_alone = |j: usize| j != 2 || !robot.has_linkage();
+            let tracks: [Vec<Vec<f64>>; 6] = std::array::from_fn(|j| {
+                let range = Range::of(&robot.joints()[j]);
+                let angles: Vec<f64> = wrapped.iter().map(|theta| theta[j]).collect();
+                let limits: Vec<f64> =
+                    steps.iter().map(|step| if is_alone(j) { step[j] } else { MAX_JOINT_STEP }).collect();
+                tracks(range, &angles, &limits)
+            });
+            let first = joint_paths.len();
+            combine(*posture, &tracks, wrapped.len(), &mut joint_paths);
+            if robot.has_linkage() {
+                let holds = |way: &JointPath| {
+                    let pairs = way.joints.windows(2).zip(&steps[1..]);
+                    pairs.into_iter().all(|(pair, limits)| joint_steps_hold(robot, &pair[0], &pair[1], limits))
+                };
+                let kept = joint_paths.split_off(first).into_iter().filter(holds);
+                joint_paths.extend(kept.collect::<Vec<_>>());
+            }
         }
-    }
-    if joint_paths.is_empty() {
-        None
-    } else {
-        Some(SegmentChoice { points: span.clone(), betas: betas.to_vec(), cost, joint_paths })
+        let is_driven = !joint_paths.is_empty();
+        is_driven.then(|| SegmentChoice { points: span.clone(), betas: betas.to_vec(), cost, joint_paths })
     }
 }
 

@@ -46,22 +46,23 @@ mod state_set;
 pub mod transition;
 mod turns_dp;
 mod unchanging;
+mod until_free;
 
 pub use collision_free::Collisions;
 pub use collision_free::{Kept, settled_among_free};
 pub use common::settled_together;
-pub use forbid::forbid;
+pub use forbid::BetaRing;
 pub use obstruction::Obstruction;
 pub use rate_limit::{BetaChange, saved_changes};
 pub use state_set::StateSet;
 pub use state_set::kinds_left;
+pub use until_free::{Lazy, until_free};
 
 use grid::finer;
 use off_grid::Spacing;
 use rayon::prelude::*;
 pub use segment_planner::Workspace;
-use segment_planner::{Resolution, SegmentPlanner};
-use std::ops::Range as Span;
+use segment_planner::{Request, Resolution, SegmentPlanner};
 use std::sync::Arc;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::StopHandle;
@@ -158,14 +159,20 @@ impl<'a> Planner<'a> {
     /// What the best plan of each segment on the grid adds to the objective at a placement: one row where the posture
     /// may change from segment to segment, else one for each allowed posture; `None` where there is no plan.
     pub fn segment_costs(&self, placement: &Placement, workspace: &mut Workspace) -> Vec<Vec<Option<f64>>> {
-        let rules = &self.problem.postures;
-        let choices = if rules.may_change { vec![None] } else { rules.allowed().map(Some).collect() };
-        let spans = self.problem.task.segments();
-        let mut cost = |span: &Span<usize>, only: Option<Posture>| {
-            let found = self.segments.segment(span.clone(), placement, Sense::Min, only, workspace, Some(0.0));
-            found.choices.first().map(|choice| choice.cost)
+        let (rules, count) = (&self.problem.postures, self.problem.task.segments().len());
+        let schemes: Vec<Option<Vec<Posture>>> = match rules.may_change {
+            true => vec![None],
+            false => rules.allowed().map(|posture| Some(vec![posture; count])).collect(),
         };
-        choices.into_iter().map(|only| spans.iter().map(|span| cost(span, only)).collect()).collect()
+        let mut costs = |scheme: Option<Vec<Posture>>| {
+            let request = Request { placement, sense: Sense::Min, scheme: scheme.as_deref() };
+            let cost = |segment: usize| {
+                let found = self.segments.segment(segment, request, workspace, Some(0.0));
+                found.choices.first().map(|choice| choice.cost)
+            };
+            (0..count).map(cost).collect()
+        };
+        schemes.into_iter().map(&mut costs).collect()
     }
 
     /// What bounds the step to a path point from the one before.
@@ -192,24 +199,18 @@ impl<'a> Planner<'a> {
             let of = |scheme: Vec<Posture>| self.objective(placement, sense, Some(&scheme), workspace);
             return best_of(sense, schemes.into_iter().map(of));
         }
+        let request = Request { placement, sense, scheme };
         if self.chooses_common_beta(workspace) {
-            return self.common_objective(placement, sense, scheme, workspace);
+            return self.common_objective(request, workspace);
         }
         if self.problem.scene.is_some() {
-            return self.free_objective(placement, sense, scheme, workspace);
+            return self.free_objective(request, workspace);
         }
         let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
-        for (index, span) in self.problem.task.segments().iter().enumerate() {
-            let only = scheme.map(|s| s[index]);
-            let found = self.segments.segment(
-                span.clone(),
-                placement,
-                sense,
-                only,
-                workspace,
-                if points > 0 { None } else { Some(0.0) },
-            );
+        for segment in 0..self.problem.task.segments().len() {
+            let margin = if points > 0 { None } else { Some(0.0) };
+            let found = self.segments.segment(segment, request, workspace, margin);
             points += found.blocked.len();
             if points > 0 {
                 continue;
@@ -242,9 +243,10 @@ impl<'a> Planner<'a> {
         let rules = &self.problem.postures;
         let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
         self.unchanging(scheme, sense, |scheme| {
-            self.with_common_beta(placement, sense, scheme, workspace, |workspace| {
-                self.collision_free_plans(placement, sense, workspace, |workspace, requested| {
-                    let choices = self.choices(placement, sense, scheme, workspace, requested, margin)?;
+            let request = Request { placement, sense, scheme };
+            self.with_common_beta(request, workspace, |workspace| {
+                self.collision_free_plans(request, workspace, |workspace, requested| {
+                    let choices = self.choices(request, workspace, requested, margin)?;
                     Ok(self.without_hitting_ways(placement, choices))
                 })
             })
@@ -273,14 +275,15 @@ impl<'a> Planner<'a> {
         let is_weighed = sense == Sense::Min && rules.move_weight > 0.0;
         let margin = if is_weighed { f64::INFINITY } else { REFINED_EXCESS.max(rules.tie) };
         self.unchanging(scheme, sense, |scheme| {
-            self.collision_free_plans(placement, sense, workspace, |workspace, requested| {
-                let choices = self.choices(placement, sense, scheme, workspace, requested, margin)?;
+            let request = Request { placement, sense, scheme };
+            self.collision_free_plans(request, workspace, |workspace, requested| {
+                let choices = self.choices(request, workspace, requested, margin)?;
                 let choices = self.without_hitting_ways(placement, choices);
                 let refined = |(segment, classes): (&usize, Vec<joint_turns::SegmentChoice>)| {
                     if self.is_unwanted() {
                         return Vec::new();
                     }
-                    self.refined(placement, sense, scheme.map(|s| s[*segment]), classes)
+                    self.refined(request, *segment, classes)
                 };
                 let refined = match self.is_parallel() {
                     true => requested.par_iter().zip(choices).map(refined).collect(),
@@ -298,11 +301,11 @@ impl<'a> Planner<'a> {
     /// taken anyway; each in the flips and turns in which it is driven best, or in the posture given.
     fn refined(
         &self,
-        placement: &Placement,
-        sense: Sense,
-        only: Option<Posture>,
+        request: Request<'_>,
+        segment: usize,
         classes: Vec<joint_turns::SegmentChoice>,
     ) -> Vec<joint_turns::SegmentChoice> {
+        let Request { placement, sense, .. } = request;
         let (rules, sign) = (&self.problem.postures, sense.sign());
         let refined = classes.into_iter().filter_map(|choice| {
             let mut plan = joint_turns::select_joint_paths(self.problem, sense, vec![vec![choice]]).pop()?;
@@ -314,20 +317,11 @@ impl<'a> Planner<'a> {
         plans.truncate(if rules.takes_the_best() { 1 } else { plans.len() });
         // The refined betas may be driven in other flips and turns just as well.
         let driven = plans.into_iter().map(|plan| {
-            let postures = match only {
+            let postures = match request.posture(segment) {
                 Some(posture) => vec![posture],
                 None => self.segments.equivalent_postures(plan.posture),
             };
-            let span = plan.points.clone();
-            let again = joint_turns::unwind(
-                self.problem,
-                &span,
-                placement,
-                &plan.betas,
-                &postures,
-                plan.cost,
-                &self.segments.steps,
-            );
+            let again = self.segments.unwind(&plan.points, placement, &plan.betas, &postures, plan.cost);
             again.unwrap_or_else(|| joint_turns::SegmentChoice::of(plan))
         });
         driven.collect()
@@ -337,26 +331,15 @@ impl<'a> Planner<'a> {
     /// more than the cheapest, cheapest first.
     fn choices(
         &self,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
+        request: Request<'_>,
         workspace: &mut Workspace,
         requested: &[usize],
         margin: f64,
     ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
         let mut failure = NoFeasiblePlan::empty();
         let mut all = Vec::new();
-        let spans = self.problem.task.segments();
-        let of = |workspace: &mut Workspace, index: &usize| {
-            self.segments.segment(
-                spans[*index].clone(),
-                placement,
-                sense,
-                scheme.map(|s| s[*index]),
-                workspace,
-                Some(margin),
-            )
-        };
+        let of =
+            |workspace: &mut Workspace, index: &usize| self.segments.segment(*index, request, workspace, Some(margin));
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
             true => {
                 let (forbidden, only_beta) = (workspace.forbidden.clone(), workspace.only_beta);

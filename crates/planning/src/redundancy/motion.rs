@@ -18,8 +18,10 @@ mod hits;
 pub use grid::{MotionGrid, Setting, SettingSteps};
 
 use super::transition::{self, advance};
+use super::until_free::until_free;
 use super::{Resolution, SegmentPlanner, StateSet};
 use grid::{Before, steps_to};
+use hits::FreeWays;
 use rayon::prelude::*;
 use std::ops::Range as Span;
 use std::sync::Arc;
@@ -96,6 +98,32 @@ struct Reached {
     shifts: Vec<i16>,
 }
 
+/// What is evaluated in a pass over a segment.
+#[derive(Clone, Copy)]
+struct Sweep<'s> {
+    evaluator: usize,
+    placement: &'s Placement,
+    classes: [bool; 4],
+    /// For each number of a setting the states that hit.
+    forbidden: &'s [StateSet],
+}
+
+impl<'s> Sweep<'s> {
+    /// In all classes of an evaluator that the problem allows.
+    fn new(planner: &MotionPlanner<'_>, evaluator: usize, placement: &'s Placement, forbidden: &'s [StateSet]) -> Self {
+        let classes = PostureClass::ALL.map(|class| planner.postures(evaluator, class).next().is_some());
+        Self { evaluator, placement, classes, forbidden }
+    }
+}
+
+/// The states of a point in one setting and one class.
+#[derive(Clone, Copy)]
+struct Target {
+    point: usize,
+    setting: usize,
+    class: PostureClass,
+}
+
 /// The states at the points of a segment: of each point the number of its setting and that of its beta.
 type Way = Vec<(usize, usize)>;
 
@@ -154,32 +182,24 @@ impl<'a> MotionPlanner<'a> {
         if problem.placement_hit(placement).is_some() {
             return Err(all);
         }
-        let mut forbidden = vec![StateSet::default(); self.planners.len()];
-        let mut checked = vec![[false; 4]; problem.task.points().len()];
-        let ways = spans.iter().map(|span| self.segment(span, placement, &forbidden));
-        let ways: Vec<Result<Vec<Found>, usize>> = ways.collect();
-        let missed = || ways.iter().filter_map(|way| way.as_ref().err());
-        let unreached = Unreached { points: missed().sum(), segments: missed().count() };
-        let Ok(mut found) = ways.into_iter().collect::<Result<Vec<_>, usize>>() else { return Err(unreached) };
-        for rounds in 1.. {
-            let Some(chosen) = self.chosen(&found) else { return Err(Unreached { points: 0, ..all }) };
-            let mut again = Vec::new();
-            for (index, (span, way)) in spans.iter().zip(&chosen).enumerate() {
-                if self.forbid_hits(span, placement, way, &mut checked, &mut forbidden) {
-                    again.push(index);
-                }
-            }
-            if again.is_empty() {
-                let costs = chosen.iter().map(|way| way.cost);
-                let objective = problem.objective(costs);
-                return Ok(PlannedMotion { motion: self.motion(spans, &chosen), objective, rounds });
-            }
-            for index in again {
-                let way = self.segment(&spans[index], placement, &forbidden);
-                found[index] = way.map_err(|points| Unreached { points, segments: 1 })?;
-            }
-        }
-        Err(all)
+        let mut job = FreeWays {
+            planner: self,
+            placement,
+            found: Vec::new(),
+            again: (0..spans.len()).collect(),
+            forbidden: vec![StateSet::default(); self.planners.len()],
+            checked: vec![[false; 4]; all.points],
+            rounds: 0,
+        };
+        let (chosen, _) = until_free(&mut job, usize::MAX)?;
+        let objective = problem.objective(chosen.iter().map(|way| way.cost));
+        Ok(PlannedMotion { motion: self.motion(spans, &chosen), objective, rounds: job.rounds })
+    }
+
+    /// The postures of a class that an evaluator covers and the problem allows.
+    fn postures(&self, evaluator: usize, class: PostureClass) -> impl Iterator<Item = Posture> {
+        let (flips, rules) = (self.planners[0].evaluators[evaluator].flips(), &self.grid.problem.postures);
+        class.postures().into_iter().filter(move |p| flips.contains(*p) && rules.allows(*p))
     }
 
     /// The motion along the ways of all segments.
@@ -219,7 +239,7 @@ impl<'a> MotionPlanner<'a> {
         let mut found = Vec::new();
         let mut unreached = span.len();
         for evaluator in 0..evaluators {
-            let pass = self.pass(evaluator, span, placement, forbidden);
+            let pass = self.pass(Sweep::new(self, evaluator, placement, forbidden), span);
             unreached = unreached.min(pass.unreached);
             for class in PostureClass::ALL {
                 if let Some((cost, setting, beta)) = pass.ends[class.index()] {
@@ -232,12 +252,8 @@ impl<'a> MotionPlanner<'a> {
     }
 
     /// Goes through a segment in all posture classes at once.
-    fn pass(&self, evaluator: usize, span: &Span<usize>, placement: &Placement, forbidden: &[StateSet]) -> MotionPass {
+    fn pass(&self, sweep: Sweep<'_>, span: &Span<usize>) -> MotionPass {
         let (number, beta_count) = (self.planners.len(), self.grid.problem.redundancy.beta_count);
-        let flips = self.planners[0].evaluators[evaluator].flips();
-        let rules = &self.grid.problem.postures;
-        let classes = PostureClass::ALL
-            .map(|class| Posture::ALL.iter().any(|p| p.class() == class && flips.contains(*p) && rules.allows(*p)));
         let mut links = vec![Link::default(); span.len() * 4 * number * beta_count];
         let counts_travel = self.planners[0].travel_cost(Sense::Min) > 0.0;
         let mut before = vec![StateGrid::new(beta_count, self.pad).with_angles(counts_travel); number];
@@ -246,7 +262,7 @@ impl<'a> MotionPlanner<'a> {
         for (point, row) in span.clone().zip(links.chunks_mut(4 * number * beta_count)) {
             let states = now.par_iter_mut().zip(row.par_chunks_mut(4 * beta_count)).enumerate();
             states.for_each_init(Reached::default, |reached, (setting, (states, links))| {
-                self.evaluate(evaluator, point, setting, placement, classes, forbidden, states);
+                self.evaluate(sweep, point, setting, states);
                 for class in PostureClass::ALL {
                     let links = &mut links[class.index() * beta_count..][..beta_count];
                     if !states.is_alive(class) {
@@ -254,7 +270,7 @@ impl<'a> MotionPlanner<'a> {
                     }
                     if is_start {
                         transition::begin(states, class, 1.0);
-                    } else if !self.reach((point, setting, class), &before, states, links, reached) {
+                    } else if !self.reach(Target { point, setting, class }, &before, states, links, reached) {
                         states.clear(class);
                         continue;
                     }
@@ -276,39 +292,30 @@ impl<'a> MotionPlanner<'a> {
     }
 
     /// The allowed states of a point in one setting, as far as they are known not to hit.
-    #[allow(clippy::too_many_arguments, reason = "what is evaluated, where, and into what")]
-    fn evaluate(
-        &self,
-        evaluator: usize,
-        point: usize,
-        setting: usize,
-        placement: &Placement,
-        classes: [bool; 4],
-        forbidden: &[StateSet],
-        states: &mut StateGrid,
-    ) {
+    fn evaluate(&self, sweep: Sweep<'_>, point: usize, setting: usize, states: &mut StateGrid) {
         if self.grid.settings[setting][point].is_none() {
             PostureClass::ALL.into_iter().for_each(|class| states.clear(class));
             return;
         }
         let planner = &self.planners[setting];
-        planner.evaluators[evaluator].evaluate_some(point, placement, classes, None, states);
+        planner.evaluators[sweep.evaluator].evaluate_some(point, sweep.placement, sweep.classes, None, states);
         if let Some(hits) = &planner.tool_hits {
             hits.apply(point, states);
         }
-        forbidden[setting].apply(point, states);
+        sweep.forbidden[setting].apply(point, states);
     }
 
     /// Takes the cheapest states before, over all settings, for the states of a point in one of them; false when none
     /// is reached.
     fn reach(
         &self,
-        (point, setting, class): (usize, usize, PostureClass),
+        target: Target,
         before: &[StateGrid],
         states: &mut StateGrid,
         links: &mut [Link],
         reached: &mut Reached,
     ) -> bool {
+        let Target { point, setting, class } = target;
         let step = self.planners[setting].step(point, Sense::Min);
         let (pad, count) = (states.pad(), states.count());
         let Reached { own, best, shifts } = reached;

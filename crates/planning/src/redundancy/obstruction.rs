@@ -3,6 +3,7 @@
 //! The segment is planned again with limits left out: each alone, then two, then all three. What lets a posture past
 //! the point that none gets to is what stops it.
 
+use super::segment_planner::Request;
 use super::{Resolution, SegmentPlanner, finer};
 use stead_model::robot::Posture;
 use stead_problem::constraints::ConstraintKind;
@@ -40,24 +41,24 @@ impl<'a> Obstruction<'a> {
         Self { relaxed: sets.into_iter().map(|kinds| Relaxed::new(problem, kinds)).collect() }
     }
 
-    /// The smallest sets of limits of which each, left out, lets a posture (any, or the given one) past a path point
+    /// The smallest sets of limits of which each, left out, lets a posture (any, or that of a scheme) past a path point
     /// that no posture gets to from the start of its segment (from 0); none where the limits and turns of the joints
     /// stop it.
     pub fn at(
         &self,
         placement: &Placement,
+        scheme: Option<&[Posture]>,
         segment: usize,
         point: usize,
-        only: Option<Posture>,
     ) -> Vec<Vec<ConstraintKind>> {
+        let request = Request { placement, sense: Sense::Min, scheme };
         let mut found: Vec<Vec<ConstraintKind>> = Vec::new();
         for Relaxed { kinds, planners } in &self.relaxed {
             if found.first().is_some_and(|smallest| smallest.len() < kinds.len()) {
                 break;
             }
             let gets_past = |planner: &SegmentPlanner<'_>| {
-                let span = planner.problem.task.segments()[segment].clone();
-                let options = planner.segment(span, placement, Sense::Min, only, &mut planner.workspace(), Some(0.0));
+                let options = planner.segment(segment, request, &mut planner.workspace(), Some(0.0));
                 !options.choices.is_empty() || options.farthest > point
             };
             if planners.iter().any(gets_past) {

@@ -2,8 +2,9 @@
 
 use super::corridor::Corridor;
 use super::forward_pass::{ForwardPass, Pass};
-use super::{SegmentPlanner, Workspace, joint_turns};
-use std::ops::Range as Span;
+use super::joint_turns::{SegmentChoice, is_allowed};
+use super::segment_planner::Request;
+use super::{SegmentPlanner, StateSet, Workspace};
 use stead_model::robot::{Posture, PostureClass};
 use stead_problem::joint_travel::joint_travel;
 use stead_problem::problem::Placement;
@@ -12,7 +13,7 @@ use stead_problem::sense::Sense;
 /// What a segment offers.
 pub(super) struct SegmentOptions {
     /// The cheapest plans.
-    pub choices: Vec<joint_turns::SegmentChoice>,
+    pub choices: Vec<SegmentChoice>,
     /// Points without an allowed state in any posture requested.
     pub blocked: Vec<usize>,
     /// The first point that the posture that gets farthest cannot get to.
@@ -34,26 +35,120 @@ impl Strategy {
     const IN_ORDER: [Self; 3] = [Self::Knots, Self::PointToPoint, Self::KnotsOfOtherSense];
 }
 
+/// How a path of beta is found that can be driven, in the order in which it is tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// The cheapest path, flips and turns of the joints left aside.
+    Relaxed,
+    /// The cheapest with flips and turns, which keep every joint inside its limits at the knots.
+    Turns,
+    /// The cheapest near the relaxed one, where a joint cannot follow that between its knots.
+    Corridor,
+    /// The cheapest near that with flips and turns.
+    CorridorOfTurns,
+    /// The path with flips and turns as far as the joints follow it.
+    FollowTurns,
+    /// The relaxed path as far as the joints follow it.
+    Follow,
+}
+
+impl Way {
+    const IN_ORDER: [Self; 6] =
+        [Self::Relaxed, Self::Turns, Self::Corridor, Self::CorridorOfTurns, Self::FollowTurns, Self::Follow];
+
+    /// Whether it is tried: nothing is wrong between the points of a pass without knots, and the comparison of
+    /// placements is not worth the time of a corridor.
+    fn is_tried(self, is_by_knots: bool, checks_moves: bool) -> bool {
+        match self {
+            Self::Relaxed | Self::Turns => true,
+            Self::Corridor | Self::CorridorOfTurns => is_by_knots && checks_moves,
+            Self::FollowTurns | Self::Follow => is_by_knots,
+        }
+    }
+
+    /// Whether it begins with the path with flips and turns.
+    fn is_of_turns(self) -> bool {
+        matches!(self, Self::Turns | Self::CorridorOfTurns | Self::FollowTurns)
+    }
+}
+
+/// A path of beta (rad) with what it costs, by the sense: the smaller the better.
+type CostedPath = (Vec<f64>, f64);
+
+/// One segment in the postures of one class.
+struct ClassDrive<'s> {
+    planner: &'s SegmentPlanner<'s>,
+    pass: Pass<'s>,
+    class: PostureClass,
+    postures: Vec<Posture>,
+    /// States that hit.
+    forbidden: &'s StateSet,
+}
+
+impl ClassDrive<'_> {
+    /// The path along values of the grid, interpolated between knots. rad
+    fn path(&self, betas: &[usize]) -> Vec<f64> {
+        let mut path: Vec<f64> = betas.iter().map(|k| self.planner.grid.beta(*k)).collect();
+        if self.pass.is_by_knots {
+            self.planner.knots.spread(self.pass.span, &mut path);
+        }
+        path
+    }
+
+    /// The cheapest path with flips and turns.
+    fn with_turns(&self, cost: f64, workspace: &mut Workspace) -> Option<CostedPath> {
+        let flips = [false, true].map(|flip| self.postures.iter().any(|posture| posture.is_flipped() == flip));
+        let found = self.planner.path_with_turns(self.pass, self.class, flips, cost, workspace)?;
+        Some((self.path(&found.betas), found.cost))
+    }
+
+    /// A path as it is driven, or one made of it in some way.
+    fn driven(&self, way: Way, path: &[f64], cost: f64) -> Option<SegmentChoice> {
+        let Pass { span, placement, sense, is_by_knots, .. } = self.pass;
+        let posture = *self.postures.first()?;
+        let made = match way {
+            Way::Relaxed | Way::Turns => path.to_vec(),
+            Way::Corridor | Way::CorridorOfTurns => {
+                let corridor = Corridor { span, placement, sense, posture, forbidden: self.forbidden };
+                self.planner.within_corridor(&corridor, path)?
+            }
+            Way::FollowTurns | Way::Follow => self.planner.followed(span, placement, posture, path)?,
+        };
+        let choice = self.planner.unwind(span, placement, &made, &self.postures, cost * sense.sign())?;
+        if is_by_knots { self.planner.recosted(placement, sense, choice) } else { Some(choice) }
+    }
+
+    /// The plan by the first way that leads to one.
+    fn choice(&self, relaxed: CostedPath, workspace: &mut Workspace) -> Option<SegmentChoice> {
+        let mut turns = None;
+        let is_tried = |way: &Way| way.is_tried(self.pass.is_by_knots, self.planner.checks_moves());
+        Way::IN_ORDER.into_iter().filter(is_tried).find_map(|way| {
+            if way == Way::Turns {
+                turns = self.with_turns(relaxed.1, workspace);
+            }
+            let (path, cost) = if way.is_of_turns() { turns.as_ref()? } else { &relaxed };
+            self.driven(way, path, *cost)
+        })
+    }
+}
+
 impl SegmentPlanner<'_> {
     /// Sweeps one segment with every evaluator that evaluates a posture requested, and takes from all together the
     /// cheapest plans; with no `margin`, only the blocked points are found.
     pub(super) fn segment(
         &self,
-        span: Span<usize>,
-        placement: &Placement,
-        sense: Sense,
-        only: Option<Posture>,
+        segment: usize,
+        request: Request<'_>,
         workspace: &mut Workspace,
         margin: Option<f64>,
     ) -> SegmentOptions {
+        let span = &self.problem.task.segments()[segment];
         let mut found = SegmentOptions { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
-        let rules = &self.problem.postures;
-        let is_spread = margin.is_some() && self.knots.is_spread(&span);
-        let is_requested =
-            |posture: Posture| only.is_none_or(|requested| requested == posture) && rules.allows(posture);
+        let is_spread = margin.is_some() && self.knots.is_spread(span);
         for evaluator in &self.evaluators {
-            let postures = |posture: &Posture| evaluator.flips().contains(*posture) && is_requested(*posture);
-            if !Posture::ALL.iter().any(postures) {
+            let Request { placement, sense, .. } = request;
+            let of = Pass { evaluator, span, placement, sense, only: request.posture(segment), is_by_knots: false };
+            if !Posture::ALL.iter().any(|posture| self.is_requested(of, *posture)) {
                 continue;
             }
             let mut has_knots = is_spread;
@@ -63,16 +158,14 @@ impl SegmentPlanner<'_> {
                 if (is_by_knots && !has_knots) || (is_of_other_sense && !found.choices.is_empty()) {
                     continue;
                 }
-                let requested = sense;
-                let sense = if is_of_other_sense { sense.other() } else { sense };
-                let pass = Pass { evaluator, span: &span, placement, sense, is_by_knots };
-                let forward_pass = self.forward_pass(pass, only, workspace, margin.is_none());
+                let pass = Pass { sense: if is_of_other_sense { sense.other() } else { sense }, is_by_knots, ..of };
+                let forward_pass = self.forward_pass(pass, workspace, margin.is_none());
                 found.blocked.retain(|point| forward_pass.blocked.binary_search(point).is_ok());
                 let Some(margin) = margin else { break };
-                found.farthest = found.farthest.max(forward_pass.farthest(&span));
+                found.farthest = found.farthest.max(forward_pass.farthest(span));
                 has_knots &= !is_by_knots || forward_pass.ends.iter().any(Option::is_some);
-                let has_all = self.choose(pass, postures, &forward_pass, workspace, margin, &mut found.choices);
-                let travel = self.travel_cost(requested) - self.travel_cost(sense);
+                let has_all = self.choose(pass, &forward_pass, workspace, margin, &mut found.choices);
+                let travel = self.travel_cost(sense) - self.travel_cost(pass.sense);
                 if is_of_other_sense && travel != 0.0 {
                     found.choices.iter_mut().for_each(|choice| choice.cost += travel * travelled(choice));
                 }
@@ -92,19 +185,17 @@ impl SegmentPlanner<'_> {
         postures.filter(|p| is_like(p) && self.problem.postures.allows(*p)).collect()
     }
 
-    /// Adds the plans of one segment, in the postures that pass a test, whose classes and turns keep every joint inside
+    /// Adds the plans of one segment, in the postures of a pass, whose classes and turns keep every joint inside
     /// its limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first.
     /// Returns whether every class that can be cheaper has a plan.
     fn choose(
         &self,
         pass: Pass<'_>,
-        is_requested: impl Fn(&Posture) -> bool,
         outcome: &ForwardPass,
         workspace: &mut Workspace,
         margin: f64,
-        found: &mut Vec<joint_turns::SegmentChoice>,
+        found: &mut Vec<SegmentChoice>,
     ) -> bool {
-        let Pass { span, placement, sense, is_by_knots, .. } = pass;
         let forbidden = workspace.forbidden.clone();
         let mut has_all = outcome.ends.iter().any(Option::is_some);
         // The classes by rising cost; what flips and turns allow of a class can only cost more than its relaxation.
@@ -113,52 +204,17 @@ impl SegmentPlanner<'_> {
             .filter_map(|class| outcome.ends[class.index()].map(|(cost, _)| (cost, class)))
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let sign = sense.sign();
-        let limit = |found: &[joint_turns::SegmentChoice]| {
-            found.first().map(|best| best.cost * sign + margin * best.cost.abs())
-        };
+        let sign = pass.sense.sign();
+        let limit = |found: &[SegmentChoice]| found.first().map(|best| best.cost * sign + margin * best.cost.abs());
         for (cost, class) in order {
             if limit(found).is_some_and(|limit| cost >= limit) {
                 break;
             }
-            let postures: Vec<Posture> = class.postures().into_iter().filter(&is_requested).collect();
-            let path = |betas: &[usize]| {
-                let mut path: Vec<f64> = betas.iter().map(|k| self.grid.beta(*k)).collect();
-                if is_by_knots {
-                    self.knots.spread(span, &mut path);
-                }
-                path
-            };
-            let drive = |path: &[f64], cost: f64| {
-                let choice =
-                    joint_turns::unwind(self.problem, span, placement, path, &postures, cost * sign, &self.steps)?;
-                if is_by_knots { self.recosted(placement, sense, choice) } else { Some(choice) }
-            };
-            let follow =
-                |path: &[f64], cost: f64| drive(&self.followed(span, placement, *postures.first()?, path)?, cost);
-            let near = |path: &[f64], cost: f64| {
-                // What the search compares is not worth the time.
-                let posture = *postures.first().filter(|_| self.checks_moves())?;
-                let corridor = Corridor { span, placement, sense, posture, forbidden: &forbidden };
-                let path = self.within_corridor(&corridor, path)?;
-                drive(&path, cost)
-            };
-            let betas = self.trace(pass, class, outcome, workspace);
-            let relaxed = path(&betas);
-            let mut choice = drive(&relaxed, cost);
-            if choice.is_none() {
-                let flips = [false, true].map(|flip| postures.iter().any(|posture| posture.is_flipped() == flip));
-                let with_turns = self.path_with_turns(pass, class, flips, cost, workspace);
-                let with_turns = with_turns.map(|found| (path(&found.betas), found.cost));
-                choice = with_turns.as_ref().and_then(|(path, cost)| drive(path, *cost));
-                if choice.is_none() && is_by_knots {
-                    choice = near(&relaxed, cost)
-                        .or_else(|| {
-                            with_turns.and_then(|(path, cost)| near(&path, cost).or_else(|| follow(&path, cost)))
-                        })
-                        .or_else(|| follow(&relaxed, cost));
-                }
-            }
+            let postures: Vec<Posture> =
+                class.postures().into_iter().filter(|posture| self.is_requested(pass, *posture)).collect();
+            let drive = ClassDrive { planner: self, pass, class, postures, forbidden: &forbidden };
+            let relaxed = drive.path(&self.trace(pass, class, outcome, workspace));
+            let choice = drive.choice((relaxed, cost), workspace);
             has_all &= choice.is_some();
             found.extend(choice);
             found.sort_by(|a, b| (a.cost * sign).total_cmp(&(b.cost * sign)));
@@ -171,18 +227,13 @@ impl SegmentPlanner<'_> {
     }
 
     /// A plan with its own cost, where all its states are allowed.
-    fn recosted(
-        &self,
-        placement: &Placement,
-        sense: Sense,
-        mut choice: joint_turns::SegmentChoice,
-    ) -> Option<joint_turns::SegmentChoice> {
+    fn recosted(&self, placement: &Placement, sense: Sense, mut choice: SegmentChoice) -> Option<SegmentChoice> {
         let posture = choice.joint_paths.first()?.posture;
         let travel = self.travel_cost(sense);
         choice.cost = if travel > 0.0 { travel * travelled(&choice) } else { 0.0 };
         for (point, beta) in choice.points.clone().zip(&choice.betas) {
             let state = self.problem.at(placement).state(point, *beta, posture).ok()?;
-            if !joint_turns::is_allowed(self.problem, &state) {
+            if !is_allowed(self.problem, &state) {
                 return None;
             }
             choice.cost =
@@ -193,6 +244,6 @@ impl SegmentPlanner<'_> {
 }
 
 /// The joint travel of a plan, which is the same in every flip and turn. rad
-fn travelled(choice: &joint_turns::SegmentChoice) -> f64 {
+fn travelled(choice: &SegmentChoice) -> f64 {
     choice.joint_paths.first().map_or(0.0, |path| joint_travel(&path.joints))
 }

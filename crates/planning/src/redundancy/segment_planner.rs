@@ -5,11 +5,11 @@ use super::rate_limit::{BetaChange, direct_changes};
 use super::record::Record;
 use super::{StateSet, between};
 use std::sync::Arc;
-use stead_model::robot::{PostureClass, turns::Range};
+use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::monitor::StopHandle;
 use stead_numerics::simd::Instructions;
 use stead_problem::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
-use stead_problem::problem::{Problem, Redundancy};
+use stead_problem::problem::{Placement, Problem, Redundancy};
 use stead_problem::sense::Sense;
 
 /// What plans are made for.
@@ -31,6 +31,22 @@ impl Resolution {
             Self::Subset => StepBudget { neighbours: 2.0, knots: 3.0 },
             Self::Final => StepBudget { neighbours: 6.0, knots: 6.0 },
         }
+    }
+}
+
+/// What is planned: the workpiece at a placement, the best or the worst plan, with one posture for each segment where
+/// they are given.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Request<'a> {
+    pub placement: &'a Placement,
+    pub sense: Sense,
+    pub scheme: Option<&'a [Posture]>,
+}
+
+impl Request<'_> {
+    /// The posture that is given for a segment.
+    pub fn posture(&self, segment: usize) -> Option<Posture> {
+        self.scheme.map(|postures| postures[segment])
     }
 }
 
@@ -155,7 +171,7 @@ impl<'a> SegmentPlanner<'a> {
             now: before.clone(),
             before,
             record: Record::new(longest, count),
-            run_costs: between::RunCosts::new(self.knots.most_changes(), stride),
+            run_costs: between::RunCosts::new(self.knots.most_changes(), stride, self.instructions),
             forbidden: StateSet::default(),
             only_beta: None,
         }

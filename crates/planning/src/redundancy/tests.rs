@@ -160,8 +160,9 @@ fn with_turns_to_spare_the_band_alone_is_exact() {
             let placement = Placement::from([-0.3 + 0.1 * f, -1.64 - 0.1 * f, -0.6 + 0.06 * f, -3.0 + 1.1 * f]);
             for span in problem.task.segments() {
                 let evaluator = &planner.segments.evaluators[0];
-                let pass = Pass { evaluator, span, placement: &placement, sense: Sense::Min, is_by_knots: false };
-                let forward_pass = planner.segments.forward_pass(pass, None, &mut workspace, false);
+                let pass =
+                    Pass { evaluator, span, placement: &placement, sense: Sense::Min, only: None, is_by_knots: false };
+                let forward_pass = planner.segments.forward_pass(pass, &mut workspace, false);
                 for class in PostureClass::ALL {
                     let postures = class.postures();
                     let judge =
@@ -236,14 +237,14 @@ fn plans_of_blocks_are_those_of_whole_segments() {
     let mut compared = 0;
     for evaluator in &planner.segments.evaluators {
         for span in problem.task.segments() {
-            let pass = Pass { evaluator, span, placement: &placement, sense, is_by_knots: false };
+            let pass = Pass { evaluator, span, placement: &placement, sense, only: None, is_by_knots: false };
             let mut whole = planner.workspace();
-            let forward_pass = planner.segments.forward_pass(pass, None, &mut whole, false);
+            let forward_pass = planner.segments.forward_pass(pass, &mut whole, false);
             // Blocks that end with the segment, that do not, and of the least length.
             for most in [5, 7, 1, 19, 20, 21].map(|steps| steps * 4 * 60) {
                 let mut blocks = planner.workspace();
                 blocks.record = record::Record::with_capacity_of(span.len(), 60, most);
-                let again = planner.segments.forward_pass(pass, None, &mut blocks, false);
+                let again = planner.segments.forward_pass(pass, &mut blocks, false);
                 assert_eq!(again.ends, forward_pass.ends);
                 for class in PostureClass::ALL.into_iter().filter(|class| forward_pass.ends[class.index()].is_some()) {
                     compared += 1;

@@ -193,15 +193,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
             now.scores_mut(class).fill(f64::INFINITY);
             return false;
         }
-        let band = Band::<R> {
-            costs: before.scores(class),
-            change,
-            between,
-            middle: change.middle_shift(),
-            half: (change.count() - 1) / 2,
-            is_even: change.count().is_multiple_of(2),
-            rules: PhantomData,
-        };
+        let band = Band::<R>::new(before.scores(class), change, between);
         let stride = band.costs.len();
         let (scores, now_joints) = now.scores_and_joints(class);
         let joints = Joints::<R>::new(before.all_joints(class), now_joints, stride, step);
@@ -259,7 +251,20 @@ struct Band<'s, R> {
     rules: PhantomData<R>,
 }
 
-impl<R: Rules> Band<'_, R> {
+impl<'s, R: Rules> Band<'s, R> {
+    #[inline(always)]
+    fn new(costs: &'s [f64], change: BetaChange, between: Option<Between<'s>>) -> Self {
+        Self {
+            costs,
+            change,
+            between,
+            middle: change.middle_shift(),
+            half: (change.count() - 1) / 2,
+            is_even: change.count().is_multiple_of(2),
+            rules: PhantomData,
+        }
+    }
+
     /// The costs of neighbouring states from `here` up to the points between, by the predecessors beside them.
     #[inline(always)]
     fn cost<S: Simd>(&self, simd: S, here: usize, shift: isize) -> Lanes<S> {
@@ -360,7 +365,8 @@ struct Joints<'s, R> {
 
 impl<'s, R: Rules> Joints<'s, R> {
     #[inline(always)]
-    fn new([old, old_angles]: [&'s [f64]; 2], [new, new_angles]: [&'s [f64]; 2], stride: usize, step: &Step) -> Self {
+    fn new(before: [&'s [f64]; 2], now: [&'s [f64]; 2], stride: usize, step: &Step) -> Self {
+        let ([old, old_angles], [new, new_angles]) = (before, now);
         let joints = &step.joints;
         let (mut limits, mut chords, mut are_all) = (*joints, [0.0; 6], true);
         for j in 0..6 {
@@ -444,8 +450,9 @@ impl<'s, R: Rules> Joints<'s, R> {
 
 /// Sine and cosine of an angle and another, which counts by 1 or -1.
 #[inline(always)]
-fn sum<S: Simd>([s, c]: [Lanes<S>; 2], [other_s, other_c]: [Lanes<S>; 2], fold: f64) -> [Lanes<S>; 2] {
-    let other_s = other_s * fold;
+fn sum<S: Simd>(angle: [Lanes<S>; 2], other: [Lanes<S>; 2], fold: f64) -> [Lanes<S>; 2] {
+    let [s, c] = angle;
+    let (other_s, other_c) = (other[0] * fold, other[1]);
     [s * other_c + c * other_s, c * other_c - s * other_s]
 }
 

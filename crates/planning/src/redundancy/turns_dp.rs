@@ -348,30 +348,34 @@ impl Search<'_> {
                 let joined = |rest: f64| join(rest) + travel * distance;
                 let known = after.ways.of(later);
                 let (known_costs, known_numbers) = (&after.costs[known.clone()], &after.numbers[known.clone()]);
-                let mut take = |node: usize, next: usize| {
+                let take = |node: usize, next: usize| {
                     let cost = joined(known_costs[next]);
                     if cost < costs[node] {
                         (costs[node], to[node]) = (cost, (known.start + next) as u32);
                     }
                 };
-                // Both ascend, so that they are gone through together.
-                let rise = self.numbering.rise(&turns);
-                let mut next = 0;
-                for (node, number) in numbers.iter().enumerate() {
-                    let number = number.wrapping_add_signed(rise);
-                    while known_numbers.get(next).is_some_and(|known| *known < number) {
-                        next += 1;
-                    }
-                    if known_numbers.get(next) == Some(&number) {
-                        take(node, next);
-                    }
-                }
+                same_numbers(numbers, known_numbers, self.numbering.rise(&turns), take);
                 most = costs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             }
             let score = scores[beta] * sign;
             for cost in costs.iter_mut().filter(|cost| cost.is_finite()) {
                 *cost = self.join(score, *cost);
             }
+        }
+    }
+}
+
+/// Visits the pairs of places in two ascending rows whose numbers are the same once those of the first have risen.
+#[inline(always)]
+fn same_numbers(first: &[u32], second: &[u32], rise: i32, mut visit: impl FnMut(usize, usize)) {
+    let mut other = 0;
+    for (place, number) in first.iter().enumerate() {
+        let number = number.wrapping_add_signed(rise);
+        while second.get(other).is_some_and(|known| *known < number) {
+            other += 1;
+        }
+        if second.get(other) == Some(&number) {
+            visit(place, other);
         }
     }
 }

@@ -1,3 +1,4 @@
+use super::super::UNITS;
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::refine::active::{active_bounds, active_walls};
@@ -87,7 +88,8 @@ proptest! {
         let problem = among(wall(-2.6), 0.01);
         let scene = problem.scene.as_deref().unwrap();
         let (placement, posture) = (Placement::from([x, -1.9, -0.4, yaw]), Posture::ALL[posture]);
-        for slack in slacks(&problem, None, point, beta, &placement, posture, 0.3) {
+        let at = [x, -1.9, -0.4, yaw, beta];
+        for slack in slacks(&problem, None, PointState { point, at, posture }, 0.3) {
             let (Limit::Clearance(pair) | Limit::KeepOut(pair)) = slack.limit else { panic!("{:?}", slack.limit) };
             let required = scene.pair(pair).unwrap().required;
             // Where shapes hit there is no slope.

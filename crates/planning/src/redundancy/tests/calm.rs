@@ -100,7 +100,7 @@ fn by_hand(planner: &Planner<'_>, placement: &Placement, sense: Sense) -> Vec<Ve
             sum += problem.point_cost(point, found.score());
         }
         let betas = vec![beta; span.len()];
-        joint_turns::unwind(problem, span, placement, &betas, &[posture], sum, &planner.segments.steps)?;
+        planner.segments.unwind(span, placement, &betas, &[posture], sum)?;
         Some(sum)
     };
     let best = |span: &std::ops::Range<usize>, k: usize| {

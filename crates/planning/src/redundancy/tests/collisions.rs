@@ -1,7 +1,7 @@
 //! Plans among shapes: states that hit are forbidden, moves between them are free, and nothing else changes.
 
 use super::*;
-use crate::redundancy::{Planner, StateSet, forbid};
+use crate::redundancy::{Planner, StateSet};
 use nalgebra::{Vector3, vector};
 use std::sync::Arc;
 use stead_cell::testing::{kr270_shapes, scene_of, shape};
@@ -120,7 +120,8 @@ fn a_part_in_the_fence_blocks_every_point_and_is_named() {
 fn neighbours_that_hit_are_forbidden_as_far_as_they_hit() {
     let mut forbidden = StateSet::default();
     let class = stead_model::robot::PostureClass::ALL[1];
-    forbid(4, class, 1, 10, 1, |k| [9, 0, 1, 2, 5].contains(&k), &mut forbidden);
+    let ring = BetaRing { count: 10, stride: 1 };
+    forbidden.add_around(4, class, 1, ring, |k| [9, 0, 1, 2, 5].contains(&k));
     let found: Vec<usize> = (0..10).filter(|k| forbidden.contains(4, class, *k)).collect();
     assert_eq!(found, [0, 1, 2, 9]);
 }

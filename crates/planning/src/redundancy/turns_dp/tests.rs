@@ -42,9 +42,10 @@ fn winding_paths_cost_what_plain_dynamic_programming_finds() {
                 span,
                 placement: &placement,
                 sense,
+                only: None,
                 is_by_knots: false,
             };
-            let relaxed = planner.segments.forward_pass(pass, None, &mut workspace, false);
+            let relaxed = planner.segments.forward_pass(pass, &mut workspace, false);
             for class in PostureClass::ALL {
                 let judge =
                     reference_dp::plan(&planner.segments, span, &placement, sense, &class.postures(), &mut workspace);
