@@ -53,6 +53,8 @@
 //! input and seed give the same bytes for any number of threads: random numbers are counter-based, reductions run in a
 //! fixed order, and transcendental functions do not come from the C library of the machine.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 /// The most threads that a job is given: more are a slip, and a machine that starts them may stop responding.
 pub const MAX_THREADS: usize = 1024;
 

@@ -27,6 +27,8 @@
 //! # Ok::<(), stead_assessment::roundness::RoundnessError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod benchmark;
 pub mod circle;
 pub mod comparison;

@@ -27,5 +27,7 @@
 //! # Ok::<(), stead_numerics::monitor::Stop>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod compensation;
 pub mod identification;

@@ -42,6 +42,8 @@
 //! # Ok::<(), stead_certify::NoProof>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 mod active_cells;
 mod arm;
 mod at_rest;

@@ -8,6 +8,8 @@
 //! assert_eq!(error.allowed("0 or above").to_string(), line);
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod files;
 pub mod input;
 pub mod manifest;

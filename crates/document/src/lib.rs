@@ -6,6 +6,8 @@
 //! - [`cards`]: tables and charts of a page as data; [`picture`]: the same as SVG; [`packed`], [`gltf_buffer`]: numbers
 //!   for scripts and scenes.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 mod record;
 
 pub mod cards;

@@ -12,6 +12,8 @@
 //! # }
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod cam;
 pub mod catalogue;
 pub mod compliance_matrix;

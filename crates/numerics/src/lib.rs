@@ -17,6 +17,8 @@
 //! assert!(monitor.should_stop());
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod digits;
 pub mod mean_max;
 pub mod message;

@@ -24,6 +24,8 @@
 //! # Ok::<(), stead_placement::place::Infeasible>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 mod case;
 pub mod coordinate_search;
 pub mod evaluator;

@@ -31,6 +31,8 @@
 //! # Ok::<(), stead_problem::problem::ProblemError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod compass;
 pub mod course;
 pub mod feasibility;

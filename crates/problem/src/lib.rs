@@ -15,6 +15,8 @@
 //! rotation about z. The compliance is `J K_theta^-1 J^T` without a complementary term. kappa_F carries the factor 1/6
 //! that makes the published bound of 0.2 possible.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod beta_step;
 pub mod candidate;
 pub mod cell;

@@ -4,6 +4,8 @@
 //! along it, exactly; what it removes of each line says where on the path, where on the cutter and at which angle the
 //! material is cut, and the mean force over a turn is a sum over that.
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod cut;
 pub mod cutting;
 pub mod forces;

@@ -16,6 +16,8 @@
 //! # }
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod assess;
 pub mod compensate;
 pub mod forces;

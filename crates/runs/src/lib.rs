@@ -6,6 +6,8 @@
 //! assert_ne!(Keep::All, Keep::Best(20));
 //! ```
 
+#![cfg_attr(not(test), warn(unused_crate_dependencies))]
+
 pub mod assessment;
 pub mod compensation;
 pub mod forces;

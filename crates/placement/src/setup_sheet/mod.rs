@@ -1,11 +1,13 @@
 //! What a fitter needs to set a placement up and to check it: where the part, the robot and the external axes stand, in
 //! the frame that the pendant shows where that is known; points to drive to; and by how much the part may be off.
 
+mod moves;
 mod tolerance;
 
 pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances};
 
 use crate::case::{Case, Plan, PlanPoint};
+use moves::joint_moves;
 use nalgebra::Vector3;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid};
@@ -15,7 +17,6 @@ use stead_model::robot::{ControllerKind, Pose, kuka_status_and_turn};
 use stead_numerics::message::Warning;
 use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::SegmentPlan;
-use stead_planning::transfer::Transfer;
 use stead_planning::transfer_path::{Space, transfer_path};
 use stead_problem::problem::{Placement, Problem};
 use tolerance::tolerances;
@@ -324,23 +325,6 @@ fn room_on_moves(problem: &Problem, case: &Case) -> Option<Room> {
     let rooms = joint_moves(problem, case).into_iter().filter_map(|[from, to]| space.least_room(from, to));
     let (distance, names) = rooms.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(Room { distance, names })
-}
-
-/// A move between two segments that is straight in joint space, from one joint pose to another, with the path points at
-/// which the external axes are as they are there.
-type JointMove<'a> = [(&'a [f64; 6], usize); 2];
-
-/// These moves of a case, without the lines along the tool axis.
-fn joint_moves<'a>(problem: &Problem, case: &'a Case) -> Vec<JointMove<'a>> {
-    let spans = problem.task.segments();
-    let of = |transfer: &'a Transfer| {
-        let way = transfer.way.as_ref()?;
-        let (from, to) = (spans.get(transfer.after_segment - 1)?, spans.get(transfer.after_segment)?);
-        let at = move |place: usize| (&way.joints[place], if place < way.axes_from { from.end - 1 } else { to.start });
-        let places = (1..way.joints.len()).filter(|place| !way.is_along_axis(*place));
-        Some(places.map(move |place| [at(place - 1), at(place)]).collect::<Vec<_>>())
-    };
-    case.cycle.transfers.iter().filter_map(of).flatten().collect()
 }
 
 /// The state of a plan that is nearest to a limit of a joint, of the arm itself without the margin of the run.

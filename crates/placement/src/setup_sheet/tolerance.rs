@@ -2,7 +2,7 @@
 //! measured anew, so that the program moves with the part, every point with its free angle and its posture. Joint moves
 //! between segments stay, as their joint angles do.
 
-use super::{JointMove, joint_moves};
+use super::moves::{JointMove, joint_moves};
 use crate::case::{Case, PlanPoint};
 use crate::path_subset::PathSubset;
 use nalgebra::{Matrix3, Vector3};

@@ -3,8 +3,9 @@
 //! The segment is planned again with limits left out: each alone, then two, then all three. What lets a posture past
 //! the point that none gets to is what stops it.
 
+use super::grid::finer;
 use super::segment_planner::Request;
-use super::{Resolution, SegmentPlanner, finer};
+use super::{Resolution, SegmentPlanner};
 use stead_model::robot::Posture;
 use stead_problem::constraints::ConstraintKind;
 use stead_problem::problem::{MAX_JOINT_STEP, Placement, Problem, Redundancy};
