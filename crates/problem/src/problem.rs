@@ -278,7 +278,7 @@ impl Problem {
 
     /// The largest force along the path. N
     pub fn largest_force(&self) -> f64 {
-        self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)
+        self.task.wrenches().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)
     }
 
     /// That most tool axes point downwards in the cell however the part lies; not where a turntable may tilt it.
@@ -332,7 +332,7 @@ impl Problem {
     /// Path point `point` and its wrench in the robot base frame, the workpiece at a placement.
     pub fn placed<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> PlacedPoint<T> {
         let workpiece = self.base_from_workpiece(point, placement);
-        let (path_point, wrench) = (&self.task.points()[point], &self.task.wrenches()[point]);
+        let (path_point, wrench) = (&self.task.points()[point], &self.task.loads()[point].wrench);
         PlacedPoint {
             tip: workpiece.point(&cast(&path_point.position)),
             axes: workpiece.rotation * path_point.workpiece_from_point().map(T::constant),

@@ -16,7 +16,7 @@ fn two_points(rotations: [Rotation3<f64>; 2]) -> Problem {
         let [feed, axis] = [0, 2].map(|column| rotation.matrix().column(column).into_owned());
         (1, PathPoint { position: Vector3::new(0.01 * k as f64, 0.0, 0.0), feed, axis })
     });
-    let wrenches = vec![problem.task.wrenches()[0]; 2];
+    let wrenches = vec![problem.task.loads()[0].wrench; 2];
     problem.task = Task::new(ToolPath::new(points.collect::<Vec<_>>()).unwrap(), wrenches).unwrap();
     problem
 }

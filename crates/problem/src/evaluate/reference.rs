@@ -180,7 +180,7 @@ impl<T: Scalar> DeflectedArm<'_, T> {
         if problem.criterion.force_uncertainty == 0.0 {
             return T::zero();
         }
-        let size = problem.criterion.force_uncertainty * problem.task.wrenches()[*point].force.norm();
+        let size = problem.criterion.force_uncertainty * problem.task.loads()[*point].wrench.force.norm();
         let moved_by = |force: &Vector3<T>| {
             let moved = self.whole.displacement(force, &Vector3::zeros()).linear;
             part.as_ref().map_or(moved, |part| moved + part * force)

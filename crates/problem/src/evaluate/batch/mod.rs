@@ -250,7 +250,7 @@ impl<'a> BatchEvaluator<'a> {
         let root_from_base = g.base_from_root.transpose();
         let workpiece = self.problem.base_from_workpiece(point, placement);
         let path_point = &self.problem.task.points()[point];
-        let wrench = &self.problem.task.wrenches()[point];
+        let wrench = &self.problem.task.loads()[point].wrench;
         let rotation = root_from_base * workpiece.rotation;
         let axes = rotation * self.workpiece_from_point[point];
         let flange_axis = |k: usize| Turning::new(&axes, &self.tool_from_flange[k]);
@@ -287,7 +287,8 @@ impl<'a> BatchEvaluator<'a> {
 
     /// Whether there is one set of compliances, and the score of a point covers no errors.
     fn is_plain(&self, point: usize) -> bool {
-        let uncertainty = self.problem.criterion.force_uncertainty * self.problem.task.wrenches()[point].force.norm();
+        let uncertainty =
+            self.problem.criterion.force_uncertainty * self.problem.task.loads()[point].wrench.force.norm();
         uncertainty == 0.0 && matches!(self.sets[..], [Set { deviation: None, .. }])
     }
 }
