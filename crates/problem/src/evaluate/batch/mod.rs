@@ -3,7 +3,7 @@
 //! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
 //! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
 //! quantities, one state at a time and by way of the Jacobian, come from
-//! [`PlacedTask::state`](crate::problem::PlacedTask::state); the tests hold the two against each other.
+//! [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state); the tests hold the two against each other.
 //!
 //! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the
 //! frame turned with joint 1, where the arm is a plane mechanism; joint angles are never computed, only their sines and
