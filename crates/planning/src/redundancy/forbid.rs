@@ -87,7 +87,7 @@ impl Planner<'_> {
             let kinds = kinds_left(self.segments.tool_hits.as_deref());
             let hits = |k| {
                 let beta = self.grid().beta(k);
-                self.problem.next_hit(point, beta, placement, plan.posture, kinds, &mut known).is_some()
+                self.problem.at(placement).next_hit(point, beta, plan.posture, kinds, &mut known).is_some()
             };
             return self.forbid_near(point, class, plan.betas[place], 1, hits, forbidden);
         }
@@ -128,7 +128,7 @@ impl Planner<'_> {
             let beta = self.grid().beta(k);
             postures
                 .iter()
-                .all(|posture| self.problem.next_hit(point, beta, placement, *posture, kinds, &mut known).is_some())
+                .all(|posture| self.problem.at(placement).next_hit(point, beta, *posture, kinds, &mut known).is_some())
         };
         while let Some((point, betas)) = open.pop() {
             for next in [point.wrapping_sub(1), point + 1].into_iter().filter(|next| plan.points.contains(next)) {
@@ -166,7 +166,7 @@ impl Planner<'_> {
         let ends = scene.zip(start.as_ref().zip(stop.as_ref())).map(|(scene, (start, stop))| (scene, [start, stop]));
         let hits_first =
             ends.is_some_and(|(scene, [start, _])| scene.next_hit(known, start, &PairKind::OF_STATES).is_some());
-        hits_first || problem.move_fault(placement, end, plan.posture, [from, to], ends, known).is_some()
+        hits_first || problem.at(placement).move_fault(end, plan.posture, [from, to], ends, known).is_some()
     }
 
     /// Forbids the state of the grid next to a beta (rad), or where that is forbidden the one on its other side, with

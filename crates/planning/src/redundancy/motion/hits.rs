@@ -35,7 +35,7 @@ impl MotionPlanner<'_> {
             let planner = &self.planners[setting];
             let (problem, kinds) = (planner.problem, kinds_left(planner.tool_hits.as_deref()));
             let angle = planner.grid.beta(beta);
-            let hit = |p: &Posture| problem.next_hit(point, angle, placement, *p, kinds, known).is_some();
+            let hit = |p: &Posture| problem.at(placement).next_hit(point, angle, *p, kinds, known).is_some();
             !postures.is_empty() && postures.iter().all(hit)
         };
         let mut known = Proximity::default();
