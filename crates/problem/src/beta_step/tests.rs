@@ -1,6 +1,7 @@
 //! Limits on beta against rotation matrices.
 
 use super::*;
+use crate::constraints::Measured;
 use crate::problem::Placement;
 use crate::testing::five_segments;
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -8,6 +9,19 @@ use proptest::prelude::*;
 use stead_model::robot::point_from_tool;
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_numerics::rotation;
+
+impl Problem {
+    /// The constraints on the change of beta (rad) from path point `point - 1` to `point` that are in force.
+    fn on_beta_step(&self, point: usize, change: f64) -> impl Iterator<Item = Measured> + use<> {
+        let rate = self
+            .redundancy
+            .max_beta_rate
+            .map(|rate| Measured::BetaRate { step: wrap(change).abs(), limit: rate * self.step_length(point) });
+        let limit = self.spindle_turn_limit(point);
+        let turn = limit.map(|limit| Measured::SpindleTurn { turn: self.spindle_turn(point, change), limit });
+        [rate, turn].into_iter().flatten()
+    }
+}
 
 /// Two points 10 mm apart with the axes of two rotations.
 fn two_points(rotations: [Rotation3<f64>; 2]) -> Problem {
