@@ -72,7 +72,7 @@ fn number(document: &serde_json::Value, pointer: &str) -> f64 {
 fn rest_mm(problem: &Problem, placement: &Placement, path: &Columns, row: usize) -> Vector3<f64> {
     let joints: [f64; 6] = std::array::from_fn(|j| path.number(row, &format!("theta{}_deg", j + 1)).to_radians());
     let base_from_workpiece = placement.base_from_workpiece().rotation;
-    let wrench = &problem.task.wrenches()[row];
+    let wrench = &problem.task.loads()[row].wrench;
     let point = problem.spindle.flange_from_tool.translation;
     let load = Load { point, force: base_from_workpiece * wrench.force, moment: base_from_workpiece * wrench.moment };
     problem.robot.forward(&equilibrium(&problem.robot, &joints, &load).unwrap()).point(&point) * 1e3

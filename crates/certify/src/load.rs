@@ -104,9 +104,9 @@ impl Load {
             *direction = seen(vector);
         }
         let factor = objective.factor(problem.point_weight(point));
-        let force = &problem.task.wrenches()[point].force;
+        let force = &problem.task.loads()[point].wrench.force;
         let error = problem.criterion.force_uncertainty * force.norm() * factor;
-        let moment = seen(&problem.task.wrenches()[point].moment).map(|m| m * factor);
+        let moment = seen(&problem.task.loads()[point].wrench.moment).map(|m| m * factor);
         let part = problem.task.part_compliance(point).map(|matrix| {
             let column = |k: usize| {
                 // Columns of the frame in the workpiece frame, seen back.

@@ -134,7 +134,7 @@ mod tests {
             (path.segment_of(k) as u32 + 1, point)
         });
         let wrench = |w: &Wrench| Wrench { force: by * w.force, moment: by * w.moment };
-        Task::new(ToolPath::new(points).unwrap(), task.wrenches().iter().map(wrench).collect()).unwrap()
+        Task::new(ToolPath::new(points).unwrap(), task.wrenches().map(wrench).collect()).unwrap()
     }
 
     #[test]
@@ -193,7 +193,7 @@ mod tests {
         let points = (0..problem.task.points().len())
             .map(|k| (problem.task.path().segment_of(k) as u32 + 1, tasks[k % 5].points()[k]));
         let path = ToolPath::new(points).unwrap();
-        orientations[1].task = Arc::new(Task::new(path, problem.task.wrenches().to_vec()).unwrap());
+        orientations[1].task = Arc::new(Task::new(path, problem.task.wrenches().copied().collect()).unwrap());
         problem.orientations = orientations.into();
         let refused = certifiable(&problem, u64::MAX).unwrap_err().to_string();
         assert!(refused.starts_with("in the orientation \"turned\": "), "{refused}");

@@ -203,7 +203,7 @@ fn not_covered_leaning(problem: &Problem) -> Vec<Unsupported> {
 }
 
 fn has_moments(problem: &Problem) -> bool {
-    problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0)
+    problem.task.wrenches().any(|wrench| wrench.moment.norm() > 0.0)
 }
 
 /// What yields beside the joints about their axes without turning with the arm, the tool or the part, or under more

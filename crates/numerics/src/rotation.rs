@@ -28,8 +28,8 @@ pub fn rotation_from_vector(vector: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// `Rz(z) Ry(y) Rx(x)`, angles in rad: KUKA's A, B, C; Fanuc's R, P, W; yaw, pitch, roll of a URDF.
-pub fn rotation_from_zyx([z, y, x]: [f64; 3]) -> Matrix3<f64> {
-    let [(sz, cz), (sy, cy), (sx, cx)] = [z, y, x].map(libm::sincos);
+pub fn rotation_from_zyx(angles: [f64; 3]) -> Matrix3<f64> {
+    let [(sz, cz), (sy, cy), (sx, cx)] = angles.map(libm::sincos);
     Matrix3::new(
         cz * cy,
         cz * sy * sx - sz * cx,

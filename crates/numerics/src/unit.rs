@@ -43,11 +43,6 @@ impl Unit {
         fixed(value * self.factor, self.decimals)
     }
 
-    /// The field of a CSV file, empty where there is no number.
-    pub fn text_or_empty(self, value: Option<f64>) -> String {
-        value.map_or_else(String::new, |value| self.text(value))
-    }
-
     /// The number of a JSON document: the one nearest to [`Unit::text`].
     pub fn number(self, value: f64) -> f64 {
         self.text(value).parse().unwrap_or(f64::NAN)
@@ -65,7 +60,6 @@ mod tests {
         assert_eq!(Unit::ANGLE_DEG.text(-std::f64::consts::PI), "-180.0000");
         assert_eq!(Unit::RATE_DEG_PER_MM.text(0.9_f64.to_radians() * 1e3), "0.900000");
         assert_eq!(Unit::DEFLECTION_MM.number(8.300_000_04e-5), 0.083);
-        assert_eq!(Unit::TIME_S.text_or_empty(None), "");
     }
 
     #[test]

@@ -150,7 +150,7 @@ impl Overview {
         let points = problem.task.points();
         let extents = std::array::from_fn(|axis| range(points.iter().map(|point| point.position[axis])));
         let path = problem.task.path();
-        let sizes = |of: fn(&stead_model::task::Wrench) -> f64| MeanAndMax::of(problem.task.wrenches().iter().map(of));
+        let sizes = |of: fn(&stead_model::task::Wrench) -> f64| MeanAndMax::of(problem.task.wrenches().map(of));
         let tool = &problem.spindle.flange_from_tool.rotation;
         let moves = || path.segments().iter().flat_map(|segment| segment.clone().skip(1));
         let has_feeds = moves().next().is_some_and(|point| path.feed(point).is_some());
@@ -336,7 +336,7 @@ mod tests {
         assert!((overview.tool_tilt.to_degrees() - 45.0).abs() < 1e-4);
         assert_eq!(overview.segment_lengths.len(), 5);
         assert_eq!(overview.tilts, [0.0, 0.0]);
-        assert!((overview.force.max - problem.task.wrenches()[0].force.norm()).abs() < 1e3);
+        assert!((overview.force.max - problem.task.loads()[0].wrench.force.norm()).abs() < 1e3);
         assert!(overview.reach > 2.6 && overview.cell_distances[0] < overview.cell_distances[1]);
         assert_eq!(overview.middle.tried, 105);
         // What is said to be reached is: the flange is where the first point wants it.

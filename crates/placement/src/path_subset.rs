@@ -136,8 +136,8 @@ impl PathSubset {
 
 /// For each point what has changed along its segments up to it, in the units of [`UNITS`].
 fn travelled(task: &Task) -> Vec<f64> {
-    let (points, wrenches) = (task.points(), task.wrenches());
-    let mean = wrenches.iter().map(|wrench| wrench.force.norm()).sum::<f64>() / wrenches.len() as f64;
+    let (points, loads) = (task.points(), task.loads());
+    let mean = task.wrenches().map(|wrench| wrench.force.norm()).sum::<f64>() / loads.len() as f64;
     let mut sum = 0.0;
     let mut travelled = vec![0.0; points.len()];
     for span in task.segments() {
@@ -149,7 +149,7 @@ fn travelled(task: &Task) -> Vec<f64> {
             };
             sum += task.path().step_length(point) / UNITS[0] + angle(&a.axis, &b.axis) + angle(&a.feed, &b.feed);
             if mean > 0.0 {
-                sum += (wrenches[point].force - wrenches[point - 1].force).norm() / (mean * UNITS[2]);
+                sum += (loads[point].wrench.force - loads[point - 1].wrench.force).norm() / (mean * UNITS[2]);
             }
             travelled[point] = sum;
         }
@@ -217,7 +217,8 @@ mod tests {
         let points =
             (0..105).map(|point| (task.path().segment_of(point) as u32 + 1, task.points()[point], is_scored(point)));
         let path = ToolPath::partly_scored(points).unwrap();
-        let problem = problem.clone().with(|parts| parts.task = Task::new(path, task.wrenches().to_vec()).unwrap());
+        let problem =
+            problem.clone().with(|parts| parts.task = Task::new(path, task.wrenches().copied().collect()).unwrap());
         let scored = (0..105).filter(|point| is_scored(*point)).count() as f64;
         for count in [5, 12, 40] {
             let mut subset = PathSubset::new(&problem.task, count);

@@ -174,7 +174,7 @@ mod tests {
     /// subset.
     fn changed(from: usize, change: impl Fn(&mut PathPoint, &mut Wrench)) -> (Problem, PathSubset) {
         let mut problem = five_segments();
-        let mut wrenches = problem.task.wrenches().to_vec();
+        let mut wrenches: Vec<_> = problem.task.wrenches().copied().collect();
         let path = problem.task.path();
         let mut points: Vec<_> =
             (0..wrenches.len()).map(|k| (path.segment_of(k) as u32 + 1, problem.task.points()[k])).collect();

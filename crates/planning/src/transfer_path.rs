@@ -273,7 +273,7 @@ impl<'a> Space<'a> {
         let most = (0..6).map(|j| (to.0[j] - from.0[j]).abs()).fold(0.0, f64::max);
         let steps = (most / ROOM_STEP).ceil().max(1.0);
         let at = |step: usize| {
-            let (_, poses) = self.problem.by_joints(scene, self.placement, [from, to], step as f64 / steps);
+            let (_, poses) = self.problem.at(self.placement).by_joints(scene, [from, to], step as f64 / steps);
             scene.clearance(&poses, &PairKind::ALL)
         };
         let least = (0..=steps as usize).filter_map(at).min_by(|a, b| a.distance.total_cmp(&b.distance))?;
@@ -291,7 +291,7 @@ impl<'a> Space<'a> {
         // Several axes that turn together move nothing about one axis: over such a step it is as good as that.
         let most = start.iter().zip(end).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
         let steps = (most / AXIS_STEP).ceil().max(1.0);
-        let at = |step: usize| self.problem.by_joints(scene, self.placement, [from, to], step as f64 / steps);
+        let at = |step: usize| self.problem.at(self.placement).by_joints(scene, [from, to], step as f64 / steps);
         let pair = (0..steps as usize).find_map(|step| {
             let [(a, start), (b, end)] = [at(step), at(step + 1)];
             match a == b && start == end {

@@ -16,7 +16,7 @@
 //! which the spindle turns no more than its axis has to: for a tool with a constant axis, the turn of the feed in the
 //! opposite sense.
 
-use crate::constraints::{Measured, STEP_ROUNDING};
+use crate::constraints::STEP_ROUNDING;
 use crate::limit::Limit;
 use crate::problem::{BetaPlan, Problem, Redundancy};
 use crate::setup::AxisPositions;
@@ -257,17 +257,6 @@ impl Problem {
             Some(_) if !is_by_rate(end) => Limit::SpindleTurn,
             _ => Limit::BetaRate,
         })
-    }
-
-    /// The constraints on the change of beta (rad) from path point `point - 1` to `point` that are in force.
-    pub fn on_beta_step(&self, point: usize, change: f64) -> impl Iterator<Item = Measured> + use<> {
-        let rate = self
-            .redundancy
-            .max_beta_rate
-            .map(|rate| Measured::BetaRate { step: wrap(change).abs(), limit: rate * self.step_length(point) });
-        let limit = self.spindle_turn_limit(point);
-        let turn = limit.map(|limit| Measured::SpindleTurn { turn: self.spindle_turn(point, change), limit });
-        [rate, turn].into_iter().flatten()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where the workpiece may stand.
 
-use super::problem::Placement;
+use super::placement::Placement;
 use std::f64::consts::TAU;
 use stead_model::robot::angles::wrap;
 use stead_numerics::digits::figures;

@@ -6,6 +6,7 @@
 //! plan cheaper, so a plan that is free is as good as if all states had been checked.
 
 use crate::constraints::Measured;
+use crate::evaluate::placed_task::PlacedTask;
 use crate::problem::{Placement, Problem};
 use crate::segment_plan::SegmentPlan;
 use crate::straight_move::LineEnd;
@@ -134,24 +135,9 @@ impl Problem {
     }
 
     /// The same for a path point at a free angle (rad) in a posture; `None` also where that is out of reach.
+    #[cfg(any(test, feature = "testing"))]
     pub fn posture_hit(&self, point: usize, placement: &Placement, beta: f64, posture: Posture) -> Option<usize> {
-        let of_states = &PairKind::OF_STATES;
-        self.next_hit(point, beta, placement, posture, of_states, &mut Proximity::default())
-    }
-
-    /// A pair of shapes of some kinds that touch at a path point at a free angle (rad) in a posture, by what is known
-    /// from states looked at before.
-    pub fn next_hit(
-        &self,
-        point: usize,
-        beta: f64,
-        placement: &Placement,
-        posture: Posture,
-        kinds: &[PairKind],
-        known: &mut Proximity,
-    ) -> Option<usize> {
-        let joints = self.robot.inverse(&self.at(placement).base_from_flange(point, beta), posture).ok()?;
-        self.hit_after(known, point, placement, &joints, kinds)
+        self.at(placement).next_hit(point, beta, posture, &PairKind::OF_STATES, &mut Proximity::default())
     }
 
     /// The pair with the least room beyond what it has to keep; `None` where there is no scene, or nothing is near.
@@ -239,7 +225,7 @@ impl Problem {
             let between = posture.filter(|_| before.1).and_then(|posture| {
                 let ends = [joints[place - 1], joints[place]];
                 let at_ends = poses.as_ref().zip(before.0.as_ref()).map(|((scene, end), start)| (*scene, [start, end]));
-                self.move_fault(placement, point, posture, ends, at_ends, &mut known)
+                self.at(placement).move_fault(point, posture, ends, at_ends, &mut known)
             });
             let pair = poses.as_ref().and_then(|(scene, poses)| scene.next_hit(&mut known, poses, kinds));
             before = (poses.map(|(_, poses)| poses), pair.is_none());
@@ -254,6 +240,22 @@ impl Problem {
     pub fn is_free(&self, placement: &Placement, plans: &[SegmentPlan]) -> bool {
         self.placement_hit(placement).is_none()
             && plans.iter().all(|plan| self.plan_faults(placement, plan, true).is_empty())
+    }
+}
+
+impl PlacedTask<'_> {
+    /// A pair of shapes of some kinds that touch at a path point at a free angle (rad) in a posture, by what is known
+    /// from states looked at before; `None` also where that is out of reach.
+    pub fn next_hit(
+        self,
+        point: usize,
+        beta: f64,
+        posture: Posture,
+        kinds: &[PairKind],
+        known: &mut Proximity,
+    ) -> Option<usize> {
+        let joints = self.problem.robot.inverse(&self.base_from_flange(point, beta), posture).ok()?;
+        self.problem.hit_after(known, point, self.placement, &joints, kinds)
     }
 }
 

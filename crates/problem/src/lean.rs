@@ -331,8 +331,8 @@ pub fn lean_between(path: &ToolPath, ends: [(usize, Lean); 2], point: usize, sha
 }
 
 /// An axis turned a share of the way from one to another, which it is apart from by an angle above zero.
-fn turned([from, to]: [&Vector3<f64>; 2], turn: f64, share: f64) -> Vector3<f64> {
-    (from * libm::sin((1.0 - share) * turn) + to * libm::sin(share * turn)).normalize()
+fn turned(axes: [&Vector3<f64>; 2], turn: f64, share: f64) -> Vector3<f64> {
+    (axes[0] * libm::sin((1.0 - share) * turn) + axes[1] * libm::sin(share * turn)).normalize()
 }
 
 /// The lean with which the tool axis of a point is along a unit vector.

@@ -1,6 +1,6 @@
 //! What may vary at a placement, what must hold and what is scored, and the states of the arm under it.
 //!
-//! - [`problem`]: what may vary, what must hold; [`cell`]: where the part may stand; [`setup`]: which way up it lies,
+//! - [`problem`]: what may vary, what must hold; [`placement`], [`cell`]: where the part stands and may stand; [`setup`]: which way up it lies,
 //!   where external axes stand; [`lean`]: how far the tool may lean; [`settings`]: how hard to search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
 //! - [`criterion`]: which part of the deflection is scored, and how points make up one figure; [`objective`]: that of a
@@ -28,6 +28,7 @@ pub mod joint_travel;
 pub mod lean;
 pub mod limit;
 pub mod objective;
+pub mod placement;
 pub mod postures;
 pub mod problem;
 pub mod segment_plan;

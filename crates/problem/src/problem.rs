@@ -3,24 +3,17 @@
 mod at_feed;
 mod in_setup;
 mod parts;
-mod placed_task;
 
 pub use parts::{ProblemError, ProblemParts};
-pub use placed_task::PlacedTask;
 
 use super::postures::PostureRules;
 use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
-use std::ops::{Index, IndexMut};
 use stead_cell::{Attachment, Shape};
 use stead_model::external_axis::{AxisKind, ExternalAxis};
 use stead_model::plausibility;
-use stead_model::robot::{
-    Pose, Posture, Robot,
-    angles::{q4_from_yaw, wrap, yaw_from_q4},
-    cast, point_from_tool,
-};
+use stead_model::robot::{Pose, Posture, Robot, cast, point_from_tool};
 use stead_model::task::{PathPoint, Task};
 use stead_numerics::message::Note;
 use stead_numerics::scalar::Scalar;
@@ -29,89 +22,7 @@ use stead_numerics::scalar::Scalar;
 pub const UNCHECKED: &str = "collisions were not checked";
 
 pub use super::cell::{Cell, Interval};
-
-/// Where the workpiece stands, with all external axes at zero: its origin in the robot base frame, and its rotation
-/// about the vertical.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Placement<T = f64> {
-    /// x of the workpiece origin. m
-    pub x: T,
-    /// y of the workpiece origin. m
-    pub y: T,
-    /// z of the workpiece origin. m
-    pub z: T,
-    /// Yaw gamma about the vertical, with Q4 = sin(gamma / 2). rad
-    pub yaw: T,
-}
-
-impl<T> From<[T; 4]> for Placement<T> {
-    /// From x, y, z and yaw.
-    fn from([x, y, z, yaw]: [T; 4]) -> Self {
-        Self { x, y, z, yaw }
-    }
-}
-
-impl<T> From<Placement<T>> for [T; 4] {
-    /// To x, y, z and yaw.
-    fn from(Placement { x, y, z, yaw }: Placement<T>) -> Self {
-        [x, y, z, yaw]
-    }
-}
-
-/// Coordinates by number: x, y, z, and yaw for every other number.
-impl<T> Index<usize> for Placement<T> {
-    type Output = T;
-
-    fn index(&self, number: usize) -> &T {
-        match number {
-            0 => &self.x,
-            1 => &self.y,
-            2 => &self.z,
-            _ => &self.yaw,
-        }
-    }
-}
-
-impl<T> IndexMut<usize> for Placement<T> {
-    fn index_mut(&mut self, number: usize) -> &mut T {
-        match number {
-            0 => &mut self.x,
-            1 => &mut self.y,
-            2 => &mut self.z,
-            _ => &mut self.yaw,
-        }
-    }
-}
-
-impl<T: Scalar> Placement<T> {
-    /// The transform from workpiece to robot base (Caro 2013, eq. 8 as corrected: a plain rotation about z).
-    pub fn base_from_workpiece(&self) -> Pose<T> {
-        let (sine, cosine) = self.yaw.sin_cos();
-        let (zero, one) = (T::zero(), T::one());
-        Pose {
-            rotation: Matrix3::new(cosine, -sine, zero, sine, cosine, zero, zero, zero, one),
-            translation: Vector3::new(self.x, self.y, self.z),
-        }
-    }
-}
-
-impl Placement {
-    /// From a place in mm and a yaw in degrees, as files and users state it.
-    pub fn from_mm_deg(xyz_mm: [f64; 3], yaw_deg: f64) -> Self {
-        let [x, y, z] = xyz_mm.map(|mm| mm / 1e3);
-        Self { x, y, z, yaw: wrap(yaw_deg.to_radians()) }
-    }
-
-    /// From a place in mm and the quaternion component Q4 = sin(yaw / 2), from -1 to 1.
-    pub fn from_mm_q4(xyz_mm: [f64; 3], q4: f64) -> Self {
-        Self { yaw: yaw_from_q4(q4), ..Self::from_mm_deg(xyz_mm, 0.0) }
-    }
-
-    /// The quaternion component by which the paper states the yaw (Caro 2013, eq. 4).
-    pub fn q4(&self) -> f64 {
-        q4_from_yaw(self.yaw)
-    }
-}
+pub use super::placement::Placement;
 
 /// A path point with its wrench, put by a placement into the robot base frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -278,7 +189,7 @@ impl Problem {
 
     /// The largest force along the path. N
     pub fn largest_force(&self) -> f64 {
-        self.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)
+        self.task.wrenches().map(|wrench| wrench.force.norm()).fold(0.0, f64::max)
     }
 
     /// That most tool axes point downwards in the cell however the part lies; not where a turntable may tilt it.
@@ -332,7 +243,7 @@ impl Problem {
     /// Path point `point` and its wrench in the robot base frame, the workpiece at a placement.
     pub fn placed<T: Scalar>(&self, point: usize, placement: &Placement<T>) -> PlacedPoint<T> {
         let workpiece = self.base_from_workpiece(point, placement);
-        let (path_point, wrench) = (&self.task.points()[point], &self.task.wrenches()[point]);
+        let (path_point, wrench) = (&self.task.points()[point], &self.task.loads()[point].wrench);
         PlacedPoint {
             tip: workpiece.point(&cast(&path_point.position)),
             axes: workpiece.rotation * path_point.workpiece_from_point().map(T::constant),

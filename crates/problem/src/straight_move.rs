@@ -351,7 +351,7 @@ mod tests {
             let scene = among.scene.as_deref().unwrap();
             let stands = [0, 1].map(|side| among.poses(scene, side, &placement, &joints[side]));
             let ends = Some((scene, [&stands[0], &stands[1]]));
-            let fault = among.move_fault(&placement, 1, posture, joints, ends, &mut Proximity::default());
+            let fault = among.at(&placement).move_fault(1, posture, joints, ends, &mut Proximity::default());
             assert!(fault.is_some(), "{joints:?}: {} mm out", far.norm() * 1e3);
             found += 1;
         }

@@ -197,7 +197,7 @@ impl Upright {
 /// # Errors
 /// [`Unsupported::Moment`] at the first point where a moment does.
 pub fn require_no_moment(problem: &Problem) -> Result<(), Unsupported> {
-    let first = problem.task.wrenches().iter().position(|wrench| wrench.moment.norm() > 0.0);
+    let first = problem.task.wrenches().position(|wrench| wrench.moment.norm() > 0.0);
     first.map_or(Ok(()), |point| Err(Unsupported::Moment { point }))
 }
 

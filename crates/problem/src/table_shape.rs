@@ -126,8 +126,8 @@ impl Shape {
         require_constant(problem, &[0, 3, 4, 5])?;
         require_certain_compliances(problem)?;
         require_alike_flips(problem)?;
-        let is_flat = problem.criterion.force_uncertainty == 0.0
-            && problem.task.wrenches().iter().all(|wrench| wrench.force.z == 0.0);
+        let is_flat =
+            problem.criterion.force_uncertainty == 0.0 && problem.task.wrenches().all(|wrench| wrench.force.z == 0.0);
         let parts = Parts {
             vertical: !is_flat,
             moment: require_no_moment(problem).is_err(),

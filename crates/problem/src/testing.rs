@@ -77,7 +77,7 @@ pub fn hanging() -> Problem {
         (path.segment_of(k) as u32 + 1, point)
     });
     let turned_path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    let wrenches = problem.task.wrenches().iter().map(|w| Wrench { force: turned(w.force), ..*w }).collect();
+    let wrenches = problem.task.wrenches().map(|w| Wrench { force: turned(w.force), ..*w }).collect();
     problem.cell.position[2] = Interval { min: 1.0, max: 1.4 };
     problem.task = Task::new(turned_path, wrenches).unwrap();
     problem
@@ -161,7 +161,7 @@ pub fn winding(steps: &[(f64, f64)], lean: f64) -> Problem {
         let feed = Vector3::new(libm::cos(heading), libm::sin(heading), 0.0);
         points.push((1, PathPoint { position, feed: (feed - axis * axis.dot(&feed)).normalize(), axis }));
     }
-    let wrenches = vec![problem.task.wrenches()[0]; points.len()];
+    let wrenches = vec![problem.task.loads()[0].wrench; points.len()];
     problem.task = Task::new(ToolPath::new(points).unwrap(), wrenches).unwrap();
     problem
 }

@@ -259,7 +259,7 @@ impl Grid {
             posture_words: problem().robot.posture_words(posture),
             joints: std::array::from_fn(|j| Range::of(&joints[j]).nearest(state.joints[j]).0),
             inverse_condition: state.inverse_condition,
-            force: base_from_workpiece.rotation * problem().task.wrenches()[point].force,
+            force: base_from_workpiece.rotation * problem().task.loads()[point].wrench.force,
             deflection: state.deflection,
             feed_part: state.feed_part,
             normal_part: state.normal_part,

@@ -185,7 +185,7 @@ fn placed(problem: &Problem, settings: &SearchSettings, run: &Run, what: &str) -
 /// A task whose forces, moments or tool axes are others at some neighbours, each given its share of the way through
 /// them.
 fn changed(task: &Task, first: usize, change: impl Fn(f64, &mut PathPoint, &mut Wrench)) -> Result<Task, Failure> {
-    let mut wrenches = task.wrenches().to_vec();
+    let mut wrenches: Vec<_> = task.wrenches().copied().collect();
     let mut points: Vec<(u32, PathPoint)> =
         (0..wrenches.len()).map(|k| (task.path().segment_of(k) as u32 + 1, task.points()[k])).collect();
     for k in 0..DECIDING {

@@ -3,8 +3,8 @@
 //! A capsule is a segment with a radius: GJK ends after a few steps on a segment, where it would creep along the round
 //! surface. On cylinders it ends within 0.01 mm of the distance.
 
-use super::vector;
 use crate::solid::Solid;
+use nalgebra::Vector3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
 use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d_f64::query::PointQuery;
@@ -13,6 +13,11 @@ use parry3d_f64::query::gjk::{GJKResult, VoronoiSimplex};
 use parry3d_f64::shape::{ConvexPolyhedron, Cuboid, Cylinder, Segment, SupportMap};
 use parry3d_f64::transformation::try_convex_hull;
 use std::sync::Arc;
+
+/// A vector as the library has it.
+pub(super) fn vector(v: &Vector3<f64>) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
 
 /// All points that are not farther than a radius from a core.
 #[derive(Clone)]

@@ -4,9 +4,8 @@
 //! distance costs hardly more than an intersection; two meshes through the trees of both: the library's own distance of
 //! meshes does not prune both sides.
 
-use super::convex::{Convex, core_distance, nearest_core_points};
+use super::convex::{Convex, core_distance, nearest_core_points, vector};
 use super::tree::{MARGIN, Tree};
-use super::vector;
 use crate::solid::TriangleMesh;
 use parry3d_f64::bounding_volume::{Aabb, BoundingSphere};
 use parry3d_f64::math::{Pose as ParryPose, Vector};
@@ -153,10 +152,10 @@ impl Mesh {
     }
 
     /// The nearest points of a triangle at a distance and of the other; `None` where that is zero.
-    fn points_of(&self, other: &Other<'_>, (triangle, distance): (u32, f64)) -> Option<[Vector; 2]> {
-        let triangle = self.triangles.triangle(triangle);
+    fn points_of(&self, other: &Other<'_>, nearest: (u32, f64)) -> Option<[Vector; 2]> {
+        let triangle = self.triangles.triangle(nearest.0);
         let points = nearest_core_points(other.core, &other.from_mesh, &triangle, f64::INFINITY);
-        let [on_other, on_mesh] = points.filter(|_| distance > 0.0)?.map(|point| other.from_mesh.inverse() * point);
+        let [on_other, on_mesh] = points.filter(|_| nearest.1 > 0.0)?.map(|point| other.from_mesh.inverse() * point);
         Some([on_mesh, on_other])
     }
 
@@ -235,13 +234,10 @@ fn parts(mesh: &TriangleMesh) -> Option<Vec<Part>> {
 
 /// The distance and direction of two hulls where that is enough; else the distance of what is in them, with that
 /// direction where it is as large.
-fn unless_by_hulls(
-    (apart, axis): (f64, Option<Vector>),
-    limit: f64,
-    distance: impl FnOnce() -> f64,
-) -> (f64, Option<Vector>) {
+fn unless_by_hulls(hulls: (f64, Option<Vector>), limit: f64, distance: impl FnOnce() -> f64) -> (f64, Option<Vector>) {
+    let (apart, axis) = hulls;
     if apart >= limit && apart > 0.0 {
-        return (apart, axis);
+        return hulls;
     }
     let distance = distance();
     (distance, axis.filter(|_| apart > 0.0 && (distance - apart).abs() <= SAME))

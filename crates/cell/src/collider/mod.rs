@@ -11,7 +11,7 @@ mod mesh;
 mod tree;
 
 use crate::solid::Solid;
-use convex::Convex;
+use convex::{Convex, vector};
 use mesh::Mesh;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
@@ -36,10 +36,6 @@ impl fmt::Debug for Collider {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Collider").field("pose", &self.pose).finish_non_exhaustive()
     }
-}
-
-fn vector(v: &Vector3<f64>) -> Vector {
-    Vector::new(v.x, v.y, v.z)
 }
 
 fn parry_pose(pose: &Pose<f64>) -> ParryPose {

@@ -180,7 +180,7 @@ mod tests {
     }
 
     fn triangles(mesh: &TriangleMesh) -> Vec<Triangle> {
-        let corner = |number: u32| crate::collider::vector(&mesh.vertices()[number as usize]);
+        let corner = |number: u32| crate::collider::convex::vector(&mesh.vertices()[number as usize]);
         mesh.triangles().iter().map(|corners| Triangle::from(corners.map(corner))).collect()
     }
 

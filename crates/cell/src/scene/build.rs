@@ -1,6 +1,7 @@
 //! From shapes to pairs: which can meet, and which touch whatever the arm does.
 
-use super::{Body, Members, Pair, PairKind, Poses, Scene, WORKPIECE, frame};
+use super::poses::{Poses, WORKPIECE, frame, on_arm};
+use super::{Body, Members, Pair, PairKind, Scene};
 use crate::collider::Collider;
 use crate::cover::Cover;
 use crate::shape::{Attachment, Shape, TrackedPoint};
@@ -158,11 +159,6 @@ fn moves_more(first: usize, second: usize) -> bool {
         _ => 1,
     };
     rank(first) > rank(second)
-}
-
-/// The number of the link that a frame is; zero for what does not move with the arm.
-pub(super) fn on_arm(frame: usize) -> usize {
-    if (1..=6).contains(&frame) { frame } else { 0 }
 }
 
 /// By how much two bodies can come nearer for each radian of a joint.

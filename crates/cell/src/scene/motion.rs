@@ -7,9 +7,9 @@
 //! lead to. Where neither decides, the interval is halved. In the end nothing moves farther between two states looked
 //! at than the resolution, and both states keep nine tenths of the distance requested.
 
-use super::build::on_arm;
+use super::poses::{FRAMES, Poses, on_arm};
 use super::quick::Quick;
-use super::{Body, FRAMES, Members, Poses, Scene};
+use super::{Body, Members, Scene};
 use nalgebra::Vector3;
 use stead_model::robot::Pose;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};

@@ -3,7 +3,9 @@
 //! From one state of a path to the next nothing moves far. A pair that had room is not looked at again before its two
 //! shapes have come as far, together, as the room that was left; and what separated the two before mostly still does.
 
-use super::{FRAMES, Members, MotionHit, PairKind, Poses, Scene, largest_move};
+use super::motion::MotionHit;
+use super::poses::{FRAMES, Poses, largest_move};
+use super::{Members, PairKind, Scene};
 use nalgebra::Vector3;
 use stead_model::robot::Pose;
 

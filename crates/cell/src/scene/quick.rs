@@ -1,6 +1,7 @@
 //! The quickest test of a pair: one sphere against a box that does not move with the arm, or against another sphere.
 
-use super::{Members, Pair, Poses, Scene, WORKPIECE};
+use super::poses::{Poses, WORKPIECE};
+use super::{Members, Pair, Scene};
 use nalgebra::Vector3;
 use stead_model::robot::Pose;
 

@@ -87,20 +87,20 @@ pub(super) fn solids_of(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Op
 fn across(
     vertices: &[Vector3<f64>],
     triangles: &[[u32; 3]],
-    (from, to): (u32, u32),
+    edge: (u32, u32),
     here: usize,
     others: &[usize],
 ) -> Option<usize> {
-    let start = vertices[from as usize];
-    let edge = (vertices[to as usize] - start).normalize();
+    let start = vertices[edge.0 as usize];
+    let along = (vertices[edge.1 as usize] - start).normalize();
     // From the edge into a triangle, square to the edge.
     let into = |number: usize| {
-        let third = triangles[number].into_iter().find(|corner| *corner != from && *corner != to)?;
+        let third = triangles[number].into_iter().find(|corner| *corner != edge.0 && *corner != edge.1)?;
         let off = vertices[third as usize] - start;
-        Some((off - edge * off.dot(&edge)).normalize())
+        Some((off - along * off.dot(&along)).normalize())
     };
     let own = into(here)?;
-    let behind = -edge.cross(&own);
+    let behind = -along.cross(&own);
     let angle = |number: usize| {
         let other = into(number)?;
         let angle = libm::atan2(other.dot(&behind), other.dot(&own)).rem_euclid(TAU);
@@ -111,8 +111,8 @@ fn across(
     angles.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, number)| number)
 }
 
-fn directed([a, b, c]: &[u32; 3]) -> [(u32, u32); 3] {
-    [(*a, *b), (*b, *c), (*c, *a)]
+fn directed(corners: &[u32; 3]) -> [(u32, u32); 3] {
+    [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]))
 }
 
 fn root(parent: &mut [usize], of: usize) -> usize {

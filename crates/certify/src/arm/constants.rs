@@ -141,7 +141,7 @@ impl Arm {
             bend: Bend { limit: limits.in_line },
             is_vertical,
             is_axial,
-            has_moments: problem.task.wrenches().iter().any(|wrench| wrench.moment.norm() > 0.0),
+            has_moments: problem.task.wrenches().any(|wrench| wrench.moment.norm() > 0.0),
             lever,
             axis6: root_from_flange.column(2).into_owned(),
             leaning: None,

@@ -276,7 +276,7 @@ fn few(mut problem: Problem) -> Problem {
     let path = problem.task.path();
     let some = [10, 40, 60, 90];
     let points = some.map(|k| (k as u32 / 50 + 1, path.points()[k]));
-    let wrenches = some.map(|k| problem.task.wrenches()[k]).to_vec();
+    let wrenches = some.map(|k| problem.task.loads()[k].wrench).to_vec();
     problem.task = Task::new(ToolPath::new(points).unwrap(), wrenches).unwrap();
     problem
 }
@@ -364,6 +364,6 @@ fn what_is_not_covered_is_refused_by_name() {
         (path.segment_of(k) as u32 + 1, stead_model::task::PathPoint { axis: other.axis, feed: other.feed, ..*p })
     });
     let turned = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    turning.task = Task::new(turned, problem.task.wrenches().to_vec()).unwrap();
+    turning.task = Task::new(turned, problem.task.wrenches().copied().collect()).unwrap();
     assert_eq!(certifiable(&turning, MEMORY), Err(Unsupported::ManyToolAxes { axes: 4, max: MOST_AXES }));
 }

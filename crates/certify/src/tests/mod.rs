@@ -259,7 +259,7 @@ fn with_normals() -> Problem {
     let mut problem = slanted();
     let normal = |k: usize| Vector3::new(libm::sin(k as f64), libm::cos(2.0 * k as f64), 0.6).normalize();
     let path = problem.task.path().clone().with_surface_normals((0..105).map(normal).collect()).unwrap();
-    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().copied().collect()).unwrap();
     problem
 }
 
@@ -270,7 +270,7 @@ fn with_moments() -> Problem {
         let at = k as f64;
         Vector3::new(60.0 * libm::cos(at), 90.0 * libm::sin(0.7 * at), 120.0 * libm::sin(1.3 * at))
     };
-    let wrenches = problem.task.wrenches().iter().enumerate();
+    let wrenches = problem.task.wrenches().enumerate();
     let wrenches = wrenches.map(|(k, wrench)| Wrench { moment: moment(k), ..*wrench }).collect();
     problem.task = Task::new(problem.task.path().clone(), wrenches).unwrap();
     problem
@@ -361,7 +361,7 @@ pub fn leaning(mut problem: Problem, degrees: f64) -> Problem {
         (path.segment_of(k) as u32 + 1, PathPoint { axis, feed, ..*p })
     });
     let leaning = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    problem.task = Task::new(leaning, problem.task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(leaning, problem.task.wrenches().copied().collect()).unwrap();
     problem
 }
 

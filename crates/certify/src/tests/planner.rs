@@ -223,7 +223,7 @@ fn partly_scored(problem: &mut Problem) {
     let path = problem.task.path();
     let point = |(k, point): (usize, &PathPoint)| (path.segment_of(k) as u32 + 1, *point, k % 3 != 0);
     let path = ToolPath::partly_scored(path.points().iter().enumerate().map(point).collect::<Vec<_>>()).unwrap();
-    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().copied().collect()).unwrap();
 }
 
 #[test]

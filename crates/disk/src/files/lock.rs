@@ -1,6 +1,6 @@
 //! Locks of the system on files: held by one process at a time, and free again when that process ends, however it ends.
 
-use super::options;
+use super::options::options;
 use std::fs::{File, TryLockError};
 use std::io::{Error, ErrorKind, Result};
 use std::path::Path;

@@ -6,12 +6,14 @@
 
 mod lock;
 pub mod new;
+mod options;
 mod staged;
 
 pub use lock::{Lock, TryLock};
+pub use options::options;
 pub use staged::{PREFIX, Staged, remove, remove_abandoned, remove_stale, sync};
 
-use std::fs::{File, Metadata, OpenOptions};
+use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
@@ -71,16 +73,6 @@ fn check_size(bytes: u64) -> Result<()> {
     let (size, most) = (bytes as f64 / 1e9, MAX_BYTES / 1_000_000_000);
     let problem = || format!("it is larger than the {most} GB of the largest file that is read: {size:.2} GB");
     if bytes <= MAX_BYTES { Ok(()) } else { Err(Error::new(ErrorKind::FileTooLarge, problem())) }
-}
-
-/// How files of this program's own are opened: a link of their name is not followed, and no pipe is waited for.
-#[must_use]
-pub fn options() -> OpenOptions {
-    #[allow(unused_mut, reason = "as it is where there are no such links")]
-    let mut options = File::options();
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NOFOLLOW | libc::O_NONBLOCK);
-    options
 }
 
 /// Whether a file could not be written though its name is right: for want of room on the disk, in the user's share of

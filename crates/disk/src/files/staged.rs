@@ -1,6 +1,7 @@
 //! Files written whole under temporary names, to be renamed when all of them are there.
 
-use super::{Lock, TryLock, options};
+use super::lock::{Lock, TryLock};
+use super::options::options;
 use std::fs::File;
 use std::io::{ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};

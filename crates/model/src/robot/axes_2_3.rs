@@ -80,7 +80,8 @@ impl Robot {
     }
 
     /// The least and the largest sum with joints 2 and 3 in ranges. rad
-    pub fn sums_within(&self, [second, third]: [[f64; 2]; 2]) -> [f64; 2] {
+    pub fn sums_within(&self, ranges: [[f64; 2]; 2]) -> [f64; 2] {
+        let [second, third] = ranges;
         let [from, to] = if self.geometry.fold < 0.0 { [-third[1], -third[0]] } else { third };
         [second[0] + from, second[1] + to]
     }
@@ -117,11 +118,6 @@ impl Robot {
             ranges[2] = sum;
         }
         ranges
-    }
-
-    /// What the motor that drives axis 3 turns, as messages name it.
-    pub fn drive_name(&self, joint: usize) -> String {
-        if joint == 2 && self.has_linkage() { "axes 2+3".to_owned() } else { format!("joint {}", joint + 1) }
     }
 }
 
@@ -183,7 +179,6 @@ mod tests {
         assert_eq!(linked.drives(&a), [0.3, 0.5, 0.5 - 1.4, 0.2, 0.9, 1.0]);
         assert!((linked.beyond_sum(&b) - (0.9 + 30_f64.to_radians())).abs() < 1e-15);
         assert_eq!(linked.beyond_sum(&a), 0.0);
-        assert_eq!((linked.drive_name(2), linked.drive_name(1)), ("axes 2+3".to_owned(), "joint 2".to_owned()));
         let narrow = linked.with_joint_margin(0.1).unwrap();
         let [wide, narrow] = [&linked, &narrow].map(|arm| arm.sum_range().unwrap());
         assert!((narrow.min - wide.min - 0.1).abs() < 1e-15 && (wide.max - narrow.max - 0.1).abs() < 1e-15);

@@ -7,7 +7,7 @@
 use super::Robot;
 use super::pose::{Pose, cast};
 use super::posture::Posture;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 use stead_numerics::scalar::Scalar;
 
@@ -55,12 +55,16 @@ impl Robot {
     pub fn inverse<T: Scalar>(&self, base_from_flange: &Pose<T>, posture: Posture) -> Result<[T; 6], Unreachable> {
         let g = self.geometry();
         let root_from_base = g.base_from_root.transpose().map(T::constant);
-        let rotation = root_from_base * base_from_flange.rotation;
-        let x6 = rotation.column(0).into_owned();
-        let y6 = rotation.column(1).into_owned();
-        let z6 = rotation.column(2).into_owned();
         let wrist = root_from_base * (self.wrist_centre(base_from_flange) - cast(&g.root_in_base));
+        let [theta1, theta2, theta3] = self.arm_angles(&wrist, posture)?;
+        let rotation = root_from_base * base_from_flange.rotation;
+        let [theta4, theta5, theta6] = self.wrist_angles(&[theta1, theta2, theta3], &rotation, posture);
+        Ok([theta1, theta2, theta3, theta4, theta5, theta6])
+    }
 
+    /// Joints 1 to 3, of the wrist centre in the root frame.
+    fn arm_angles<T: Scalar>(&self, wrist: &Vector3<T>, posture: Posture) -> Result<[T; 3], Unreachable> {
+        let g = self.geometry();
         // Joint 1, and the wrist centre in the plane of the arm as seen from the shoulder.
         let lateral = T::constant(g.lateral);
         let radius2 = wrist.x * wrist.x + wrist.y * wrist.y;
@@ -102,10 +106,15 @@ impl Robot {
             T::zero()
         };
         let theta3 = delta - T::constant(g.forearm_angle);
+        Ok([theta1, theta2, theta3])
+    }
 
+    /// Joints 4 to 6, of joints 1 to 3 and the rotation of frame 6 in the root frame.
+    fn wrist_angles<T: Scalar>(&self, arm: &[T; 3], rotation: &Matrix3<T>, posture: Posture) -> [T; 3] {
+        let g = self.geometry();
         // Frame 3 in root coordinates: x3 along the arm, s4 z3 beside it, z4 along axis 4.
-        let (s1, c1) = theta1.sin_cos();
-        let (s23, c23) = (theta2 + theta3.scale(g.fold)).sin_cos();
+        let (s1, c1) = arm[0].sin_cos();
+        let (s23, c23) = (arm[1] + arm[2].scale(g.fold)).sin_cos();
         let radial = Vector3::new(c1, s1, T::zero());
         let up = Vector3::new(T::zero(), T::zero(), T::constant(g.lift));
         let side = Vector3::new(s1, -c1, T::zero()) * T::constant(g.lift * g.fold * g.twist[0]);
@@ -114,6 +123,7 @@ impl Robot {
 
         // The wrist: axis 6 seen from frame 3 gives joints 4 and 5, and axis 5 seen from frame 6 gives joint 6.
         let [_, s5, s6] = g.twist;
+        let z6 = rotation.column(2);
         let (m1, m2, m3) = (z6.dot(&x3), z6.dot(&side), z6.dot(&z4));
         let sine5 = m1 * m1 + m2 * m2;
         let cosine5 = m3.scale(-s5 * s6);
@@ -126,8 +136,8 @@ impl Robot {
         // Through theta_4, so that near the singularity its rounding error is undone by theta_6.
         let (s4, c4) = theta4.sin_cos();
         let z5 = (x3 * s4 - side * c4) * T::constant(s5);
-        let theta6 = z5.dot(&x6).scale(s6).atan2(z5.dot(&y6).scale(s6));
-        Ok([theta1, theta2, theta3, theta4, theta5, theta6])
+        let theta6 = z5.dot(&rotation.column(0)).scale(s6).atan2(z5.dot(&rotation.column(1)).scale(s6));
+        [theta4, theta5, theta6]
     }
 
     /// The wrist centre in the base frame, of frame 6 in that frame. m

@@ -3,7 +3,7 @@
 //! A joint whose range is a full turn or more can stand at several real angles that look the same. The inverse
 //! kinematics gives one wrapped angle; here are the real ones.
 
-use super::{Joint, Robot, angles::ANGLE_ROUNDING};
+use super::{Joint, angles::ANGLE_ROUNDING};
 use std::f64::consts::TAU;
 
 /// The range of real angles of one joint.
@@ -53,7 +53,8 @@ impl Range {
 
 /// All real joint angles inside the limits of an arm, and of the sum of angles 2 and 3, that are given angles (rad) but
 /// for whole turns: ascending, those of joint 6 change first.
-pub fn real_configurations(robot: &Robot, angles: &[f64; 6]) -> Vec<[f64; 6]> {
+#[cfg(any(test, feature = "testing"))]
+pub fn real_configurations(robot: &super::Robot, angles: &[f64; 6]) -> Vec<[f64; 6]> {
     let mut configurations = vec![*angles];
     for (j, range) in robot.joints().iter().map(Range::of).enumerate() {
         let turned = configurations.iter().flat_map(|known| {

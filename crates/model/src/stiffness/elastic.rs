@@ -105,12 +105,12 @@ impl<'a> ElasticArm<'a> {
     /// [`NoEquilibrium`] when the arm gives way before the load is complete.
     pub fn at_rest(&self, theta: &[f64; 6], load: &ToolLoad) -> Result<Pose<f64>, NoEquilibrium> {
         let scale = self.scale_at(&self.robot.compliances_at(theta));
-        let taken = self.taken(theta);
+        let commanded = Commanded { arm: self, theta, load, scale, taken: self.taken(theta) };
         let mut deflection = Coordinates::zeros();
         let (mut share, mut step) = (0.0_f64, 1.0);
         while share < 1.0 {
             let next = (share + step).min(1.0);
-            match self.settle(theta, &scale, &taken, load, next, deflection) {
+            match commanded.settle(next, deflection) {
                 Some(settled) => {
                     deflection = settled;
                     share = next;
@@ -171,37 +171,6 @@ impl<'a> ElasticArm<'a> {
         scale
     }
 
-    /// Newton's method on `x - S^T tau(S x) = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where
-    /// it leads through a configuration that does not hold.
-    fn settle(
-        &self,
-        theta: &[f64; 6],
-        scale: &Square,
-        taken: &Coordinates,
-        load: &ToolLoad,
-        share: f64,
-        mut deflection: Coordinates,
-    ) -> Option<Coordinates> {
-        let mut is_last = false;
-        for _ in 0..super::equilibrium::MAX_STEPS {
-            let posed = self.posed(theta, &(scale * deflection));
-            let applied = self.applied(&posed, load, share);
-            let inverse = inverse_tangent(&(scale.tr_mul(&posed.hessian(&applied)) * scale))?;
-            if is_last {
-                return Some(deflection);
-            }
-            let torques = posed.torques(&applied) + taken * share;
-            let step = inverse * (scale.tr_mul(&torques) - deflection);
-            let widest = (scale * step).amax();
-            if !widest.is_finite() || widest > super::equilibrium::WIDEST_STEP {
-                return None;
-            }
-            deflection += step;
-            is_last = widest <= super::equilibrium::LAST_STEP;
-        }
-        None
-    }
-
     /// Torques with which compensators of the joints oppose the weight, about the axes that have one: what the weight
     /// does to their springs at the commanded angles, joints 4 and 6 at zero. N m
     fn taken(&self, theta: &[f64; 6]) -> Coordinates {
@@ -255,6 +224,43 @@ impl<'a> ElasticArm<'a> {
 
     fn posed(&self, theta: &[f64; 6], q: &Coordinates) -> Posed {
         posed::Chain { robot: self.robot, spindle: self.spindle, bearings: &self.bearings }.at(theta, q)
+    }
+}
+
+/// An arm commanded to joint angles (rad) under a load.
+struct Commanded<'a> {
+    arm: &'a ElasticArm<'a>,
+    theta: &'a [f64; 6],
+    load: &'a ToolLoad,
+    /// See [`ElasticArm::scale_at`].
+    scale: Square,
+    /// See [`ElasticArm::taken`].
+    taken: Coordinates,
+}
+
+impl Commanded<'_> {
+    /// Newton's method on `x - S^T tau(S x) = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where
+    /// it leads through a configuration that does not hold.
+    fn settle(&self, share: f64, mut deflection: Coordinates) -> Option<Coordinates> {
+        let Self { arm, theta, load, scale, taken } = self;
+        let mut is_last = false;
+        for _ in 0..super::equilibrium::MAX_STEPS {
+            let posed = arm.posed(theta, &(scale * deflection));
+            let applied = arm.applied(&posed, load, share);
+            let inverse = inverse_tangent(&(scale.tr_mul(&posed.hessian(&applied)) * scale))?;
+            if is_last {
+                return Some(deflection);
+            }
+            let torques = posed.torques(&applied) + taken * share;
+            let step = inverse * (scale.tr_mul(&torques) - deflection);
+            let widest = (scale * step).amax();
+            if !widest.is_finite() || widest > super::equilibrium::WIDEST_STEP {
+                return None;
+            }
+            deflection += step;
+            is_last = widest <= super::equilibrium::LAST_STEP;
+        }
+        None
     }
 }
 

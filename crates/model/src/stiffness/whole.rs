@@ -139,11 +139,11 @@ pub fn of_matrix<T: Scalar>(
     matrix: &Matrix6<f64>,
     frame: &Pose<T>,
     point: &Vector3<T>,
-    [force, moment]: [&Vector3<T>; 2],
+    wrench: [&Vector3<T>; 2],
 ) -> Displacement<T> {
     let reach = point - frame.translation;
-    let turning = moment + reach.cross(force);
-    let [force, turning] = [force, &turning].map(|vector| frame.rotation.tr_mul(vector));
+    let turning = wrench[1] + reach.cross(wrench[0]);
+    let [force, turning] = [wrench[0], &turning].map(|vector| frame.rotation.tr_mul(vector));
     let row = |row: usize| {
         (0..3).fold(T::zero(), |sum, k| sum + force[k].scale(matrix[(row, k)]) + turning[k].scale(matrix[(row, 3 + k)]))
     };

@@ -110,7 +110,7 @@ mod tests {
         assert_eq!((path.scored_count(), path.first_unscored()), (3, Some(2)));
         assert_eq!(path.scored_where(|point| point > 0).scored_count(), 2);
         assert_eq!(path.scored_where(|_| false), *path);
-        assert_eq!((task.wrenches()[1], task.wrenches()[2]), (force, Wrench::zero()));
+        assert_eq!((task.loads()[1].wrench, task.loads()[2].wrench), (force, Wrench::zero()));
         let unscored = ToolPath::partly_scored([(1, point(0.0, Vector3::z()), false)]);
         assert_eq!(unscored, Err(TaskError::NothingScored));
     }

@@ -95,7 +95,7 @@ impl LeanForces {
         let mut all = self.clone();
         for point in &mut all.points {
             for wrench in point.wrenches.iter_mut().chain(point.edges.iter_mut().flatten()) {
-                *wrench = Wrench { force: rotation * wrench.force, moment: rotation * wrench.moment };
+                *wrench = wrench.turned(rotation);
             }
         }
         all
@@ -165,18 +165,18 @@ mod tests {
         let leaned = task.leaned(&BALL, &leans);
         for (point, lean) in leans.iter().enumerate() {
             let expected = match *lean {
-                Lean::NONE => task.wrenches()[point],
+                Lean::NONE => task.loads()[point].wrench,
                 Lean { lead, tilt } => affine(point, lead, tilt),
             };
-            assert!(apart(&leaned.wrenches()[point], &expected) < 1e-9, "{point}");
+            assert!(apart(&leaned.loads()[point].wrench, &expected) < 1e-9, "{point}");
         }
         // Outside of the grid it is that of the nearest lean.
         let beyond = task.leaned(&BALL, &[Lean { lead: -0.1, tilt: 0.3 }; 105]);
-        assert!(apart(&beyond.wrenches()[7], &affine(7, 0.0, 0.0)) < 1e-12);
+        assert!(apart(&beyond.loads()[7].wrench, &affine(7, 0.0, 0.0)) < 1e-12);
         // At half the feed the edges keep their part.
         let slow = leaned.at_feed(|_| 0.5).unwrap();
         let expected = affine(50, leans[50].lead, leans[50].tilt).force * (0.3 + 0.7 * 0.5);
-        assert!((slow.wrenches()[50].force - expected).norm() < 1e-9);
+        assert!((slow.loads()[50].wrench.force - expected).norm() < 1e-9);
     }
 
     #[test]
@@ -186,13 +186,13 @@ mod tests {
         let rotation = rotation_from_zyx([0.3, -0.7, 1.2]);
         let [a, b] = [task.turned(&rotation).leaned(&BALL, &leans), task.leaned(&BALL, &leans).turned(&rotation)];
         for point in 0..105 {
-            assert!(apart(&a.wrenches()[point], &b.wrenches()[point]) < 1e-9);
+            assert!(apart(&a.loads()[point].wrench, &b.loads()[point].wrench) < 1e-9);
         }
         let kept = [3, 40, 60, 80, 100].map(|point| KeptPoint { point, weight: 21.0 });
         let few: Vec<Lean> = kept.iter().map(|kept| leans[kept.point]).collect();
         let [a, b] = [task.thinned(&kept).leaned(&BALL, &few), task.leaned(&BALL, &leans).thinned(&kept)];
         for place in 0..5 {
-            assert!(apart(&a.wrenches()[place], &b.wrenches()[place]) < 1e-12);
+            assert!(apart(&a.loads()[place].wrench, &b.loads()[place].wrench) < 1e-12);
         }
     }
 

@@ -4,36 +4,27 @@
 //! stay those of the path.
 
 use super::lean::{Lean, LeanForce, LeanRule};
-use super::{KeptPoint, PathPoint, SAME_PLACE, Task, ToolPath, Wrench};
+use super::{KeptPoint, PathPoint, PointLoad, SAME_PLACE, Task, ToolPath, Wrench};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
 /// What a path keeps of itself where its tool leans.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Leaned {
+pub(super) struct Leaned {
     /// How the tool leans at every point.
-    leans: Vec<Lean>,
-    /// [`PathPoint::workpiece_from_point`] of every point as the path states it.
-    axes: Vec<Matrix3<f64>>,
-    /// Distance to every point from the one before. m
-    steps: Vec<f64>,
+    leans: Arc<[Lean]>,
+    /// The path with the tool axes that it states.
+    pub(super) upright: Arc<ToolPath>,
 }
 
 impl Leaned {
-    pub(super) fn turn(&mut self, rotation: &Matrix3<f64>) {
-        self.axes.iter_mut().for_each(|axes| *axes = rotation * *axes);
+    pub(super) fn turned(&self, rotation: &Matrix3<f64>) -> Self {
+        Self { leans: self.leans.clone(), upright: Arc::new(self.upright.turned(rotation)) }
     }
 
     pub(super) fn thinned(&self, kept: &[KeptPoint]) -> Self {
-        Self {
-            leans: kept.iter().map(|kept| self.leans[kept.point]).collect(),
-            axes: kept.iter().map(|kept| self.axes[kept.point]).collect(),
-            steps: kept.iter().map(|kept| self.steps[kept.point]).collect(),
-        }
-    }
-
-    pub(super) fn step(&self, point: usize) -> f64 {
-        self.steps[point]
+        let leans = kept.iter().map(|kept| self.leans[kept.point]).collect();
+        Self { leans, upright: Arc::new(self.upright.thinned(kept)) }
     }
 }
 
@@ -41,10 +32,8 @@ impl ToolPath {
     /// The axes along which deflections are scored at a point, as columns in the workpiece frame: the feed (made normal
     /// to the tool axis), the left of the feed, the tool axis, all as the path states them, however the tool leans.
     pub fn scored_axes(&self, point: usize) -> Matrix3<f64> {
-        match &self.leaned {
-            Some(leaned) => leaned.axes[point],
-            None => self.points[point].workpiece_from_point(),
-        }
+        let stated = self.leaned.as_ref().map_or(self, |leaned| &leaned.upright);
+        stated.points[point].workpiece_from_point()
     }
 
     /// How far the tip goes to a point from the one before, both in one segment, over the distance along the path:
@@ -62,7 +51,7 @@ impl ToolPath {
 
     /// How the tool leans at every point; none where it does not.
     pub fn leans(&self) -> Option<&[Lean]> {
-        self.leaned.as_ref().map(|leaned| leaned.leans.as_slice())
+        self.leaned.as_ref().map(|leaned| &*leaned.leans)
     }
 }
 
@@ -79,26 +68,26 @@ impl Task {
         if leans.iter().all(|lean| *lean == Lean::NONE) {
             return upright.clone();
         }
-        let mut task = upright.clone();
         let path = &upright.path;
-        let (mut steps, mut axes) = (vec![0.0; path.points.len()], Vec::with_capacity(path.points.len()));
-        path.segments.iter().flat_map(|span| span.clone().skip(1)).for_each(|p| steps[p] = path.step_length(p));
-        for (point, (at, lean)) in path.points.iter().zip(leans).enumerate() {
-            axes.push(at.workpiece_from_point());
-            let leaned = rule.leaned(at, path.surface_normals().map(|normals| &normals[point]), lean);
-            let carried = |wrench: &Wrench| carried(wrench, rule.force, at, &leaned);
-            let computed = upright.lean_forces.as_ref().filter(|_| *lean != Lean::NONE && path.is_scored(point));
-            let wrench = computed.map(|forces| forces.wrench(point, lean));
-            task.wrenches[point] = wrench.unwrap_or_else(|| carried(&upright.wrenches[point]));
-            if let (Some(edges), Some(own)) = (&mut task.edges, &upright.edges) {
-                let edge = computed.and_then(|forces| forces.edge(point, lean));
-                edges[point] = edge.unwrap_or_else(|| carried(&own[point]));
-            }
-            task.path.points[point] = leaned;
+        let each = path.points.iter().zip(&*upright.loads).zip(leans).enumerate();
+        let (points, loads): (Vec<_>, Vec<_>) = each
+            .map(|(point, ((at, load), lean))| {
+                let leaned = rule.leaned(at, path.surface_normals().map(|normals| &normals[point]), lean);
+                let carried = |wrench: &Wrench| carried(wrench, rule.force, at, &leaned);
+                let computed = upright.lean_forces.as_ref().filter(|_| *lean != Lean::NONE && path.is_scored(point));
+                let wrench = computed.map(|forces| forces.wrench(point, lean));
+                let edge = |own| computed.and_then(|forces| forces.edge(point, lean)).unwrap_or_else(|| carried(own));
+                let wrench = wrench.unwrap_or_else(|| carried(&load.wrench));
+                (leaned, PointLoad { wrench, edge: load.edge.as_ref().map(edge), ..*load })
+            })
+            .unzip();
+        let leaned = Some(Leaned { leans: leans.into(), upright: path.clone() });
+        Self {
+            path: Arc::new(ToolPath { points, leaned, ..(**path).clone() }),
+            loads: loads.into(),
+            lean_forces: upright.lean_forces.clone(),
+            upright: Some(Arc::new(upright.clone())),
         }
-        task.path.leaned = Some(Leaned { leans: leans.to_vec(), axes, steps });
-        task.upright = Some(Arc::new(upright.clone()));
-        task
     }
 }
 
@@ -142,7 +131,7 @@ mod tests {
             let about = |at: &PathPoint, wrench: &Wrench| {
                 wrench.moment + (at.position - Vector3::new(0.1, 0.2, 0.3)).cross(&wrench.force)
             };
-            let (before, after) = (&task.wrenches()[point], &leaned.wrenches()[point]);
+            let (before, after) = (&task.loads()[point].wrench, &leaned.loads()[point].wrench);
             assert!((about(a, before) - about(b, after)).norm() < 1e-12);
         }
         for span in task.segments() {
@@ -159,7 +148,7 @@ mod tests {
         let leaned = task.leaned(&rule, &leans(&task));
         for (point, (a, b)) in task.points().iter().zip(leaned.points()).enumerate() {
             let [before, after] = [(a, &task), (b, &leaned)]
-                .map(|(at, task)| at.workpiece_from_point().tr_mul(&task.wrenches()[point].force));
+                .map(|(at, task)| at.workpiece_from_point().tr_mul(&task.loads()[point].wrench.force));
             assert!((before - after).norm() < 1e-9);
         }
     }
@@ -173,7 +162,7 @@ mod tests {
             assert!((a.points()[point].position - b.points()[point].position).norm() < 1e-12);
             assert!((a.points()[point].axis - b.points()[point].axis).norm() < 1e-12);
             assert!((a.path().scored_axes(point) - b.path().scored_axes(point)).norm() < 1e-12);
-            assert!((a.wrenches()[point].moment - b.wrenches()[point].moment).norm() < 1e-9);
+            assert!((a.loads()[point].wrench.moment - b.loads()[point].wrench.moment).norm() < 1e-9);
         }
         assert_eq!(a.upright(), &task.turned(&rotation));
     }

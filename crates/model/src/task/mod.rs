@@ -2,21 +2,20 @@
 //!
 //! Everything is in the workpiece frame. A [`ToolPath`] is geometry alone; a [`Task`] has the wrenches too.
 
-mod feed_parts;
 mod following;
 pub mod lean;
 mod lean_forces;
 mod leaned;
+mod load;
 mod thinned;
 mod turned;
 
 pub use lean_forces::{LeanForces, PointLeanForces};
-pub use leaned::Leaned;
+pub use load::{PointLoad, Wrench};
 pub use thinned::KeptPoint;
 
-use crate::stiffness::matrix::{MatrixError, checked};
+use crate::stiffness::matrix::MatrixError;
 use nalgebra::{Matrix3, Vector3};
-use serde::Serialize;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -51,22 +50,6 @@ impl PathPoint {
     }
 }
 
-/// What the workpiece does to the tool at the tool centre point, in the workpiece frame.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Wrench {
-    /// Force. N
-    pub force: Vector3<f64>,
-    /// Moment about the tool centre point. N m
-    pub moment: Vector3<f64>,
-}
-
-impl Wrench {
-    /// No force, no moment.
-    pub fn zero() -> Self {
-        Self { force: Vector3::zeros(), moment: Vector3::zeros() }
-    }
-}
-
 /// The geometry of a task: points in segments. Within a segment the posture must not change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToolPath {
@@ -78,18 +61,14 @@ pub struct ToolPath {
     /// Whether each point is scored, where some are not.
     scored: Option<Vec<bool>>,
     thinned: Option<thinned::Thinned>,
-    leaned: Option<Leaned>,
+    leaned: Option<leaned::Leaned>,
 }
 
-/// A tool path with the wrench at every point.
+/// A tool path with what acts at every point. Geometry and loads are shared by the tasks that are made of one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
-    path: ToolPath,
-    wrenches: Vec<Wrench>,
-    /// The part of each wrench that does not grow with the feed, where that is known.
-    edges: Option<Vec<Wrench>>,
-    /// How the part yields at every point, where it does: displacement against force, in the workpiece frame. m/N
-    part: Option<Vec<Matrix3<f64>>>,
+    path: Arc<ToolPath>,
+    loads: Arc<[PointLoad]>,
     /// The wrenches of a tool that leans, where they are known lean by lean.
     lean_forces: Option<Arc<LeanForces>>,
     /// The same with the tool axis that the path states, where the tool leans.
@@ -329,45 +308,9 @@ impl Task {
     ///
     /// # Errors
     /// [`TaskError::Wrenches`] when the numbers differ, [`TaskError::NotFinite`] for a wrench with NaN or infinity.
-    pub fn new(path: ToolPath, mut wrenches: Vec<Wrench>) -> Result<Self, TaskError> {
-        if wrenches.len() != path.points.len() {
-            return Err(TaskError::Wrenches { wrenches: wrenches.len(), points: path.points.len() });
-        }
-        for (point, wrench) in wrenches.iter().enumerate() {
-            for (field, vector) in [("force", wrench.force), ("moment", wrench.moment)] {
-                if vector.iter().any(|v| !v.is_finite()) {
-                    return Err(TaskError::NotFinite { point, field });
-                }
-            }
-        }
-        let unscored = wrenches.iter_mut().enumerate().filter(|(point, _)| !path.is_scored(*point));
-        unscored.for_each(|(_, wrench)| *wrench = Wrench::zero());
-        Ok(Self { path, wrenches, edges: None, part: None, lean_forces: None, upright: None })
-    }
-
-    /// The same task on a part that yields at every point by a matrix in the workpiece frame: displacement (m) of the
-    /// part per force (N) on it. The tool moves against the part as far as both do.
-    ///
-    /// # Errors
-    /// [`TaskError`] where their number is not that of the points, or at the first that is no compliance.
-    pub fn with_part_compliances(mut self, matrices: Vec<Matrix3<f64>>) -> Result<Self, TaskError> {
-        let points = self.path.points.len();
-        if matrices.len() != points {
-            return Err(TaskError::PartCompliances { matrices: matrices.len(), points });
-        }
-        let made = |(point, matrix)| checked(matrix).map_err(|error| TaskError::PartCompliance { point, error });
-        self.part = Some(matrices.into_iter().enumerate().map(made).collect::<Result<_, _>>()?);
-        Ok(self)
-    }
-
-    /// How the part yields at a point, where it does: displacement (m) per force (N), in the workpiece frame.
-    pub fn part_compliance(&self, point: usize) -> Option<&Matrix3<f64>> {
-        self.part.as_ref()?.get(point)
-    }
-
-    /// Whether the part yields.
-    pub fn part_yields(&self) -> bool {
-        self.part.is_some()
+    pub fn new(path: ToolPath, wrenches: Vec<Wrench>) -> Result<Self, TaskError> {
+        let loads = path.of_scored(wrenches)?.map(PointLoad::of).collect();
+        Ok(Self { path: Arc::new(path), loads, lean_forces: None, upright: None })
     }
 
     /// The geometry.
@@ -385,9 +328,14 @@ impl Task {
         self.path.segments()
     }
 
+    /// What acts at every point.
+    pub fn loads(&self) -> &[PointLoad] {
+        &self.loads
+    }
+
     /// The wrench at every point.
-    pub fn wrenches(&self) -> &[Wrench] {
-        &self.wrenches
+    pub fn wrenches(&self) -> impl ExactSizeIterator<Item = &Wrench> + Clone {
+        self.loads.iter().map(|load| &load.wrench)
     }
 }
 

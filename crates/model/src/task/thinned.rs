@@ -1,6 +1,6 @@
 //! A path thinned to some of its points, which stand for the others.
 
-use super::{SAME_PLACE, Task, ToolPath, Wrench};
+use super::{SAME_PLACE, Task, ToolPath};
 use std::sync::Arc;
 
 /// A point that is kept of a path.
@@ -28,7 +28,7 @@ pub(super) struct Thinned {
 impl ToolPath {
     /// The path thinned to some of its points, ascending and at least one of every segment; the distances between them
     /// stay those along the whole path.
-    fn thinned(&self, kept: &[KeptPoint]) -> Self {
+    pub(super) fn thinned(&self, kept: &[KeptPoint]) -> Self {
         let mut segments = Vec::with_capacity(self.segments.len());
         let mut steps = Vec::with_capacity(kept.len());
         let mut turns = Vec::with_capacity(kept.len());
@@ -83,7 +83,7 @@ impl ToolPath {
     pub fn step_length(&self, point: usize) -> f64 {
         match (&self.thinned, &self.leaned) {
             (Some(thinned), _) => thinned.steps[point],
-            (None, Some(leaned)) => leaned.step(point),
+            (None, Some(leaned)) => leaned.upright.step_length(point),
             (None, None) => (self.points[point].position - self.points[point - 1].position).norm(),
         }
     }
@@ -120,12 +120,9 @@ impl ToolPath {
 impl Task {
     /// The task thinned to some of its points, ascending and at least one of every segment.
     pub fn thinned(&self, kept: &[KeptPoint]) -> Self {
-        let those = |wrenches: &Vec<Wrench>| kept.iter().map(|kept| wrenches[kept.point]).collect();
         Self {
-            path: self.path.thinned(kept),
-            wrenches: those(&self.wrenches),
-            edges: self.edges.as_ref().map(those),
-            part: self.part.as_ref().map(|part| kept.iter().map(|kept| part[kept.point]).collect()),
+            path: Arc::new(self.path.thinned(kept)),
+            loads: kept.iter().map(|kept| self.loads[kept.point]).collect(),
             lean_forces: self.lean_forces.as_ref().map(|forces| Arc::new(forces.thinned(kept))),
             upright: self.upright.as_ref().map(|task| Arc::new(task.thinned(kept))),
         }

@@ -1,6 +1,6 @@
 //! A task on a workpiece that is turned before it is placed.
 
-use super::{Task, ToolPath, Wrench};
+use super::{Task, ToolPath};
 use nalgebra::Matrix3;
 use std::sync::Arc;
 
@@ -8,16 +8,9 @@ impl Task {
     /// The same task on the workpiece turned by a rotation about its origin: positions, directions and wrenches in the
     /// directions of the frame in which the rotation is given.
     pub fn turned(&self, rotation: &Matrix3<f64>) -> Self {
-        let turned = |wrench: &Wrench| Wrench { force: rotation * wrench.force, moment: rotation * wrench.moment };
-        let all = |wrenches: &Vec<Wrench>| wrenches.iter().map(turned).collect();
-        let part = |matrices: &Vec<Matrix3<f64>>| {
-            matrices.iter().map(|matrix| rotation * matrix * rotation.transpose()).collect()
-        };
         Self {
-            path: self.path.turned(rotation),
-            wrenches: all(&self.wrenches),
-            edges: self.edges.as_ref().map(all),
-            part: self.part.as_ref().map(part),
+            path: Arc::new(self.path.turned(rotation)),
+            loads: self.loads.iter().map(|load| load.turned(rotation)).collect(),
             lean_forces: self.lean_forces.as_ref().map(|forces| Arc::new(forces.turned(rotation))),
             upright: self.upright.as_ref().map(|task| Arc::new(task.turned(rotation))),
         }
@@ -25,14 +18,14 @@ impl Task {
 }
 
 impl ToolPath {
-    fn turned(&self, rotation: &Matrix3<f64>) -> Self {
+    pub(super) fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         let mut path = self.clone();
         for point in &mut path.points {
             point.position = rotation * point.position;
             point.feed = (rotation * point.feed).normalize();
             point.axis = (rotation * point.axis).normalize();
         }
-        path.leaned.iter_mut().for_each(|leaned| leaned.turn(rotation));
+        path.leaned.iter_mut().for_each(|leaned| *leaned = leaned.turned(rotation));
         path.surface_normals.iter_mut().flatten().for_each(|normal| *normal = (rotation * *normal).normalize());
         path
     }
@@ -55,8 +48,8 @@ mod tests {
             assert!((rotation * a.position - b.position).norm() < 1e-12);
         }
         let force: f64 =
-            task.wrenches().iter().zip(turned.wrenches()).map(|(a, b)| (rotation * a.force - b.force).norm()).sum();
-        assert!(force < 1e-9 && turned.wrenches()[0].force != task.wrenches()[0].force);
+            task.wrenches().zip(turned.wrenches()).map(|(a, b)| (rotation * a.force - b.force).norm()).sum();
+        assert!(force < 1e-9 && turned.loads()[0].wrench.force != task.loads()[0].wrench.force);
         assert!((turned.points()[0].axis - rotation * Vector3::z()).norm() < 1e-12);
     }
 }

@@ -101,7 +101,7 @@ impl LookupTable<'_> {
         let PathCheck { placement, grid, .. } = *check;
         let [plain, flipped] = PostureClass::ALL[class].postures();
         let kinds = kinds_left(grid.tool_hits.as_deref());
-        let mut hit = |posture| self.problem.next_hit(point, grid.beta(beta), placement, posture, kinds, known);
+        let mut hit = |posture| self.problem.at(placement).next_hit(point, grid.beta(beta), posture, kinds, known);
         let Some(pair) = hit(plain) else { return false };
         let knows_flips =
             self.problem.scene.as_deref().and_then(|scene| scene.pair(pair)).is_some_and(|p| p.knows_flips);

@@ -43,7 +43,7 @@ fn limited() -> Problem {
 
 /// A force and a moment that differ at every point, in all directions.
 fn twisted(problem: Problem) -> Problem {
-    let wrenches = problem.task.wrenches().iter().enumerate().map(|(k, wrench)| {
+    let wrenches = problem.task.wrenches().enumerate().map(|(k, wrench)| {
         let at = |phase: f64| libm::sin(0.37 * k as f64 + phase);
         let moment = Vector3::new(at(0.0), at(2.1), at(4.2)) * (0.4 * wrench.force.norm());
         Wrench { force: wrench.force * (1.0 + 0.3 * at(1.0)), moment }
@@ -307,7 +307,7 @@ fn a_long_path_keeps_its_digits() {
         (1, PathPoint { position: first.position + first.feed * along, ..first })
     });
     let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    let wrenches = vec![problem.task.wrenches()[0]; count as usize];
+    let wrenches = vec![problem.task.loads()[0].wrench; count as usize];
     problem.task = Task::new(path, wrenches).unwrap();
     // Beta stays: between points this close the planner saves its steps up, which the table does not.
     problem.redundancy.max_beta_rate = Some(0.0);
@@ -377,7 +377,7 @@ fn what_a_table_cannot_hold_is_refused_with_the_reason() {
         let points = path.points().iter().enumerate();
         let points = points.map(|(k, point)| (path.segment_of(k) as u32 + 1, PathPoint { axis: axis_of(k), ..*point }));
         let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-        problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+        problem.task = Task::new(path, problem.task.wrenches().copied().collect()).unwrap();
         refused(&problem)
     };
     let (sine, cosine) = libm::sincos(0.01);

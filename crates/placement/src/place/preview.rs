@@ -227,7 +227,7 @@ mod tests {
                 }
             }
         }
-        let wrenches = points.iter().map(|(_, _, k)| short.task.wrenches()[*k]).collect();
+        let wrenches = points.iter().map(|(_, _, k)| short.task.loads()[*k].wrench).collect();
         let path = ToolPath::new(points.iter().map(|(segment, point, _)| (*segment, *point))).unwrap();
         let long = short.clone().with(|parts| parts.task = Task::new(path, wrenches).unwrap());
         let shown = PreviewProblem::new(&long);

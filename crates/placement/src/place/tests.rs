@@ -97,7 +97,7 @@ fn a_table_is_used_where_the_task_allows_it_and_finds_what_the_planner_finds() {
     // The reference evaluator has the last word, and the table never costs more than it finds.
     assert!(with.cases.best.plan.mean <= without.cases.best.plan.mean * 1.001);
     assert!(with.cases.optima()[1].plan.mean >= without.cases.optima()[1].plan.mean * 0.999);
-    let mut wrenches = problem.task.wrenches().to_vec();
+    let mut wrenches: Vec<_> = problem.task.wrenches().copied().collect();
     wrenches[3].moment.x = 0.5;
     let task = stead_model::task::Task::new(problem.task.path().clone(), wrenches).unwrap();
     let twisted = problem.clone().with(|parts| parts.task = task);
@@ -112,7 +112,7 @@ fn a_search_notices_that_its_table_misleads() {
     problem.redundancy.beta_count = 40;
     let sound = LookupTable::new(&problem).unwrap();
     // A table that knows nothing of a third of the force.
-    let weaker = problem.task.wrenches().iter().map(|w| stead_model::task::Wrench { force: w.force / 1.5, ..*w });
+    let weaker = problem.task.wrenches().map(|w| stead_model::task::Wrench { force: w.force / 1.5, ..*w });
     let weaker = stead_model::task::Task::new(problem.task.path().clone(), weaker.collect()).unwrap();
     let weaker = problem.clone().with(|parts| parts.task = weaker);
     let wrong = LookupTable::new(&weaker).unwrap();

@@ -93,7 +93,7 @@ impl Forbidding<'_> {
             let kinds = kinds_left(planner.segments.tool_hits.as_deref());
             let hits = |k| {
                 let beta = planner.grid().beta(k);
-                planner.problem.next_hit(point, beta, placement, plan.posture, kinds, &mut known).is_some()
+                planner.problem.at(placement).next_hit(point, beta, plan.posture, kinds, &mut known).is_some()
             };
             return self.near(point, plan.betas[place], 1, hits);
         }
@@ -130,7 +130,7 @@ impl Forbidding<'_> {
             let beta = planner.grid().beta(k);
             postures
                 .iter()
-                .all(|posture| planner.problem.next_hit(point, beta, placement, *posture, kinds, &mut known).is_some())
+                .all(|posture| planner.problem.at(placement).next_hit(point, beta, *posture, kinds, &mut known).is_some())
         };
         while let Some((point, betas)) = open.pop() {
             for next in [point.wrapping_sub(1), point + 1].into_iter().filter(|next| plan.points.contains(next)) {
@@ -186,6 +186,6 @@ impl Moved<'_> {
         let ends = scene.zip(start.as_ref().zip(stop.as_ref())).map(|(scene, (start, stop))| (scene, [start, stop]));
         let hits_first =
             ends.is_some_and(|(scene, [start, _])| scene.next_hit(known, start, &PairKind::OF_STATES).is_some());
-        hits_first || problem.move_fault(placement, end, plan.posture, [from, to], ends, known).is_some()
+        hits_first || problem.at(placement).move_fault(end, plan.posture, [from, to], ends, known).is_some()
     }
 }

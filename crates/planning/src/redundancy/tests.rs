@@ -86,7 +86,8 @@ fn fast_planner_agrees_with_plain_dynamic_programming_over_real_configurations()
                 .map(|point| (path.segment_of(point) as u32 + 1, problem.task.points()[point], is_scored(point)))
                 .collect();
             problem.task =
-                Task::new(ToolPath::partly_scored(points).unwrap(), problem.task.wrenches().to_vec()).unwrap();
+                Task::new(ToolPath::partly_scored(points).unwrap(), problem.task.wrenches().copied().collect())
+                    .unwrap();
         } else if index >= 8 {
             problem.criterion.weights = [Weights::TOTAL, Weights::WALL, Weights::AXIS][index - 8];
             problem.criterion.aggregate = [Aggregate::Rms, Aggregate::Max, Aggregate::Max][index - 8];
@@ -275,7 +276,7 @@ fn denser(problem: &Problem, times: usize) -> Problem {
     let (mut points, mut wrenches) = (Vec::new(), Vec::new());
     for (segment, span) in task.segments().iter().enumerate() {
         for point in span.clone() {
-            let (here, wrench) = (task.points()[point], task.wrenches()[point]);
+            let (here, wrench) = (task.points()[point], task.loads()[point].wrench);
             let parts = if point + 1 < span.end { times } else { 1 };
             for part in 0..parts {
                 let next = task.points()[(point + 1).min(span.end - 1)].position;

@@ -1,6 +1,7 @@
 //! Limits on beta against rotation matrices.
 
 use super::*;
+use crate::constraints::Measured;
 use crate::problem::Placement;
 use crate::testing::five_segments;
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -9,6 +10,19 @@ use stead_model::robot::point_from_tool;
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_numerics::rotation;
 
+impl Problem {
+    /// The constraints on the change of beta (rad) from path point `point - 1` to `point` that are in force.
+    fn on_beta_step(&self, point: usize, change: f64) -> impl Iterator<Item = Measured> + use<> {
+        let rate = self
+            .redundancy
+            .max_beta_rate
+            .map(|rate| Measured::BetaRate { step: wrap(change).abs(), limit: rate * self.step_length(point) });
+        let limit = self.spindle_turn_limit(point);
+        let turn = limit.map(|limit| Measured::SpindleTurn { turn: self.spindle_turn(point, change), limit });
+        [rate, turn].into_iter().flatten()
+    }
+}
+
 /// Two points 10 mm apart with the axes of two rotations.
 fn two_points(rotations: [Rotation3<f64>; 2]) -> Problem {
     let mut problem = five_segments();
@@ -16,7 +30,7 @@ fn two_points(rotations: [Rotation3<f64>; 2]) -> Problem {
         let [feed, axis] = [0, 2].map(|column| rotation.matrix().column(column).into_owned());
         (1, PathPoint { position: Vector3::new(0.01 * k as f64, 0.0, 0.0), feed, axis })
     });
-    let wrenches = vec![problem.task.wrenches()[0]; 2];
+    let wrenches = vec![problem.task.loads()[0].wrench; 2];
     problem.task = Task::new(ToolPath::new(points.collect::<Vec<_>>()).unwrap(), wrenches).unwrap();
     problem
 }

@@ -2,5 +2,6 @@
 //! values of beta at a path point at once, tested against it.
 
 pub mod batch;
+pub mod placed_task;
 pub mod point_evaluator;
 pub mod reference;

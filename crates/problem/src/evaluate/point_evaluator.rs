@@ -1,7 +1,7 @@
 //! A path point with the workpiece placed: what all states of the arm there have in common.
 
 use crate::criterion::ScoredDirections;
-use crate::problem::{PlacedPoint, PlacedTask, Problem};
+use crate::problem::{PlacedPoint, Placement, Problem};
 use nalgebra::{Matrix3, Vector3};
 use stead_model::robot::Pose;
 use stead_numerics::scalar::Scalar;
@@ -20,14 +20,14 @@ pub struct PointEvaluator<'a, T: Scalar = f64> {
 }
 
 impl<'a, T: Scalar> PointEvaluator<'a, T> {
-    pub(crate) fn of(task: PlacedTask<'a, T>, point: usize) -> Self {
-        let (problem, placed) = (task.problem, task.point(point));
+    pub(super) fn of(problem: &'a Problem, placement: &Placement<T>, point: usize) -> Self {
+        let placed = problem.placed(point, placement);
         let directions = problem.scored_directions(point, &placed.scored_axes);
         let part = problem.task.part_compliance(point).map(|matrix| {
-            let rotation = problem.base_from_workpiece(point, task.placement).rotation;
+            let rotation = problem.base_from_workpiece(point, placement).rotation;
             rotation * matrix.map(T::constant) * rotation.transpose()
         });
-        let surface_normal = problem.surface_normal(point, task.placement);
+        let surface_normal = problem.surface_normal(point, placement);
         Self { problem, point, placed, directions, surface_normal, part }
     }
 
@@ -36,7 +36,7 @@ impl<'a, T: Scalar> PointEvaluator<'a, T> {
         self.problem
     }
 
-    /// The flange frame in the base frame at a free angle (rad): [`PlacedTask::base_from_flange`].
+    /// The flange frame in the base frame at a free angle (rad): [`PlacedTask::base_from_flange`](super::placed_task::PlacedTask::base_from_flange).
     pub fn base_from_flange(&self, beta: T) -> Pose<T> {
         let PlacedPoint { tip, axes, .. } = self.placed;
         self.problem.flange_at(&Pose { rotation: axes, translation: tip }, beta)

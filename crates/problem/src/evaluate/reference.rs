@@ -114,7 +114,7 @@ struct PlacedArm<'a, T: Scalar> {
 }
 
 impl<'a, T: Scalar> PlacedArm<'a, T> {
-    /// At joint angles that [`PlacedTask::state`](crate::problem::PlacedTask::state) found.
+    /// At joint angles that [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found.
     fn new(at: &'a PointEvaluator<'a, T>, joints: &'a [T; 6]) -> Self {
         Self { at, joints, frames: Frames::new(&at.problem.robot, joints) }
     }
@@ -180,7 +180,7 @@ impl<T: Scalar> DeflectedArm<'_, T> {
         if problem.criterion.force_uncertainty == 0.0 {
             return T::zero();
         }
-        let size = problem.criterion.force_uncertainty * problem.task.wrenches()[*point].force.norm();
+        let size = problem.criterion.force_uncertainty * problem.task.loads()[*point].wrench.force.norm();
         let moved_by = |force: &Vector3<T>| {
             let moved = self.whole.displacement(force, &Vector3::zeros()).linear;
             part.as_ref().map_or(moved, |part| moved + part * force)
@@ -222,7 +222,7 @@ impl<T: Scalar> DeflectedArm<'_, T> {
 }
 
 /// What is scored under every set of compliances ([`Problem::scored_robots`]), at joint angles that
-/// [`PlacedTask::state`](crate::problem::PlacedTask::state) found for path point `point` and a workpiece at
+/// [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found for path point `point` and a workpiece at
 /// `placement`, with the derivatives of each scored part by the uncertain parameters of its set
 /// ([`scored_part_by_parameters`]).
 pub fn set_scores<T: Scalar>(
@@ -258,7 +258,7 @@ pub fn scored_parts<T: Scalar>(
 }
 
 /// Derivatives of the scored part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]),
-/// in their order, at joint angles that [`PlacedTask::state`](crate::problem::PlacedTask::state) found for path point
+/// in their order, at joint angles that [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found for path point
 /// `point` and a workpiece at `placement`. m per SI unit of each parameter; empty where no uncertainty is known.
 ///
 /// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
@@ -309,7 +309,7 @@ impl ScoredByOrigin {
 }
 
 /// The scored part of the deflection under the robot's own compliances by what yields, at joint angles that
-/// [`PlacedTask::state`](crate::problem::PlacedTask::state) found for path point `point` and a workpiece at
+/// [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found for path point `point` and a workpiece at
 /// `placement`.
 pub fn scored_by_origin(problem: &Problem, point: usize, placement: &Placement, joints: &[f64; 6]) -> ScoredByOrigin {
     let at = problem.at(placement).evaluator(point);

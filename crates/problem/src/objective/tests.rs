@@ -22,7 +22,7 @@ fn with_surface() -> Problem {
     let mut problem = slanted();
     let normals = (0..105).map(|k| Rotation3::from_euler_angles(0.1 * f64::from(k), 0.7, 0.2) * Vector3::z());
     let path = problem.task.path().clone().with_surface_normals(normals.collect()).unwrap();
-    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().copied().collect()).unwrap();
     problem
 }
 
@@ -148,14 +148,14 @@ fn the_stated_worst_case_is_the_largest_under_errors_on_the_boundary() {
     for (weights, point) in [(Weights::TOTAL, 60), (mixed(), 60), (Weights::TOTAL, 12), (Weights::AXIS, 30)] {
         problem.criterion.weights = weights;
         let stated = problem.at(&optimum()).state(point, 0.3, Posture::ALL[2]).unwrap().score();
-        let size = 0.1 * problem.task.wrenches()[point].force.norm();
+        let size = 0.1 * problem.task.loads()[point].wrench.force.norm();
         let mut largest = 0.0_f64;
         for k in 0..2000 {
             // Directions spread over the sphere.
             let z = 1.0 - 2.0 * (f64::from(k) + 0.5) / 2000.0;
             let (s, c) = libm::sincos(f64::from(k) * 2.399_963_229_728_653);
             let r = libm::sqrt(1.0 - z * z);
-            let mut wrenches = problem.task.wrenches().to_vec();
+            let mut wrenches: Vec<_> = problem.task.wrenches().copied().collect();
             wrenches[point].force += Vector3::new(r * c, r * s, z) * size;
             let mut changed = problem.clone();
             changed.criterion.force_uncertainty = 0.0;

@@ -194,7 +194,7 @@ records! {
             singles((0..points.len()).flat_map(|point| <[f64; 3]>::from(directions(point).padded()[k])))
         };
         let most = (0..points.len()).map(|point| directions(point).vectors().len()).max().unwrap_or(0);
-        let moments = || problem.task.wrenches().iter().map(|wrench| wrench.moment);
+        let moments = || problem.task.wrenches().map(|wrench| wrench.moment);
         let starts: Vec<usize> = problem.task.segments().iter().map(|segment| segment.start).collect();
         let step = |point: usize| {
             let time = if starts.contains(&point) { 0.0 } else { problem.step_time(point) };

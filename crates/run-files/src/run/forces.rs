@@ -174,7 +174,7 @@ mod tests {
     #[test]
     fn a_run_with_stock_has_the_forces_of_what_its_path_removes() {
         let run = read(STOCK, false).unwrap();
-        let largest = run.problem.task.wrenches().iter().map(|wrench| wrench.force.norm()).fold(0.0, f64::max);
+        let largest = run.problem.task.wrenches().map(|wrench| wrench.force.norm()).fold(0.0, f64::max);
         assert!(largest > 50.0, "{largest}");
         for part in ["those of what the path removes", "no rapid moves"] {
             assert!(run.notes.iter().any(|note| note.contains(part)), "{part} in {:?}", run.notes);

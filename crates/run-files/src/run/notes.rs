@@ -70,7 +70,7 @@ pub(super) fn cutter_notes(tool: Option<&ToolTable>, cutting: Option<&Cutting<'_
 
 /// Forces of single points that look like slips, where the task states them itself.
 pub(super) fn force_note(task: &Task, has_columns: bool) -> Option<String> {
-    let size = |point: usize| (point, task.wrenches()[point].force.norm());
+    let size = |point: usize| (point, task.loads()[point].wrench.force.norm());
     let scored = |span: &std::ops::Range<usize>| span.clone().filter(|point| task.path().is_scored(*point)).map(size);
     let segments: Vec<Vec<(usize, f64)>> = task.segments().iter().map(|span| scored(span).collect()).collect();
     has_columns.then(|| plausibility::forces(&segments)).flatten()

@@ -46,7 +46,7 @@ fn shipped_cutting_table_reproduces_the_shipped_forces() {
     let run = shipped("five-segments-cutting.toml");
     let with_forces = read_csv(&root().join("tasks/five-segments.csv")).unwrap();
     assert_eq!(run.problem.task.path(), &with_forces.path);
-    for (ours, theirs) in run.problem.task.wrenches().iter().zip(with_forces.wrenches.unwrap()) {
+    for (ours, theirs) in run.problem.task.wrenches().zip(with_forces.wrenches.unwrap()) {
         assert!((ours.force - theirs.force).abs().max() < 0.1);
     }
 }
@@ -113,7 +113,7 @@ fn forces_come_from_one_place() {
         &["run.toml:2: task: ", "no force columns", "found 'path.csv'", "[tool] and [cut]"],
     );
     let text = format!("{RUN}{CUTTING}").replace("task.csv", "path.csv");
-    assert!(read(&text).unwrap().problem.task.wrenches().iter().all(|wrench| wrench.force.norm() > 50.0));
+    assert!(read(&text).unwrap().problem.task.wrenches().all(|wrench| wrench.force.norm() > 50.0));
     let message = read(&text.replace("kr = 0.4", "kr = 1e305")).unwrap_err().to_string();
     assert!(message.contains("run.toml:21: tool.kr: is out of range, found 1e305; "), "{message}");
 }

@@ -183,7 +183,7 @@ fn tasks_joined_to_one_keep_their_segments_and_weights() {
     let CaseRun { run, task, .. } = study.case(&study.cases[0], &Monitor::silent()).unwrap();
     assert_eq!((study.cases.len(), task.as_str()), (1, "task.csv + second.csv"));
     assert_eq!((run.problem.task.segments().len(), run.problem.task.points().len()), (2, 4));
-    assert_eq!(run.problem.task.wrenches()[2].force.x, 30.0);
+    assert_eq!(run.problem.task.loads()[2].wrench.force.x, 30.0);
     assert_eq!(run.problem.criterion.segment_weights, [2.0, 1.0]);
     let each = study_in(&folder, &format!("base = 'run.toml'\n{}", tasks.replace("'one'", "'each'"))).unwrap();
     assert_eq!(

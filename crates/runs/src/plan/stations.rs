@@ -196,7 +196,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 
 fn station(problem: &Problem, placement: &Placement, point: usize, row: &PlanRow) -> PathPoint {
     let base_from_workpiece = problem.base_from_workpiece(point, placement);
-    let (path_point, wrench) = (&problem.task.points()[point], &problem.task.wrenches()[point]);
+    let (path_point, wrench) = (&problem.task.points()[point], &problem.task.loads()[point].wrench);
     let base_from_flange = problem.at(placement).base_from_flange(point, row.beta);
     let tool = base_from_flange.then(&problem.spindle.flange_from_tool);
     let force = base_from_workpiece.rotation * wrench.force;

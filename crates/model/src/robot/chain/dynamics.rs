@@ -116,7 +116,7 @@ impl<const N: usize> Posed<N> {
         torques
     }
 
-    /// Joint torques (N m) that hold the chain against gravity at rest: the slope of [`Posed::potential`].
+    /// Joint torques (N m) that hold the chain against gravity at rest: the slope of the potential energy.
     pub fn gravity(&self, chain: &Chain<N>) -> SVector<f64, N> {
         let pole = self.pole();
         let (mut mass, mut moment) = (0.0, Vector3::zeros());
@@ -153,6 +153,7 @@ impl<const N: usize> Posed<N> {
     }
 
     /// Potential energy in the field of gravity, from the base's origin up. J
+    #[cfg(any(test, feature = "testing"))]
     pub fn potential(&self, chain: &Chain<N>) -> f64 {
         let bodies = chain.links.iter().zip(self.origins.iter().zip(&self.rotations));
         bodies

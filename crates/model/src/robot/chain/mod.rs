@@ -90,6 +90,7 @@ impl<const N: usize> Chain<N> {
     }
 
     /// The same chain in another field of gravity: acceleration of free fall in base coordinates, m/s^2.
+    #[cfg(any(test, feature = "testing"))]
     pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
         self.gravity = gravity;
         self
@@ -181,21 +182,6 @@ impl<const N: usize> Posed<N> {
     pub fn tip_jacobian(&self) -> SMatrix<f64, 3, N> {
         let tip = self.tip();
         SMatrix::from_columns(&std::array::from_fn::<_, N, _>(|j| self.axes[j].cross(&(tip - self.origins[j]))))
-    }
-
-    /// How the tip turns per unit speed of each joint: angular velocity, one column a joint.
-    pub fn rotation_jacobian(&self) -> SMatrix<f64, 3, N> {
-        SMatrix::from_columns(&self.axes)
-    }
-
-    /// Velocity of the tip at joint speeds `speed` (rad/s). m/s
-    pub fn tip_velocity(&self, speed: &SVector<f64, N>) -> Vector3<f64> {
-        let tip = self.tip();
-        let mut velocity = Vector3::zeros();
-        for j in 0..N {
-            velocity += self.axes[j].cross(&(tip - self.origins[j])) * speed[j];
-        }
-        velocity
     }
 
     /// Joint torques of a force (N) on the tip: the transposed Jacobian times the force. N m

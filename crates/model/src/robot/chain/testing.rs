@@ -4,6 +4,23 @@ use super::*;
 use nalgebra::{Matrix4, vector};
 use proptest::prelude::*;
 
+impl<const N: usize> Posed<N> {
+    /// How the tip turns per unit speed of each joint: angular velocity, one column a joint.
+    pub fn rotation_jacobian(&self) -> SMatrix<f64, 3, N> {
+        SMatrix::from_columns(&self.axes)
+    }
+
+    /// Velocity of the tip at joint speeds `speed` (rad/s). m/s
+    pub fn tip_velocity(&self, speed: &SVector<f64, N>) -> Vector3<f64> {
+        let tip = self.tip();
+        let mut velocity = Vector3::zeros();
+        for j in 0..N {
+            velocity += self.axes[j].cross(&(tip - self.origins[j])) * speed[j];
+        }
+        velocity
+    }
+}
+
 /// A matrix over time: value, first and second derivative.
 #[derive(Clone, Copy)]
 pub struct MotionHistory(pub [Matrix4<f64>; 3]);

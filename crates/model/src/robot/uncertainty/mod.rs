@@ -7,7 +7,7 @@
 //! is linear in its parameters to first order only.
 
 use super::Robot;
-use nalgebra::{DMatrix, Matrix6, SymmetricEigen};
+use nalgebra::{DMatrix, SymmetricEigen};
 use stead_numerics::scalar::Scalar;
 
 /// A number behind a compliance that an identification can find; each names its joint, from 0.
@@ -313,8 +313,9 @@ impl Robot {
 
     /// Covariance `G Sigma G^T` of the six compliances about the axes at joint angles `theta` (rad), in (rad/(N m))^2;
     /// zero for an arm without uncertainty.
-    pub fn compliance_covariance_at(&self, theta: &[f64; 6]) -> Matrix6<f64> {
-        let mut covariance = Matrix6::zeros();
+    #[cfg(any(test, feature = "testing"))]
+    pub fn compliance_covariance_at(&self, theta: &[f64; 6]) -> nalgebra::Matrix6<f64> {
+        let mut covariance = nalgebra::Matrix6::zeros();
         let Some(uncertainty) = &self.uncertainty else { return covariance };
         let slopes = self.compliance_gradient_at(theta);
         for (k, a) in uncertainty.parameters.iter().enumerate() {

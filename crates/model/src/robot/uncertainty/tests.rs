@@ -2,7 +2,7 @@
 
 use super::super::{Compensator, Compliance, testing::kr270};
 use super::*;
-use nalgebra::{DVector, Vector6};
+use nalgebra::{DVector, Matrix6, Vector6};
 use proptest::prelude::*;
 use stead_numerics::scalar::Dual;
 

@@ -40,7 +40,7 @@ fn zigzag(placement: &Placement) -> Problem {
     let mut problem = five_segments();
     let joints = problem.robot.joints().clone().map(|joint| Joint { max_speed: Some(1.5), ..joint });
     problem.robot = Robot::new("timed", joints).unwrap();
-    let (first, wrench) = (problem.task.points()[0], problem.task.wrenches()[0]);
+    let (first, wrench) = (problem.task.points()[0], problem.task.loads()[0].wrench);
     let side = |line: u32| if line.is_multiple_of(2) { 1.0 } else { -1.0 };
     let line = |line: u32| {
         (0..6).map(move |k| {

@@ -26,7 +26,7 @@ fn partly_scored(is_scored: impl Fn(usize) -> bool) -> Problem {
     let points: Vec<(u32, PathPoint, bool)> =
         (0..105).map(|k| (path.segment_of(k) as u32 + 1, problem.task.points()[k], is_scored(k))).collect();
     let path = ToolPath::partly_scored(points).unwrap();
-    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().copied().collect()).unwrap();
     problem
 }
 
@@ -79,7 +79,7 @@ fn a_point_that_is_not_scored_must_be_reached_all_the_same() {
     };
     let points = (0..105).map(|k| (path.segment_of(k) as u32 + 1, far(k, problem.task.points()[k]), is_inner(k)));
     let path = ToolPath::partly_scored(points.collect::<Vec<_>>()).unwrap();
-    problem.task = Task::new(path, problem.task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(path, problem.task.wrenches().copied().collect()).unwrap();
     let said = scored(&problem).unwrap_err();
     assert!(said.contains("point 20"), "{said}");
 }
@@ -90,7 +90,7 @@ fn turning() -> Problem {
     problem.redundancy.beta_count = 40;
     let joints = problem.robot.joints().clone().map(|joint| Joint { max_speed: Some(1.5), ..joint });
     problem.robot = Robot::new("timed", joints).unwrap();
-    let (points, wrench) = (problem.task.points(), problem.task.wrenches()[0]);
+    let (points, wrench) = (problem.task.points(), problem.task.loads()[0].wrench);
     let axis = points[10].feed;
     let tilted = |deg: f64| PathPoint {
         axis: Rotation3::from_scaled_axis(axis * deg.to_radians()) * points[10].axis,
@@ -131,7 +131,7 @@ fn feeds_of_the_task_bound_the_joint_steps_and_give_the_time() {
     let mut problem = turning();
     problem.task = Task::new(
         five_segments().task.path().clone().with_feeds((0..105).map(|k| 0.01 + 1e-4 * k as f64).collect()).unwrap(),
-        five_segments().task.wrenches().to_vec(),
+        five_segments().task.wrenches().copied().collect(),
     )
     .unwrap();
     let found = scored(&problem).unwrap();
@@ -149,7 +149,7 @@ fn feeds_of_the_task_bound_the_joint_steps_and_give_the_time() {
     let mut feeds: Vec<f64> = (0..105).map(|k| 0.01 + 1e-4 * k as f64).collect();
     feeds[50] = 50.0;
     let fast = five_segments().task.path().clone().with_feeds(feeds).unwrap();
-    problem.task = Task::new(fast, five_segments().task.wrenches().to_vec()).unwrap();
+    problem.task = Task::new(fast, five_segments().task.wrenches().copied().collect()).unwrap();
     let said = scored(&problem).unwrap_err();
     assert!(said.contains("segment 3") && said.contains("steps of the joints"), "{said}");
 }

@@ -20,7 +20,7 @@ fn problem(acceleration: f64) -> Problem {
 }
 
 fn with_edges(mut problem: Problem) -> Problem {
-    let (path, wrenches) = (problem.task.path().clone(), problem.task.wrenches().to_vec());
+    let (path, wrenches): (_, Vec<_>) = (problem.task.path().clone(), problem.task.wrenches().copied().collect());
     let edge = |wrench: &Wrench| Wrench { force: wrench.force * EDGE, moment: wrench.moment * EDGE };
     let edges = wrenches.iter().map(edge).collect();
     problem.task = Task::new(path, wrenches).unwrap().with_edge_parts(edges).unwrap();

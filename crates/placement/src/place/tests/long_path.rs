@@ -35,7 +35,7 @@ fn dense() -> Problem {
             let (a, b) = (task.points()[from], task.points()[to]);
             let position = mixed(a.position, b.position);
             points.push((segment as u32 + 1, PathPoint { position, feed: mixed(a.feed, b.feed).normalize(), ..a }));
-            let force = mixed(task.wrenches()[from].force, task.wrenches()[to].force);
+            let force = mixed(task.loads()[from].wrench.force, task.loads()[to].wrench.force);
             wrenches.push(Wrench { force, moment: Vector3::zeros() });
         }
     }
@@ -46,7 +46,7 @@ fn dense() -> Problem {
 
 /// The problem with a moment (N m) about the feed at ten points.
 fn with_moment(mut problem: Problem, first: usize, moment: f64) -> Problem {
-    let mut wrenches = problem.task.wrenches().to_vec();
+    let mut wrenches: Vec<_> = problem.task.wrenches().copied().collect();
     for point in first..first + 10 {
         wrenches[point].moment = problem.task.points()[point].feed * moment;
     }

@@ -85,7 +85,7 @@ fn drawn(seed: u64) -> (Problem, Placement, Vec<Vec<f64>>) {
     let mut problem = slanted();
     let first = random.random_range(0..15);
     let points = problem.task.points()[first..first + 5].iter().map(|point| (1, *point)).collect::<Vec<_>>();
-    let wrenches = problem.task.wrenches()[first..first + 5].to_vec();
+    let wrenches = problem.task.wrenches().skip(first).take(5).copied().collect();
     problem.task = Task::new(ToolPath::new(points).unwrap(), wrenches).unwrap();
     problem.redundancy.beta_count = 24;
     problem.redundancy.max_beta_rate = Some(random.random_range(0.8..4.0_f64).to_radians() * 1e3);

@@ -95,7 +95,7 @@ fn the_choice_is_the_best_of_all_combinations() {
 /// Ten lines there and back, each a segment.
 fn zigzag() -> Problem {
     let mut problem = timed();
-    let (first, wrench) = (problem.task.points()[0], problem.task.wrenches()[0]);
+    let (first, wrench) = (problem.task.points()[0], problem.task.loads()[0].wrench);
     let line = |line: u32| {
         (0..6).map(move |k| {
             let (side, along) = if line.is_multiple_of(2) { (1.0, k) } else { (-1.0, 5 - k) };

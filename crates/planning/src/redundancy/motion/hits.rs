@@ -121,7 +121,7 @@ impl FreeWays<'_> {
         let (problem, kinds) = (planner.problem, kinds_left(planner.tool_hits.as_deref()));
         let angle = planner.grid.beta(state.1);
         let mut postures = self.planner.postures(way.evaluator, way.class).peekable();
-        let hit = |p| problem.next_hit(point, angle, self.placement, p, kinds, known).is_some();
+        let hit = |p| problem.at(self.placement).next_hit(point, angle, p, kinds, known).is_some();
         postures.peek().is_some() && postures.all(hit)
     }
 }

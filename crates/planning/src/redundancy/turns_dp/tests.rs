@@ -17,7 +17,7 @@ fn rounds(rounds: f64, count: usize) -> Problem {
         (1, PathPoint { position, feed: nalgebra::Vector3::new(cosine, sine, 0.0), ..first })
     });
     let path = ToolPath::new(points.collect::<Vec<_>>()).unwrap();
-    problem.task = Task::new(path, vec![problem.task.wrenches()[0]; count]).unwrap();
+    problem.task = Task::new(path, vec![problem.task.loads()[0].wrench; count]).unwrap();
     problem
 }
 

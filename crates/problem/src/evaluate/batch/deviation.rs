@@ -62,12 +62,12 @@ impl Slope {
     /// At the sine and cosine of a joint angle that is the real one where the joint has only one, and with the
     /// compliance there.
     #[inline(always)]
-    fn at<S: Simd>(&self, limit: &Limit, [sine, cosine]: [Lanes<S>; 2], compliance: Lanes<S>) -> Lanes<S> {
-        let cos_psi = |(sin_alpha, cos_alpha): (f64, f64)| cosine * cos_alpha - sine * sin_alpha;
+    fn at<S: Simd>(&self, limit: &Limit, joint: [Lanes<S>; 2], compliance: Lanes<S>) -> Lanes<S> {
+        let cos_psi = |(sin_alpha, cos_alpha): (f64, f64)| joint[1] * cos_alpha - joint[0] * sin_alpha;
         match *self {
             Self::One => compliance.all(1.0),
             Self::Linear { from, width } => {
-                let share = (limit.angle([sine, cosine]) - from) * (1.0 / width);
+                let share = (limit.angle(joint) - from) * (1.0 / width);
                 share.max(share.all(0.0)).min(share.all(1.0))
             }
             Self::Alone { alone } => {

@@ -61,17 +61,17 @@ impl Laws {
 
 impl Law {
     #[inline(always)]
-    fn at<S: Simd>(&self, simd: S, limit: &Limit, [sine, cosine]: [Lanes<S>; 2]) -> Lanes<S> {
+    fn at<S: Simd>(&self, simd: S, limit: &Limit, direction: [Lanes<S>; 2]) -> Lanes<S> {
         match *self {
             Self::Constant(value) => Lanes::splat(simd, value),
             Self::Linear { min, width, at_min, rise } => {
-                let share = (limit.angle([sine, cosine]) - min) * (1.0 / width);
+                let share = (limit.angle(direction) - min) * (1.0 / width);
                 share.max(share.all(0.0)).min(share.all(1.0)) * rise + at_min
             }
             Self::Spring { alone, compensator, sin_cos_alpha: (sin_alpha, cos_alpha) } => {
-                let cos_psi = cosine * cos_alpha - sine * sin_alpha;
+                let cos_psi = direction[1] * cos_alpha - direction[0] * sin_alpha;
                 let stiffness = cos_psi.map(|cosine| compensator.stiffness_at(cosine));
-                cosine.all(alone) / (stiffness * alone + 1.0)
+                cos_psi.all(alone) / (stiffness * alone + 1.0)
             }
         }
     }

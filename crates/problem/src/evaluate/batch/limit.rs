@@ -36,8 +36,8 @@ impl Limit {
 
     /// The real angle of a vector (sine, cosine), or any one where the joint has several; rad
     #[inline(always)]
-    pub fn angle<S: Simd>(self, [sine, cosine]: [Lanes<S>; 2]) -> Lanes<S> {
-        let angle = sine.atan2(cosine);
+    pub fn angle<S: Simd>(self, direction: [Lanes<S>; 2]) -> Lanes<S> {
+        let angle = direction[0].atan2(direction[1]);
         if self.has_turns {
             return angle;
         }

@@ -3,7 +3,7 @@
 //! For every state it finds the joint angles in closed form, drops those outside the joint limits or too near to a
 //! singularity, and scores the rest. Structure of arrays over beta, no allocation, no branches inside a batch. The same
 //! quantities, one state at a time and by way of the Jacobian, come from
-//! [`PlacedTask::state`](crate::problem::PlacedTask::state); the tests hold the two against each other.
+//! [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state); the tests hold the two against each other.
 //!
 //! How it saves work: the rotation of the flange is linear in cos(beta) and sin(beta); everything is written in the
 //! frame turned with joint 1, where the arm is a plane mechanism; joint angles are never computed, only their sines and
@@ -250,7 +250,7 @@ impl<'a> BatchEvaluator<'a> {
         let root_from_base = g.base_from_root.transpose();
         let workpiece = self.problem.base_from_workpiece(point, placement);
         let path_point = &self.problem.task.points()[point];
-        let wrench = &self.problem.task.wrenches()[point];
+        let wrench = &self.problem.task.loads()[point].wrench;
         let rotation = root_from_base * workpiece.rotation;
         let axes = rotation * self.workpiece_from_point[point];
         let flange_axis = |k: usize| Turning::new(&axes, &self.tool_from_flange[k]);
@@ -287,7 +287,8 @@ impl<'a> BatchEvaluator<'a> {
 
     /// Whether there is one set of compliances, and the score of a point covers no errors.
     fn is_plain(&self, point: usize) -> bool {
-        let uncertainty = self.problem.criterion.force_uncertainty * self.problem.task.wrenches()[point].force.norm();
+        let uncertainty =
+            self.problem.criterion.force_uncertainty * self.problem.task.loads()[point].wrench.force.norm();
         uncertainty == 0.0 && matches!(self.sets[..], [Set { deviation: None, .. }])
     }
 }

@@ -54,13 +54,8 @@ impl<S: Simd> Vector<S> {
 
 /// An entry of the inverse wrist's quadratic form, from the components of z4, z5, z6 along two axes.
 #[inline(always)]
-fn form<S: Simd>(
-    same: Lanes<S>,
-    mixed: Lanes<S>,
-    [a4, a5, a6]: [Lanes<S>; 3],
-    [b4, b5, b6]: [Lanes<S>; 3],
-) -> Lanes<S> {
-    a5 * b5 + same * (a4 * b4 + a6 * b6) + mixed * (a4 * b6 + a6 * b4)
+fn form<S: Simd>(same: Lanes<S>, mixed: Lanes<S>, a: [Lanes<S>; 3], b: [Lanes<S>; 3]) -> Lanes<S> {
+    a[1] * b[1] + same * (a[0] * b[0] + a[2] * b[2]) + mixed * (a[0] * b[2] + a[2] * b[0])
 }
 
 /// A vector of the root frame, turned into the frame of joint 1.
@@ -163,14 +158,14 @@ impl<S: Simd> Pose<S> {
         Lanes::splat(simd, 6.0) / (norm2 * inverse_norm2).sqrt()
     }
 
-    /// Torque of a unit force along a direction on the spring of each joint; `px` and `py` are the tool centre point
-    /// from axis 1. m
+    /// Torque of a unit force along a direction on the spring of each joint; `tool` is the tool centre point from axis
+    /// 1, along x and y. m
     #[inline(always)]
-    fn torques(&self, n: Vector<S>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
+    fn torques(&self, n: Vector<S>, tool: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let turn = self.lever.cross(n);
         let mut torques = [
-            px * n.y - py * n.x,
+            tool[0] * n.y - tool[1] * n.x,
             r2x * n.z - r2z * n.x,
             r3x * n.z - r3z * n.x,
             self.z4.dot(turn),
@@ -185,11 +180,11 @@ impl<S: Simd> Pose<S> {
 
     /// Velocity of the tool centre point per speed of the spring of each joint. m
     #[inline(always)]
-    pub fn velocities(&self, simd: S, [px, py]: [Lanes<S>; 2]) -> [Vector<S>; 6] {
+    pub fn velocities(&self, simd: S, tool: [Lanes<S>; 2]) -> [Vector<S>; 6] {
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let (zero, t) = (Lanes::splat(simd, 0.0), self.lever);
         let mut velocities = [
-            Vector { x: -py, y: px, z: zero },
+            Vector { x: -tool[1], y: tool[0], z: zero },
             Vector { x: -r2z, y: zero, z: r2x },
             Vector { x: -r3z, y: zero, z: r3x },
             self.z4.cross(t),
@@ -204,12 +199,12 @@ impl<S: Simd> Pose<S> {
 
     /// Torque of the load on the spring of each joint.
     #[inline(always)]
-    pub fn axial_torques<const N: usize>(&self, load: &Load<S, N>, [px, py]: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
+    pub fn axial_torques<const N: usize>(&self, load: &Load<S, N>, tool: [Lanes<S>; 2]) -> [Lanes<S>; 6] {
         let Load { force, moment, .. } = *load;
         let [(r2x, r2z), (r3x, r3z)] = self.reaches();
         let turn = self.lever.cross(force).plus(moment);
         let mut torques = [
-            px * force.y - py * force.x + moment.z,
+            tool[0] * force.y - tool[1] * force.x + moment.z,
             r2x * force.z - r2z * force.x - moment.y,
             r3x * force.z - r3z * force.x - moment.y,
             self.z4.dot(turn),
@@ -234,17 +229,17 @@ impl<S: Simd> Pose<S> {
         uncertainty: f64,
     ) -> (Lanes<S>, [Lanes<S>; 6]) {
         let t = self.lever;
-        let (px, py) = (self.forward + t.x, t.y + lateral);
+        let tool = [self.forward + t.x, t.y + lateral];
         let directions = load.directions;
         // Torque on each joint: of a unit force along each direction, and of the wrench.
-        let torque_f = self.axial_torques(load, [px, py]);
+        let torque_f = self.axial_torques(load, tool);
         let zero = Lanes::splat(simd, 0.0);
         // What each joint adds to the part along each direction per compliance.
         let mut torque_n = [torque_f; N];
         let mut parts = torque_n;
         let mut deflection = [zero; N];
         for k in 0..N {
-            torque_n[k] = self.torques(directions[k], [px, py]);
+            torque_n[k] = self.torques(directions[k], tool);
             for j in 0..6 {
                 parts[k][j] = torque_n[k][j] * torque_f[j];
                 deflection[k] = deflection[k] + parts[k][j] * compliances[j];
@@ -253,7 +248,7 @@ impl<S: Simd> Pose<S> {
         if N == 1 {
             let mut score = deflection[0].abs();
             if !PLAIN && uncertainty > 0.0 {
-                let response = response(simd, &self.velocities(simd, [px, py]), &torque_n[0], compliances);
+                let response = response(simd, &self.velocities(simd, tool), &torque_n[0], compliances);
                 score = score + response.dot(response).sqrt() * uncertainty;
             }
             return (score, parts[0]);
@@ -275,7 +270,7 @@ impl<S: Simd> Pose<S> {
             }
             parts[0] = along;
             if uncertainty > 0.0 {
-                let velocities = self.velocities(simd, [px, py]);
+                let velocities = self.velocities(simd, tool);
                 let mut gains = [Vector { x: zero, y: zero, z: zero }; N];
                 for k in 0..N {
                     gains[k] = response(simd, &velocities, &torque_n[k], compliances);

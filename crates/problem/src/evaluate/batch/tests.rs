@@ -91,7 +91,7 @@ fn with_surface() -> Problem {
         Vector3::new(0.6 * sine, 0.8, 0.6 * cosine)
     });
     let path = problem.task.path().clone().with_surface_normals(normals.collect()).unwrap();
-    let wrenches = problem.task.wrenches().iter().map(|w| Wrench { moment: Vector3::new(3.0, -5.0, 11.0), ..*w });
+    let wrenches = problem.task.wrenches().map(|w| Wrench { moment: Vector3::new(3.0, -5.0, 11.0), ..*w });
     problem.task = Task::new(path, wrenches.collect()).unwrap();
     problem
 }
@@ -184,7 +184,7 @@ fn agrees_with_uncertainty_moments_a_limit_and_a_narrow_wrist() {
     let mut problem = five_segments();
     problem.criterion.force_uncertainty = 0.15;
     problem.constraints.max_deflection = Some(1.2e-3);
-    let wrenches = problem.task.wrenches().iter().map(|w| {
+    let wrenches = problem.task.wrenches().map(|w| {
         let mut w = *w;
         w.moment = nalgebra::Vector3::new(3.0, -5.0, 11.0);
         w.force.z = 40.0;

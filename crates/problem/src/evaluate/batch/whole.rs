@@ -53,8 +53,8 @@ pub(super) struct Planar<S: Simd> {
 /// Both axes of a joint that are in the plane of the arm, but for the sign of the second, from the x and z components
 /// of the first.
 #[inline(always)]
-fn in_plane<S: Simd>(zero: Lanes<S>, [x, z]: [Lanes<S>; 2]) -> [Vector<S>; 2] {
-    [Vector { x, y: zero, z }, Vector { x: -z, y: zero, z: x }]
+fn in_plane<S: Simd>(zero: Lanes<S>, first: [Lanes<S>; 2]) -> [Vector<S>; 2] {
+    [Vector { x: first[0], y: zero, z: first[1] }, Vector { x: -first[1], y: zero, z: first[0] }]
 }
 
 /// A spring in lanes: its compliance, its axis, and how fast it moves the tool centre point.
@@ -153,13 +153,12 @@ pub(super) struct WholeState<'a, S: Simd, const N: usize> {
 impl<S: Simd, const N: usize> WholeState<'_, S, N> {
     /// The displacement of the tool centre point by the springs of all joints, with compliances about the axes at the
     /// pose; without what is constant or fixed to the flange: joint 1 normal to its axis where it is alike, and joint
-    /// 6. T is the torque about the wrist centre. m
+    /// 6. m
     #[inline(always)]
     fn displacement(&self, pose: &Pose<S>, compliances: &[Lanes<S>; 6]) -> Vector<S> {
-        let Self { normal, planar, lateral, side, .. } = *self;
+        let Self { normal, planar, lateral, .. } = *self;
         let t = pose.lever;
         let (f, m) = (self.load.force, self.load.moment);
-        let turn = t.cross(f).plus(m);
         let (px, py) = (pose.forward + t.x, t.y + lateral);
         let [(r2x, r2z), (r3x, r3z)] = pose.reaches();
 
@@ -199,8 +198,15 @@ impl<S: Simd, const N: usize> WholeState<'_, S, N> {
             }
             moved = moved.plus(Vector { x: dy * rz - dz * ry, y: dz * rx - dx * rz, z: dx * ry - dy * rx });
         }
+        self.moved_by_wrist(pose, compliances, moved)
+    }
 
-        // Joints 4 to 6.
+    /// A displacement with that by the springs of joints 4 to 6. m
+    #[inline(always)]
+    fn moved_by_wrist(&self, pose: &Pose<S>, compliances: &[Lanes<S>; 6], mut moved: Vector<S>) -> Vector<S> {
+        let Self { normal, side, .. } = *self;
+        let (t, f) = (pose.lever, self.load.force);
+        let turn = t.cross(f).plus(self.load.moment);
         let [a4, a5, a6] = normal.added;
         let (z4, z5, z6) = (pose.z4, pose.z5, pose.z6);
         let mut turned = z4
@@ -264,46 +270,23 @@ impl<S: Simd, const N: usize> WholeState<'_, S, N> {
         }
         springs
     }
-}
 
-/// What each spring adds to the scored part per compliance: about the axes, then the twelve normal to them.
-pub(super) type Parts<S> = [Lanes<S>; 18];
-
-impl<S: Simd> Pose<S> {
-    /// As [`Pose::score`], of a whole arm.
+    /// How the arm yields along each scored direction, spring by spring.
     #[inline(always)]
-    pub fn score_whole<const PLAIN: bool, const N: usize>(
-        &self,
-        simd: S,
-        whole: &WholeState<'_, S, N>,
-        compliances: &[Lanes<S>; 6],
-        uncertainty: f64,
-    ) -> (Lanes<S>, Parts<S>) {
-        let WholeState { fixed, lateral, load, beside, .. } = *whole;
-        let zero = Lanes::splat(simd, 0.0);
-        let mut along = [zero; 18];
-        let mut deflection = beside.parts;
-        if PLAIN {
-            let moved = whole.displacement(self, compliances);
-            let mut square = zero;
-            for k in 0..N {
-                deflection[k] = deflection[k] + load.directions[k].dot(moved);
-                square = square + deflection[k] * deflection[k];
-            }
-            return (if N == 1 { deflection[0].abs() } else { square.sqrt() }, along);
-        }
-        let at_tool = [self.forward + self.lever.x, self.lever.y + lateral];
-        let velocities = self.velocities(simd, at_tool);
-        let axial = self.axial_torques(load, at_tool);
-        let springs = whole.springs(simd, self);
+    fn yielding(&self, simd: S, pose: &Pose<S>, compliances: &[Lanes<S>; 6]) -> Yielding<S, N> {
+        let Self { fixed, lateral, load, beside, .. } = *self;
+        let tool = [pose.forward + pose.lever.x, pose.lever.y + lateral];
+        let velocities = pose.velocities(simd, tool);
+        let axial = pose.axial_torques(load, tool);
+        let springs = self.springs(simd, pose);
         let of_flange = flange_product(&fixed.flange[0], &beside.flange, load.force).plus(flange_product(
             &fixed.flange[1],
             &beside.flange,
             load.moment,
         ));
-        let mut parts = [[zero; 18]; N];
-        let mut responses = beside.responses;
-        let mut square = zero;
+        let parts = [[Lanes::splat(simd, 0.0); 18]; N];
+        let mut found = Yielding { parts, deflection: beside.parts, responses: beside.responses };
+        let Yielding { parts, deflection, responses } = &mut found;
         for k in 0..N {
             let direction = load.directions[k];
             deflection[k] = deflection[k] + of_flange.dot(direction);
@@ -320,14 +303,55 @@ impl<S: Simd> Pose<S> {
                 deflection[k] = deflection[k] + parts[k][6 + j] * spring.compliance;
                 responses[k] = responses[k].plus(spring.velocity.scale(moves * spring.compliance));
             }
-            square = square + deflection[k] * deflection[k];
         }
+        found
+    }
+}
+
+/// What each spring adds to the scored part per compliance: about the axes, then the twelve normal to them.
+pub(super) type Parts<S> = [Lanes<S>; 18];
+
+/// How an arm yields along each scored direction.
+struct Yielding<S: Simd, const N: usize> {
+    parts: [Parts<S>; N],
+    /// m
+    deflection: [Lanes<S>; N],
+    /// Displacement under a unit force along the direction. m/N
+    responses: [Vector<S>; N],
+}
+
+impl<S: Simd> Pose<S> {
+    /// As [`Pose::score`], of a whole arm.
+    #[inline(always)]
+    pub fn score_whole<const PLAIN: bool, const N: usize>(
+        &self,
+        simd: S,
+        whole: &WholeState<'_, S, N>,
+        compliances: &[Lanes<S>; 6],
+        uncertainty: f64,
+    ) -> (Lanes<S>, Parts<S>) {
+        let zero = Lanes::splat(simd, 0.0);
+        let mut along = [zero; 18];
+        let mut square = zero;
+        if PLAIN {
+            let moved = whole.displacement(self, compliances);
+            let mut deflection = whole.beside.parts;
+            for k in 0..N {
+                deflection[k] = deflection[k] + whole.load.directions[k].dot(moved);
+                square = square + deflection[k] * deflection[k];
+            }
+            return (if N == 1 { deflection[0].abs() } else { square.sqrt() }, along);
+        }
+        let Yielding { parts, deflection, responses } = whole.yielding(simd, self, compliances);
         if N == 1 {
             let mut score = deflection[0].abs();
             if uncertainty > 0.0 {
                 score = score + responses[0].dot(responses[0]).sqrt() * uncertainty;
             }
             return (score, parts[0]);
+        }
+        for part in deflection {
+            square = square + part * part;
         }
         let scored = square.sqrt();
         let mut score = scored;

@@ -13,7 +13,7 @@ use stead_model::task::{Task, Wrench};
 
 /// Forces and moments so large that the tolerance of the comparison, 1e-12 of a score beside one, is one of the score.
 fn loaded(mut problem: Problem) -> Problem {
-    let wrenches = problem.task.wrenches().iter().map(|w| Wrench {
+    let wrenches = problem.task.wrenches().map(|w| Wrench {
         force: (w.force + Vector3::new(3.0, 5.0, 40.0)) * 1e4,
         moment: Vector3::new(3.0, -5.0, 11.0) * 1e4,
     });

@@ -7,7 +7,7 @@ use super::whole::{Beside, Planar, WholeState};
 use super::{BatchEvaluator, Flips, PointGeometry, Set, Turning};
 use nalgebra::Vector3;
 use pulp::Simd;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Mask};
 
 /// A state that is scored: the same for every set of compliances.
 struct ScoredState<'a, S: Simd, const N: usize> {
@@ -74,21 +74,29 @@ impl<S: Simd, const N: usize> Demand<S, N> {
     }
 }
 
+/// States that the first three joints allow, theta_5 not negative, whatever the limits of the wrist.
+struct Bent<S: Simd> {
+    pose: Pose<S>,
+    planar: Planar<S>,
+    /// Sines and cosines of joints 4 to 6; those of joints 4 and 6 are to be divided by the sine of joint 5.
+    joints: [[Lanes<S>; 2]; 3],
+    per_sine: Lanes<S>,
+}
+
+/// Sines and cosines of joints 4 to 6 of a flipped wrist: joint 5 is bent to the other side, and joints 4 and 6 point
+/// the other way.
+#[inline(always)]
+fn flipped<S: Simd>(joints: [[Lanes<S>; 2]; 3]) -> [[Lanes<S>; 2]; 3] {
+    let [fourth, fifth, sixth] = joints;
+    [[-fourth[0], -fourth[1]], [-fifth[0], fifth[1]], [-sixth[0], -sixth[1]]]
+}
+
 impl BatchEvaluator<'_> {
-    /// Scores of the states with one elbow, infinite where not allowed, and the sines and cosines of their joint angles
-    /// (theta_5 not negative); nothing where none is allowed. `PLAIN` where there is one set of compliances, and scores
-    /// cover no errors.
+    /// Elbow, forearm and wrist.
     #[inline(always)]
-    pub(super) fn wrist<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
-        &self,
-        simd: S,
-        uncertainty: f64,
-        demand: &Demand<S, N>,
-        arm: &Arm<S>,
-        elbow: &Elbow<S>,
-    ) -> Option<(Lanes<S>, Directions<S>)> {
+    fn bent<S: Simd, const N: usize>(&self, simd: S, demand: &Demand<S, N>, arm: &Arm<S>, elbow: &Elbow<S>) -> Bent<S> {
         let g = self.problem.robot.geometry();
-        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
+        let zero = Lanes::splat(simd, 0.0);
         let Demand { x6, y6, z6, lever, .. } = *demand;
         let (s2, c2) = (elbow.sin2, elbow.cos2);
 
@@ -101,64 +109,69 @@ impl BatchEvaluator<'_> {
         let (sin_bar_angle, cos_bar_angle) = (self.forearm_sin_cos.0 * g.fold, self.forearm_sin_cos.1);
         let cos_psi = bar_cos * cos_bar_angle + bar_sin * sin_bar_angle;
         let sin_psi = bar_sin * cos_bar_angle - bar_cos * sin_bar_angle;
-        let twist4 = g.fold * g.twist[0];
+        let [twist4, s5, s6] = [g.fold * g.twist[0], g.twist[1], g.twist[2]];
         let z4 = Vector { x: sin_psi * twist4, y: zero, z: cos_psi * (-twist4 * g.lift) };
+        let planar = Planar { second: [c2, s2 * g.lift], third: [cos_psi, sin_psi * g.lift] };
 
         // Wrist, with theta_5 not negative.
-        let [_, s5, s6] = g.twist;
         let m1 = z6.x * cos_psi + z6.z * sin_psi * g.lift;
         let m2 = z6.y * (-twist4 * g.lift);
         let dot46 = z6.x * z4.x + z6.z * z4.z;
         let sine5_squared = m1 * m1 + m2 * m2;
         let sine5 = sine5_squared.sqrt();
-        let per_sine = one / sine5;
+        let per_sine = Lanes::splat(simd, 1.0) / sine5;
         let z5 = z4.cross(z6).scale(per_sine);
         let linkage = self.problem.robot.has_linkage();
         let pose = Pose { u, height, u3, height3, forward, lever, z4, z5, z6, dot46, sine5_squared, linkage };
+        let joints = [[m2 * s6, m1 * s6], [sine5, dot46 * (-s5 * s6)], [z4.dot(y6) * -s5, z4.dot(x6) * s5]];
+        Bent { pose, planar, joints, per_sine }
+    }
 
-        let inverse_condition = pose.inverse_condition(simd, g.lateral, self.problem.constraints.characteristic_length);
-        let conditioned = Lanes::splat(simd, self.problem.constraints.min_inverse_condition).at_most(inverse_condition);
-        // Joints 4, 5 and 6; flipped, joint 5 is bent to the other side, and joints 4 and 6 point the other way.
-        let fifth = [sine5, dot46 * (-s5 * s6)];
-        let fourth = [m2 * s6, m1 * s6];
-        let sixth = [z4.dot(y6) * -s5, z4.dot(x6) * s5];
+    /// Whether the limits of joints 4 to 6 allow a wrist, by their sines and cosines of any length.
+    #[inline(always)]
+    fn allows_wrist<S: Simd>(&self, simd: S, joints: [[Lanes<S>; 2]; 3]) -> Mask<S> {
         let [l4, l5, l6] = [self.limits[3], self.limits[4], self.limits[5]];
-        let plain = l4.allows(simd, fourth) & l5.allows(simd, fifth) & l6.allows(simd, sixth);
-        let flipped = l4.allows(simd, [-fourth[0], -fourth[1]])
-            & l5.allows(simd, [-fifth[0], fifth[1]])
-            & l6.allows(simd, [-sixth[0], -sixth[1]]);
+        l4.allows(simd, joints[0]) & l5.allows(simd, joints[1]) & l6.allows(simd, joints[2])
+    }
+
+    /// Scores of the states with one elbow, infinite where not allowed, and the sines and cosines of their joint angles
+    /// (theta_5 not negative); nothing where none is allowed. `PLAIN` where there is one set of compliances, and scores
+    /// cover no errors.
+    #[inline(always)]
+    pub(super) fn wrist<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
+        &self,
+        simd: S,
+        uncertainty: f64,
+        demand: &Demand<S, N>,
+        arm: &Arm<S>,
+        elbow: &Elbow<S>,
+    ) -> Option<(Lanes<S>, Directions<S>)> {
+        let Bent { pose, planar, joints, per_sine } = self.bent(simd, demand, arm, elbow);
+        let lateral = self.problem.robot.geometry().lateral;
+        let inverse_condition = pose.inverse_condition(simd, lateral, self.problem.constraints.characteristic_length);
+        let conditioned = Lanes::splat(simd, self.problem.constraints.min_inverse_condition).at_most(inverse_condition);
+        let (plain, turned) = (self.allows_wrist(simd, joints), self.allows_wrist(simd, flipped(joints)));
         let mut allowed = elbow.allowed
             & conditioned
             & match self.flips {
-                Flips::Both => plain | flipped,
+                Flips::Both => plain | turned,
                 Flips::Plain => plain,
-                Flips::Flipped => flipped,
+                Flips::Flipped => turned,
             };
         if !allowed.any() {
             return None;
         }
 
+        let [fourth, fifth, sixth] = joints;
         let fourth = [fourth[0] * per_sine, fourth[1] * per_sine];
         let sixth = [sixth[0] * per_sine, sixth[1] * per_sine];
-        let directions = [[arm.sin1, arm.cos1], [s2, c2], elbow.third, fourth, fifth, sixth];
+        let directions = [[arm.sin1, arm.cos1], [elbow.sin2, elbow.cos2], elbow.third, fourth, fifth, sixth];
         let mut turned = directions;
         if self.flips == Flips::Flipped {
-            turned[3] = [-fourth[0], -fourth[1]];
-            turned[4] = [-fifth[0], fifth[1]];
-            turned[5] = [-sixth[0], -sixth[1]];
+            [turned[3], turned[4], turned[5]] = flipped([fourth, fifth, sixth]);
         }
-        let planar = Planar { second: [c2, s2 * g.lift], third: [cos_psi, sin_psi * g.lift] };
         let state = ScoredState { pose: &pose, demand, directions: &turned, planar };
-        let score = if PLAIN {
-            self.score_of_set::<S, PLAIN, WHOLE, N>(simd, &self.sets[0], &state, uncertainty)
-        } else {
-            let mut score = zero;
-            for set in &self.sets {
-                let other = self.score_of_set::<S, PLAIN, WHOLE, N>(simd, set, &state, uncertainty);
-                score = if self.is_over_worst { score.max(other) } else { score + other };
-            }
-            if self.is_over_worst { score } else { score * (1.0 / self.sets.len() as f64) }
-        };
+        let score = self.score::<S, PLAIN, WHOLE, N>(simd, &state, uncertainty);
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));
             if !allowed.any() {
@@ -168,15 +181,35 @@ impl BatchEvaluator<'_> {
         Some((allowed.select(score, Lanes::splat(simd, f64::INFINITY)), directions))
     }
 
+    /// Scores over all sets of compliances.
+    #[inline(always)]
+    fn score<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
+        &self,
+        simd: S,
+        state: &ScoredState<'_, S, N>,
+        uncertainty: f64,
+    ) -> Lanes<S> {
+        if PLAIN {
+            return self.score_of_set::<S, PLAIN, WHOLE, N>(simd, &self.sets[0], state, uncertainty);
+        }
+        let mut score = Lanes::splat(simd, 0.0);
+        for set in &self.sets {
+            let other = self.score_of_set::<S, PLAIN, WHOLE, N>(simd, set, state, uncertainty);
+            score = if self.is_over_worst { score.max(other) } else { score + other };
+        }
+        if self.is_over_worst { score } else { score * (1.0 / self.sets.len() as f64) }
+    }
+
     /// Scores with one set of compliances.
     #[inline(always)]
     fn score_of_set<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
         &self,
         simd: S,
-        Set { laws, deviation, normal }: &Set,
+        set: &Set,
         state: &ScoredState<'_, S, N>,
         uncertainty: f64,
     ) -> Lanes<S> {
+        let Set { laws, deviation, normal } = set;
         let ScoredState { pose, demand, directions, planar } = state;
         let compliances = laws.at(simd, &self.limits, directions);
         let lateral = self.problem.robot.geometry().lateral;

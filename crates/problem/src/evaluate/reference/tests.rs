@@ -48,7 +48,7 @@ fn what_each_thing_adds_is_the_scored_part() {
         softer.task = problem.task.clone().with_part_compliances(twice).unwrap();
         let [a, b] = [&problem, &softer].map(|p| p.at(&placement).state(30, 0.4, Posture::ALL[3]).unwrap());
         let turned = placement.base_from_workpiece().rotation;
-        let moved = turned * (problem.task.part_compliance(30).unwrap() * problem.task.wrenches()[30].force);
+        let moved = turned * (problem.task.part_compliance(30).unwrap() * problem.task.loads()[30].wrench.force);
         assert!((b.deflection - a.deflection - moved).norm() < 1e-15);
     }
 }
@@ -77,7 +77,7 @@ fn uncertainty_is_the_worst_case_over_force_errors() {
     problem.criterion.force_uncertainty = 0.1;
     let (placement, beta, posture) = (published_optimum(), 0.3, Posture::ALL[2]);
     let robust = problem.at(&placement).state(60, beta, posture).unwrap();
-    let size = 0.1 * problem.task.wrenches()[60].force.norm();
+    let size = 0.1 * problem.task.loads()[60].wrench.force.norm();
     let mut worst = 0.0_f64;
     for k in 0..2000 {
         // Directions spread over the sphere.
@@ -85,7 +85,7 @@ fn uncertainty_is_the_worst_case_over_force_errors() {
         let (s, c) = libm::sincos(f64::from(k) * 2.399_963_229_728_653);
         let r = libm::sqrt(1.0 - z * z);
         let error = Vector3::new(r * c, r * s, z) * size;
-        let mut wrenches = problem.task.wrenches().to_vec();
+        let mut wrenches: Vec<_> = problem.task.wrenches().copied().collect();
         wrenches[60].force += error;
         let mut changed = problem.clone();
         changed.task = stead_model::task::Task::new(problem.task.path().clone(), wrenches).unwrap();
@@ -111,7 +111,7 @@ proptest! {
             let joint = Matrix6::from_diagonal(&Vector6::from(problem.robot.compliances_at(&found.joints).map(|c| 1.0 / c)));
             let Some(inverse) = jacobian.try_inverse() else { continue };
             let stiffness = inverse.transpose() * joint * inverse;
-            let force = workpiece.rotation * problem.task.wrenches()[point].force;
+            let force = workpiece.rotation * problem.task.loads()[point].wrench.force;
             let wrench = Vector6::new(force.x, force.y, force.z, 0.0, 0.0, 0.0);
             let Some(moved) = stiffness.lu().solve(&wrench) else { continue };
             prop_assume!(found.inverse_condition > 0.02);

@@ -95,8 +95,8 @@ proptest! {
         let frames = Frames::new(&problem.robot, &found.joints);
         let workpiece = placement.base_from_workpiece();
         let tip = workpiece.point(&problem.task.points()[point].position);
-        let force = workpiece.rotation * problem.task.wrenches()[point].force;
-        let moment = workpiece.rotation * problem.task.wrenches()[point].moment;
+        let force = workpiece.rotation * problem.task.loads()[point].wrench.force;
+        let moment = workpiece.rotation * problem.task.loads()[point].wrench.moment;
         let normal = workpiece.rotation * problem.task.points()[point].workpiece_from_point().column(1);
         let parts = Vector6::from_fn(|j, _| {
             let alone = std::array::from_fn(|k| if k == j { 1.0 } else { 0.0 });

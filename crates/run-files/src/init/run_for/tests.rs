@@ -141,7 +141,7 @@ fn the_cutter_beside_the_task_is_taken_and_with_its_cut_gives_the_forces() {
     std::fs::write(at("part-tool.toml"), tool).unwrap();
     let (text, cut) = made();
     assert!(!text.contains("\n[forces]") && !text.contains("\n[stock]"), "{text}");
-    assert!(cut.problem.task.wrenches()[1].force.norm() > 1.0 && cut.problem.task != guessed.problem.task);
+    assert!(cut.problem.task.loads()[1].wrench.force.norm() > 1.0 && cut.problem.task != guessed.problem.task);
     std::fs::write(at("part-tool.toml"), "[tool]\ncutter_diameter_mm = 0\n").unwrap();
     let refused = init_run(Path::new("name:kuka-kr500"), &at("part.csv"), &at("run.toml"), Existing::Replaced);
     let message = refused.unwrap_err().to_string();

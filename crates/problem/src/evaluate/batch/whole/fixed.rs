@@ -117,8 +117,8 @@ impl Fixed {
 
     /// What is fixed to the tool adds along a direction n, which like force and moment is given on the axes of the
     /// point. There, with P the rotation from the point to the tool, the matrices are `P^T C P`.
-    fn add_of_tool(&self, terms: &mut [f64; 5], n: &Vector3<f64>, [force, moment]: [&Vector3<f64>; 2]) {
-        for (matrix, load) in self.tool.iter().zip([force, moment]) {
+    fn add_of_tool(&self, terms: &mut [f64; 5], n: &Vector3<f64>, wrench: [&Vector3<f64>; 2]) {
+        for (matrix, load) in self.tool.iter().zip(wrench) {
             let symmetric = (matrix + matrix.transpose()) * 0.5;
             let (mean, half) = ((symmetric.m11 + symmetric.m22) * 0.5, (symmetric.m11 - symmetric.m22) * 0.5);
             let (mixed, x, y) = (symmetric.m12, symmetric.m13, symmetric.m23);

@@ -1,8 +1,8 @@
 //! The task with the workpiece at a placement: what travels through planning.
 
-use super::{PlacedPoint, Placement, Problem};
-use crate::evaluate::point_evaluator::PointEvaluator;
-use crate::evaluate::reference::State;
+use super::point_evaluator::PointEvaluator;
+use super::reference::State;
+use crate::problem::{PlacedPoint, Placement, Problem};
 use stead_model::robot::{Pose, Posture, Unreachable};
 use stead_numerics::scalar::Scalar;
 
@@ -42,7 +42,7 @@ impl<'a, T: Scalar> PlacedTask<'a, T> {
 
     /// Path point `point` to be evaluated at several free angles.
     pub fn evaluator(self, point: usize) -> PointEvaluator<'a, T> {
-        PointEvaluator::of(self, point)
+        PointEvaluator::of(self.problem, self.placement, point)
     }
 
     /// The state of the arm at path point `point`, a free angle (rad) and in a posture. Joint limits are not checked.
