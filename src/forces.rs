@@ -1,8 +1,10 @@
 //! Cutting forces from a tool path and the stock that it cuts.
 
-pub use stead_removal::forces::{ForcesError, forces};
+pub use stead_removal::error::ForcesError;
+pub use stead_removal::forces::forces;
+pub use stead_removal::load::PointForces;
 pub use stead_removal::operation::{AirPoint, EndMill, ForcesProblem, Operation, Stock};
-pub use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
+pub use stead_removal::outcome::{ForcesDifference, RemovalForces};
 pub use stead_removal::surface::Surface;
 pub use stead_run_files::forces::material::Material;
 

@@ -1,7 +1,7 @@
 //! Programs for Fanuc's controllers, in the ASCII form of TP programs (LS).
 
 use super::layout::{Layout, Lines, ProgramFile};
-use super::motion::{Move, MoveKind};
+use super::motion::{Move, MoveKind, external_units};
 use super::names::{comment, number};
 use super::stale;
 use super::status::fanuc_config;
@@ -44,13 +44,6 @@ impl Statements {
     }
 }
 
-/// The main program, which calls the parts, and the parts.
-pub(super) fn files(layout: &Layout<'_>) -> Vec<ProgramFile> {
-    let mut files = vec![main(layout)];
-    files.extend((0..layout.parts.len()).map(|index| part(layout, index)));
-    files
-}
-
 fn program(name: &str, statements: &Statements, positions: &str) -> ProgramFile {
     let mut lines = Lines::default();
     lines.line(format_args!("/PROG  {name}"));
@@ -67,24 +60,26 @@ fn program(name: &str, statements: &Statements, positions: &str) -> ProgramFile 
     ProgramFile { name: format!("{name}.ls"), text: lines.0 }
 }
 
-fn main(layout: &Layout<'_>) -> ProgramFile {
+/// The main program, which calls the parts.
+pub(super) fn main(layout: &Layout<'_>) -> ProgramFile {
     let mut statements = Statements::default();
     layout.origin.iter().for_each(|text| statements.remark(text));
-    match layout.spindle_on {
+    match &layout.spindle_on {
         Some(text) => statements.push(format_args!("  {text}")),
         None => statements.remark("spindle on: --spindle-on"),
     }
     for index in 0..layout.parts.len() {
         statements.push(format_args!("  CALL {}", layout.part_name(index).to_ascii_uppercase()));
     }
-    match layout.spindle_off {
+    match &layout.spindle_off {
         Some(text) => statements.push(format_args!("  {text}")),
         None => statements.remark("spindle off: --spindle-off"),
     }
-    program(&layout.name.to_ascii_uppercase(), &statements, "")
+    program(&layout.options.name.to_ascii_uppercase(), &statements, "")
 }
 
-fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
+/// A part, counted from 0.
+pub(super) fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let (mut statements, mut positions) = (Statements::default(), Lines::default());
     for (name, pose) in [("UFRAME", layout.frames.root_from_workpiece), ("UTOOL", layout.frames.flange_from_tool)] {
         for ((key, value), decimals) in xyzwpr(&pose).into_iter().zip([4, 4, 4, 6, 6, 6]) {
@@ -117,7 +112,7 @@ pub(super) fn speed(feed: f64) -> u32 {
 }
 
 fn position_of(lines: &mut Lines, number_of: usize, step: &Move, layout: &Layout<'_>) {
-    let layout_units = layout.external_units;
+    let units = external_units(layout.problem);
     let angles = step.angles.unwrap_or(step.joints);
     lines.line(format_args!("P[{number_of}]{{"));
     lines.line("   GP1:");
@@ -131,10 +126,10 @@ fn position_of(lines: &mut Lines, number_of: usize, step: &Move, layout: &Layout
                 .map(|(angle, axis)| format!("\tJ{axis}= {:>10} deg", number(angle.to_degrees(), AXIS_DECIMALS)))
                 .collect();
             lines.line(format_args!("{},", axes[..3].join(",")));
-            lines.line(format_args!("{}{}", axes[3..].join(","), external(step, layout_units)));
+            lines.line(format_args!("{}{}", axes[3..].join(","), external(step, units)));
         }
         MoveKind::Linear => {
-            let words = layout.posture_words[usize::from(step.posture.number()) - 1];
+            let words = layout.problem.robot.posture_words(step.posture);
             lines.line(format_args!("{of_frames}\t\tCONFIG : '{}',", fanuc_config(words, &angles)));
             let numbers = xyzwpr(&step.workpiece_from_tool);
             let entry = |(key, value): (&str, f64), decimals, unit: &str| {
@@ -143,7 +138,7 @@ fn position_of(lines: &mut Lines, number_of: usize, step: &Move, layout: &Layout
             let lengths: Vec<String> = numbers[..3].iter().map(|pair| entry(*pair, MM_DECIMALS, " mm")).collect();
             let turns: Vec<String> = numbers[3..].iter().map(|pair| entry(*pair, DEG_DECIMALS, "deg")).collect();
             lines.line(format_args!("{},", lengths.join(",")));
-            lines.line(format_args!("{}{}", turns.join(","), external(step, layout_units)));
+            lines.line(format_args!("{}{}", turns.join(","), external(step, units)));
         }
     }
     lines.line("};");

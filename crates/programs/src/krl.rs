@@ -8,7 +8,8 @@ use stead_model::robot::{Pose, kuka_status_and_turn};
 use stead_numerics::rotation::zyx_from_rotation;
 
 /// A frame as X, Y, Z in mm and A, B, C in deg, `Rz(A) Ry(B) Rx(C)`.
-pub(super) fn frame(pose: &Pose<f64>, [mm, deg]: [usize; 2]) -> String {
+pub(super) fn frame(pose: &Pose<f64>, decimals: [usize; 2]) -> String {
+    let [mm, deg] = decimals;
     let xyz = pose.translation * 1e3;
     let abc = zyx_from_rotation(&pose.rotation).map(f64::to_degrees);
     let entry = |name: &str, value: f64, decimals: usize| format!("{name} {}", number(value, decimals));
@@ -23,13 +24,6 @@ pub(super) const FRAME_DECIMALS: [usize; 2] = [4, 6];
 const POSE_DECIMALS: [usize; 2] = [3, 4];
 /// Decimals of joint angles: all six off by half a unit move nothing 4 m away by 3e-3 mm.
 const AXIS_DECIMALS: usize = 5;
-
-/// The main program, which calls the parts, and the parts.
-pub(super) fn files(layout: &Layout<'_>) -> Vec<ProgramFile> {
-    let mut files = vec![main(layout)];
-    files.extend((0..layout.parts.len()).map(|index| part(layout, index)));
-    files
-}
 
 fn head(layout: &Layout<'_>, name: &str) -> Lines {
     let mut lines = Lines::default();
@@ -54,8 +48,9 @@ fn base(layout: &Layout<'_>) -> String {
     }
 }
 
-fn main(layout: &Layout<'_>) -> ProgramFile {
-    let mut lines = head(layout, layout.name);
+/// The main program, which calls the parts.
+pub(super) fn main(layout: &Layout<'_>) -> ProgramFile {
+    let mut lines = head(layout, layout.options.name);
     lines.line(format_args!("; $BASE={}", base(layout)));
     if let Some(table) = &layout.frames.root_from_table {
         lines.line(
@@ -64,22 +59,23 @@ fn main(layout: &Layout<'_>) -> ProgramFile {
         lines.line(format_args!("; {{{}}}", frame(table, FRAME_DECIMALS)));
     }
     lines.line(format_args!("; $TOOL={{{}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
-    lines.line(layout.spindle_on.unwrap_or("; spindle on: stead export --spindle-on"));
+    lines.line(layout.spindle_on.as_deref().unwrap_or("; spindle on: stead export --spindle-on"));
     for index in 0..layout.parts.len() {
         lines.line(format_args!("{} ( )", layout.part_name(index)));
     }
-    lines.line(layout.spindle_off.unwrap_or("; spindle off: stead export --spindle-off"));
+    lines.line(layout.spindle_off.as_deref().unwrap_or("; spindle off: stead export --spindle-off"));
     lines.line("END");
-    ProgramFile { name: format!("{}.src", layout.name), text: lines.0 }
+    ProgramFile { name: format!("{}.src", layout.options.name), text: lines.0 }
 }
 
-fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
+/// A part, counted from 0.
+pub(super) fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let name = layout.part_name(index);
     let mut lines = head(layout, &name);
     lines.line(format_args!("$BASE={}", base(layout)));
     lines.line(format_args!("$TOOL={{FRAME: {}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
     lines.line("$ADVANCE=5");
-    lines.line(format_args!("$APO.CDIS={}", number(layout.blend * 1e3, 4)));
+    lines.line(format_args!("$APO.CDIS={}", number(layout.options.blend * 1e3, 4)));
     lines.line(format_args!("BAS (#VEL_PTP,{})", Layout::JOINT_SPEED_PERCENT));
     let mut feed = f64::NAN;
     let moves = layout.moves_of(index);
@@ -105,7 +101,9 @@ fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
 
 fn joint(lines: &mut Lines, layout: &Layout<'_>, step: &Move) {
     let angles = step.angles.unwrap_or(step.joints);
-    let [s, t] = kuka_status_and_turn(step.posture, layout.sign_3, &angles);
+    // 1 where the controller's third axis counts in the direction of the row, else -1.
+    let sign_3 = layout.problem.robot.controller().map_or(1.0, |controller| controller.sign[2]);
+    let [s, t] = kuka_status_and_turn(step.posture, sign_3, &angles);
     lines.line(format_args!("; start: {},S {s},T {t}", frame(&step.workpiece_from_tool, POSE_DECIMALS)));
     let axes =
         angles.iter().zip(1..).map(|(angle, axis)| format!("A{axis} {}", number(angle.to_degrees(), AXIS_DECIMALS)));

@@ -2,10 +2,10 @@
 
 use super::carrier::Carrier;
 use super::motion::{Frames, Heading, Move, MoveKind};
-use super::names;
+use super::{ExportOptions, names};
 use std::fmt::Write;
 use std::ops::Range;
-use stead_model::robot::PostureWords;
+use stead_problem::problem::Problem;
 
 /// One file of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,8 +19,8 @@ pub struct ProgramFile {
 /// A program about to be written.
 #[derive(Debug)]
 pub(super) struct Layout<'a> {
-    /// The name of the main program.
-    pub name: &'a str,
+    pub problem: &'a Problem,
+    pub options: &'a ExportOptions<'a>,
     /// What the program is and what it was made of, as texts for comments.
     pub origin: Vec<String>,
     pub moves: &'a [Move],
@@ -28,19 +28,9 @@ pub(super) struct Layout<'a> {
     pub frames: Frames,
     /// What moves the base, where anything does.
     pub carrier: Option<Carrier<'a>>,
-    /// Distance from a corner at which blending begins; 0 for exact stops. m
-    pub blend: f64,
     /// Statements of the user's own.
-    pub spindle_on: Option<&'a str>,
-    pub spindle_off: Option<&'a str>,
-    /// 1 where the controller's third axis counts in the direction of the row, else -1.
-    pub sign_3: f64,
-    /// The postures in words, in the order of their numbers.
-    pub posture_words: [PostureWords; 8],
-    /// The units of the external axes, mm or deg.
-    pub external_units: [&'static str; 6],
-    /// Mass and centre (m, flange frame) of what the flange carries, where known.
-    pub load: Option<(f64, [f64; 3])>,
+    pub spindle_on: Option<String>,
+    pub spindle_off: Option<String>,
 }
 
 impl Layout<'_> {
@@ -49,7 +39,7 @@ impl Layout<'_> {
 
     /// The name of a part, counted from 0.
     pub fn part_name(&self, index: usize) -> String {
-        format!("{}{}", self.name, names::part(index + 1))
+        format!("{}{}", self.options.name, names::part(index + 1))
     }
 
     /// The moves of a part.

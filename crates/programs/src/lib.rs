@@ -47,22 +47,20 @@ pub use error::{ExportError, ProgramError};
 pub use frames::{OperatorFrame, Rotation};
 pub use layout::ProgramFile;
 
-use carrier::Carrier;
 use corrected::corrected_targets;
 use layout::Layout;
 use motion::{Frames, Move, MoveKind, Target};
 use stale::StaleParts;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, foreign, write_all_new};
 use stead_disk::input::{InputError, InputFile};
 use stead_disk::manifest::interruption_note;
-use stead_model::robot::{ControllerKind, Posture, Robot};
+use stead_model::robot::{ControllerKind, Robot};
 use stead_numerics::message::{Note, NoteGroup, Warning};
 use stead_numerics::monitor::Monitor;
 use stead_problem::problem::{Placement, Problem, UNCHECKED};
 use stead_runs::Run;
-use stead_runs::plan::{PlacedPlan, read_plan};
+use stead_runs::plan::read_plan;
 use transfer_paths::{Ends, TransferPaths};
 
 /// The form of a program.
@@ -274,13 +272,30 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>, monitor: &Mon
     let table = carrier.and_then(|_| carrier::root_from_table(problem));
     let frames = motion::frames(problem, &cell_from_workpiece, table);
     let parts = split::parts(&moves, options.max_moves);
-    let mut notes = planned.notes;
+    let mut notes = planned.notes.clone();
     notes.extend(names::check(options.name, options.format, parts.len())?);
     notes.extend(format_note(options, &moves, frames.is_some()));
     notes.extend(carrier::note(problem, carrier));
     let part_count = if options.format == ProgramFormat::Csv { 1 } else { parts.len() };
-    let header = origin(run, &planned.inputs, problem.unchecked_collisions().is_some(), planned.is_interrupted);
-    let files = files(problem, options, header, &moves, parts, frames, carrier)?;
+    let files = match frames.filter(|_| options.format.controller().is_some()) {
+        None => table::files(options.name, &moves, motion::external_units(problem), problem.scene.is_some()),
+        Some(frames) => {
+            let statement = |option, text: Option<&str>| {
+                text.map(|text| names::statement(option, text, options.format)).transpose()
+            };
+            files(&Layout {
+                problem,
+                options,
+                origin: origin(run, &planned),
+                moves: &moves,
+                parts,
+                frames,
+                carrier,
+                spindle_on: statement("--spindle-on", options.spindle_on)?,
+                spindle_off: statement("--spindle-off", options.spindle_off)?,
+            })
+        }
+    };
     let joint_moves = moves.iter().filter(|step| step.kind == MoveKind::Joint).count();
     Ok(Program {
         format: options.format,
@@ -299,42 +314,15 @@ pub fn export(run: &Run, plan: &Path, options: &ExportOptions<'_>, monitor: &Mon
     })
 }
 
-/// The files of a program in its form.
-fn files(
-    problem: &Problem,
-    options: &ExportOptions<'_>,
-    origin: Vec<String>,
-    moves: &[Move],
-    parts: Vec<Range<usize>>,
-    frames: Option<Frames>,
-    carrier: Option<Carrier<'_>>,
-) -> Result<Vec<ProgramFile>, ProgramError> {
-    let format = options.format;
-    let (Some(frames), Some(_)) = (frames, format.controller()) else {
-        return Ok(table::files(options.name, moves, motion::external_units(problem), problem.scene.is_some()));
+/// The files of a program in the words of its controller: the main program, which calls the parts, and the parts.
+fn files(layout: &Layout<'_>) -> Vec<ProgramFile> {
+    type Writers = (fn(&Layout<'_>) -> ProgramFile, fn(&Layout<'_>, usize) -> ProgramFile);
+    let (main, part): Writers = match layout.options.format {
+        ProgramFormat::Rapid => (rapid::main, rapid::part),
+        ProgramFormat::Fanuc => (fanuc::main, fanuc::part),
+        ProgramFormat::Krl | ProgramFormat::Csv => (krl::main, krl::part),
     };
-    let statement = |option, text: Option<&str>| text.map(|text| names::statement(option, text, format)).transpose();
-    let (on, off) = (statement("--spindle-on", options.spindle_on)?, statement("--spindle-off", options.spindle_off)?);
-    let layout = Layout {
-        name: options.name,
-        origin,
-        moves,
-        parts,
-        frames,
-        carrier,
-        blend: options.blend,
-        spindle_on: on.as_deref(),
-        spindle_off: off.as_deref(),
-        external_units: motion::external_units(problem),
-        posture_words: Posture::ALL.map(|posture| problem.robot.posture_words(posture)),
-        sign_3: problem.robot.controller().map_or(1.0, |controller| controller.sign[2]),
-        load: problem.spindle.carried_mass().map(|body| (body.mass, [0, 1, 2].map(|axis| body.centre[axis]))),
-    };
-    Ok(match format {
-        ProgramFormat::Rapid => rapid::files(&layout),
-        ProgramFormat::Fanuc => fanuc::files(&layout),
-        ProgramFormat::Krl | ProgramFormat::Csv => krl::files(&layout),
-    })
+    std::iter::once(main(layout)).chain((0..layout.parts.len()).map(|index| part(layout, index))).collect()
 }
 
 /// What a program follows, and where from.
@@ -359,17 +347,7 @@ fn targets(run: &Run, plan: &Path, options: &ExportOptions<'_>, monitor: &Monito
     let mut inputs = run.inputs.clone();
     inputs.push(file);
     let transfer_paths = TransferPaths::new(&problem, &plan, options.approach, monitor)?;
-    let PlacedPlan { placement, points, .. } = &plan;
-    let planned: Vec<Target> = points
-        .iter()
-        .enumerate()
-        .map(|(number, point)| Target {
-            base_from_tool: point.base_from_tool,
-            posture: point.posture,
-            joints: point.joints,
-            external: motion::external_at(&problem, number),
-        })
-        .collect();
+    let planned = motion::targets(&problem, &plan);
     let (targets, uncorrected) = match options.corrected {
         Some(path) => {
             let (targets, uncorrected, file) = corrected_targets(&problem, &planned, path)?;
@@ -378,7 +356,7 @@ fn targets(run: &Run, plan: &Path, options: &ExportOptions<'_>, monitor: &Monito
         }
         None => (planned, 0),
     };
-    let (placement, notes) = (*placement, plan.notes);
+    let (placement, notes) = (plan.placement, plan.notes);
     Ok(Planned { placement, problem, targets, transfer_paths, uncorrected, inputs, is_interrupted, notes })
 }
 
@@ -431,14 +409,14 @@ fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportErr
 }
 
 /// What the program is, what it was made of and what it does not say, for comments.
-fn origin(run: &Run, inputs: &[InputFile], is_unchecked: bool, is_interrupted: bool) -> Vec<String> {
+fn origin(run: &Run, planned: &Planned) -> Vec<String> {
     let mut lines = vec![format!("{} {} for", stale::MARK, env!("CARGO_PKG_VERSION"))];
     lines.push(names::comment(run.problem.robot.name(), 60));
-    lines.extend(inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
+    lines.extend(planned.inputs.iter().map(|input| names::comment(&format!("{}: {}", input.role, input.name), 100)));
     let rests_on = Note::shorts(&run.notes, NoteGroup::RestsOn);
     lines.extend(rests_on.iter().map(|short| names::comment(&format!("rests on {short}"), 100)));
-    lines.extend(is_unchecked.then(|| UNCHECKED.to_owned()));
-    lines.extend(is_interrupted.then(|| INTERRUPTED.to_owned()));
+    lines.extend(planned.problem.unchecked_collisions().is_some().then(|| UNCHECKED.to_owned()));
+    lines.extend(planned.is_interrupted.then(|| INTERRUPTED.to_owned()));
     lines
 }
 

@@ -4,11 +4,13 @@
 
 use super::ProgramError;
 use super::transfer_paths::{Ends, Names, TransferPaths};
+use stead_calibration::compensation::PathPoint;
 use stead_model::external_axis::AxisKind;
 use stead_model::robot::angles::{ANGLE_ROUNDING, nearest_turns};
 use stead_model::robot::{Pose, Posture};
 use stead_planning::transfer_path::TransferPath;
 use stead_problem::problem::{Placement, Problem};
+use stead_runs::plan::PlacedPlan;
 
 /// Positions of the external axes that there are, in mm and deg.
 pub(super) type External = [Option<f64>; 6];
@@ -44,6 +46,17 @@ pub(super) struct Target {
     pub joints: [f64; 6],
     /// Where the external axes stand.
     pub external: External,
+}
+
+/// The targets of a plan, point by point.
+pub(super) fn targets(problem: &Problem, plan: &PlacedPlan) -> Vec<Target> {
+    let target = |(number, point): (usize, &PathPoint)| Target {
+        base_from_tool: point.base_from_tool,
+        posture: point.posture,
+        joints: point.joints,
+        external: external_at(problem, number),
+    };
+    plan.points.iter().enumerate().map(target).collect()
 }
 
 /// How a move is made.

@@ -48,30 +48,25 @@ fn external(step: &Move) -> String {
     format!("[{}]", axes.join(","))
 }
 
-/// The main module, with the data and a procedure that calls the parts, and the modules of the parts.
-pub(super) fn files(layout: &Layout<'_>) -> Vec<ProgramFile> {
-    let mut files = vec![main(layout)];
-    files.extend((0..layout.parts.len()).map(|index| part(layout, index)));
-    files
-}
-
 /// The names of the data, which all parts share: none of another program's.
 fn data(layout: &Layout<'_>) -> [String; 4] {
-    ["t", "w", "z", "v"].map(|kind| format!("{kind}_{}", layout.name))
+    ["t", "w", "z", "v"].map(|kind| format!("{kind}_{}", layout.options.name))
 }
 
 fn statement(text: &str) -> String {
     format!("    {};", text.trim_end_matches(';'))
 }
 
-fn main(layout: &Layout<'_>) -> ProgramFile {
+/// The main module, with the data and a procedure that calls the parts.
+pub(super) fn main(layout: &Layout<'_>) -> ProgramFile {
     let mut lines = Lines::default();
     let [tool, workpiece, zone, speed] = data(layout);
-    lines.line(format_args!("MODULE {MODULE}{}", layout.name));
+    lines.line(format_args!("MODULE {MODULE}{}", layout.options.name));
     layout.origin.iter().for_each(|text| lines.line(format_args!("  ! {text}")));
     let pose = &layout.frames.flange_from_tool;
-    let (mass, centre) = layout.load.unwrap_or((1.0, [0.0, 0.0, 0.001]));
-    if layout.load.is_none() {
+    let load = layout.problem.spindle.carried_mass();
+    let (mass, centre) = load.map_or((1.0, Vector3::z() * 0.001), |body| (body.mass, body.centre));
+    if load.is_none() {
         lines.line("  ! mass and centre of the spindle are not known: put them in before this runs");
     }
     lines.line(format_args!(
@@ -79,7 +74,7 @@ fn main(layout: &Layout<'_>) -> ProgramFile {
         position(&pose.translation),
         orientation(&pose.rotation),
         number(mass, 3),
-        list(centre.map(|m| m * 1e3), 1)
+        list(centre.iter().map(|m| m * 1e3), 1)
     ));
     let framed = |pose: &Pose<f64>| format!("[{},{}]", position(&pose.translation), orientation(&pose.rotation));
     let coupled = match (layout.carrier, layout.frames.table_from_workpiece(), layout.frames.root_from_table) {
@@ -102,27 +97,31 @@ fn main(layout: &Layout<'_>) -> ProgramFile {
             framed(&layout.frames.root_from_workpiece)
         )),
     }
-    let blend = number(layout.blend * 1e3, 3);
-    let wide = number(layout.blend * 1.5e3, 3);
-    let turn = number(layout.blend * 0.15e3, 3);
+    let blend = number(layout.options.blend * 1e3, 3);
+    let wide = number(layout.options.blend * 1.5e3, 3);
+    let turn = number(layout.options.blend * 0.15e3, 3);
     lines.line(format_args!("  CONST zonedata {zone}:=[FALSE,{blend},{wide},{wide},{turn},{wide},{turn}];"));
     lines.line(format_args!("  CONST speeddata {speed}:=[200,30,200,30];"));
-    lines.line(format_args!("  PROC {}()", layout.name));
+    lines.line(format_args!("  PROC {}()", layout.options.name));
     lines.line("    ConfL\\Off;");
     if let Some((unit, ..)) = coupled {
         lines.line(format_args!("    ActUnit {unit};"));
     }
-    lines.line(layout.spindle_on.map_or("    ! spindle on: stead export --spindle-on".to_owned(), statement));
+    lines
+        .line(layout.spindle_on.as_deref().map_or("    ! spindle on: stead export --spindle-on".to_owned(), statement));
     for index in 0..layout.parts.len() {
         lines.line(format_args!("    {};", layout.part_name(index)));
     }
-    lines.line(layout.spindle_off.map_or("    ! spindle off: stead export --spindle-off".to_owned(), statement));
+    lines.line(
+        layout.spindle_off.as_deref().map_or("    ! spindle off: stead export --spindle-off".to_owned(), statement),
+    );
     lines.line("  ENDPROC");
     lines.line("ENDMODULE");
-    ProgramFile { name: format!("{}.mod", layout.name), text: lines.0 }
+    ProgramFile { name: format!("{}.mod", layout.options.name), text: lines.0 }
 }
 
-fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
+/// A part, counted from 0.
+pub(super) fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let name = layout.part_name(index);
     let [tool, workpiece, zone, speed] = data(layout);
     let mut lines = Lines::default();

@@ -26,11 +26,11 @@ pub(super) fn files(name: &str, moves: &[Move], units: [&str; 6], has_scene: boo
     let has_unfollowed = moves.iter().any(|step| matches!(step.heading, Some(Heading::Unfollowed(_))));
     let unfollowed = if has_unfollowed { ",unfollowed" } else { "" };
     lines.line(format_args!("{COLUMNS}{names}{hits}{unfollowed}"));
-    moves.iter().for_each(|step| lines.line(row(step, [has_scene, has_unfollowed])));
+    moves.iter().for_each(|step| lines.line(row(step, has_scene, has_unfollowed)));
     vec![ProgramFile { name: format!("{name}.csv"), text: lines.0 }]
 }
 
-fn row(step: &Move, [has_scene, has_unfollowed]: [bool; 2]) -> String {
+fn row(step: &Move, has_scene: bool, has_unfollowed: bool) -> String {
     let pose = &step.workpiece_from_tool;
     let kind = match step.kind {
         MoveKind::Joint => "joint",

@@ -1,7 +1,7 @@
 //! What is cut along a path in a few figures, and what of it no cutter does.
 
+use crate::load::PointForces;
 use crate::operation::Operation;
-use crate::outcome::PointForces;
 
 use std::f64::consts::{PI, TAU};
 use stead_model::task::ToolPath;

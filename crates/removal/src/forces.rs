@@ -1,9 +1,10 @@
 //! The job: forces at every point of a path.
 
 use crate::cutting::Tool;
+use crate::error::ForcesError;
 use crate::kept::CutResult;
 use crate::memory;
-use crate::moves::PathMoves;
+use crate::moves::{PathMoves, window_for};
 use crate::operation::{EndMill, ForcesProblem, Operation};
 use crate::outcome::{ForcesDifference, RemovalForces};
 use crate::points::{Loads, points_between};
@@ -11,69 +12,9 @@ use crate::removal::Workpiece;
 use crate::solid_lines::Body;
 use crate::sums::{Found, Requested, Sums};
 use crate::surface::{Surface, surface};
-use crate::warnings::place;
-use nalgebra::Vector3;
 use stead_cell::Solid;
-use stead_model::task::TaskError;
-use stead_numerics::digits::figures;
-use stead_numerics::monitor::{Monitor, Stop};
+use stead_numerics::monitor::Monitor;
 
-/// Why there are no forces.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ForcesError {
-    /// The stock is a form that it cannot be.
-    #[error("the stock and the finished part are boxes, cylinders or closed meshes")]
-    Form,
-    /// Stock from a path on which nothing is scored.
-    #[error("no scored move of the path has a wall")]
-    NoWall,
-    /// The stock is too long.
-    #[error("the stock is {length} m long: at most {most} m", most = LARGEST)]
-    Large {
-        /// Its longest side. m
-        length: f64,
-    },
-    /// The surface of the stock is not closed, or crosses itself.
-    #[error("the surface of the stock is no closed one: {share:.1e} of the lines through it do not go in and out in turn, as at {}", place(.at))]
-    Open {
-        /// Share of such lines.
-        share: f64,
-        /// Where one of them begins. m
-        at: Vector3<f64>,
-    },
-    /// A path without feeds.
-    #[error("the path of {0} has no feeds")]
-    NoFeeds(String),
-    /// Nothing is cut.
-    #[error("the path never touches the stock")]
-    Untouched,
-    /// The lines do not fit into the memory.
-    #[error("cells of {} mm take {} GB, more than the {} GB allowed: {}", figures(.cell * 1e3), figures(.needed / 1e9), figures(.allowed / 1e9), fitting(*.fits))]
-    Memory {
-        /// The distance of lines. m
-        cell: f64,
-        /// What they take. bytes
-        needed: f64,
-        /// What they may take. bytes
-        allowed: f64,
-        /// The smallest distance that fits, where one does with which forces mean something. m
-        fits: Option<f64>,
-    },
-    /// Points that were added make no path.
-    #[error(transparent)]
-    Path(#[from] TaskError),
-    /// Stopped before it was done.
-    #[error(transparent)]
-    Stopped(#[from] Stop),
-}
-
-/// Which cells fit, for messages.
-fn fitting(fits: Option<f64>) -> String {
-    fits.map_or("no cells fit".to_owned(), |fits| format!("{} mm fits", figures(fits * 1e3)))
-}
-
-/// Coordinates of stock are nanometres in 32 bits. m
-pub(crate) const LARGEST: f64 = 4.2;
 /// Of the cells of the first run, over the diameter of the cutter.
 const FIRST: f64 = 12.0;
 /// Of the cells of the last one.
@@ -138,11 +79,6 @@ pub fn cut(problem: &ForcesProblem, monitor: &Monitor) -> Result<CutResult, Forc
     };
     let fine = Run::new(problem, cell, Some(window), Requested::Turns, "cutting", monitor)?;
     Ok(fine.result(operation, &Loads { path: &path, found: &found }))
-}
-
-/// Half the length of path that the load at a point is the mean of. m
-pub(crate) fn window_for(cell: f64) -> f64 {
-    (1.5 * cell).max(0.75e-3)
 }
 
 /// A run through all operations with one size of cell.

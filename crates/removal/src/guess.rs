@@ -1,6 +1,7 @@
 //! The stock that a path is for, guessed from the path: how deep it cuts, where its own levels and rows say so.
 
-use crate::forces::{ForcesError, Run};
+use crate::error::ForcesError;
+use crate::forces::Run;
 use crate::moves::{MoveKind, PathMoves, has_wall};
 use crate::operation::{EndMill, ForcesProblem, Operation, PathStock, Stock};
 use crate::points::Loads;

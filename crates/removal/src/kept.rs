@@ -1,8 +1,9 @@
 //! What cutting along a path gives, from which all that is said of it follows at once: kept as text, and read again.
 
-use crate::forces::ForcesError;
+use crate::error::ForcesError;
+use crate::load::PointForces;
 use crate::operation::ForcesProblem;
-use crate::outcome::{ForcesDifference, PointForces, RemovalForces};
+use crate::outcome::{ForcesDifference, RemovalForces};
 use crate::points::{Added, with_points};
 use crate::sums::{Event, Events};
 use crate::surface::Surface;

@@ -28,14 +28,23 @@ pub fn others(axis: usize) -> [usize; 2] {
 }
 
 /// The tiles that a stretch of an axis (m) meets; a line is shifted by less than a cell.
-pub fn tiles([low, high]: [f64; 2], cell: f64) -> std::ops::RangeInclusive<i64> {
-    ((low / cell).floor() as i64 - 1).div_euclid(TILE)..=((high / cell).ceil() as i64).div_euclid(TILE)
+pub fn tiles(span: [f64; 2], cell: f64) -> std::ops::RangeInclusive<i64> {
+    ((span[0] / cell).floor() as i64 - 1).div_euclid(TILE)..=((span[1] / cell).ceil() as i64).div_euclid(TILE)
+}
+
+/// The tiles of lines along every axis that a box (m) meets, in the order of their keys.
+pub fn tiles_within(reach: &[[f64; 2]; 3], cell: f64) -> impl Iterator<Item = TileKey> + use<> {
+    let sides = reach.map(|span| tiles(span, cell));
+    (0..3).flat_map(move |axis| {
+        let [rows, columns] = others(axis).map(|side| sides[side].clone());
+        rows.flat_map(move |i| columns.clone().map(move |j| (axis, i, j)))
+    })
 }
 
 /// The rows of a tile, by its number, that a stretch of an axis (m) may meet; a line is shifted by less than a cell.
-pub fn lines_of(tile: i64, [low, high]: [f64; 2], cell: f64) -> std::ops::Range<i64> {
-    let first = (low / cell).floor() as i64 - 1 - tile * TILE;
-    let last = (high / cell).ceil() as i64 - tile * TILE;
+pub fn lines_of(tile: i64, span: [f64; 2], cell: f64) -> std::ops::Range<i64> {
+    let first = (span[0] / cell).floor() as i64 - 1 - tile * TILE;
+    let last = (span[1] / cell).ceil() as i64 - tile * TILE;
     first.max(0)..last.min(TILE - 1) + 1
 }
 

@@ -1,8 +1,11 @@
 //! The job: forces of a tool that leans otherwise than its path states.
 
-use crate::forces::{ForcesError, Run, window_for};
+use crate::error::ForcesError;
+use crate::forces::Run;
+use crate::load::PointForces;
+use crate::moves::window_for;
 use crate::operation::{ForcesProblem, Operation};
-use crate::outcome::{PointForces, RemovalForces};
+use crate::outcome::RemovalForces;
 use crate::points::Loads;
 use crate::sums::Requested;
 use stead_model::task::{ToolPath, Wrench};

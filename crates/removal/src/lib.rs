@@ -8,12 +8,14 @@
 
 pub mod cut;
 pub mod cutting;
+pub mod error;
 pub mod forces;
 pub mod guess;
 mod job;
 pub mod kept;
 pub mod lattice;
 pub mod leaning;
+pub mod load;
 mod memory;
 pub mod moves;
 pub mod operation;
@@ -22,6 +24,7 @@ pub mod piece;
 mod points;
 pub mod profile;
 pub mod quadrature;
+mod reach;
 pub mod removal;
 pub mod solid_lines;
 pub mod sums;

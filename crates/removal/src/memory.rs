@@ -1,11 +1,11 @@
 //! What the lines of a stock take of the memory, before they are made.
 
 use crate::cutting::Tool;
-use crate::forces::{ForcesError, window_for};
-use crate::job::{Reach, Size};
-use crate::lattice::{TILE, TileKey, others, tiles};
-use crate::moves::PathMoves;
+use crate::error::ForcesError;
+use crate::lattice::{TILE, TileKey, tiles, tiles_within};
+use crate::moves::{PathMoves, window_for};
 use crate::operation::{ForcesProblem, Operation};
+use crate::reach::{Reach, Size};
 use crate::sums::Sums;
 use crate::tile::Tile;
 use crate::turn::Turn;
@@ -71,15 +71,12 @@ fn bytes(paths: &[([Option<Size>; 2], PathMoves)], extent: &[Vector3<f64>; 2], c
             if last.as_ref() == Some(&of_sides) {
                 continue;
             }
-            for axis in 0..3 {
-                let [a, b] = others(axis).map(|side| of_sides[side].clone());
-                for key in a.flat_map(|i| b.clone().map(move |j| (axis, i, j))) {
-                    if met.insert(key) {
-                        bytes += TILE_BYTES as f64;
-                    }
-                    if bytes > allowed {
-                        return None;
-                    }
+            for key in tiles_within(&whole, cell) {
+                if met.insert(key) {
+                    bytes += TILE_BYTES as f64;
+                }
+                if bytes > allowed {
+                    return None;
                 }
             }
             last = Some(of_sides);

@@ -106,6 +106,11 @@ const NO_WALL: f64 = 0.089;
 /// Distance of nodes of the turns of the spindle. m
 const TURN_NODES: f64 = 4e-3;
 
+/// Half the length of path that the load at a point is the mean of. m
+pub fn window_for(cell: f64) -> f64 {
+    (1.5 * cell).max(0.75e-3)
+}
+
 /// Whether the way to a point is far enough from the tool axis that there is a wall.
 pub fn has_wall(path: &ToolPath, to: usize) -> bool {
     let [from, to] = [to - 1, to].map(|point| &path.points()[point]);
@@ -150,14 +155,14 @@ impl PathMoves {
     fn rapid(&mut self, way: impl Iterator<Item = AirPoint>, point: usize) {
         let places: Vec<AirPoint> = way.collect();
         for pair in places.windows(2) {
-            self.straight([pair[0], pair[1]], |part| Move { kind: MoveKind::Rapid, point: point as u32, ..part });
+            self.straight(pair[0], pair[1], |part| Move { kind: MoveKind::Rapid, point: point as u32, ..part });
         }
     }
 
     /// Puts the cutter down: what it then stands in is none of what the segment cuts.
     fn start(&mut self, at: AirPoint, point: usize) {
         let above = AirPoint { position: at.position + at.axis * PUT_DOWN, ..at };
-        self.straight([above, at], |part| Move { kind: MoveKind::Start, point: point as u32, ..part });
+        self.straight(above, at, |part| Move { kind: MoveKind::Start, point: point as u32, ..part });
     }
 
     /// Adds a leg, or a turn in place, from a point on; where it ends.
@@ -167,7 +172,7 @@ impl PathMoves {
         let way = |to: usize| path.points()[to].position - path.points()[to - 1].position;
         if way(from + 1).norm() < NO_WAY {
             let kind = MoveKind::InPlace;
-            self.straight([at(from), at(from + 1)], |part| Move { kind, point: from as u32 + 1, ..part });
+            self.straight(at(from), at(from + 1), |part| Move { kind, point: from as u32 + 1, ..part });
             return from + 1;
         }
         let feed = |to: usize| path.feed(to).unwrap_or_default();
@@ -200,7 +205,7 @@ impl PathMoves {
                 nodes.first as f64 + (start + (end - start) * share) / length * nodes.intervals as f64
             };
             let feed_per_turn = feed(to) / operation.spindle_speed;
-            self.straight([at(to - 1), at(to)], |part| Move {
+            self.straight(at(to - 1), at(to), |part| Move {
                 kind: MoveKind::Feed,
                 point: to as u32,
                 feed_per_turn,
@@ -214,7 +219,7 @@ impl PathMoves {
 
     /// Adds a straight move in parts that turn the tool axis by little. What is made of a part gets in `nodes` the
     /// shares of the whole at which it begins and ends.
-    fn straight(&mut self, [from, to]: [AirPoint; 2], make: impl Fn(Move) -> Move) {
+    fn straight(&mut self, from: AirPoint, to: AirPoint, make: impl Fn(Move) -> Move) {
         let cross = from.axis.cross(&to.axis);
         let angle = libm::atan2(cross.norm(), from.axis.dot(&to.axis));
         let about = cross.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);

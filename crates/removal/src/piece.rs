@@ -11,7 +11,7 @@
 
 mod corner;
 
-use corner::{Corner, Line};
+use corner::Corner;
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -49,6 +49,19 @@ pub enum Surface {
     Bottom,
     /// The plane at its upper end.
     Top,
+}
+
+/// A line `w + l d` that a piece moves over by u: all from the tool centre point at the start of the move.
+#[derive(Debug, Clone, Copy)]
+pub struct Line<'l> {
+    /// The tool axis.
+    pub axis: &'l Vector3<f64>,
+    /// A point of the line. m
+    pub w: &'l Vector3<f64>,
+    /// Its direction.
+    pub d: &'l Vector3<f64>,
+    /// What the piece moves by. m
+    pub u: &'l Vector3<f64>,
 }
 
 /// A part of a line inside a piece.
@@ -175,18 +188,7 @@ impl Piece {
         let a = d.dot(d) - self.alpha * hd * hd;
         let b = y.dot(d) - self.alpha * h * hd - self.beta * hd;
         let c = y.dot(y) - self.alpha * h * h - 2.0 * self.beta * h - self.gamma;
-        let (mut low, mut high, mut first) = (f64::NEG_INFINITY, f64::INFINITY, Surface::Side);
-        if self.has_planes() {
-            if hd.abs() < 1e-14 * d.norm() {
-                if h < self.heights[0] - TINY || h > self.heights[1] + TINY {
-                    return None;
-                }
-            } else {
-                let at = self.heights.map(|end| (end - h) / hd);
-                (low, high) = (at[0].min(at[1]), at[0].max(at[1]));
-                first = if hd > 0.0 { Surface::Bottom } else { Surface::Top };
-            }
-        }
+        let Chord { ends: [mut low, mut high], mut first } = self.between_planes(h, hd, d)?;
         let scale = d.dot(d);
         if a.abs() <= 1e-13 * scale {
             // Along the side of a cone, or up a cylinder.
@@ -230,20 +232,26 @@ impl Piece {
         (high > low).then_some(Chord { ends: [low, high], first })
     }
 
-    /// Widens an interval on a line `w + l d` to what the piece sweeps of it where it moves by u: `y = w + l d - m u`
-    /// for m from 0 to 1.
-    pub fn sweep(
-        &self,
-        axis: &Vector3<f64>,
-        w: &Vector3<f64>,
-        d: &Vector3<f64>,
-        u: &Vector3<f64>,
-        ends: &mut [f64; 2],
-    ) {
-        let known = *ends;
+    /// The part of a line along d between the planes, from a height h that grows with hd along it.
+    fn between_planes(&self, h: f64, hd: f64, d: &Vector3<f64>) -> Option<Chord> {
+        let is_along = self.has_planes() && hd.abs() < 1e-14 * d.norm();
+        if is_along && (h < self.heights[0] - TINY || h > self.heights[1] + TINY) {
+            return None;
+        }
+        if is_along || !self.has_planes() {
+            return Some(Chord { ends: [f64::NEG_INFINITY, f64::INFINITY], first: Surface::Side });
+        }
+        let [a, b] = self.heights.map(|end| (end - h) / hd);
+        let first = if hd > 0.0 { Surface::Bottom } else { Surface::Top };
+        Some(Chord { ends: [a.min(b), a.max(b)], first })
+    }
+
+    /// Widens an interval on a line to what the piece sweeps of it: `y = w + l d - m u` for m from 0 to 1.
+    pub fn sweep(&self, line: &Line<'_>, ends: &mut [f64; 2]) {
+        let (Line { axis, w, d, u }, known) = (*line, *ends);
         let mut take = |l: f64| *ends = [ends[0].min(l), ends[1].max(l)];
         if let Some(corner) = self.grown() {
-            return corner.interval(&Line { axis, w, d, u }, known).into_iter().flatten().for_each(take);
+            return corner.interval(line, known).into_iter().flatten().for_each(take);
         }
         for start in [*w, w - u] {
             if let Some(chord) = self.chord(axis, &start, d) {

@@ -1,7 +1,8 @@
 //! The load at the points of a path, and the points that are added where a straight line between two misses it.
 
+use crate::load::PointForces;
 use crate::moves::{LegPlace, PathMoves, has_wall};
-use crate::outcome::PointForces;
+
 use crate::sums::{Found, Sums};
 use crate::turn::Turn;
 use nalgebra::Vector3;
@@ -84,22 +85,6 @@ impl Loads<'_> {
     }
 }
 
-impl PointForces {
-    /// In air.
-    pub(crate) fn nothing() -> Self {
-        Self {
-            is_added: false,
-            chip: Wrench::zero(),
-            edge: Wrench::zero(),
-            largest: 0.0,
-            removed: 0.0,
-            heights: None,
-            angles: None,
-            chip_thickness: 0.0,
-        }
-    }
-}
-
 /// A point between two of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Added {
@@ -134,7 +119,7 @@ pub fn points_between(path: &ToolPath, loads: &[PointForces], along: &Loads<'_>)
         };
         let between: Vec<(f64, PointForces)> = (1..steps).map(smooth).collect();
         let mut kept = Vec::new();
-        refine(&between, [smooth(0), smooth(steps)], STRAIGHT, largest * SMALL, &mut kept);
+        refine(&between, [smooth(0), smooth(steps)], largest * SMALL, &mut kept);
         added.extend(kept.into_iter().map(|(share, _)| Added { before: point, share, load: along.at(&place(share)) }));
     }
     added
@@ -143,11 +128,11 @@ pub fn points_between(path: &ToolPath, loads: &[PointForces], along: &Loads<'_>)
 /// Keeps the loads that a straight line between the ends misses most, until it misses none.
 fn refine(
     between: &[(f64, PointForces)],
-    [a, b]: [(f64, PointForces); 2],
-    straight: f64,
+    ends: [(f64, PointForces); 2],
     small: f64,
     kept: &mut Vec<(f64, PointForces)>,
 ) {
+    let [a, b] = ends;
     let force = |load: &PointForces| load.at_feed(1.0).force;
     let (from, to) = (force(&a.1), force(&b.1));
     let off = |(share, load): &(f64, PointForces)| {
@@ -156,11 +141,11 @@ fn refine(
         (force(load) - line).norm() / scale
     };
     let worst = between.iter().enumerate().map(|(number, one)| (off(one), number)).max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((_, number)) = worst.filter(|(off, _)| *off > straight) else { return };
+    let Some((_, number)) = worst.filter(|(off, _)| *off > STRAIGHT) else { return };
     let middle = between[number];
-    refine(&between[..number], [a, middle], straight, small, kept);
+    refine(&between[..number], [a, middle], small, kept);
     kept.push(middle);
-    refine(&between[number + 1..], [middle, b], straight, small, kept);
+    refine(&between[number + 1..], [middle, b], small, kept);
 }
 
 /// The path and its loads with the points that are added.

@@ -15,12 +15,13 @@
 //! up to one.
 
 use crate::cutting::Tool;
-use crate::job::{Job, OfTile, Reach, Size};
+use crate::job::Job;
 use crate::lattice::{self, TILE, TileKey, others};
 use crate::moves::PathMoves;
 use crate::quadrature::Quadrature;
+use crate::reach::Size;
 use crate::solid_lines::{Body, origin, tile_of};
-use crate::sums::{Found, Requested, Sums};
+use crate::sums::{Found, Requested};
 use crate::tile::{NANO, Tile};
 use crate::turn::{Arcs, Turn, TurnGrid};
 use nalgebra::Vector3;
@@ -72,19 +73,12 @@ impl Workpiece {
         stage: &'static str,
         monitor: &Monitor,
     ) -> Result<Found, Stop> {
-        let wanted = requested != Requested::Removal;
-        let [nodes, turns] = path.counts;
-        let mut found = Found {
-            sums: if wanted { vec![Sums::default(); nodes + 1] } else { Vec::new() },
-            turns: if requested == Requested::Turns { vec![Turn::default(); turns + 1] } else { Vec::new() },
-            events: BTreeMap::new(),
-        };
+        let moves = &path.moves;
+        let mut found = Found::empty(path.counts, requested);
         let quadrature = Quadrature::default();
-        let size = Size::of(&tool.pieces);
-        let holder = Size::of(&tool.holder);
+        let [size, of_holder] = [&tool.pieces, &tool.holder].map(|pieces| Size::of(pieces));
         let grid = TurnGrid::new(tool, self.cell);
         let mut open: BTreeMap<u32, Arcs> = BTreeMap::new();
-        let moves = &path.moves;
         let mut start = 0;
         while start < moves.len() {
             monitor.go_on()?;
@@ -92,42 +86,28 @@ impl Workpiece {
             let far = moves[start].turns[0] + CHUNK_TURNS;
             let end = (start + 1..most).find(|next| moves[*next].turns[1] > far).unwrap_or(most);
             let chunk = &moves[start..end];
-            let reaches: Vec<Reach> = chunk.iter().map(|one| one.reach(&size, &self.body.extent)).collect();
-            let of_holder = chunk.iter().filter(|_| !tool.holder.is_empty());
-            let held: Vec<Reach> = of_holder.map(|one| one.reach(&holder, &self.body.extent)).collect();
+            let reaches = |size: &Size| chunk.iter().map(|one| one.reach(size, &self.body.extent)).collect();
             let job = Job {
                 tool,
                 moves: chunk,
-                reaches: &reaches,
-                held: &held,
-                extent: &self.body.extent,
+                reaches: reaches(&size),
+                held: if tool.holder.is_empty() { Vec::new() } else { reaches(&of_holder) },
+                stock: &self.body,
                 part: self.part.as_ref(),
                 cell: self.cell,
                 quadrature: &quadrature,
                 requested,
                 grid: &grid,
             };
-            let jobs = self.tiles_met(&reaches, &held);
+            let met = job.tiles_met();
             // A chunk of few moves may meet many tiles: of it as many moves count as done as of its tiles are.
             let mut known = 0;
-            for batch in jobs.chunks(BATCH * rayon::current_num_threads()) {
+            for batch in met.chunks(BATCH * rayon::current_num_threads()) {
                 monitor.go_on()?;
-                let done = start + (end - start) * known / jobs.len();
+                let done = start + (end - start) * known / met.len();
                 monitor.report(Progress::Steps { stage, done, total: moves.len() });
                 known += batch.len();
-                let tiles: Vec<Option<Tile>> = batch.iter().map(|(key, _)| self.tiles.remove(key)).collect();
-                let done: Vec<(Tile, OfTile)> = batch
-                    .par_iter()
-                    .zip(tiles)
-                    .map(|((key, indices), tile)| {
-                        let new = || tile_of(&self.body, &self.body.extent, self.cell, *key);
-                        let mut tile = tile.unwrap_or_else(new);
-                        let of_tile = job.cut(*key, indices, &mut tile);
-                        (tile, of_tile)
-                    })
-                    .collect();
-                for ((key, _), (tile, of_tile)) in batch.iter().zip(done) {
-                    self.tiles.insert(*key, tile);
+                for of_tile in job.cut_all(batch, &mut self.tiles) {
                     of_tile.add_to(&mut found, &mut open);
                 }
             }
@@ -145,30 +125,16 @@ impl Workpiece {
         Ok(found)
     }
 
-    /// The tiles that moves reach, with the holder too where its reaches are given, each with the numbers of its moves.
-    fn tiles_met(&self, reaches: &[Reach], held: &[Reach]) -> Vec<(TileKey, Vec<u32>)> {
-        let mut met: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-        for (index, reach) in reaches.iter().enumerate() {
-            let held = held.get(index).filter(|held| !held.is_empty());
-            let whole = held.map_or(*reach, |held| reach.with(held));
-            if whole.is_empty() {
-                continue;
-            }
-            for axis in 0..3 {
-                let [a, b] = others(axis).map(|k| lattice::tiles(whole.0[k], self.cell));
-                for (i, j) in a.flat_map(|i| b.clone().map(move |j| (i, j))) {
-                    met.entry((axis, i, j)).or_default().push(index as u32);
-                }
-            }
-        }
-        met.into_iter().collect()
+    /// The lines of a tile before they are cut.
+    fn whole(&self, key: TileKey) -> Tile {
+        tile_of(&self.body, &self.body.extent, self.cell, key)
     }
 
     /// What is removed, by the lines along each axis (m3), and how many of them have lost something.
     pub fn removed(&self) -> [(usize, f64); 3] {
         let mut removed = [(0, 0.0); 3];
         for (key, tile) in &self.tiles {
-            let whole = tile_of(&self.body, &self.body.extent, self.cell, *key);
+            let whole = self.whole(*key);
             let (count, volume) = &mut removed[key.0];
             for line in 0..(TILE * TILE) as usize {
                 let lost = whole.length(line) - tile.length(line);
@@ -211,7 +177,6 @@ impl Workpiece {
             return self.body.line(key, &o).intervals.into_iter().map(|ends| ends.map(|end| low + end)).collect();
         }
         made.retain(|(of, row, _), _| *of == axis && (row - key.1).abs() <= 1);
-        let new = || tile_of(&self.body, &self.body.extent, self.cell, key);
-        made.entry(key).or_insert_with(new).intervals(line).map(metres).collect()
+        made.entry(key).or_insert_with(|| self.whole(key)).intervals(line).map(metres).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Where lines along the axes run inside a body: the stock before it is cut, and the finished part.
 
-use crate::forces::{ForcesError, LARGEST};
-use crate::lattice::{self, TILE, TileKey, others, place};
+use crate::error::{ForcesError, LARGEST};
+use crate::lattice::{TILE, TileKey, lines_of, others, place, tiles_within};
 use crate::operation::{ForcesProblem, Stock};
 use crate::swept::Swept;
 use crate::tile::{NANO, Tile};
@@ -87,7 +87,7 @@ impl Body {
     fn lines(&self, key: TileKey, extent: &[Vector3<f64>; 2], cell: f64) -> Option<Vec<Inside>> {
         match &self.form {
             Form::Mesh(facets) => Some(facets.lines(key, extent, cell)),
-            Form::Swept(swept) => Some(swept.lines(key, cell)),
+            Form::Swept(swept) => Some(swept.lines(key, cell).into_iter().map(Inside::of).collect()),
             Form::Box(..) | Form::Cylinder(..) => None,
         }
     }
@@ -137,7 +137,7 @@ impl Body {
                 Inside::convex(ends)
             }
             Form::Mesh(facets) => facets.line(key, o),
-            Form::Swept(swept) => swept.line(key, o),
+            Form::Swept(swept) => Inside::of(swept.line(key, o)),
         }
     }
 }
@@ -149,14 +149,14 @@ fn in_frame(pose: &Pose<f64>, o: &Vector3<f64>, axis: usize) -> (Vector3<f64>, V
 }
 
 /// Cuts an interval of a line to where a coordinate is between two values.
-fn slab(ends: &mut [f64; 2], at: f64, rate: f64, [low, high]: [f64; 2]) {
+fn slab(ends: &mut [f64; 2], at: f64, rate: f64, between: [f64; 2]) {
     if rate.abs() < 1e-14 {
-        if at < low || at > high {
+        if at < between[0] || at > between[1] {
             *ends = [0.0, 0.0];
         }
         return;
     }
-    let (a, b) = ((low - at) / rate, (high - at) / rate);
+    let [a, b] = between.map(|value| (value - at) / rate);
     *ends = [ends[0].max(a.min(b)), ends[1].min(a.max(b))];
 }
 
@@ -166,9 +166,8 @@ impl Inside {
         Self { intervals, is_sound: true }
     }
 
-    fn convex([low, high]: [f64; 2]) -> Self {
-        let intervals = if low < high { vec![[low, high]] } else { Vec::new() };
-        Self { intervals, is_sound: true }
+    fn convex(ends: [f64; 2]) -> Self {
+        Self::of(if ends[0] < ends[1] { vec![ends] } else { Vec::new() })
     }
 
     /// Between crossings of triangles that face outwards: on the way in they face against the line.
@@ -198,16 +197,9 @@ impl Facets {
             mesh.triangles().iter().map(|triangle| triangle.map(|vertex| vertices[vertex as usize])).collect();
         let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
         for (number, corners) in corners.iter().enumerate() {
-            for axis in 0..3 {
-                let tiles = others(axis).map(|k| {
-                    let [low, high] = ends(corners.map(|corner| corner[k]));
-                    lattice::tiles([low, high], cell)
-                });
-                for i in tiles[0].clone() {
-                    for j in tiles[1].clone() {
-                        by_tile.entry((axis, i, j)).or_default().push(number as u32);
-                    }
-                }
+            let reach = [0, 1, 2].map(|k| ends(corners.map(|corner| corner[k])));
+            for key in tiles_within(&reach, cell) {
+                by_tile.entry(key).or_default().push(number as u32);
             }
         }
         Self { corners, by_tile }
@@ -224,10 +216,8 @@ impl Facets {
         let mut crossings: Vec<Vec<(f64, f64)>> = vec![Vec::new(); (TILE * TILE) as usize];
         for number in self.by_tile.get(&key).into_iter().flatten() {
             let corners = &self.corners[*number as usize];
-            let [rows, columns] = [0, 1].map(|side| {
-                let [low, high] = ends(corners.map(|corner| corner[others(axis)[side]]));
-                lattice::lines_of([i, j][side], [low, high], cell)
-            });
+            let [rows, columns] =
+                [0, 1].map(|side| lines_of([i, j][side], ends(corners.map(|corner| corner[others(axis)[side]])), cell));
             for line in rows.flat_map(|row| columns.clone().map(move |column| (row * TILE + column) as usize)) {
                 crossings[line].extend(self.crossing(*number, axis, &origin(extent, cell, key, line)));
             }
@@ -261,7 +251,8 @@ fn ends(values: [f64; 3]) -> [f64; 2] {
 }
 
 /// Where a line of a tile begins, at the lower end of the extent.
-pub(crate) fn origin(extent: &[Vector3<f64>; 2], cell: f64, (axis, i, j): TileKey, line: usize) -> Vector3<f64> {
+pub(crate) fn origin(extent: &[Vector3<f64>; 2], cell: f64, key: TileKey, line: usize) -> Vector3<f64> {
+    let (axis, i, j) = key;
     let [a, b] = others(axis);
     let line = line as i64;
     let at = place(i * TILE + line / TILE, j * TILE + line % TILE);
@@ -322,15 +313,12 @@ mod tests {
             let body = Body::new(&Solid::Mesh(mesh.clone().into()), &pose, cell).unwrap();
             let Form::Mesh(facets) = &body.form else { panic!("a mesh") };
             let mut crossed = 0;
-            for axis in 0..3 {
-                let [rows, columns] =
-                    others(axis).map(|k| lattice::tiles([body.extent[0][k], body.extent[1][k]], cell));
-                for key in rows.flat_map(|i| columns.clone().map(move |j| (axis, i, j))) {
-                    let all = facets.lines(key, &body.extent, cell);
-                    for (line, found) in all.iter().enumerate() {
-                        assert_eq!(*found, body.line(key, &origin(&body.extent, cell, key, line)), "{key:?} {line}");
-                        crossed += found.intervals.len();
-                    }
+            let reach = [0, 1, 2].map(|k| body.extent.map(|corner| corner[k]));
+            for key in tiles_within(&reach, cell) {
+                let all = facets.lines(key, &body.extent, cell);
+                for (line, found) in all.iter().enumerate() {
+                    assert_eq!(*found, body.line(key, &origin(&body.extent, cell, key, line)), "{key:?} {line}");
+                    crossed += found.intervals.len();
                 }
             }
             assert!(crossed > 3000, "{crossed}");

@@ -111,3 +111,15 @@ pub struct Found {
     /// What happens that should not.
     pub events: Events,
 }
+
+impl Found {
+    /// Nothing yet, at so many nodes of the sums and of the turns.
+    pub fn empty(counts: [usize; 2], requested: Requested) -> Self {
+        let nodes = |number: usize, is_wanted: bool| if is_wanted { counts[number] + 1 } else { 0 };
+        Self {
+            sums: vec![Sums::default(); nodes(0, requested != Requested::Removal)],
+            turns: vec![Turn::default(); nodes(1, requested == Requested::Turns)],
+            events: Events::new(),
+        }
+    }
+}

@@ -58,8 +58,8 @@ impl Grid {
         grid
     }
 
-    fn number(&self, [i, j, k]: [usize; 3]) -> usize {
-        (i * self.counts[1] + j) * self.counts[2] + k
+    fn number(&self, node: [usize; 3]) -> usize {
+        (node[0] * self.counts[1] + node[1]) * self.counts[2] + node[2]
     }
 
     fn place(&self, node: [usize; 3]) -> Vector3<f64> {

@@ -1,13 +1,12 @@
 //! Stock from the path: what a cutter sweeps on its scored moves, less what a smaller one would.
 
 use crate::cutting::Tool;
-use crate::job::{Reach, Size};
-use crate::lattice::{TILE, TileKey, TileLines, others, tiles};
+use crate::lattice::{TILE, TileKey, TileLines, tiles_within};
 use crate::moves::{Move, MoveKind, PathMoves, has_wall};
 use crate::operation::{Operation, PathStock};
 use crate::piece::Piece;
 use crate::profile::Profile;
-use crate::solid_lines::Inside;
+use crate::reach::{Reach, Size};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -60,19 +59,21 @@ impl Swept {
         Some(Self { added: Arc::new(Sweep::new(pieces, scored, &extent, cell)), taken, extent })
     }
 
-    /// All lines of a tile.
-    pub fn lines(&self, key: TileKey, cell: f64) -> Vec<Inside> {
+    /// The intervals of all lines of a tile, ascending, from the start of each. m
+    pub fn lines(&self, key: TileKey, cell: f64) -> Vec<Vec<[f64; 2]>> {
         let lines = TileLines::new(key, cell, self.extent[0][key.0]);
         let added = self.added.lines(key, &lines);
-        let Some(taken) = &self.taken else { return added.into_iter().map(Inside::of).collect() };
-        let taken = taken.lines(key, &lines);
-        added.into_iter().zip(taken).map(|(added, taken)| Inside::of(less(&added, &taken))).collect()
+        let Some(taken) = &self.taken else { return added };
+        added.iter().zip(taken.lines(key, &lines)).map(|(added, taken)| less(added, &taken)).collect()
     }
 
-    /// A line from `o`.
-    pub fn line(&self, key: TileKey, o: &Vector3<f64>) -> Inside {
+    /// The intervals of a line from `o`. m
+    pub fn line(&self, key: TileKey, o: &Vector3<f64>) -> Vec<[f64; 2]> {
         let added = self.added.line(key, o);
-        Inside::of(self.taken.as_ref().map_or(added.clone(), |taken| less(&added, &taken.line(key, o))))
+        match &self.taken {
+            Some(taken) => less(&added, &taken.line(key, o)),
+            None => added,
+        }
     }
 }
 
@@ -90,11 +91,8 @@ impl Sweep {
         let reaches: Vec<Reach> = moves.iter().map(|one| one.reach(&size, extent)).collect();
         let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
         for (number, Reach(reach)) in (0..).zip(&reaches).filter(|(_, reach)| !reach.is_empty()) {
-            for axis in 0..3 {
-                let [rows, columns] = others(axis).map(|k| tiles(reach[k], cell));
-                for key in rows.flat_map(|i| columns.clone().map(move |j| (axis, i, j))) {
-                    by_tile.entry(key).or_default().push(number);
-                }
+            for key in tiles_within(reach, cell) {
+                by_tile.entry(key).or_default().push(number);
             }
         }
         Self { pieces, moves, reaches, by_tile }
@@ -129,12 +127,12 @@ impl Sweep {
 }
 
 /// Adds an interval, to the last one where they meet: moves come one after the other.
-fn put(all: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
+fn put(all: &mut Vec<[f64; 2]>, span: [f64; 2]) {
     match all.last_mut() {
-        Some([from, to]) if low <= *to + TOGETHER && high >= *from - TOGETHER => {
-            (*from, *to) = (from.min(low), to.max(high))
+        Some(last) if span[0] <= last[1] + TOGETHER && span[1] >= last[0] - TOGETHER => {
+            *last = [last[0].min(span[0]), last[1].max(span[1])]
         }
-        _ => all.push([low, high]),
+        _ => all.push(span),
     }
 }
 

@@ -5,6 +5,12 @@ use std::collections::BTreeMap;
 
 /// Nanometres in a metre: ends of intervals are whole numbers, so that comparisons are exact.
 pub const NANO: f64 = 1e9;
+
+/// A length (m) in whole nanometres.
+pub fn nanometres(length: f64) -> u32 {
+    (length * NANO).round().clamp(0.0, f64::from(u32::MAX)) as u32
+}
+
 /// What is removed and no longer than this is not told, and what is left and no longer is nothing: it is rounding. nm
 const SLIVER: u32 = 10;
 
@@ -50,8 +56,8 @@ impl Tile {
     }
 
     /// Whether something is left of a line within an interval.
-    pub fn meets(&self, line: usize, [low, high]: [u32; 2]) -> bool {
-        let is_met = |from: u32, to: u32| to.min(high) > from.max(low);
+    pub fn meets(&self, line: usize, span: [u32; 2]) -> bool {
+        let is_met = |from: u32, to: u32| to.min(span[1]) > from.max(span[0]);
         let [a, b, c, d] = self.lines[line];
         is_met(a, b)
             || is_met(c, d)
@@ -61,8 +67,8 @@ impl Tile {
 
     /// Removes an interval from a line; what it removes is added to a list, but for slivers. Those are removed all the
     /// same, so that what is left does not depend on the steps in which it is reached.
-    pub fn remove(&mut self, line: usize, [low, high]: [u32; 2], removed: &mut Vec<[u32; 2]>) {
-        if !self.meets(line, [low, high]) {
+    pub fn remove(&mut self, line: usize, span: [u32; 2], removed: &mut Vec<[u32; 2]>) {
+        if !self.meets(line, span) {
             return;
         }
         let mut left: [[u32; 2]; 2] = Default::default();
@@ -77,7 +83,7 @@ impl Tile {
             }
         };
         for [from, to] in self.intervals(line) {
-            let (start, end) = (from.max(low), to.min(high));
+            let (start, end) = (from.max(span[0]), to.min(span[1]));
             if end <= start {
                 keep(from, to);
                 continue;

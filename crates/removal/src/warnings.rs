@@ -1,18 +1,12 @@
 //! What the user should see to in forces from a path.
 
 use crate::cut::CutFigures;
+use crate::error::place;
 use crate::operation::{ForcesProblem, PathStock, Stock};
 use crate::outcome::RemovalForces;
 use crate::sums::{Event, Events, GOUGE};
-use nalgebra::Vector3;
 use stead_numerics::digits::figures;
 use stead_numerics::message::{Note, Warning};
-
-/// A place for a message.
-pub(crate) fn place(at: &Vector3<f64>) -> String {
-    let [x, y, z] = [at.x, at.y, at.z].map(|value| (value * 1e6).round() / 1e3);
-    format!("({x}, {y}, {z}) mm")
-}
 
 /// Chips below this are rubbed rather than cut. m
 const THIN: f64 = 2e-6;

@@ -20,7 +20,8 @@ use serde_json::Value;
 use std::fmt::Write;
 use stead_model::task::{PathPoint, Wrench};
 use stead_removal::cut::CutFigures;
-use stead_removal::outcome::{ForcesDifference, PointForces, RemovalForces};
+use stead_removal::load::PointForces;
+use stead_removal::outcome::{ForcesDifference, RemovalForces};
 use stead_removal::surface::Surface;
 use stead_runs::ForcesRun;
 

@@ -5,10 +5,12 @@ use stead_disk::input::{InputError, InputFile};
 use stead_model::task::ToolPath;
 use stead_numerics::message::Note;
 use stead_numerics::monitor::Monitor;
-use stead_removal::forces::{ForcesError, cut, forces};
+use stead_removal::error::ForcesError;
+use stead_removal::forces::{cut, forces};
 use stead_removal::leaning::leaning_forces;
+use stead_removal::load::PointForces;
 use stead_removal::operation::ForcesProblem;
-use stead_removal::outcome::{PointForces, RemovalForces};
+use stead_removal::outcome::RemovalForces;
 
 /// A forces file and the files that it names, read and checked.
 #[derive(Debug, Clone, PartialEq)]

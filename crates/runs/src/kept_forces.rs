@@ -9,8 +9,8 @@ use stead_disk::input::{InputError, sha256, sha256_of};
 use stead_model::task::ToolPath;
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_removal::kept::{CutResult, load_of_row, load_rows};
+use stead_removal::load::PointForces;
 use stead_removal::operation::ForcesProblem;
-use stead_removal::outcome::PointForces;
 
 /// How the first line of such a file begins.
 const MARK: &str = "stead kept forces,1,";

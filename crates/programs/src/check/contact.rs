@@ -3,7 +3,7 @@
 use super::expected::{Expected, workpiece};
 use super::geometry::{Frame, seen};
 use super::written::Written;
-use super::{Arm, Largest, keep_largest};
+use super::{Arm, Largest};
 use nalgebra::Vector3;
 use stead_disk::input::InputError;
 use stead_model::task::PathPoint;
@@ -38,7 +38,7 @@ pub(super) fn largest(
         let part = seen(arm.axes, &wanted.external).of(&workpiece(placement)).inverted();
         let (point, normal) = (&task.points()[wanted.point], normals.map(|normals| &normals[wanted.point]));
         for tool in arm.tools(one)? {
-            keep_largest(&mut largest, off(rule, point, normal, &part.of(&tool)), one, wanted);
+            Largest::keep(&mut largest, off(rule, point, normal, &part.of(&tool)), one, wanted);
         }
     }
     Ok(largest)

@@ -58,30 +58,8 @@ pub(super) fn moves(
     corrected: Option<&Path>,
     approach: f64,
 ) -> Result<Vec<Expected>, InputError> {
-    let placed = workpiece(&plan.placement);
-    let external: Vec<[Option<f64>; 6]> =
-        (0..problem.task.points().len()).map(|point| motion::external_at(problem, point)).collect();
-    let mut tools: Vec<(Frame, [f64; 6])> = problem
-        .task
-        .points()
-        .iter()
-        .zip(&plan.betas)
-        .zip(&plan.points)
-        .zip(&external)
-        .map(|(((point, beta), row), external)| {
-            (seen(&problem.external_axes, external).of(&placed).of(&tool_at(point, *beta)), row.joints)
-        })
-        .collect();
+    let tools = tools(problem, plan, corrected)?;
     let (mounted, stand) = (frame(&problem.spindle.flange_from_tool), frame(&problem.robot.cell_from_base()));
-    if let Some(file) = corrected {
-        for (tool, command) in tools.iter_mut().zip(corrected::printed_commands(file)?) {
-            if command.is_corrected {
-                let joints = command.joints.map(f64::to_radians);
-                let turn = stand.of(&flange(problem.robot.joints(), &joints)).of(&mounted).turn;
-                *tool = (Frame { turn, origin: command.position }, joints);
-            }
-        }
-    }
     let feeds = feeds(problem);
     let mut moves = Vec::new();
     for (number, range) in problem.task.segments().iter().enumerate() {
@@ -89,7 +67,7 @@ pub(super) fn moves(
             let (tool, near) = tools[point];
             // The tool's z axis points to the workpiece.
             let tool = tool.of(&Frame::shift([0.0, 0.0, -by]));
-            let external = external[point];
+            let external = motion::external_at(problem, point);
             let is_inside = point > range.start && point + 1 < range.end;
             Expected {
                 segment: number + 1,
@@ -129,6 +107,31 @@ pub(super) fn moves(
         }
     }
     Ok(moves)
+}
+
+/// The tool in the base frame at every path point, and the joint angles of the plan (rad): of the task or, where they
+/// are corrected, of the commands.
+fn tools(problem: &Problem, plan: &PlacedPlan, corrected: Option<&Path>) -> Result<Vec<(Frame, [f64; 6])>, InputError> {
+    let placed = workpiece(&plan.placement);
+    let points = problem.task.points().iter().enumerate();
+    let mut tools: Vec<(Frame, [f64; 6])> = points
+        .zip(plan.betas.iter().zip(&plan.points))
+        .map(|((number, point), (beta, row))| {
+            let seen = seen(&problem.external_axes, &motion::external_at(problem, number));
+            (seen.of(&placed).of(&tool_at(point, *beta)), row.joints)
+        })
+        .collect();
+    let (mounted, stand) = (frame(&problem.spindle.flange_from_tool), frame(&problem.robot.cell_from_base()));
+    if let Some(file) = corrected {
+        for (tool, command) in tools.iter_mut().zip(corrected::printed_commands(file)?) {
+            if command.is_corrected {
+                let joints = command.joints.map(f64::to_radians);
+                let turn = stand.of(&flange(problem.robot.joints(), &joints)).of(&mounted).turn;
+                *tool = (Frame { turn, origin: command.position }, joints);
+            }
+        }
+    }
+    Ok(tools)
 }
 
 /// The feed of the tip to each path point, in mm/s: what the task states at it, for the first of a segment what it

@@ -1,7 +1,7 @@
 //! TP programs: `J P[n]`, `L P[n]`, their positions, the frames in remarks, calls of parts.
 
 use super::geometry::{Frame, turned_xyz};
-use super::written::{Base, DEEPEST, End, External, Goal, Moves, Pace, Source, Step, external, frame_of, number};
+use super::written::{Base, End, External, Goal, Moves, Pace, Source, Step, external, frame_of, number};
 use std::collections::BTreeMap;
 use stead_disk::input::InputError;
 
@@ -24,7 +24,7 @@ type Placed = (Position, External, [u32; 2]);
 /// [`InputError`] with file and line for a statement that moves the robot and is not understood.
 pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
     let mut moves = Moves::default();
-    read(source, 0, &mut moves)?;
+    read(source, &mut moves)?;
     Ok(moves)
 }
 
@@ -49,9 +49,17 @@ impl Remarks {
     }
 }
 
-fn read(source: &Source, depth: usize, moves: &mut Moves) -> Result<(), InputError> {
-    let positions = positions(source)?;
-    let (mut remarks, mut in_program, mut numbers) = (Remarks::default(), false, [None::<u32>; 2]);
+/// The positions of a program, and the frames that it has come to.
+struct State {
+    positions: BTreeMap<u32, Placed>,
+    remarks: Remarks,
+    /// UFRAME_NUM and UTOOL_NUM.
+    numbers: [Option<u32>; 2],
+}
+
+fn read(source: &Source, moves: &mut Moves) -> Result<(), InputError> {
+    let mut state = State { positions: positions(source)?, remarks: Remarks::default(), numbers: [None; 2] };
+    let mut in_program = false;
     for (index, whole) in source.text.lines().enumerate() {
         let line = index + 1;
         match whole.trim() {
@@ -62,25 +70,18 @@ fn read(source: &Source, depth: usize, moves: &mut Moves) -> Result<(), InputErr
         let Some((_, statement)) = whole.split_once(':').filter(|_| in_program) else { continue };
         let statement = statement.trim().trim_end_matches(';').trim();
         if let Some(remark) = statement.strip_prefix('!') {
-            remarks.take(remark);
+            state.remarks.take(remark);
             continue;
         }
         let word = statement.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next().unwrap_or_default();
+        let set = || statement.split('=').nth(1).and_then(|text| text.trim().parse().ok());
         match word {
-            "UFRAME_NUM" => numbers[0] = statement.split('=').nth(1).and_then(|text| text.trim().parse().ok()),
-            "UTOOL_NUM" => numbers[1] = statement.split('=').nth(1).and_then(|text| text.trim().parse().ok()),
-            "J" | "L" => {
-                let goal = goal(source, line, statement, word, &positions, &remarks, numbers)?;
-                moves.push(source, line, goal)?;
-            }
+            "UFRAME_NUM" => state.numbers[0] = set(),
+            "UTOOL_NUM" => state.numbers[1] = set(),
+            "J" | "L" => moves.push(source, line, state.goal(source, line, statement, word)?)?,
             "CALL" => {
-                let name = statement["CALL".len()..].trim();
-                match source.part(name) {
-                    Some(path) if source.is_part(name) && depth < DEEPEST => {
-                        read(&Source::read(&path)?, depth + 1, moves)?;
-                    }
-                    _ if source.is_part(name) => return Err(source.missing(line, name)),
-                    _ => {}
+                if let Some(part) = source.called(line, statement["CALL".len()..].trim())? {
+                    read(&part, moves)?;
                 }
             }
             word if NOT_UNDERSTOOD.contains(&word) => {
@@ -92,49 +93,44 @@ fn read(source: &Source, depth: usize, moves: &mut Moves) -> Result<(), InputErr
     Err(source.error(source.text.lines().count().max(1), "ends without its positions (/POS)", ""))
 }
 
-fn goal(
-    source: &Source,
-    line: usize,
-    statement: &str,
-    word: &str,
-    positions: &BTreeMap<u32, Placed>,
-    remarks: &Remarks,
-    numbers: [Option<u32>; 2],
-) -> Result<Step, InputError> {
-    let wrong = |problem: &str| source.error(line, problem, statement);
-    let inside = statement.split_once("P[").and_then(|(_, rest)| rest.split_once(']'));
-    let index = inside.and_then(|(number, _)| number.parse::<u32>().ok());
-    if ["Offset", "VOFFSET", "PTH", "INC"].iter().any(|option| statement.contains(option)) {
-        return Err(wrong("has an option that moves the robot elsewhere"));
-    }
-    let Some((position, external, of)) = index.and_then(|index| positions.get(&index)) else {
-        return Err(wrong("names no position of this program"));
-    };
-    let words: Vec<&str> =
-        statement.split_once(']').map(|(_, rest)| rest.split_whitespace().collect()).unwrap_or_default();
-    let [speed, end] = words[..] else { return Err(wrong("is no move L P[n] .. mm/sec FINE or CNT..")) };
-    let end = match end.strip_prefix("CNT").map(number) {
-        None if end == "FINE" => End::Exact,
-        Some(Some(share)) => End::Share(share),
-        _ => return Err(wrong("ends in another way than FINE or CNT..")),
-    };
-    let pace = Pace { feed: speed.strip_suffix("mm/sec").and_then(number), end: Some(end) };
-    match (word, position) {
-        ("J", Position::Angles(angles)) if end == End::Exact => Ok((Goal::Angles(*angles), *external, pace)),
-        ("L", Position::Pose(tool)) => {
-            if numbers != of.map(Some) {
-                return Err(wrong("goes to a position of other frames than UFRAME_NUM and UTOOL_NUM"));
-            }
-            let frames = [remarks.frame("UFRAME", of[0]), remarks.frame("UTOOL", of[1])];
-            let [Some(base), Some(mounted)] = frames else {
-                return Err(wrong("moves before the remarks state UFRAME and UTOOL"));
-            };
-            if pace.feed.is_none() {
-                return Err(wrong("has no speed in mm/sec"));
-            }
-            Ok((Goal::Line { tool: *tool, base: Base::Still(base), mounted }, *external, pace))
+impl State {
+    /// The goal of `J P[n]` or `L P[n]`.
+    fn goal(&self, source: &Source, line: usize, statement: &str, word: &str) -> Result<Step, InputError> {
+        let wrong = |problem: &str| source.error(line, problem, statement);
+        let inside = statement.split_once("P[").and_then(|(_, rest)| rest.split_once(']'));
+        let index = inside.and_then(|(number, _)| number.parse::<u32>().ok());
+        if ["Offset", "VOFFSET", "PTH", "INC"].iter().any(|option| statement.contains(option)) {
+            return Err(wrong("has an option that moves the robot elsewhere"));
         }
-        _ => Err(wrong("goes to a position of the other kind, or is a joint move that does not stop")),
+        let Some((position, external, of)) = index.and_then(|index| self.positions.get(&index)) else {
+            return Err(wrong("names no position of this program"));
+        };
+        let words: Vec<&str> =
+            statement.split_once(']').map(|(_, rest)| rest.split_whitespace().collect()).unwrap_or_default();
+        let [speed, end] = words[..] else { return Err(wrong("is no move L P[n] .. mm/sec FINE or CNT..")) };
+        let end = match end.strip_prefix("CNT").map(number) {
+            None if end == "FINE" => End::Exact,
+            Some(Some(share)) => End::Share(share),
+            _ => return Err(wrong("ends in another way than FINE or CNT..")),
+        };
+        let pace = Pace { feed: speed.strip_suffix("mm/sec").and_then(number), end: Some(end) };
+        match (word, position) {
+            ("J", Position::Angles(angles)) if end == End::Exact => Ok((Goal::Angles(*angles), *external, pace)),
+            ("L", Position::Pose(tool)) => {
+                if self.numbers != of.map(Some) {
+                    return Err(wrong("goes to a position of other frames than UFRAME_NUM and UTOOL_NUM"));
+                }
+                let frames = [self.remarks.frame("UFRAME", of[0]), self.remarks.frame("UTOOL", of[1])];
+                let [Some(base), Some(mounted)] = frames else {
+                    return Err(wrong("moves before the remarks state UFRAME and UTOOL"));
+                };
+                if pace.feed.is_none() {
+                    return Err(wrong("has no speed in mm/sec"));
+                }
+                Ok((Goal::Line { tool: *tool, base: Base::Still(base), mounted }, *external, pace))
+            }
+            _ => Err(wrong("goes to a position of the other kind, or is a joint move that does not stop")),
+        }
     }
 }
 

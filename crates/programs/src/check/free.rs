@@ -3,7 +3,7 @@
 use super::expected::Expected;
 use super::geometry::of_rows;
 use super::written::{Goal, Written};
-use super::{MoveHit, MovePlace};
+use super::{MoveHit, MovePlace, UnfollowedMove};
 use crate::transfer_paths::TransferPaths;
 use stead_model::robot::Robot;
 use stead_planning::transfer_path::Space;
@@ -41,6 +41,20 @@ pub(super) fn hits(
         })
     };
     (0..count).filter_map(hit).collect()
+}
+
+/// The lines between path points that the arm cannot follow.
+pub(super) fn unfollowed(
+    transfer_paths: &TransferPaths,
+    written: &[Written],
+    expected: &[Expected],
+) -> Vec<UnfollowedMove> {
+    let lines = written.iter().zip(expected).filter(|(_, wanted)| !wanted.is_joint && !wanted.is_retracted);
+    let of_line = |(one, wanted): (&Written, &Expected)| {
+        let end = transfer_paths.unfollowed_to(wanted.point)?.clone();
+        Some(UnfollowedMove { at: MovePlace::of(one, wanted), end })
+    };
+    lines.filter_map(of_line).collect()
 }
 
 /// The angles of the rows after a move: those of the program where it has any. rad

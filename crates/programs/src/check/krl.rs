@@ -2,8 +2,9 @@
 
 use super::geometry::{Frame, turned_xyz};
 use super::written::{
-    Base, DEEPEST, End, Goal, Moves, Pace, Source, Step, entries, exactly, external, frame_of, number,
+    Base, End, External, Goal, Moves, Pace, Source, Step, entries, exactly, external, frame_of, number,
 };
+use std::collections::BTreeMap;
 use stead_disk::input::InputError;
 
 /// Words that begin a statement whose effect on the path is not understood.
@@ -54,11 +55,11 @@ struct State {
 /// [`InputError`] with file and line for a statement that moves the robot and is not understood.
 pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
     let mut moves = Moves::default();
-    read(source, 0, &mut State::default(), &mut moves)?;
+    read(source, &mut State::default(), &mut moves)?;
     Ok(moves)
 }
 
-fn read(source: &Source, depth: usize, state: &mut State, moves: &mut Moves) -> Result<(), InputError> {
+fn read(source: &Source, state: &mut State, moves: &mut Moves) -> Result<(), InputError> {
     for (index, whole) in source.text.lines().enumerate() {
         let line = index + 1;
         let statement = whole.split(';').next().unwrap_or_default().trim();
@@ -71,41 +72,28 @@ fn read(source: &Source, depth: usize, state: &mut State, moves: &mut Moves) -> 
             "$TOOL" => state.tool = Some(frame(source, line, &upper)?),
             "PTP" => moves.push(source, line, joint(source, line, &upper)?)?,
             "LIN" => {
-                let (Some(base), Some(tool)) = (state.base, state.tool) else {
+                let (Some(base), Some(mounted)) = (state.base, state.tool) else {
                     return Err(source.error(line, "moves before $BASE and $TOOL are set", whole));
                 };
-                let Some(feed) = state.feed else {
+                if state.feed.is_none() {
                     return Err(source.error(line, "moves before $VEL.CP is set", whole));
-                };
-                moves.push(source, line, linear(source, line, &upper, base, tool, feed, state.blend)?)?;
+                }
+                let (tool, external, end) = linear(source, line, &upper, state.blend)?;
+                let pace = Pace { feed: state.feed, end: Some(end) };
+                moves.push(source, line, (Goal::Line { tool, base, mounted }, external, pace))?;
             }
             "BAS" if HARMLESS_BAS.iter().any(|what| upper.contains(&format!("#{what},"))) => {}
             word if NOT_UNDERSTOOD.contains(&word) || SET_WHOLE.iter().any(|name| word.starts_with(name)) => {
                 return Err(source.error(line, "is not understood, and may move the robot elsewhere", whole));
             }
-            word => call(source, line, word, depth, state, moves)?,
+            word => {
+                if let Some(part) = source.called(line, word)? {
+                    read(&part, state, moves)?;
+                }
+            }
         }
     }
     Ok(())
-}
-
-/// Reads a part where it is called.
-fn call(
-    source: &Source,
-    line: usize,
-    word: &str,
-    depth: usize,
-    state: &mut State,
-    moves: &mut Moves,
-) -> Result<(), InputError> {
-    let is_own = word == "DEF" || word.is_empty();
-    if is_own || !source.is_part(word) {
-        return Ok(());
-    }
-    match source.part(word) {
-        Some(path) if depth < DEEPEST => read(&Source::read(&path)?, depth + 1, state, moves),
-        _ => Err(source.missing(line, word)),
-    }
 }
 
 /// What is in the braces of a statement, and what is behind them.
@@ -116,8 +104,8 @@ fn braces(statement: &str) -> Option<(&str, &str)> {
     Some((inside.split_once(':').map_or(inside, |(_, values)| values), behind.trim()))
 }
 
-fn pose(inside: &str) -> Option<Frame> {
-    let [x, y, z, a, b, c] = exactly(&entries(inside)?, ["X", "Y", "Z", "A", "B", "C"])?;
+fn pose(entries: &BTreeMap<String, f64>) -> Option<Frame> {
+    let [x, y, z, a, b, c] = exactly(entries, ["X", "Y", "Z", "A", "B", "C"])?;
     Some(frame_of([x, y, z], turned_xyz(c, b, a)))
 }
 
@@ -128,8 +116,9 @@ fn base(source: &Source, line: usize, statement: &str) -> Result<Base, InputErro
     let number = coupled.strip_prefix("MACHINE_DEF[").and_then(|rest| rest.split(']').next()).unwrap_or_default();
     let is_one = number.parse::<u32>().is_ok()
         && coupled == format!("MACHINE_DEF[{number}].ROOT,MACHINE_DEF[{number}].MECH_TYPE,");
-    let on_table =
-        braces(statement).filter(|(_, behind)| is_one && *behind == ")").and_then(|(inside, _)| pose(inside));
+    let on_table = braces(statement)
+        .filter(|(_, behind)| is_one && *behind == ")")
+        .and_then(|(inside, _)| pose(&entries(inside)?));
     let form = "is no base EK(MACHINE_DEF[n].ROOT,MACHINE_DEF[n].MECH_TYPE,{X ..,.. C ..})";
     on_table.map(Base::OnTable).ok_or_else(|| source.error(line, form, statement))
 }
@@ -141,7 +130,8 @@ fn value(source: &Source, line: usize, statement: &str) -> Result<f64, InputErro
 }
 
 fn frame(source: &Source, line: usize, statement: &str) -> Result<Frame, InputError> {
-    let found = braces(statement).filter(|(_, behind)| behind.is_empty()).and_then(|(inside, _)| pose(inside));
+    let found =
+        braces(statement).filter(|(_, behind)| behind.is_empty()).and_then(|(inside, _)| pose(&entries(inside)?));
     found.ok_or_else(|| source.error(line, "is no frame {X ..,Y ..,Z ..,A ..,B ..,C ..}", statement))
 }
 
@@ -156,15 +146,13 @@ fn joint(source: &Source, line: usize, statement: &str) -> Result<Step, InputErr
     found.ok_or_else(|| source.error(line, "is no joint move PTP {A1 ..,.. A6 ..}", statement))
 }
 
+/// The tool in the base, the external axes, and how the move ends where blending begins at a distance (mm).
 fn linear(
     source: &Source,
     line: usize,
     statement: &str,
-    base: Base,
-    mounted: Frame,
-    feed: f64,
     blend: Option<f64>,
-) -> Result<Step, InputError> {
+) -> Result<(Frame, External, End), InputError> {
     let found = braces(statement).and_then(|(inside, behind)| {
         let end = match behind {
             "" => End::Exact,
@@ -173,9 +161,7 @@ fn linear(
         };
         let mut entries = entries(inside)?;
         let external = external(&mut entries);
-        let [x, y, z, a, b, c] = exactly(&entries, ["X", "Y", "Z", "A", "B", "C"])?;
-        let tool = frame_of([x, y, z], turned_xyz(c, b, a));
-        Some((Goal::Line { tool, base, mounted }, external, Pace { feed: Some(feed), end: Some(end) }))
+        Some((pose(&entries)?, external, end))
     });
     let form = "is no linear move LIN {X ..,Y ..,Z ..,A ..,B ..,C ..} C_DIS, behind $APO.CDIS=..";
     found.ok_or_else(|| source.error(line, form, statement))

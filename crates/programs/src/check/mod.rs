@@ -12,31 +12,28 @@ mod fanuc;
 mod free;
 mod geometry;
 mod krl;
+mod outcome;
 mod rapid;
 mod table;
 mod written;
 
 use super::{
-    CorrectedPath, ExportError, ExportOptions, ProgramFormat, corrected::corrected_targets, motion::Target,
+    CorrectedPath, ExportError, ExportOptions, ProgramFormat, corrected::corrected_targets, motion,
     transfer_paths::TransferPaths,
 };
 use expected::{Expected, frame, workpiece};
 use geometry::{Frame, apart, flange, floor_seen, of_rows, seen, table as table_at_zero};
 use nalgebra::{Matrix3, Vector3};
-use std::path::{Path, PathBuf};
-use stead_disk::input::{InputError, InputFile, input_file};
+pub use outcome::{ANGLE_DEG, Largest, MoveHit, MovePlace, POSITION_MM, ProgramCheck, UnfollowedMove};
+use std::path::Path;
+use stead_disk::input::{InputError, input_file};
 use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Controller, Pose, Robot};
 use stead_numerics::monitor::Monitor;
-use stead_planning::transfer_path::LineEnd;
+use stead_problem::problem::{Placement, Problem};
 use stead_runs::Run;
 use stead_runs::plan::read_plan;
 use written::{Base, End, Goal, Source, Written};
-
-/// How far the tool may be off. mm
-pub const POSITION_MM: f64 = 0.01;
-/// How far the tool may be turned. deg
-pub const ANGLE_DEG: f64 = 0.01;
 
 /// How far the feed may be off where the form holds decimals. mm/s
 const FEED_MM_PER_S: f64 = 2e-3;
@@ -64,95 +61,6 @@ impl Default for ReadBackOptions<'_> {
     }
 }
 
-/// A move of a program.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MovePlace {
-    /// File and line of the move.
-    pub file: PathBuf,
-    /// Line in the file, from 1.
-    pub line: usize,
-    /// Segment of the plan, from 1.
-    pub segment: usize,
-    /// Path point at which the tool is, or from which it is retracted, from 0.
-    pub point: usize,
-    /// Whether it is retracted.
-    pub is_retracted: bool,
-}
-
-impl MovePlace {
-    fn of(one: &Written, wanted: &Expected) -> Self {
-        let Expected { segment, point, is_retracted, .. } = *wanted;
-        Self { file: one.file.clone(), line: one.line, segment, point, is_retracted }
-    }
-}
-
-/// A move that hits what stands around.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct MoveHit {
-    /// The move.
-    pub at: MovePlace,
-    /// The names of the two that come too near to each other.
-    pub pair: String,
-}
-
-/// A line of the tool that the arm cannot follow.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UnfollowedMove {
-    /// The move.
-    pub at: MovePlace,
-    /// Why.
-    pub end: LineEnd,
-}
-
-/// A deviation and where it is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Largest {
-    /// How large, in the unit of the field.
-    pub value: f64,
-    /// The move.
-    pub at: MovePlace,
-}
-
-/// How a program compares with its plan.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProgramCheck {
-    /// The program.
-    pub file: PathBuf,
-    /// How many moves it has.
-    pub moves: usize,
-    /// How many of them to joint angles.
-    pub joint_moves: usize,
-    /// How many moves the plan asks for.
-    pub expected_moves: usize,
-    /// The largest distance of the tool centre point from where it should be. mm
-    pub position: Option<Largest>,
-    /// The largest angle of the tool to how it should be turned. deg
-    pub angle: Option<Largest>,
-    /// The largest distance of the contact of a leaning tool, by tip and axis in the program, from that of the task.
-    /// mm
-    pub contact: Option<Largest>,
-    /// The largest that is allowed. mm
-    pub contact_allowed: f64,
-    /// The first way in which the moves are others than the plan's, but for their places.
-    pub mismatch: Option<String>,
-    /// The moves between segments that hit what stands around.
-    pub hits: Vec<MoveHit>,
-    /// The lines between path points that the arm cannot follow.
-    pub unfollowed: Vec<UnfollowedMove>,
-    /// The files that it was compared with.
-    pub inputs: Vec<InputFile>,
-}
-
-impl ProgramCheck {
-    /// Whether the program is that of the plan, within 0.01 mm and 0.01 deg, and a leaning tool touches where it does
-    /// in the task.
-    pub fn is_sound(&self) -> bool {
-        let within = |largest: &Option<Largest>, limit: f64| largest.as_ref().is_some_and(|found| found.value <= limit);
-        let touches = self.contact.as_ref().is_none_or(|found| found.value <= self.contact_allowed);
-        self.mismatch.is_none() && touches && within(&self.position, POSITION_MM) && within(&self.angle, ANGLE_DEG)
-    }
-}
-
 /// Reads a program and compares it with the plan that it was made of.
 ///
 /// # Errors
@@ -173,14 +81,7 @@ pub fn check(
     let mut inputs = run.inputs.clone();
     inputs.push(plan_file);
     if let Some(path) = corrected {
-        let target = |point: &stead_calibration::compensation::PathPoint| Target {
-            base_from_tool: point.base_from_tool,
-            posture: point.posture,
-            joints: point.joints,
-            external: [None; 6],
-        };
-        let planned: Vec<Target> = plan.points.iter().map(target).collect();
-        inputs.push(corrected_targets(&problem, &planned, path)?.2);
+        inputs.push(corrected_targets(&problem, &motion::targets(&problem, &plan), path)?.2);
     }
     let written = match format {
         ProgramFormat::Krl => krl::moves(&source)?,
@@ -191,34 +92,14 @@ pub fn check(
     inputs.push(input_file("program", program.to_string_lossy().replace('\\', "/"), source.text.as_bytes()));
     let transfer_paths = TransferPaths::new(&problem, &plan, approach, monitor)?;
     let expected = expected::moves(&problem, &plan, &transfer_paths, corrected.map(|path| path.file), approach * 1e3)?;
-    let robot = &problem.robot;
-    let lying = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);
-    let lying = Pose { rotation: lying, translation: Vector3::zeros() };
-    let arm = Arm {
-        robot,
-        controller: robot.controller(),
-        mounted: frame(&problem.spindle.flange_from_tool),
-        on_flange: frame(&robot.on_flange(&problem.spindle.flange_from_tool)),
-        stand: frame(&robot.cell_from_base()),
-        placed: workpiece(&plan.placement).of(&frame(&lying)),
-        axes: &problem.external_axes,
-        format,
-        blend: blend * 1e3,
-    };
+    let arm = Arm::new(&problem, &plan.placement, format, blend * 1e3);
     let mut result = arm.compared(&source, &written.all, &expected)?;
     if let Some(space) = problem.lean.as_deref().filter(|_| corrected.is_none()) {
         result.contact_allowed = contact::allowed(space);
         result.contact = contact::largest(&arm, &problem, &space.rule, &plan.placement, &written.all, &expected)?;
     }
     result.hits = free::hits(&problem, &plan.placement, &transfer_paths, &written.all, &expected);
-    let unfollowed = written.all.iter().zip(&expected).filter(|(_, wanted)| !wanted.is_joint && !wanted.is_retracted);
-    let unfollowed = unfollowed.filter_map(|(one, wanted)| {
-        Some(UnfollowedMove {
-            at: MovePlace::of(one, wanted),
-            end: transfer_paths.unfollowed_to(wanted.point)?.clone(),
-        })
-    });
-    result.unfollowed = unfollowed.collect();
+    result.unfollowed = free::unfollowed(&transfer_paths, &written.all, &expected);
     result.inputs = inputs;
     Ok(result)
 }
@@ -251,7 +132,24 @@ struct Arm<'a> {
     blend: f64,
 }
 
-impl Arm<'_> {
+impl<'a> Arm<'a> {
+    fn new(problem: &'a Problem, placement: &Placement, format: ProgramFormat, blend: f64) -> Self {
+        let robot = &problem.robot;
+        let lying = problem.orientation().map_or(Matrix3::identity(), |orientation| orientation.rotation);
+        let lying = Pose { rotation: lying, translation: Vector3::zeros() };
+        Self {
+            robot,
+            controller: robot.controller(),
+            mounted: frame(&problem.spindle.flange_from_tool),
+            on_flange: frame(&robot.on_flange(&problem.spindle.flange_from_tool)),
+            stand: frame(&robot.cell_from_base()),
+            placed: workpiece(placement).of(&frame(&lying)),
+            axes: &problem.external_axes,
+            format,
+            blend,
+        }
+    }
+
     fn compared(
         &self,
         source: &Source,
@@ -279,8 +177,8 @@ impl Arm<'_> {
             }
             for tool in self.tools(one)? {
                 let (mm, deg) = apart(&tool, &wanted.tool);
-                keep_largest(&mut check.position, mm, one, wanted);
-                keep_largest(&mut check.angle, deg, one, wanted);
+                Largest::keep(&mut check.position, mm, one, wanted);
+                Largest::keep(&mut check.angle, deg, one, wanted);
             }
         }
         if written.len() != expected.len() && check.mismatch.is_none() {
@@ -392,12 +290,5 @@ fn is_off(found: Option<f64>, wanted: Option<f64>) -> bool {
         (None, None) => false,
         (Some(found), Some(wanted)) => (found - wanted).abs() > POSITION_MM,
         _ => true,
-    }
-}
-
-fn keep_largest(largest: &mut Option<Largest>, value: f64, one: &Written, wanted: &Expected) {
-    // What is no number is larger than any.
-    if largest.as_ref().is_none_or(|found| value > found.value || value.is_nan()) {
-        *largest = Some(Largest { value, at: MovePlace::of(one, wanted) });
     }
 }

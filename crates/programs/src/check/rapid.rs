@@ -1,7 +1,7 @@
 //! RAPID: tool, work object and zone data, `ActUnit`, `MoveAbsJ`, `MoveL`, calls of parts.
 
 use super::geometry::{Frame, turned_by_quaternion};
-use super::written::{Base, DEEPEST, End, External, Goal, Moves, Pace, Source, Step, frame_of, number};
+use super::written::{Base, End, External, Goal, Moves, Pace, Source, Step, frame_of, number};
 use std::collections::{BTreeMap, BTreeSet};
 use stead_disk::input::InputError;
 
@@ -32,11 +32,11 @@ struct Workpiece {
 /// [`InputError`] with file and line for a statement that moves the robot and is not understood.
 pub(super) fn moves(source: &Source) -> Result<Moves, InputError> {
     let (mut moves, mut data) = (Moves::default(), Data::default());
-    read(source, 0, &mut data, &mut moves)?;
+    read(source, &mut data, &mut moves)?;
     Ok(moves)
 }
 
-fn read(source: &Source, depth: usize, data: &mut Data, moves: &mut Moves) -> Result<(), InputError> {
+fn read(source: &Source, data: &mut Data, moves: &mut Moves) -> Result<(), InputError> {
     for (index, whole) in source.text.lines().enumerate() {
         let line = index + 1;
         for statement in without_comment(whole).split(';').map(str::trim).filter(|text| !text.is_empty()) {
@@ -52,11 +52,11 @@ fn read(source: &Source, depth: usize, data: &mut Data, moves: &mut Moves) -> Re
                 upper if upper.starts_with("MOVE") || NOT_UNDERSTOOD.contains(&upper) => {
                     return Err(source.error(line, "is not understood, and may move the robot elsewhere", statement));
                 }
-                _ if source.is_part(word) => match source.part(word) {
-                    Some(path) if depth < DEEPEST => read(&Source::read(&path)?, depth + 1, data, moves)?,
-                    _ => return Err(source.missing(line, word)),
-                },
-                _ => {}
+                _ => {
+                    if let Some(part) = source.called(line, word)? {
+                        read(&part, data, moves)?;
+                    }
+                }
             }
         }
     }
@@ -129,7 +129,7 @@ fn declare(source: &Source, line: usize, statement: &str, data: &mut Data) -> Re
             let (numbers, _) = list(value).ok_or_else(wrong)?;
             let user = numbers.get(..7).and_then(pose).ok_or_else(wrong)?;
             let object = numbers.get(7..).and_then(pose).ok_or_else(wrong)?;
-            let workpiece = workpiece(value, [user, object]).ok_or_else(wrong)?;
+            let workpiece = workpiece(value, &user, object).ok_or_else(wrong)?;
             data.workpieces.insert(name.clone(), workpiece);
         }
         "ZONEDATA" => {
@@ -143,7 +143,7 @@ fn declare(source: &Source, line: usize, statement: &str, data: &mut Data) -> Re
 
 /// A work object `[robhold, ufprog, "unit", user frame, object frame]`: that of a unit is on it, and its user frame is
 /// the unit's, whatever the text says.
-fn workpiece(value: &str, [user, object]: [Frame; 2]) -> Option<Workpiece> {
+fn workpiece(value: &str, user: &Frame, object: Frame) -> Option<Workpiece> {
     let mut words = value.trim().strip_prefix('[')?.splitn(4, ',').map(|word| word.trim().to_ascii_uppercase());
     let (is_held, stands, unit) = (words.next()?, words.next()?, words.next()?);
     let unit = unit.strip_prefix('"')?.strip_suffix('"')?;

@@ -87,7 +87,7 @@ impl Goal {
 }
 
 /// The deepest that parts call parts.
-pub(super) const DEEPEST: usize = 3;
+const DEEPEST: usize = 3;
 /// The most moves that are read.
 const MOST: usize = 20_000_000;
 
@@ -96,6 +96,8 @@ const MOST: usize = 20_000_000;
 pub(super) struct Source {
     pub file: PathBuf,
     pub text: String,
+    /// How deep it is in calls of parts.
+    depth: usize,
 }
 
 impl Source {
@@ -107,11 +109,25 @@ impl Source {
         let fail = |problem: String| InputError::new(file, problem).allowed("a program that `stead export` wrote");
         let bytes = files::read(file).map_err(|cause| fail(format!("cannot be read: {cause}")))?;
         let text = String::from_utf8(bytes).map_err(|_| fail("is not UTF-8 text".to_owned()))?;
-        Ok(Self { file: file.to_owned(), text })
+        Ok(Self { file: file.to_owned(), text, depth: 0 })
     }
 
-    /// A part that this one calls: a file beside it, by its name without ending in any case. None where there is none.
-    pub fn part(&self, name: &str) -> Option<PathBuf> {
+    /// The part that a line calls by a name, where it is that of a part of this program.
+    ///
+    /// # Errors
+    /// [`InputError`] for a part that is not beside this file, or cannot be read.
+    pub fn called(&self, line: usize, name: &str) -> Result<Option<Self>, InputError> {
+        if !self.is_part(name) {
+            return Ok(None);
+        }
+        match self.part(name) {
+            Some(path) if self.depth < DEEPEST => Ok(Some(Self { depth: self.depth + 1, ..Self::read(&path)? })),
+            _ => Err(self.error(line, format!("the part {name} is not beside this file"), name)),
+        }
+    }
+
+    /// A file beside this one, by its name without ending in any case. None where there is none.
+    fn part(&self, name: &str) -> Option<PathBuf> {
         let folder = self.file.parent()?;
         let extension = self.file.extension()?;
         [name.to_owned(), name.to_ascii_lowercase()]
@@ -130,7 +146,7 @@ impl Source {
     }
 
     /// Whether a name is that of a part of this program.
-    pub fn is_part(&self, name: &str) -> bool {
+    fn is_part(&self, name: &str) -> bool {
         let own = self.file.file_stem().map(|stem| stem.to_string_lossy().to_ascii_uppercase()).unwrap_or_default();
         name.to_ascii_uppercase()
             .strip_prefix(&format!("{own}_"))
@@ -144,11 +160,6 @@ impl Source {
             .at_line(line)
             .found(format!("'{shown}'"))
             .allowed("the statements that `stead export` writes")
-    }
-
-    /// A part that is called and not there.
-    pub fn missing(&self, line: usize, name: &str) -> InputError {
-        self.error(line, format!("the part {name} is not beside this file"), name)
     }
 }
 

@@ -13,12 +13,13 @@ mod twin;
 mod volumes;
 
 use super::*;
-use crate::outcome::PointForces;
-use nalgebra::Matrix3;
+use crate::load::PointForces;
+use nalgebra::{Matrix3, Vector3};
 use oracles::{Knot, line, mill, operation, stock};
 use stead_cell::TriangleMesh;
 use stead_model::cutting::{Cutter, Rotation};
 use stead_model::robot::Pose;
+use stead_numerics::monitor::Stop;
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 

@@ -5,7 +5,7 @@
 //! and convex, and so is the least of it over a move, `F(l) = min over m in [0, 1] of f(w + l d - m u)`. From beyond
 //! either end Newton's method on F comes to the end without passing it.
 
-use super::{Piece, TINY};
+use super::{Line, Piece, TINY};
 use nalgebra::Vector3;
 
 /// Both ends are found to this. m
@@ -14,14 +14,6 @@ const ROUNDING: f64 = 1e-11;
 const STEPS: usize = 60;
 /// Steps along the move, of which a few are needed.
 const STEPS_OF_MOVE: usize = 40;
-
-/// A line `w + l d` that a corner moves over by u.
-pub(super) struct Line<'l> {
-    pub axis: &'l Vector3<f64>,
-    pub w: &'l Vector3<f64>,
-    pub d: &'l Vector3<f64>,
-    pub u: &'l Vector3<f64>,
-}
 
 /// A disc of a radius about the axis at the height of the corner (m), grown by it.
 #[derive(Debug, Clone, Copy)]
@@ -194,8 +186,7 @@ impl Corner {
         }
         let radius = self.disc + beside.sqrt();
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let cylinder = Piece::cylinder(radius);
-        cylinder.sweep(line.axis, line.w, line.d, line.u, &mut ends);
+        Piece::cylinder(radius).sweep(line, &mut ends);
         (ends[1] > ends[0]).then_some(ends)
     }
 

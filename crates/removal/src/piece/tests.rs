@@ -37,7 +37,7 @@ proptest! {
         d[along] = 1.0;
         (o[(along + 1) % 3], o[(along + 2) % 3]) = (at[0], at[1]);
         let mut swept = [f64::INFINITY, f64::NEG_INFINITY];
-        piece.sweep(&axis, &o, &d, &u, &mut swept);
+        piece.sweep(&Line { axis: &axis, w: &o, d: &d, u: &u }, &mut swept);
         let steps = 4000;
         let mut stamped = [f64::INFINITY, f64::NEG_INFINITY];
         for step in 0..=steps {

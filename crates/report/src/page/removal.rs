@@ -7,7 +7,8 @@ use super::thinned::thinned;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use stead_problem::problem::Problem;
-use stead_removal::outcome::{PointForces, RemovalForces};
+use stead_removal::load::PointForces;
+use stead_removal::outcome::RemovalForces;
 use stead_removal::surface::Surface;
 
 /// Triangles of each stock at most.

@@ -1,7 +1,7 @@
 use super::super::*;
+use crate::load::PointForces;
 use crate::operation::Stock;
-use crate::outcome::PointForces;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 use stead_model::cutting::{Coefficients, Cutter, Rotation, Tooth};
 use stead_model::robot::Pose;
