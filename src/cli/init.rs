@@ -1,8 +1,9 @@
 //! `stead init`: a commented starter set of files that runs.
 
+use super::Failure;
 use super::given::Force;
 use super::manual::Manual;
-use super::{Failure, print};
+use super::output::print;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use stead::files::{Existing, StarterSet, init, init_forces, init_run};

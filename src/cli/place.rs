@@ -1,12 +1,11 @@
 //! `stead place`: search, then files, then a table, and then, where it is requested, a certificate with its own files.
 
+use super::Failure;
 use super::given::GivenRun;
 use super::manual::Manual;
-use super::progress::Terminal;
+use super::output::{files_written, left_in, more, out_folder, print, print_json, say, say_notes, say_warnings};
+use super::progress::{Terminal, on_threads};
 use super::values::{gap, positive, seed, threads};
-use super::{
-    Failure, files_written, left_in, more, on_threads, out_folder, print, print_json, say, say_notes, say_warnings,
-};
 use clap::Args;
 use std::path::PathBuf;
 use stead::program::ProgramFormat;

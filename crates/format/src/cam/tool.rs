@@ -1,7 +1,8 @@
 //! The cutter of a program, as far as it is described there, as tables of a run file.
 
+use super::Program;
 use super::refusals::{GUESSES, NOT_THE_SHAPE, ONE_ENGAGEMENT, guessed_keys};
-use super::{Program, rounded};
+use super::units::rounded;
 use crate::toml_file::commented;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,10 @@
 //! The file of surroundings of an imported arm.
 
+use super::ImportedRobot;
 use super::collision::{LinkShape, LinkShapes};
+use super::rows::rounded;
 use super::visual::LinkVisual;
 use super::xml::one_line;
-use super::{ImportedRobot, rounded};
 use crate::mesh::MeshUnit;
 use nalgebra::Vector3;
 use std::fmt::Write;

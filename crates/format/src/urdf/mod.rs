@@ -41,7 +41,7 @@ pub use visual::LinkVisual;
 use deviation::deviation;
 use home::controller_at;
 use read::{Kind, Limit, Urdf};
-use rows::Rows;
+use rows::{Rows, rounded};
 use stand::Stand;
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
@@ -296,11 +296,6 @@ fn speeds_of(urdf: &Urdf, chain: &Chain) -> Result<[Option<f64>; 6], InputError>
         }
     }
     Ok(speeds)
-}
-
-/// An angle or speed in deg without the digits that rounding has made: to 1e-9 deg.
-fn rounded(degrees: f64) -> f64 {
-    (degrees * 1e9).round() / 1e9 + 0.0
 }
 
 /// Limits of a joint of the URDF (rad) as those of the row. deg

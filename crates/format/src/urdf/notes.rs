@@ -2,8 +2,7 @@
 
 use super::deviation::Deviation;
 use super::read::{Kind, Urdf};
-use super::rounded;
-use super::rows::{Rows, written};
+use super::rows::{Rows, rounded, written};
 use super::stand::Stand;
 use super::stiffness::Borrowed;
 use super::tree::Chain;

@@ -7,8 +7,9 @@ mod tests;
 
 pub use file::*;
 
+use crate::Word;
 use crate::guesses::guesses;
-use crate::{Word, at_the_top};
+use crate::kind::read_unless;
 use material::Material;
 use std::path::{Path, PathBuf};
 use stead_disk::input::{InputError, InputFile, input_file};
@@ -42,10 +43,7 @@ pub fn read_forces(file: &Path) -> Result<ForcesRun, InputError> {
 pub(crate) fn read_forces_from(source: &TomlFile) -> Result<ForcesRun, InputError> {
     let document = source.parse()?;
     let at = document.root();
-    let file: ForcesFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
-        Some(kind @ (FileKind::RobotFile | FileKind::RunFile)) => kind.refused(source.file()),
-        _ => at_the_top::<ForcesFile>(error),
-    })?;
+    let file: ForcesFile = read_unless(&[FileKind::RobotFile, FileKind::RunFile], source, &document)?;
     let reading = file.reading.unwrap_or_default();
     let named = read_path(&at.key("path"), &reading, &source.sources)?;
     let tables = RemovalTables {

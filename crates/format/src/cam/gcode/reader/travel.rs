@@ -4,9 +4,9 @@ use super::super::super::arc::Arc;
 use super::super::super::refusals::*;
 use super::super::super::{LARGEST, Move};
 use super::super::block::{Block, Word};
-use super::super::codes::Code;
+use super::super::codes::{Code, code_of};
 use super::super::motion::Motion;
-use super::{Reader, code_of};
+use super::Reader;
 use nalgebra::{Rotation3, Unit, Vector3};
 use stead_disk::input::InputError;
 
