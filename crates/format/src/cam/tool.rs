@@ -3,7 +3,7 @@
 use super::Program;
 use super::refusals::{GUESSES, NOT_THE_SHAPE, ONE_ENGAGEMENT, guessed_keys};
 use super::units::rounded;
-use crate::toml_file::commented;
+use crate::written::commented;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use stead_disk::quote::shorten;
