@@ -2,18 +2,15 @@
 
 pub use stead_assessment::{comparison, map, published, ranking, zone};
 
-use crate::monitor::Warning;
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::{Error, Monitor};
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use stead_assessment::comparison::Assessment;
 use stead_numerics::message::Note;
 use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text, write_assessment};
 use stead_report::document::Timing;
-use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 
 /// An assessment file with the robots that it names, read and checked.
@@ -102,30 +99,11 @@ impl RobotAssessment {
     }
 }
 
-impl Report for RobotAssessment {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(assessment_files(&self.run.comparison, &self.assessment, &self.context)?)
-    }
-
-    fn document(&self) -> Value {
-        assess_json(&self.assessment, &self.context, &self.timing)
-    }
-
-    fn table(&self) -> String {
-        assessment_text(&self.assessment, &self.context)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.run.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.assessment.warnings
-    }
-}
-
-result!(RobotAssessment);
+result! { RobotAssessment, self {
+    write(folder) = write_assessment(folder, &self.run.comparison, &self.assessment, &self.context);
+    files = assessment_files(&self.run.comparison, &self.assessment, &self.context);
+    document = assess_json(&self.assessment, &self.context, &self.timing);
+    table = assessment_text(&self.assessment, &self.context);
+    notes = self.run.notes;
+    warnings = self.assessment.warnings;
+} }

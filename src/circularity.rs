@@ -4,13 +4,11 @@ pub use stead_assessment::roundness::Sector;
 
 use crate::Error;
 use crate::monitor::Warning;
-use crate::result::{Report, result};
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use crate::result::result;
+use std::path::Path;
 use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, assess};
 use stead_report::circularity::{circularity_files, circularity_json, circularity_text, write_circularity};
-use stead_report::{Files, Folder};
 use stead_runs::{PointFile, read_points};
 
 /// Measured points of a circular profile.
@@ -54,26 +52,10 @@ impl Circularity {
     }
 }
 
-impl Report for Circularity {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_circularity(folder, &self.file, &self.roundness)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(circularity_files(&self.file, &self.roundness)?)
-    }
-
-    fn document(&self) -> Value {
-        circularity_json(&self.file, &self.roundness)
-    }
-
-    fn table(&self) -> String {
-        circularity_text(&self.file, &self.roundness)
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.warnings
-    }
-}
-
-result!(Circularity);
+result! { Circularity, self {
+    write(folder) = write_circularity(folder, &self.file, &self.roundness);
+    files = circularity_files(&self.file, &self.roundness);
+    document = circularity_json(&self.file, &self.roundness);
+    table = circularity_text(&self.file, &self.roundness);
+    warnings = self.warnings;
+} }

@@ -1,17 +1,16 @@
 //! Paths corrected so that the loaded tool follows the path that is wanted.
 
 use crate::monitor::Warning;
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::{Error, Monitor};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
 use stead_numerics::message::Note;
 use stead_report::compensation::{
     compensation_files, compensation_json, compensation_text, not_compensated_json, write_compensation,
 };
-use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 
 /// A compensation file with the run and the plan that it names, read and checked.
@@ -100,30 +99,11 @@ impl CompensatedPath {
     }
 }
 
-impl Report for CompensatedPath {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_compensation(folder, &self.run, &self.outcome)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(compensation_files(&self.run, &self.outcome)?)
-    }
-
-    fn document(&self) -> Value {
-        compensation_json(&self.run, &self.outcome)
-    }
-
-    fn table(&self) -> String {
-        compensation_text(&self.run, &self.outcome)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.warnings
-    }
-}
-
-result!(CompensatedPath);
+result! { CompensatedPath, self {
+    write(folder) = write_compensation(folder, &self.run, &self.outcome);
+    files = compensation_files(&self.run, &self.outcome);
+    document = compensation_json(&self.run, &self.outcome);
+    table = compensation_text(&self.run, &self.outcome);
+    notes = self.notes;
+    warnings = self.warnings;
+} }

@@ -1,17 +1,15 @@
 //! Joint compliances from measurements, and which measurements to take.
 
 use crate::monitor::{Stop, Warning};
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::{Error, Monitor};
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use stead_calibration::identification::design::{Design, DesignError, design_experiment};
 use stead_calibration::identification::{Identified, IdentifyError, identify};
 use stead_numerics::message::Note;
 use stead_report::identification::plan::{keep_readings, plan_files, plan_json, plan_text, write_plan};
 use stead_report::identification::{identified_files, identify_json, identify_text, write_identified};
-use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 
 /// An identification file with the robot and the filled measurement sheet that it names, read and checked.
@@ -127,57 +125,23 @@ impl MeasurementPlan {
     }
 }
 
-impl Report for IdentifiedRobot {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_identified(folder, &self.run, &self.identified)?)
-    }
+result! { IdentifiedRobot, self {
+    write(folder) = write_identified(folder, &self.run, &self.identified);
+    files = identified_files(&self.run, &self.identified);
+    document = identify_json(&self.run, &self.identified);
+    table = identify_text(&self.run, &self.identified);
+    notes = self.run.notes;
+    warnings = self.identified.warnings;
+} }
 
-    fn files(&self) -> Result<Files, Error> {
-        Ok(identified_files(&self.run, &self.identified)?)
-    }
-
-    fn document(&self) -> Value {
-        identify_json(&self.run, &self.identified)
-    }
-
-    fn table(&self) -> String {
-        identify_text(&self.run, &self.identified)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.run.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.identified.warnings
-    }
-}
-
-impl Report for MeasurementPlan {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
+result! { MeasurementPlan, self {
+    write(folder) = {
         keep_readings(folder.path())?;
-        Ok(write_plan(folder, &self.run, &self.design)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(plan_files(&self.run, &self.design)?)
-    }
-
-    fn document(&self) -> Value {
-        plan_json(&self.run, &self.design)
-    }
-
-    fn table(&self) -> String {
-        plan_text(&self.run, &self.design)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.run.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.design.warnings
-    }
-}
-
-result!(IdentifiedRobot, MeasurementPlan);
+        write_plan(folder, &self.run, &self.design)
+    };
+    files = plan_files(&self.run, &self.design);
+    document = plan_json(&self.run, &self.design);
+    table = plan_text(&self.run, &self.design);
+    notes = self.run.notes;
+    warnings = self.design.warnings;
+} }

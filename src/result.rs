@@ -30,9 +30,51 @@ pub(crate) trait Report {
     }
 }
 
-/// The public face of a [`Report`].
+/// A method of a [`Report`] by its body.
+macro_rules! method {
+    (write $self:ident ($folder:ident) $body:expr) => {
+        fn write_files(&$self, $folder: &stead_report::Folder) -> Result<Vec<std::path::PathBuf>, crate::Error> {
+            Ok($body?)
+        }
+    };
+    (files $self:ident $body:expr) => {
+        fn files(&$self) -> Result<stead_report::Files, crate::Error> {
+            Ok($body?)
+        }
+    };
+    (document $self:ident $body:expr) => {
+        fn document(&$self) -> serde_json::Value {
+            $body
+        }
+    };
+    (table $self:ident $body:expr) => {
+        fn table(&$self) -> String {
+            $body
+        }
+    };
+    (notes $self:ident $body:expr) => {
+        fn notes(&$self) -> &[crate::monitor::Note] {
+            &$body
+        }
+    };
+    (warnings $self:ident $body:expr) => {
+        fn warnings(&$self) -> &[crate::monitor::Warning] {
+            &$body
+        }
+    };
+}
+pub(crate) use method;
+
+/// The public face of a [`Report`], and the report itself where its methods are given.
 macro_rules! result {
-    ($($name:ident),+) => { $(
+    ($name:ident, $self:ident { $($method:ident $(($folder:ident))? = $body:expr;)+ }) => {
+        impl crate::result::Report for $name {
+            $(crate::result::method!($method $self $(($folder))? $body);)+
+        }
+
+        crate::result::result!($name);
+    };
+    ($name:ident) => {
         impl $name {
             /// Writes the files that the command of the same name leaves, byte for byte, into a folder that is made
             /// where it is missing, and `manifest.json` with their digests. Returns the paths of the files.
@@ -95,6 +137,6 @@ macro_rules! result {
                 f.write_str(&crate::result::Report::table(self))
             }
         }
-    )+ };
+    };
 }
 pub(crate) use result;

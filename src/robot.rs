@@ -3,11 +3,10 @@
 pub use stead_model::robot::ShippedArm;
 
 use crate::Error;
-use crate::result::{Report, result};
-use serde_json::Value;
+use crate::result::result;
 use std::path::Path;
 use stead_disk::input::{InputFile, input_file};
-use stead_format::catalogue::{self};
+use stead_format::catalogue;
 use stead_format::robot::geometry_file;
 use stead_format::spindle::read_spindle;
 use stead_model::robot::{Robot, Spindle};
@@ -102,19 +101,11 @@ pub struct PoseOfArm {
     notes: Vec<Note>,
 }
 
-impl Report for PoseOfArm {
-    fn document(&self) -> Value {
-        pose_json(&self.pose)
-    }
-
-    fn table(&self) -> String {
-        pose_text(&self.pose)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.notes
-    }
-}
+result! { PoseOfArm, self {
+    document = pose_json(&self.pose);
+    table = pose_text(&self.pose);
+    notes = self.notes;
+} }
 
 /// The arms that stead ships with.
 #[derive(Debug, Clone)]
@@ -145,14 +136,7 @@ impl ShippedArms {
     }
 }
 
-impl Report for ShippedArms {
-    fn document(&self) -> Value {
-        robots_json(&self.arms)
-    }
-
-    fn table(&self) -> String {
-        robots_text(&self.arms)
-    }
-}
-
-result!(PoseOfArm, ShippedArms);
+result! { ShippedArms, self {
+    document = robots_json(&self.arms);
+    table = robots_text(&self.arms);
+} }

@@ -330,7 +330,8 @@ impl Run {
 }
 
 /// Refuses a placement that is not of finite numbers.
-fn finite(&Placement { x, y, z, yaw }: &Placement) -> Result<(), Error> {
+fn finite(placement: &Placement) -> Result<(), Error> {
+    let Placement { x, y, z, yaw } = *placement;
     if [x, y, z, yaw].into_iter().all(f64::is_finite) {
         return Ok(());
     }

@@ -1,17 +1,13 @@
 //! What a given placement comes to, and what the postures give at one state.
 
 use crate::monitor::Warning;
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::{Error, Monitor};
-use serde_json::Value;
-use std::path::PathBuf;
 use std::sync::Arc;
-use stead_numerics::message::Note;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
 use stead_problem::problem::Placement;
 use stead_report::placement::{Context, Summary, evaluation, score_files, score_summary, write_score};
-use stead_report::{Files, Folder};
 
 /// A given placement with its best and its worst plan.
 #[derive(Debug, Clone)]
@@ -77,48 +73,18 @@ impl Explanations {
     }
 }
 
-impl Report for PlacementScore {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_score(folder, &self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
-    }
+result! { PlacementScore, self {
+    write(folder) = write_score(folder, &self.run.problem, &self.score, self.map.as_ref(), &self.context);
+    files = score_files(&self.run.problem, &self.score, self.map.as_ref(), &self.context);
+    document = evaluation::score_json(&self.run.problem, &self.score, &self.context);
+    table = evaluation::score_text(&self.run.problem, &self.score, &self.context);
+    notes = self.context.notes;
+    warnings = self.context.warnings;
+} }
 
-    fn files(&self) -> Result<Files, Error> {
-        Ok(score_files(&self.run.problem, &self.score, self.map.as_ref(), &self.context)?)
-    }
-
-    fn document(&self) -> Value {
-        evaluation::score_json(&self.run.problem, &self.score, &self.context)
-    }
-
-    fn table(&self) -> String {
-        evaluation::score_text(&self.run.problem, &self.score, &self.context)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.context.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.context.warnings
-    }
-}
-
-impl Report for Explanations {
-    fn document(&self) -> Value {
-        evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context)
-    }
-
-    fn table(&self) -> String {
-        evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.context.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.context.warnings
-    }
-}
-
-result!(PlacementScore, Explanations);
+result! { Explanations, self {
+    document = evaluation::explain_json(&self.placement, self.point, self.beta, &self.postures, &self.context);
+    table = evaluation::explain_text(&self.placement, self.point, self.beta, &self.postures);
+    notes = self.context.notes;
+    warnings = self.context.warnings;
+} }

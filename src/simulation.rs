@@ -4,18 +4,14 @@ pub use stead_run_files::Overrides;
 pub use stead_simulation::arm::Variant;
 pub use stead_simulation::{outcome, stability_analysis};
 
-use crate::monitor::Warning;
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::{Error, Monitor};
-use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
-use stead_numerics::message::Note;
 use stead_report::simulation::{simulation_files, simulation_text, timed_json, write_simulation};
 use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
-use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 use stead_simulation::coupled::{Job, JobError};
 use stead_simulation::outcome::Simulation;
@@ -159,56 +155,20 @@ impl StabilityAnalysis {
     }
 }
 
-impl Report for SimulatedPass {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_simulation(folder, &self.run, &self.simulation)?)
-    }
+result! { SimulatedPass, self {
+    write(folder) = write_simulation(folder, &self.run, &self.simulation);
+    files = simulation_files(&self.run, &self.simulation);
+    document = timed_json(&self.run, &self.simulation, self.wall);
+    table = simulation_text(&self.run, &self.simulation, self.wall);
+    notes = self.simulation.notes;
+    warnings = self.simulation.warnings;
+} }
 
-    fn files(&self) -> Result<Files, Error> {
-        Ok(simulation_files(&self.run, &self.simulation)?)
-    }
-
-    fn document(&self) -> Value {
-        timed_json(&self.run, &self.simulation, self.wall)
-    }
-
-    fn table(&self) -> String {
-        simulation_text(&self.run, &self.simulation, self.wall)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.simulation.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.simulation.warnings
-    }
-}
-
-impl Report for StabilityAnalysis {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_stability(folder, &self.run, &self.analysis)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(stability_files(&self.run, &self.analysis)?)
-    }
-
-    fn document(&self) -> Value {
-        stability_json(&self.run, &self.analysis)
-    }
-
-    fn table(&self) -> String {
-        stability_text(&self.run, &self.analysis)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.analysis.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.analysis.warnings
-    }
-}
-
-result!(SimulatedPass, StabilityAnalysis);
+result! { StabilityAnalysis, self {
+    write(folder) = write_stability(folder, &self.run, &self.analysis);
+    files = stability_files(&self.run, &self.analysis);
+    document = stability_json(&self.run, &self.analysis);
+    table = stability_text(&self.run, &self.analysis);
+    notes = self.analysis.notes;
+    warnings = self.analysis.warnings;
+} }

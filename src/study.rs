@@ -7,7 +7,7 @@ pub use stead_study::cases::{
     slurm_script,
 };
 
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::{Error, Monitor};
 use serde_json::Value;
 use std::collections::HashSet;
@@ -18,11 +18,10 @@ use stead_certify::Certificate;
 use stead_disk::files;
 use stead_disk::input::{InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
-use stead_numerics::message::Note;
+use stead_report::Folder;
 use stead_report::certificate::write_certificate;
 use stead_report::placement::{CaseOfStudy, Context, placement_files, write_placement};
 use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
-use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 use stead_study::Placed;
 use stead_study::analysis::{Analysis, Question};
@@ -219,29 +218,13 @@ impl StudyReport {
     }
 }
 
-impl Report for StudyReport {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.inputs, &self.pages)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(study_files(&self.plan.name(), &self.analysis, &self.inputs, &self.pages)?)
-    }
-
-    fn document(&self) -> Value {
-        study_json(&self.plan.name(), &self.analysis, &self.inputs)
-    }
-
-    fn table(&self) -> String {
-        study_text(&self.plan.name(), &self.analysis)
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.analysis.notes
-    }
-}
-
-result!(StudyReport);
+result! { StudyReport, self {
+    write(folder) = write_study(folder, &self.plan.name(), &self.analysis, &self.inputs, &self.pages);
+    files = study_files(&self.plan.name(), &self.analysis, &self.inputs, &self.pages);
+    document = study_json(&self.plan.name(), &self.analysis, &self.inputs);
+    table = study_text(&self.plan.name(), &self.analysis);
+    notes = self.analysis.notes;
+} }
 
 /// The command in whose name the table is written, and that of what is derived from it.
 const RUN: &str = "study run";

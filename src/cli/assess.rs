@@ -1,9 +1,10 @@
 //! `stead assess`: maps of circularity, then files, then tables.
 
+use super::Failure;
 use super::manual::{Manual, STOPPED};
-use super::progress::Terminal;
+use super::output::{out_folder, say_notes};
+use super::progress::{Terminal, on_threads};
 use super::values::{positive, threads};
-use super::{Failure, on_threads, out_folder, say_notes};
 use clap::Args;
 use std::path::PathBuf;
 use stead::AssessmentRun;

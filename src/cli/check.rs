@@ -1,8 +1,9 @@
 //! `stead check`: what was understood of a file, and what looks wrong.
 
+use super::Failure;
 use super::manual::Manual;
+use super::output::{files_written, say_notes, say_warnings, show};
 use super::progress::Terminal;
-use super::{Failure, files_written, say_notes, say_warnings, show};
 use clap::Args;
 use std::path::PathBuf;
 use stead::Checked;

@@ -1,8 +1,9 @@
 //! `stead circularity`: roundness of measured points.
 
+use super::Failure;
 use super::manual::Manual;
+use super::output::{files_written, print, print_json, results_in, say_warnings};
 use super::values::sector;
-use super::{Failure, files_written, print, print_json, results_in, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::circularity::Profile;

@@ -1,8 +1,9 @@
 //! `stead compensate`: correct a path, then files, then a table.
 
+use super::Failure;
 use super::manual::{Manual, STOPPED};
+use super::output::{out_folder, print_json, say_notes, say_warnings};
 use super::progress::Terminal;
-use super::{Failure, out_folder, print_json, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::{CompensationRun, Error};

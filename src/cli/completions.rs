@@ -1,7 +1,8 @@
 //! `stead completions`: the completion script of a shell, to standard output.
 
+use super::Failure;
 use super::manual::Manual;
-use super::{Failure, print};
+use super::output::print;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap_complete::Shell;
@@ -25,8 +26,8 @@ pub(super) const MANUAL: Manual = Manual {
     ..Manual::NEW
 };
 
-pub(super) fn run(options: &CompletionsOptions) -> Result<(), Failure> {
+pub(super) fn run(options: &CompletionsOptions, mut command: clap::Command) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut super::command(), "stead", &mut script);
+    clap_complete::generate(options.shell, &mut command, "stead", &mut script);
     print(&script)
 }

@@ -1,10 +1,11 @@
 //! `stead explain`: one placement, one path point, one beta, eight postures.
 
+use super::Failure;
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
+use super::output::{say_notes, say_warnings, show};
 use super::progress::Terminal;
 use super::values::{finite, point};
-use super::{Failure, say_notes, say_warnings, show};
 use clap::Args;
 
 #[derive(Debug, Args)]

@@ -1,10 +1,11 @@
 //! `stead export`: a robot program from a plan, or a program read back.
 
+use super::Failure;
 use super::given::Force;
 use super::manual::{Manual, STOPPED};
+use super::output::{print, print_json, say_notes, say_warnings, show};
 use super::progress::Terminal;
 use super::values::finite;
-use super::{Failure, print, print_json, say_notes, say_warnings, show};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};

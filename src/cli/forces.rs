@@ -1,10 +1,11 @@
 //! `stead forces`: the forces of a tool path from the stock that it cuts.
 
+use super::Failure;
 use super::given::Force;
 use super::manual::{Manual, STOPPED};
-use super::progress::Terminal;
+use super::output::{print, print_json, say_notes, say_warnings};
+use super::progress::{Terminal, on_threads};
 use super::values::threads;
-use super::{Failure, on_threads, print, print_json, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::forces::ForcesRun;

@@ -1,9 +1,9 @@
 //! The arguments that several commands share: a run file, those that give a placement, and those of a simulation's
 //! model.
 
-use super::progress::Terminal;
+use super::Failure;
+use super::progress::{Terminal, on_threads};
 use super::values::{case, damping_scale, field, finite, quaternion, rpm, variant};
-use super::{Failure, on_threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::{Error, Run};

@@ -1,11 +1,12 @@
 //! `stead init`: a commented starter set of files that runs.
 
+use super::Failure;
 use super::given::Force;
 use super::manual::Manual;
-use super::{Failure, print};
+use super::output::print;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
-use stead::files::{Existing, StarterSet, init, init_forces, init_run};
+use stead::files::{StarterSet, init, init_forces, init_run};
 
 #[derive(Debug, Args)]
 pub(super) struct InitOptions {
@@ -72,7 +73,7 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &InitOptions) -> Result<(), Failure> {
     if let (Some(robot), Some(task), Some(out)) = (&options.robot, &options.task, &options.out) {
-        return run_file(options.kind, [robot, task, out], options.force.existing());
+        return run_file(options, robot, task, out);
     }
     if let (Some(path), Some(out)) = (&options.path, &options.out) {
         if options.kind != Starter::Forces {
@@ -115,11 +116,11 @@ pub(super) fn run(options: &InitOptions) -> Result<(), Failure> {
 }
 
 /// A run file for a robot and a task that are there.
-fn run_file(kind: Starter, [robot, task, out]: [&Path; 3], existing: Existing) -> Result<(), Failure> {
-    if kind != Starter::Place {
+fn run_file(options: &InitOptions, robot: &Path, task: &Path, out: &Path) -> Result<(), Failure> {
+    if options.kind != Starter::Place {
         return Err(Failure::Usage("--robot, --task and --out go with `stead init place`".to_owned()));
     }
-    init_run(robot, task, out, existing).map_err(stead::Error::from)?;
+    init_run(robot, task, out, options.force.existing()).map_err(stead::Error::from)?;
     let name = out.display();
     print(format!("written: {name}\nnow edit it, and run: stead check {name}\n").as_bytes())
 }

@@ -1,10 +1,11 @@
 //! `stead live`: the workpiece moved by hand in the browser.
 
+use super::Failure;
 use super::given::GivenRun;
 use super::manual::Manual;
+use super::output::{out_folder_named, print, say, say_notes, say_warnings};
 use super::progress::Terminal;
 use super::values::case;
-use super::{Failure, out_folder_named, print, say, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};

@@ -1,7 +1,8 @@
 //! `stead man`: the manual, one page for the command line and one for each command.
 
+use super::Failure;
 use super::manual::Manual;
-use super::{Failure, files_written, print};
+use super::output::{files_written, print};
 use clap::Args;
 use clap_mangen::Man;
 use std::path::PathBuf;
@@ -24,8 +25,7 @@ pub(super) const MANUAL: Manual = Manual {
     ..Manual::NEW
 };
 
-pub(super) fn run(options: &ManOptions) -> Result<(), Failure> {
-    let mut command = super::command();
+pub(super) fn run(options: &ManOptions, mut command: clap::Command) -> Result<(), Failure> {
     command.build();
     let folder = Folder::create(&options.folder).map_err(Failure::Output)?;
     let mut names = Vec::new();

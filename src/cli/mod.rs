@@ -22,6 +22,7 @@ mod live;
 mod man;
 mod manual;
 mod manuals;
+mod output;
 mod page;
 mod place;
 mod pose;
@@ -37,16 +38,11 @@ mod values;
 use arguments::{Arguments, Command};
 use clap::error::ContextKind;
 use clap::{CommandFactory, FromArgMatches};
-use manual::Manual;
-use serde::Serialize;
+use output::say;
 use std::ffi::OsString;
-use std::fmt::Display;
-use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
-use stead::monitor::Warning;
-use stead::report::{NOTES, SummaryLine, summary_line};
-use stead_report::document;
-use stead_report::output::{Folder, ReportError};
+use std::io::ErrorKind;
+use std::path::PathBuf;
+use stead_report::output::ReportError;
 
 /// Why a command ends without its result.
 #[derive(Debug, thiserror::Error)]
@@ -133,8 +129,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Import(command) => import::run(&command),
         Command::Init(options) => init::run(&options),
         Command::Schema(options) => schema::run(&options),
-        Command::Completions(options) => completions::run(&options),
-        Command::Man(options) => man::run(&options),
+        Command::Completions(options) => completions::run(&options, command()),
+        Command::Man(options) => man::run(&options, command()),
     };
     match result {
         Ok(()) => 0,
@@ -174,151 +170,4 @@ fn show_usage(shown: &clap::Error) -> u8 {
         }
         _ => code,
     }
-}
-
-/// Writes to standard output. A reader that has gone away is no error: there is nobody left to tell. A disk that is
-/// full is one.
-fn print(text: &[u8]) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::Job(format!("the result cannot be written to standard output: {error}")))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Writes a line to standard error.
-fn say(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
-}
-
-/// Says what the user should know about the input.
-fn say_notes(notes: &[impl Display]) {
-    notes.iter().for_each(|note| say(&format!("note: {note}")));
-}
-
-/// Says why a result may not be what was wanted.
-fn say_warnings(warnings: &[Warning]) {
-    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
-}
-
-/// The line of a summary on what else is said, and where.
-fn more(count: usize, folder: &str) -> Option<SummaryLine> {
-    let text = match (count, folder) {
-        (0, "") => return None,
-        (0, folder) => format!("{folder}/{NOTES}"),
-        (count, "") => format!("{count} notes: --notes"),
-        (count, folder) => format!("{count} notes: {folder}/{NOTES}, --notes"),
-    };
-    Some(summary_line("more", text))
-}
-
-/// Runs a job on so many threads, or on as many as there are processors.
-fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = threads {
-        builder = builder.num_threads(threads);
-    }
-    let pool = builder.build().map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
-    Ok(pool.install(job))
-}
-
-/// The folder that results go to, held for this run.
-struct OutFolder {
-    folder: Folder,
-    /// Dropped after the folder, whose lock file is gone then.
-    _made: Option<MadeFolder>,
-}
-
-/// A folder that this run has made: removed in the end, if nothing has come into it.
-struct MadeFolder(PathBuf);
-
-impl Drop for MadeFolder {
-    fn drop(&mut self) {
-        // Goes only if it is empty.
-        let _ = std::fs::remove_dir(&self.0);
-    }
-}
-
-impl OutFolder {
-    /// Where it is, for people.
-    fn shown(&self) -> String {
-        self.folder.path().display().to_string()
-    }
-
-    /// Writes the files of a result and shows it, as a JSON document or as text with what `ending` says of the folder
-    /// that its files are in; only then says what went wrong with the files: whatever happened to them, the result of a
-    /// long job is shown.
-    fn show<T>(
-        &self,
-        written: Result<T, stead::Error>,
-        result: &(impl Serialize + Display),
-        is_json: bool,
-        ending: impl FnOnce(String) -> String,
-    ) -> Result<(), Failure> {
-        let printed = if is_json {
-            print_json(result)
-        } else {
-            let place = written.as_ref().map_or_else(|_| String::new(), |_| self.shown());
-            print(format!("{result}{}", ending(place)).as_bytes())
-        };
-        files_written(written).and(printed)
-    }
-}
-
-/// Says that a run that was interrupted has left its results beside finished ones, where that is so; returns the folder
-/// that they are in.
-fn left_in(requested: &Folder, written: &[PathBuf]) -> PathBuf {
-    let folder = written.first().and_then(|file| file.parent()).unwrap_or(requested.path());
-    if folder != requested.path() {
-        let (kept, left) = (requested.path().display(), folder.display());
-        say(&format!(
-            "note: {kept} has finished results and is left as it is; those of this run are in {left} (--keep-partial puts them in their place)"
-        ));
-    }
-    folder.to_owned()
-}
-
-/// Whether the files of a job that is done could be written.
-fn files_written<T>(written: Result<T, impl Display>) -> Result<(), Failure> {
-    written.map(|_| ()).map_err(|e| Failure::Job(e.to_string()))
-}
-
-/// Prints a result as one JSON document.
-fn print_json(result: &impl Serialize) -> Result<(), Failure> {
-    let document = serde_json::to_value(result).map_err(|e| Failure::Job(e.to_string()))?;
-    print(&document::bytes(&document))
-}
-
-/// Prints a result, as one JSON document or as text.
-fn show(result: &(impl Serialize + Display), is_json: bool) -> Result<(), Failure> {
-    if is_json { print_json(result) } else { print(result.to_string().as_bytes()) }
-}
-
-/// Where results are, as the last line of a text, where they could be written.
-fn results_in(folder: String) -> String {
-    if folder.is_empty() { folder } else { format!("\nresults in {folder}\n") }
-}
-
-/// The folder requested, or `results/` and the name of the config; taken before the long work, so that one that cannot
-/// be written to is found out now, and that no other run takes it.
-fn out_folder(requested: Option<&Path>, config: &Path, manual: &Manual) -> Result<OutFolder, Failure> {
-    out_folder_named(requested, config, "", manual)
-}
-
-/// As [`out_folder`], with an ending to the name, for a command that shares its config with another.
-fn out_folder_named(
-    requested: Option<&Path>,
-    config: &Path,
-    ending: &str,
-    manual: &Manual,
-) -> Result<OutFolder, Failure> {
-    let mut name = config.file_stem().unwrap_or_default().to_owned();
-    name.push(ending);
-    let path = requested.map_or_else(|| Path::new("results").join(name), Path::to_owned);
-    let is_new = !path.exists();
-    let folder = Folder::create(&path).map_err(Failure::Output)?;
-    folder.has_no_other(manual.file_names()).map_err(Failure::Output)?;
-    Ok(OutFolder { folder, _made: is_new.then_some(MadeFolder(path)) })
 }

@@ -1,7 +1,8 @@
 //! `stead page`: the page of a results folder once more.
 
+use super::Failure;
 use super::manual::Manual;
-use super::{Failure, print};
+use super::output::print;
 use clap::Args;
 use std::path::PathBuf;
 

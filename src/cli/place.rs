@@ -1,12 +1,11 @@
 //! `stead place`: search, then files, then a table, and then, where it is requested, a certificate with its own files.
 
+use super::Failure;
 use super::given::GivenRun;
 use super::manual::Manual;
-use super::progress::Terminal;
+use super::output::{files_written, left_in, more, out_folder, print, print_json, say, say_notes, say_warnings};
+use super::progress::{Terminal, on_threads};
 use super::values::{gap, positive, seed, threads};
-use super::{
-    Failure, files_written, left_in, more, on_threads, out_folder, print, print_json, say, say_notes, say_warnings,
-};
 use clap::Args;
 use std::path::PathBuf;
 use stead::program::ProgramFormat;
@@ -193,22 +192,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
     drop(shown);
     if is_certified {
-        written = written.and(match waits {
-            true => {
-                let (written, left) = write_all(&out.folder, &placements);
-                written.and(if options.json { Ok(()) } else { print(format!("results in {left}\n").as_bytes()) })
-            }
-            false => files_written(placements.write_certificate_in(&out.folder)),
-        });
-        // What cannot be certified was said before.
-        if run.certificate_warning().is_none() {
-            say_warnings(placements.certificate().map_or(&[], |certificate| &certificate.warnings));
-        }
-        if let (false, Some(text), Some(certificate)) =
-            (options.json, placements.certificate_text(), placements.certificate())
-        {
-            written = written.and(print(format!("\n{text}in {:.1} s\n", certificate.wall).as_bytes()));
-        }
+        written = written.and(show_certificate(options, &run, &placements, &out.folder, waits));
     }
     if options.json {
         written = written.and(print_json(&placements));
@@ -216,6 +200,32 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     written?;
     let is_cut_short = placements.certificate().is_some_and(|certificate| certificate.is_interrupted());
     if placements.outcome().interrupted || (waits && is_cut_short) { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+/// Writes the certificate, with all files that have waited for it where they have, and shows it.
+fn show_certificate(
+    options: &PlaceOptions,
+    run: &Run,
+    placements: &Placements,
+    folder: &Folder,
+    waits: bool,
+) -> Result<(), Failure> {
+    let mut written = match waits {
+        true => {
+            let (written, left) = write_all(folder, placements);
+            written.and(if options.json { Ok(()) } else { print(format!("results in {left}\n").as_bytes()) })
+        }
+        false => files_written(placements.write_certificate_in(folder)),
+    };
+    let Some(certificate) = placements.certificate() else { return written };
+    // What cannot be certified was said before.
+    if run.certificate_warning().is_none() {
+        say_warnings(&certificate.warnings);
+    }
+    if let (false, Some(text)) = (options.json, placements.certificate_text()) {
+        written = written.and(print(format!("\n{text}in {:.1} s\n", certificate.wall).as_bytes()));
+    }
+    written
 }
 
 /// The result in a few lines, with what to do next.

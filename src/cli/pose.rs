@@ -1,8 +1,9 @@
 //! `stead pose`: where joint angles bring flange and tool.
 
+use super::Failure;
 use super::manual::Manual;
+use super::output::{say_notes, show};
 use super::values::six;
-use super::{Failure, say_notes, show};
 use clap::Args;
 use std::path::PathBuf;
 use stead::robot::Arm;

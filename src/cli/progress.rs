@@ -1,5 +1,8 @@
-//! Progress on standard error, as bars on a terminal and else as a line now and then, and Ctrl-C.
+//! Jobs of a command: their threads, their progress on standard error, as bars on a terminal and else as a line now and
+//! then, and Ctrl-C.
 
+use super::Failure;
+use super::output::{say, say_notes};
 use crate::progress::{Described, locked};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -10,6 +13,16 @@ use std::time::{Duration, Instant};
 use stead_certify::{Forecast, Outlook};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_report::output::Folder;
+
+/// Runs a job on so many threads, or on as many as there are processors.
+pub(super) fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = threads {
+        builder = builder.num_threads(threads);
+    }
+    let pool = builder.build().map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
+    Ok(pool.install(job))
+}
 
 /// Between two lines where standard error is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(30);
@@ -56,7 +69,7 @@ impl Terminal {
                 std::process::exit(130);
             }
             let word = "interrupted: ending with what there is; Ctrl-C again ends at once";
-            locked(&bar).suspend(|| super::say(word));
+            locked(&bar).suspend(|| say(word));
         });
         terminal
     }
@@ -80,18 +93,18 @@ impl Terminal {
             let (forecast, started) = (Mutex::<Forecast>::default(), Instant::now());
             let show = move |progress: &Progress| {
                 if let Progress::Note { text } = progress {
-                    return drawn.suspend(|| super::say_notes(&[text]));
+                    return drawn.suspend(|| say_notes(&[text]));
                 }
                 let outlook = locked(&forecast).add(progress, started.elapsed());
                 draw(&drawn, progress, outlook);
             };
             (Monitor::new(show), None)
         } else {
-            let lines = Lines::start(LINE_EVERY, super::say);
+            let lines = Lines::start(LINE_EVERY, say);
             let (state, started) = (Arc::clone(&lines.state), Instant::now());
             let keep = move |progress: &Progress| {
                 if let Progress::Note { text } = progress {
-                    return super::say_notes(&[text]);
+                    return say_notes(&[text]);
                 }
                 let mut state = locked(&state.0);
                 let outlook = state.forecast.add(progress, started.elapsed());

@@ -1,7 +1,8 @@
 //! `stead robots`: the arms that stead ships with.
 
+use super::Failure;
 use super::manual::Manual;
-use super::{Failure, print, show};
+use super::output::{print, show};
 use clap::Args;
 use stead::robot::ShippedArms;
 

@@ -1,7 +1,8 @@
 //! `stead schema`: the JSON Schema of a kind of file or document, to standard output.
 
+use super::Failure;
 use super::manual::Manual;
-use super::{Failure, print};
+use super::output::print;
 use clap::Args;
 
 #[derive(Debug, Args)]

@@ -1,9 +1,10 @@
 //! `stead score`: one given placement.
 
+use super::Failure;
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
-use super::progress::Terminal;
-use super::{Failure, files_written, left_in, more, on_threads, print, print_json, say_notes, say_warnings, show};
+use super::output::{files_written, left_in, more, print, print_json, say_notes, say_warnings, show};
+use super::progress::{Terminal, on_threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::Error;

@@ -1,9 +1,10 @@
 //! `stead simulate`: a pass with an arm that yields, then files, then a text.
 
+use super::Failure;
 use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
+use super::output::{out_folder, results_in, say_notes, say_warnings};
 use super::progress::Terminal;
-use super::{Failure, out_folder, results_in, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::SimulationRun;

@@ -1,10 +1,11 @@
 //! `stead stability`: whether a cut chatters, then files, then a text.
 
+use super::Failure;
 use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
-use super::progress::Terminal;
+use super::output::{out_folder_named, results_in, say_notes, say_warnings};
+use super::progress::{Terminal, on_threads};
 use super::values::threads;
-use super::{Failure, on_threads, out_folder_named, results_in, say_notes, say_warnings};
 use clap::Args;
 use std::path::PathBuf;
 use stead::StabilityRun;

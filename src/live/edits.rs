@@ -1,11 +1,11 @@
 //! Other values of the run file, and the file that holds them.
 
 use super::place::{Place, shown};
+use super::reading::Reading;
 use super::requests::RequestError;
-use super::session::{Reading, Session};
 use crate::Run;
 use crate::files::FieldOverride;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stead_disk::Existing;
 use stead_disk::files::new::write_new;
 use stead_model::external_axis::AxisKind;
@@ -35,7 +35,8 @@ pub(super) fn allowed(text: &str) -> Result<FieldOverride, RequestError> {
 /// # Errors
 /// [`RequestError`]: the name is none, the file is there, or no run file says the same.
 pub(super) fn save(
-    session: &Session,
+    run_file: &Path,
+    given: &[FieldOverride],
     reading: &Reading,
     name: &str,
     place: Option<&Place>,
@@ -45,14 +46,14 @@ pub(super) fn save(
     if named.trim().is_empty() || !is_plain {
         return Err(RequestError::new("name", format!("is no name of a file, found {name}"), "a name without folders"));
     }
-    let file = session.file.with_file_name(format!("{named}.toml"));
+    let file = run_file.with_file_name(format!("{named}.toml"));
     if file.exists() {
         let problem = format!("{} is there already", file.display());
         return Err(RequestError::new("name", problem, "a name that no file has yet"));
     }
     let refused = |error: &dyn std::fmt::Display| RequestError::of_file("name", error);
-    let text = std::fs::read_to_string(&session.file).map_err(|error| refused(&error))?;
-    let text = composed(&text, session.given.iter().chain(&reading.edits), place.map(|place| (reading, place)))?;
+    let text = std::fs::read_to_string(run_file).map_err(|error| refused(&error))?;
+    let text = composed(&text, given.iter().chain(&reading.edits), place.map(|place| (reading, place)))?;
     write_new(&file, &text, Existing::Kept).map_err(|error| refused(&error))?;
     if let Err(error) = Run::read(&file) {
         // It is ours, and of no use.

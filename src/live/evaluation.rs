@@ -2,8 +2,9 @@
 
 use super::newest::Outcome;
 use super::place::Place;
+use super::reading::Reading;
 use super::requests::{Body, RequestError};
-use super::session::{Reading, Session};
+use super::session::Session;
 use crate::{Error, Run};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -17,28 +18,19 @@ const MAP_PART: Duration = Duration::from_millis(60);
 /// Columns of a map that are computed side by side.
 const SIDE_BY_SIDE: usize = 8;
 
-/// A placement that a page asks about.
-#[derive(Debug)]
-pub(super) struct Asked {
-    /// The number that the page gives to the request.
-    pub id: usize,
-    pub place: Place,
-    pub reading: Arc<Reading>,
-}
-
-impl Asked {
-    /// An answer with what it is about.
-    fn about(&self, mut answer: Value) -> Value {
-        let problem = self.reading.run.problem();
-        answer["id"] = self.id.into();
-        answer["version"] = self.reading.version.into();
-        answer["place"] = self.place.entry(problem);
-        answer["outside_cell"] = self.reading.run.outside_cell(&self.place.placement).into();
-        answer
-    }
-}
-
 impl Session {
+    /// Answers what pages ask of placements until [`close`](Self::close), in two threads that are returned.
+    ///
+    /// # Errors
+    /// [`Error::Failed`] when the system gives no threads.
+    pub fn start(self: &Arc<Self>) -> Result<Vec<std::thread::JoinHandle<()>>, Error> {
+        let spawn = |name: &str, work: fn(&Self)| {
+            let session = Arc::clone(self);
+            std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&session)).map_err(Error::failed)
+        };
+        Ok(vec![spawn("previews", Self::answer_previews)?, spawn("wholes", Self::answer_wholes)?])
+    }
+
     /// Answers previews until the session ends. Planner and tables are kept as long as the setup stays.
     pub(super) fn answer_previews(&self) {
         let mut first = self.previews.next();

@@ -1,21 +1,17 @@
-//! Long jobs, one at a time: they go on when their page has gone, end early when they are asked to, and keep what they
+//! What long jobs do: they go on when their page has gone, end early when they are asked to, and keep what they
 //! have found.
 
-use super::pins::Pin;
+use super::pins::{NAME, Pin};
 use super::place::Place;
+use super::reading::Reading;
 use super::requests::{Body, RequestError};
-use super::session::{Reading, Session};
+use super::running::Ended;
+use super::session::Session;
 use crate::program::{ExportOptions, ProgramFormat};
-use crate::progress::{Described, locked};
 use crate::{Error, Monitor, Run};
 use serde_json::{Value, json};
-use std::collections::VecDeque;
-use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
-use std::time::Instant;
-use stead_certify::{Forecast, Outlook};
+use std::sync::Arc;
 use stead_disk::Existing;
-use stead_numerics::monitor::{Progress, StopHandle};
 use stead_placement::place::{improve, setup_at};
 use stead_problem::settings::CertificateSettings;
 use stead_report::certificate::{certificate_json, certificate_text};
@@ -24,8 +20,6 @@ use stead_report::units::{Unit, fixed};
 
 /// What a certificate is called, with a number between.
 const CERTIFICATE: [&str; 2] = ["certificate-", ".json"];
-/// Jobs that have ended and are still told of.
-const TOLD: usize = 16;
 
 /// What can be done in the background.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,150 +61,6 @@ impl Kind {
     }
 }
 
-/// The job that runs and those that have ended.
-#[derive(Debug, Default)]
-pub(super) struct Jobs {
-    list: Mutex<List>,
-    /// The page of the placement that is scored now, and what stops it when the page moves on.
-    whole: Mutex<Option<(String, StopHandle)>>,
-}
-
-#[derive(Debug, Default)]
-struct List {
-    begun: usize,
-    running: Option<Running>,
-    ended: VecDeque<Value>,
-    is_closed: bool,
-    thread: Option<JoinHandle<()>>,
-}
-
-/// What a job reported last, and when a certificate will be there as far as it can be told.
-type Latest = (Progress, Option<Outlook>);
-
-#[derive(Debug)]
-struct Running {
-    id: usize,
-    name: &'static str,
-    page: String,
-    begun: Instant,
-    stop: StopHandle,
-    is_stopping: bool,
-    latest: Arc<Mutex<Option<Latest>>>,
-}
-
-/// What a job comes to.
-struct Ended {
-    /// In sentences.
-    said: Vec<String>,
-    /// A placement that pages may go to.
-    place: Option<Value>,
-    /// The name of the folder that keeps it.
-    pin: Option<String>,
-}
-
-impl Jobs {
-    /// A monitor for the placement of a page that is scored now.
-    pub fn whole_begins(&self, page: &str) -> Monitor {
-        let monitor = Monitor::silent().for_all_or_nothing();
-        *locked(&self.whole) = Some((page.to_owned(), monitor.stop_handle()));
-        monitor
-    }
-
-    /// A page has moved on: what is scored for it is not wanted any more.
-    pub fn outdate(&self, page: &str) {
-        if let Some((_, stop)) = locked(&self.whole).as_ref().filter(|(asked, _)| asked == page) {
-            stop.stop();
-        }
-    }
-
-    /// Stops what runs, and waits for what it keeps.
-    pub fn close(&self) {
-        let thread = {
-            let mut list = locked(&self.list);
-            list.is_closed = true;
-            list.running.iter_mut().for_each(Running::stop);
-            list.thread.take()
-        };
-        if let Some((_, stop)) = locked(&self.whole).as_ref() {
-            stop.stop();
-        }
-        // A thread that has failed has nothing left to write.
-        drop(thread.map(JoinHandle::join));
-    }
-
-    /// The job that runs and those that have ended, the last one last.
-    pub fn state(&self) -> Value {
-        let list = locked(&self.list);
-        let running = list.running.as_ref().map(Running::entry);
-        json!({ "running": running, "ended": list.ended })
-    }
-
-    fn begin(&self, name: &'static str, page: String) -> Result<(usize, Monitor), RequestError> {
-        let mut list = locked(&self.list);
-        if let Some(running) = &list.running {
-            let problem = format!("waits: `{}` is running", running.name);
-            return Err(RequestError::new("job", problem, "one job at a time: stop it, or wait until it has ended"));
-        }
-        if list.is_closed {
-            return Err(RequestError::new("job", "cannot begin: the session ends", "another session"));
-        }
-        list.begun += 1;
-        let latest: Arc<Mutex<Option<Latest>>> = Arc::default();
-        let seen = Arc::clone(&latest);
-        let (forecast, begun) = (Mutex::<Forecast>::default(), Instant::now());
-        let monitor = Monitor::new(move |progress| {
-            let outlook = locked(&forecast).add(progress, begun.elapsed());
-            *locked(&seen) = Some((*progress, outlook));
-        });
-        let (id, stop) = (list.begun, monitor.stop_handle());
-        list.running = Some(Running { id, name, page, begun, stop, is_stopping: false, latest });
-        Ok((id, monitor))
-    }
-
-    fn end(&self, ended: Result<Ended, String>) {
-        let mut list = locked(&self.list);
-        let Some(running) = list.running.take() else { return };
-        let mut entry =
-            json!({ "id": running.id, "name": running.name, "page": running.page, "was_stopped": running.is_stopping });
-        match ended {
-            Ok(Ended { said, place, pin }) => {
-                entry["said"] = said.into();
-                entry["place"] = place.unwrap_or_default();
-                entry["pin"] = pin.into();
-            }
-            Err(error) => entry["error"] = error.into(),
-        }
-        list.ended.push_back(entry);
-        if list.ended.len() > TOLD {
-            list.ended.pop_front();
-        }
-    }
-}
-
-impl Running {
-    fn stop(&mut self) {
-        self.stop.stop();
-        self.is_stopping = true;
-    }
-
-    fn entry(&self) -> Value {
-        let described = locked(&self.latest).as_ref().map(|(progress, outlook)| Described::of(progress, *outlook));
-        let (stage, steps, message) = described
-            .map_or(("", None, String::new()), |described| (described.stage, described.steps, described.message));
-        json!({
-            "id": self.id,
-            "name": self.name,
-            "page": self.page,
-            "seconds": self.begun.elapsed().as_secs(),
-            "is_stopping": self.is_stopping,
-            "stage": stage,
-            "done": steps.map(|(done, _)| done),
-            "total": steps.map(|(_, total)| total),
-            "message": message,
-        })
-    }
-}
-
 impl Session {
     /// Begins a job.
     ///
@@ -232,7 +82,7 @@ impl Session {
             session.jobs.end(ended.and_then(|ended| ended.map_err(|error| error.to_string())));
         };
         match std::thread::Builder::new().name("job".to_owned()).spawn(work) {
-            Ok(thread) => locked(&self.jobs.list).thread = Some(thread),
+            Ok(thread) => self.jobs.runs_in(thread),
             Err(error) => self.jobs.end(Err(error.to_string())),
         }
         Ok(json!({ "id": id }))
@@ -240,7 +90,7 @@ impl Session {
 
     /// Asks the job that runs to end with what it has.
     pub fn stop(&self) -> Value {
-        locked(&self.jobs.list).running.iter_mut().for_each(Running::stop);
+        self.jobs.stop();
         self.jobs.state()
     }
 
@@ -329,11 +179,15 @@ impl Session {
         let mut score = reading.run.in_setup(&place.setup).score(&place.placement, monitor)?;
         score.map(monitor);
         score.make_sheet(monitor);
-        let (pin, unkept) = Pin::write(self, reading, &score, label)?;
+        let name = format!("{NAME}{}", self.next_number(NAME, ""));
+        score.write(self.folder.path().join(&name))?;
+        self.known().pins.push(Pin::new(&name, label, &reading.edits, &score.to_json()));
+        // What the folder does not hold may be lost.
+        let unkept = self.keep_state();
         let mean = Unit::DEFLECTION_MM.text(score.score().plans.best.mean);
-        said.push(format!("mean {mean} mm, kept in {}", self.folder.path().join(&pin).display()));
+        said.push(format!("mean {mean} mm, kept in {}", self.folder.path().join(&name).display()));
         said.extend(unkept);
-        Ok(Ended { said, place: Some(place.entry(reading.run.problem())), pin: Some(pin) })
+        Ok(Ended { said, place: Some(place.entry(reading.run.problem())), pin: Some(name) })
     }
 
     fn certify(&self, gap: f64, reading: &Reading, place: &Place, monitor: &Monitor) -> Result<Ended, Error> {

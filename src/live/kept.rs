@@ -1,18 +1,17 @@
-//! What a session keeps in its folder for the next one, and the numbers of what it writes there.
+//! What an earlier session has kept in its folder, and the numbers of what is there.
 
-use super::session::{Known, Session};
-use super::{edits, pins::Pin, place::Place};
+use super::{edits, place::Place};
 use crate::Error;
 use crate::files::FieldOverride;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::io::ErrorKind;
 use std::path::Path;
 use stead_disk::files;
 use stead_problem::problem::Problem;
-use stead_report::{Folder, document};
+use stead_report::Folder;
 
 /// The file of a session beside its placements.
-const FILE: &str = "live.json";
+pub(super) const FILE: &str = "live.json";
 /// What one that is not readable is kept as, with a number between.
 const ASIDE: [&str; 2] = ["live-unreadable-", ".json"];
 
@@ -64,42 +63,6 @@ impl Kept {
     /// The last number of each kind of what was written.
     pub fn numbers(&self) -> Map<String, Value> {
         self.0.get("numbers").and_then(Value::as_object).cloned().unwrap_or_default()
-    }
-}
-
-impl Known {
-    fn kept(&self) -> Value {
-        json!({
-            "place": self.place.entry(self.reading.run.problem()),
-            "edits": self.reading.edits.iter().map(ToString::to_string).collect::<Vec<_>>(),
-            "pins": self.pins.iter().map(Pin::kept).collect::<Vec<_>>(),
-            "numbers": self.numbers,
-        })
-    }
-}
-
-impl Session {
-    /// Writes what is to be there again when the folder is opened by another session. That it cannot be written is
-    /// returned, and said when a placement is kept.
-    pub(super) fn keep_state(&self) -> Option<String> {
-        let written = self.folder.write(FILE, &document::bytes(&self.known().kept()));
-        written.err().map(|error| format!("warning: a later session will not know names and changed values: {error}"))
-    }
-
-    /// The number of the next file or folder with such a name: none that there is, and none that there was, so that
-    /// what has been written down of one stays true of it.
-    pub(super) fn next_number(&self, before: &str, behind: &str) -> u64 {
-        let there = numbers_in(self.folder(), before, behind).last().copied().unwrap_or(0);
-        let number = {
-            let mut known = self.known();
-            let was = known.numbers.get(before).and_then(Value::as_u64).unwrap_or(0);
-            let number = there.max(was).saturating_add(1);
-            known.numbers.insert(before.to_owned(), number.into());
-            number
-        };
-        // What follows says it.
-        let _ = self.keep_state();
-        number
     }
 }
 

@@ -16,8 +16,10 @@ mod kept;
 mod newest;
 mod pins;
 mod place;
+mod reading;
 mod requests;
 mod routes;
+mod running;
 mod server;
 mod session;
 #[cfg(test)]

@@ -2,9 +2,7 @@
 
 use super::edits;
 use super::kept::{Kept, numbers_in, strings};
-use super::session::{Reading, Session};
 use crate::files::FieldOverride;
-use crate::{Error, PlacementScore};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use stead_disk::files;
@@ -53,27 +51,10 @@ impl Pin {
         numbers.into_iter().filter_map(read).collect()
     }
 
-    /// Writes a placement that was scored into a folder of its own; returns its name, and a warning where what the
-    /// folder does not hold could not be kept.
-    ///
-    /// # Errors
-    /// [`Error::Output`]: the folder cannot be written.
-    pub fn write(
-        session: &Session,
-        reading: &Reading,
-        score: &PlacementScore,
-        label: &str,
-    ) -> Result<(String, Option<String>), Error> {
-        let name = format!("{NAME}{}", session.next_number(NAME, ""));
-        score.write(session.folder.path().join(&name))?;
-        let pin = Self {
-            name: name.clone(),
-            label: label.to_owned(),
-            edits: reading.edits.iter().map(ToString::to_string).collect(),
-            document: shown(&score.to_json()),
-        };
-        session.known().pins.push(pin);
-        Ok((name, session.keep_state()))
+    /// One whose folder has been written, by its `score.json`.
+    pub fn new(name: &str, label: &str, edits: &[FieldOverride], document: &Value) -> Self {
+        let edits = edits.iter().map(ToString::to_string).collect();
+        Self { name: name.to_owned(), label: label.to_owned(), edits, document: shown(document) }
     }
 
     /// As the page has it.

@@ -1,21 +1,20 @@
 //! A run that is tried out, and the folder that keeps what is found.
 
 use super::edits;
-use super::evaluation::Asked;
-use super::jobs::Jobs;
-use super::kept::Kept;
+use super::kept::{FILE, Kept, numbers_in};
 use super::newest::{Newest, Outcome};
 use super::pins::Pin;
 use super::place::Place;
+use super::reading::{Asked, Reading};
 use super::requests::{Body, RequestError};
+use super::running::Jobs;
 use crate::files::FieldOverride;
 use crate::{Error, Monitor, Run};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use stead_report::Folder;
 use stead_report::page::live::LivePage;
-use stead_report::placement::Context;
+use stead_report::{Folder, document};
 
 /// What a session begins with.
 #[derive(Debug, Clone, Default)]
@@ -27,24 +26,6 @@ pub struct LiveOptions {
     /// A results folder of `stead place` and a case of it, with the placement to begin at: that of the last session in
     /// the same folder where there is none, else the middle of the cell.
     pub placement_of: Option<(PathBuf, u8)>,
-}
-
-/// A run as it is read with the values that were changed last.
-#[derive(Debug)]
-pub(super) struct Reading {
-    /// Raised with every change.
-    pub version: u64,
-    pub run: Run,
-    pub context: Context,
-    /// Values in place of those of the file, changed in the session.
-    pub edits: Vec<FieldOverride>,
-}
-
-impl Reading {
-    pub(super) fn new(version: u64, run: Run, edits: Vec<FieldOverride>) -> Self {
-        let context = Context::new(&run.run, run.run.search);
-        Self { version, run, context, edits }
-    }
 }
 
 /// A run that is tried out: what pages ask is answered, and what they keep is written into a folder that no other
@@ -145,18 +126,6 @@ impl Session {
 
     pub(super) fn reading(&self) -> Arc<Reading> {
         Arc::clone(&self.known().reading)
-    }
-
-    /// Answers what pages ask of placements until [`close`](Self::close), in two threads that are returned.
-    ///
-    /// # Errors
-    /// [`Error::Failed`] when the system gives no threads.
-    pub fn start(self: &Arc<Self>) -> Result<Vec<std::thread::JoinHandle<()>>, Error> {
-        let spawn = |name: &str, work: fn(&Self)| {
-            let session = Arc::clone(self);
-            std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&session)).map_err(Error::failed)
-        };
-        Ok(vec![spawn("previews", Self::answer_previews)?, spawn("wholes", Self::answer_wholes)?])
     }
 
     /// Ends the session: jobs end with what they have, and keep it.
@@ -272,8 +241,42 @@ impl Session {
         let body = Body::read(body)?;
         let reading = self.reading();
         let place = if body.is_on("is_placement")? { Some(body.place(reading.run.problem())?) } else { None };
-        let file = edits::save(self, &reading, body.text("name")?, place.as_ref())?;
+        let file = edits::save(&self.file, &self.given, &reading, body.text("name")?, place.as_ref())?;
         Ok(json!({ "file": file.display().to_string() }))
+    }
+
+    /// Writes what is to be there again when the folder is opened by another session. That it cannot be written is
+    /// returned, and said when a placement is kept.
+    pub(super) fn keep_state(&self) -> Option<String> {
+        let written = self.folder.write(FILE, &document::bytes(&self.known().kept()));
+        written.err().map(|error| format!("warning: a later session will not know names and changed values: {error}"))
+    }
+
+    /// The number of the next file or folder with such a name: none that there is, and none that there was, so that
+    /// what has been written down of one stays true of it.
+    pub(super) fn next_number(&self, before: &str, behind: &str) -> u64 {
+        let there = numbers_in(self.folder(), before, behind).last().copied().unwrap_or(0);
+        let number = {
+            let mut known = self.known();
+            let was = known.numbers.get(before).and_then(Value::as_u64).unwrap_or(0);
+            let number = there.max(was).saturating_add(1);
+            known.numbers.insert(before.to_owned(), number.into());
+            number
+        };
+        // What follows says it.
+        let _ = self.keep_state();
+        number
+    }
+}
+
+impl Known {
+    fn kept(&self) -> Value {
+        json!({
+            "place": self.place.entry(self.reading.run.problem()),
+            "edits": self.reading.edits.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "pins": self.pins.iter().map(Pin::kept).collect::<Vec<_>>(),
+            "numbers": self.numbers,
+        })
     }
 }
 

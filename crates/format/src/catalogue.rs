@@ -1,7 +1,7 @@
 //! The arms that stead ships with: robot files that are part of the program, named `name:kuka-kr270-2` where a file is
 //! requested.
 
-use crate::robot::{RobotFile, geometry_from, has_stiffness};
+use crate::robot::{JointRow, RobotFile, geometry_from};
 use crate::shipped::{ARMS, PREFIX, text};
 use crate::toml_file::{TomlFile, without_schema};
 use std::path::Path;
@@ -34,7 +34,7 @@ fn shipped_arm(name: &'static str) -> Result<ShippedArm, InputError> {
     Ok(ShippedArm {
         name,
         robot: geometry_from(&source)?,
-        has_stiffness: file.joints.iter().all(has_stiffness),
+        has_stiffness: file.joints.iter().all(JointRow::has_stiffness),
         has_dynamics: file.joints.iter().all(|row| row.mass_kg.is_some()),
         source: file.source,
     })

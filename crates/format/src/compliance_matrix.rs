@@ -5,7 +5,7 @@
 //! urad/N, urad/N and urad/(N m). A 3x3 answers a force by displacement, in um/N.
 
 use crate::place::Place;
-use crate::shapes::{Array, Matrix, Vector};
+use crate::shapes::{Array, Matrix, SEMIDEFINITE, Vector};
 use crate::units::{Mm, Number};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use schemars::JsonSchema;
@@ -78,10 +78,6 @@ pub(crate) fn wrench_matrix(rows: &WrenchMatrix, at: &Place<'_>) -> Result<Matri
 pub(crate) fn force_matrix(rows: &Matrix, at: &Place<'_>) -> Result<Matrix3<f64>, InputError> {
     checked(rows.matrix() * MICRO).map_err(|error| located(at, &error))
 }
-
-/// What a matrix may not be below, in words.
-pub(crate) const SEMIDEFINITE: &str =
-    "a positive semidefinite matrix: no load is answered against its own direction (no eigenvalue below 0)";
 
 /// A broken rule of a matrix, at its line of the file.
 fn located(at: &Place<'_>, error: &MatrixError) -> InputError {

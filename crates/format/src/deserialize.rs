@@ -5,7 +5,7 @@
 //! missing key is refused with what its type expects; keys that the type does not declare are refused with the nearest
 //! one that it does.
 
-use crate::place::Place;
+use crate::place::{Place, number};
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, Deserializer, Error, Expected, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::fmt;
@@ -124,16 +124,6 @@ impl<'a> Node<'a> {
             .allowed(keys.join(", "))
             .into())
     }
-}
-
-/// The finite number that a value holds, whole or not.
-pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
-    let number = match value {
-        DeValue::Float(float) => float.as_str().parse().ok()?,
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok()? as f64,
-        _ => return None,
-    };
-    f64::is_finite(number).then_some(number)
 }
 
 const NOT_FINITE: &str = "is not a finite number";

@@ -29,6 +29,7 @@
 use crate::deserialize::Node;
 use crate::field::{FieldOverride, FieldOverrides, put, shifted};
 use crate::file_kind::FileKind;
+use crate::mesh::{MESH, MeshUnit};
 use crate::place::Place;
 use crate::shipped;
 use crate::sources::Sources;
@@ -36,6 +37,7 @@ use crate::toml_file::TomlFile;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stead_cell::TriangleMesh;
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
 use stead_disk::quote::shorten;
@@ -164,6 +166,16 @@ impl Place<'_> {
         let source = file.toml()?;
         let input = input_file(role, file.name, source.bytes());
         Ok((source, input))
+    }
+
+    /// The mesh of the file named here, as [`Place::named_file`], and its entry among the files that a result came from.
+    ///
+    /// # Errors
+    /// As [`Place::named_file`], and [`InputError`] for a file that is no mesh.
+    pub(crate) fn named_mesh(&self, unit: MeshUnit) -> Result<(Arc<TriangleMesh>, InputFile), InputError> {
+        let file = self.named_file()?;
+        let mesh = file.sources.mesh(&file.file, &file.bytes, unit)?;
+        Ok((mesh, input_file(MESH, file.name, &file.bytes)))
     }
 
     /// Where a file lies that is named here, relative to the folder of this one or of what put the value there.

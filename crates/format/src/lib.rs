@@ -41,6 +41,7 @@ pub mod toml_file;
 pub mod tool;
 pub mod units;
 pub mod urdf;
+pub mod written;
 
 pub use robot::{covariance, read_geometry, read_robot};
 pub use tool::MAX_SPINDLE_SPEED_RPM;

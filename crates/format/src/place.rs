@@ -1,6 +1,5 @@
 //! A place in a TOML file where a value is, or would be: what errors are located by.
 
-use crate::deserialize::number;
 use crate::quantity::Expects;
 use crate::toml_file::TomlFile;
 use stead_disk::input::InputError;
@@ -108,6 +107,16 @@ impl<'a> Place<'a> {
     pub fn out_of_range(&self, allowed: impl Into<String>) -> InputError {
         self.error("is out of range", allowed)
     }
+}
+
+/// The finite number that a value holds, whole or not.
+pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
+    let number = match value {
+        DeValue::Float(float) => float.as_str().parse().ok()?,
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok()? as f64,
+        _ => return None,
+    };
+    f64::is_finite(number).then_some(number)
 }
 
 /// The value of an optional key of a table that is needed all the same: `required!(place of the table, table.key)`.

@@ -96,11 +96,11 @@ impl<U: Unit, R: Range> Quantity<U, R> {
 }
 
 /// What a range allows, in words, of one number or of several.
-fn in_words((from, to): (Bound<f64>, Bound<f64>), is_one: bool) -> String {
+fn in_words(ends: (Bound<f64>, Bound<f64>), is_one: bool) -> String {
     let noun = if is_one { "number" } else { "numbers" };
     let finite = format!("{}finite {noun}", if is_one { "a " } else { "" });
     let any = finite.replace("finite ", "");
-    match (from, to) {
+    match ends {
         (Unbounded, Unbounded) => finite,
         (Excluded(0.0), Unbounded) => format!("{} above 0", if is_one { &finite } else { &any }),
         (Included(from), Unbounded) => format!("{finite} not below {}", plain(from)),

@@ -17,6 +17,10 @@ pub type Vector<Q> = Array<Q, 3>;
 /// Three rows of three numbers.
 pub type Matrix = Array<Array<Number, 3>, 3>;
 
+/// What a matrix may not be below, in words.
+pub(crate) const SEMIDEFINITE: &str =
+    "a positive semidefinite matrix: no load is answered against its own direction (no eigenvalue below 0)";
+
 impl<U: Unit, R: Range, const N: usize> Array<Quantity<U, R>, N> {
     /// The numbers in SI units and radians.
     pub fn si(self) -> [f64; N] {

@@ -4,8 +4,8 @@ mod lean;
 
 pub use lean::{LEAN, PointLean};
 
-use crate::compliance_matrix::SEMIDEFINITE;
 use crate::file_kind::FileKind;
+use crate::shapes::SEMIDEFINITE;
 use lean::LeanColumns;
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;

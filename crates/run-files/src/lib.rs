@@ -26,6 +26,7 @@ pub mod fuzzing;
 mod guesses;
 pub mod identify;
 pub mod init;
+mod kind;
 #[cfg(test)]
 mod plan_tests;
 pub mod published_tables;
@@ -40,8 +41,6 @@ mod testing;
 #[cfg(test)]
 mod whole_arm_tests;
 
-use stead_disk::input::InputError;
-
 pub use assess::read_assessment;
 pub use compensate::read_compensation;
 pub use forces::read_forces;
@@ -49,19 +48,6 @@ pub use identify::{read_identification, read_plan};
 pub use run::{GAPS_ALLOWED, read_run, read_run_with};
 pub use simulation::{MAX_DAMPING_SCALE, Overrides, read_simulation, read_stability};
 pub use study::read_study;
-
-/// An unknown key of a table, where the file itself has a key of this name: that it stands above the first table.
-pub(crate) fn at_the_top<T: schemars::JsonSchema>(error: InputError) -> InputError {
-    let key = error.field.as_deref().and_then(|field| field.rsplit_once('.')).map(|(_, key)| key.to_owned());
-    let Some(key) = key.filter(|_| error.problem.starts_with("unknown key")) else { return error };
-    let file = schemars::schema_for!(T);
-    let is_known = file.get("properties").and_then(|keys| keys.get(&key)).is_some();
-    if !is_known {
-        return error;
-    }
-    let allowed = format!("{key} at the top of the file, above its first table");
-    InputError { problem: "is a key of the file, not of this table".into(), allowed: Some(allowed.into()), ..error }
-}
 
 /// The vocabulary of the words in the files of this crate ([`stead_format::scalars::Words`]).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,9 @@
 
 pub(super) mod plan;
 
+use super::Failure;
+use super::output::{out_folder, results_in, say_notes};
 use super::progress::Terminal;
-use super::{Failure, out_folder, results_in, say_notes};
 use crate::cli::manual::{Manual, STOPPED};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;

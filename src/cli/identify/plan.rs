@@ -1,7 +1,8 @@
 //! `stead identify plan`: the measurements to take.
 
-use super::super::progress::Terminal;
-use super::super::{Failure, on_threads, out_folder, say_notes};
+use super::super::Failure;
+use super::super::output::{out_folder, say_notes};
+use super::super::progress::{Terminal, on_threads};
 use crate::cli::manual::{Manual, STOPPED};
 use crate::cli::values::{seed, threads};
 use clap::Args;

@@ -1,8 +1,9 @@
 //! `stead import path`: a task file from a tool path of a CAM system.
 
+use super::super::Failure;
 use super::super::given::Force;
+use super::super::output::{print, say_notes};
 use super::super::values::{finite, positive};
-use super::super::{Failure, print, say_notes};
 use crate::cli::manual::Manual;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};

@@ -1,8 +1,9 @@
 //! `stead import robot`: a robot file from a URDF.
 
+use super::super::Failure;
 use super::super::given::Force;
+use super::super::output::{print, say_notes};
 use super::super::values::{Home, controller, home};
-use super::super::{Failure, print, say_notes};
 use crate::cli::manual::Manual;
 use clap::Args;
 use std::path::PathBuf;

@@ -1,10 +1,11 @@
 //! `stead study report`: what a study says.
 
-use super::{folder, read};
+use super::read::{folder, read};
+use crate::cli::Failure;
 use crate::cli::manual::Manual;
+use crate::cli::output::{files_written, print, print_json, results_in};
 use crate::cli::progress::Terminal;
 use crate::cli::values::noise;
-use crate::cli::{Failure, files_written, print, print_json, results_in};
 use clap::Args;
 use std::path::PathBuf;
 use stead::study::StudyQuestion;

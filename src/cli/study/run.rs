@@ -1,10 +1,11 @@
 //! `stead study run`: what is left to do of a study, or of a shard of it.
 
-use super::{counted_cases, folder, read, say_stale};
+use super::read::{counted_cases, folder, read, say_stale};
+use crate::cli::Failure;
 use crate::cli::manual::Manual;
-use crate::cli::progress::Terminal;
+use crate::cli::output::{print, say};
+use crate::cli::progress::{Terminal, on_threads};
 use crate::cli::values::{shard, threads};
-use crate::cli::{Failure, on_threads, print, say};
 use clap::Args;
 use std::path::PathBuf;
 use stead::study::Shard;

@@ -1,10 +1,11 @@
 //! `stead study slurm`: the script of a Slurm array.
 
-use super::{folder, read};
+use super::read::{folder, read};
+use crate::cli::Failure;
 use crate::cli::manual::Manual;
+use crate::cli::output::print;
 use crate::cli::progress::Terminal;
 use crate::cli::values::{shards, threads};
-use crate::cli::{Failure, print};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stead::study::slurm_script;

@@ -1,9 +1,10 @@
 //! `stead study status`: how far a study is.
 
-use super::{folder, read, say_stale};
+use super::read::{folder, read, say_stale};
+use crate::cli::Failure;
 use crate::cli::manual::Manual;
+use crate::cli::output::{print, print_json, say};
 use crate::cli::progress::Terminal;
-use crate::cli::{Failure, print, print_json, say};
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;

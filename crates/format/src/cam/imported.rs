@@ -3,7 +3,8 @@
 use super::refusals::*;
 use super::segments::{Counts, Point, Resampling, Segments, angle, expected_points, segments};
 use super::tool::{self, ProgramTool, Use};
-use super::{CamFormat, Found, Move, Program, rounded};
+use super::units::rounded;
+use super::{CamFormat, Found, Move, Program};
 use crate::task::parse_csv;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

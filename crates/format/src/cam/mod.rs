@@ -26,6 +26,7 @@ mod segments;
 #[cfg(test)]
 mod tests;
 mod tool;
+mod units;
 
 pub use cldata::CamFormat;
 pub use imported::ImportedPath;
@@ -33,6 +34,7 @@ pub use refusals::{GUESSES as TOOL_GUESSES, guessed_keys};
 pub use segments::Resampling;
 pub use tool::ProgramTool;
 pub use tool::file_beside;
+pub use units::LengthUnit;
 
 use crate::file_kind::FileKind;
 use gcode::Machine;
@@ -44,33 +46,6 @@ use stead_disk::input::{InputError, input_file};
 
 /// No coordinate is larger than this: a wrong unit, or no coordinate at all. m
 const LARGEST: f64 = 100.0;
-
-/// A unit of length of a program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LengthUnit {
-    /// Millimetres.
-    Millimetre,
-    /// Inches.
-    Inch,
-}
-
-impl LengthUnit {
-    /// Its length. m
-    pub fn metres(self) -> f64 {
-        match self {
-            Self::Millimetre => 1e-3,
-            Self::Inch => 25.4e-3,
-        }
-    }
-
-    /// Both with their names as options and keys have them.
-    pub const WORDS: [(&'static str, Self); 2] = [("mm", Self::Millimetre), ("inch", Self::Inch)];
-
-    /// Its name as an option has it.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
-    }
-}
 
 /// How a program is read.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -233,14 +208,4 @@ pub(crate) fn format_of(text: &str) -> Option<CamFormat> {
             gcode::foreign(line).map(|_| CamFormat::Gcode)
         }
     })
-}
-
-/// The word of a value.
-fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: T) -> &'static str {
-    words.iter().find(|(_, known)| *known == value).map_or("", |(word, _)| word)
-}
-
-/// A number without the digits that its unit has brought in.
-fn rounded(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
 }

@@ -1,8 +1,9 @@
 //! The cutter of a program, as far as it is described there, as tables of a run file.
 
+use super::Program;
 use super::refusals::{GUESSES, NOT_THE_SHAPE, ONE_ENGAGEMENT, guessed_keys};
-use super::{Program, rounded};
-use crate::toml_file::commented;
+use super::units::rounded;
+use crate::written::commented;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use stead_disk::quote::shorten;

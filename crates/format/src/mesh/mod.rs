@@ -36,6 +36,9 @@ impl MeshUnit {
     }
 }
 
+/// The role of mesh files among the inputs of a run.
+pub const MESH: &str = "mesh";
+
 /// Endings of the names of mesh files that are read.
 pub(crate) const ENDINGS: [&str; 3] = ["stl", "obj", "dae"];
 

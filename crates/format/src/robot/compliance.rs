@@ -13,6 +13,13 @@ pub(super) const COMPENSATOR: &str = "compensator";
 const WAYS: &str = "measure it (stead identify plan, from a rough value), or take that of a shipped arm \
                     (stiffness_like in the run file, stead import robot --stiffness-like)";
 
+impl JointRow {
+    /// Whether the row states its stiffness.
+    pub(crate) fn has_stiffness(&self) -> bool {
+        self.stiffness_mnm_per_rad.is_some() || self.compliance_urad_per_nm.is_some()
+    }
+}
+
 /// The law of a joint, from whichever of its three keys are given.
 pub(super) fn compliance_from(joint: &JointRow, at: &Place<'_>) -> Result<Compliance, InputError> {
     let alone = match (joint.stiffness_mnm_per_rad, joint.compliance_urad_per_nm) {

@@ -1,7 +1,6 @@
 //! What moves with the joints of a robot file: masses, damping, play, and stiffness normal to the axes.
 
 use super::file::JointRow;
-use super::robot_from;
 use super::springs::{ORTHOGONAL_COMPLIANCE, ORTHOGONAL_STIFFNESS};
 use crate::inertial::{CENTRE, INERTIA, MASS, inertial_from};
 use crate::place::{Place, required};
@@ -60,16 +59,7 @@ fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<JointDynamics, InputErro
     })
 }
 
-/// As [`robot_from`], for a robot whose motion is to be computed; with `orthogonal`, in directions normal to its axes
-/// too.
-///
-/// # Errors
-/// Those of [`robot_from`], and [`InputError`] at the first joint whose row says too little, naming what is missing.
-pub fn moving_robot_from(source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
-    checked_to_move(robot_from(source)?, source, orthogonal)
-}
-
-/// The robot read from `source`, if its rows say enough for its motion to be computed, as [`moving_robot_from`] has it.
+/// The robot read from `source`, if its rows say enough for its motion to be computed, as [`moving_robot_from`](super::moving_robot_from) has it.
 ///
 /// # Errors
 /// [`InputError`] at the first joint whose row says too little, naming what is missing.

@@ -1,7 +1,6 @@
 //! The joint stiffness of a shipped arm, for another arm that states none.
 
 use super::file::{JointRow, RobotFile};
-use super::has_stiffness;
 use super::one_or_range::OneOrRange;
 use crate::shipped::{PREFIX, by_name, names_near};
 use crate::toml_file::TomlFile;
@@ -26,7 +25,7 @@ pub(crate) fn lender(name: &str) -> Result<(RobotFile, InputFile), NoLender> {
     let text = by_name(bare).ok_or_else(|| no("is no shipped arm", names_near(bare)))?;
     let read = TomlFile::new(Path::new(name), text.as_bytes().to_vec()).and_then(|source| source.parse()?.read());
     let file: RobotFile = read.map_err(|error| no(&error.to_string(), names_near(bare)))?;
-    let is_whole = file.joints.iter().all(has_stiffness);
+    let is_whole = file.joints.iter().all(JointRow::has_stiffness);
     let allowed = "an arm with a stiffness in `stead robots`";
     let input = input_file("stiffness", format!("{PREFIX}{bare}"), text.as_bytes());
     is_whole.then_some((file, input)).ok_or_else(|| no("is an arm without stiffness", allowed.to_owned()))

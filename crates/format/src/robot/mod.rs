@@ -22,8 +22,8 @@ use crate::toml_file::TomlFile;
 use compliance::{COMPENSATOR, COMPLIANCE, STIFFNESS, compliance_from};
 use controller::with_controller;
 use covariance::{COVARIANCE, with_covariance};
+pub use dynamics::checked_to_move;
 use dynamics::dynamics_from;
-pub use dynamics::{checked_to_move, moving_robot_from};
 use springs::with_springs;
 use std::path::Path;
 use stead_disk::input::{InputError, InputFile};
@@ -68,7 +68,7 @@ pub fn geometry_from(source: &TomlFile) -> Result<Robot, InputError> {
     let mut file: RobotFile = document.read()?;
     // What is said of compliances belongs to the rows that state them.
     file.covariance = None;
-    made(&file, &document.root(), |row, at| match has_stiffness(row) {
+    made(&file, &document.root(), |row, at| match row.has_stiffness() {
         true => compliance_from(row, at),
         false => Ok((1.0 / NOMINAL_STIFFNESS).into()),
     })
@@ -86,7 +86,7 @@ pub fn says_stiffness(file: &Path) -> Result<Option<bool>, InputError> {
         return Ok(None);
     }
     let file: RobotFile = document.read()?;
-    Ok(Some(file.joints.iter().all(has_stiffness)))
+    Ok(Some(file.joints.iter().all(JointRow::has_stiffness)))
 }
 
 /// Angles of a robot file that look like radians, in sentences.
@@ -99,15 +99,19 @@ pub fn robot_radians(file: &Path) -> Result<Vec<String>, InputError> {
     Ok(document.root().radians("robot."))
 }
 
-/// Whether a row states its stiffness.
-pub(crate) fn has_stiffness(row: &JointRow) -> bool {
-    row.stiffness_mnm_per_rad.is_some() || row.compliance_urad_per_nm.is_some()
-}
-
 /// As [`read_robot`], from a file already read.
 pub fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
     let document = source.parse()?;
     made(&document.read()?, &document.root(), compliance_from)
+}
+
+/// As [`robot_from`], for a robot whose motion is to be computed; with `orthogonal`, in directions normal to its axes
+/// too.
+///
+/// # Errors
+/// Those of [`robot_from`], and [`InputError`] at the first joint whose row says too little, naming what is missing.
+pub fn moving_robot_from(source: &TomlFile, orthogonal: bool) -> Result<Robot, InputError> {
+    checked_to_move(robot_from(source)?, source, orthogonal)
 }
 
 /// The robot of a file whose rows state no stiffness, with that of a shipped arm, and the entry of that arm among the
@@ -118,7 +122,7 @@ pub fn robot_from(source: &TomlFile) -> Result<Robot, InputError> {
 pub fn robot_like(source: &TomlFile, other: &str, at: &Place<'_>) -> Result<Option<(Robot, InputFile)>, InputError> {
     let document = source.parse()?;
     let mut file: RobotFile = document.read()?;
-    if file.joints.iter().any(has_stiffness) {
+    if file.joints.iter().any(JointRow::has_stiffness) {
         return Ok(None);
     }
     let refused = |no: NoLender| {

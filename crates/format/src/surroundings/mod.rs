@@ -41,9 +41,6 @@ struct Part<'a> {
     at: Place<'a>,
 }
 
-/// The role of mesh files among the inputs of a run.
-pub const MESH: &str = "mesh";
-
 /// The scene of a run file: the shapes and zones of its own tables and of the file that it names, joined with its arm.
 ///
 /// # Errors

@@ -1,13 +1,11 @@
 //! The form of a shape: one of five keys, and the mesh file where it is made of one.
 
-use super::MESH;
 use super::tables::ShapeTable;
 use crate::mesh::MeshUnit;
 use crate::place::Place;
 use crate::quantity::Quantity;
-use std::sync::Arc;
-use stead_cell::{Solid, TriangleMesh};
-use stead_disk::input::{InputError, InputFile, input_file};
+use stead_cell::Solid;
+use stead_disk::input::{InputError, InputFile};
 
 const FORMS: &str = "exactly one of box_mm, cylinder_mm = { radius, length }, capsule_mm = { radius, length }, hull (a mesh file), mesh";
 
@@ -37,17 +35,10 @@ impl ShapeTable {
             Solid::Capsule { radius: Quantity::si(table.radius), length: table.length.si() }
         } else {
             let unit = self.unit.map_or(MeshUnit::Millimetre, |word| word.0);
-            let (mesh, file) = read(form, unit)?;
+            let (mesh, file) = form.named_mesh(unit)?;
             let solid = if self.hull.is_some() { Solid::Hull(mesh) } else { Solid::Mesh(mesh) };
             return Ok((solid, Some(file)));
         };
         Ok((solid, None))
     }
-}
-
-/// The mesh of the file that is named here.
-pub(super) fn read(at: &Place<'_>, unit: MeshUnit) -> Result<(Arc<TriangleMesh>, InputFile), InputError> {
-    let named = at.named_file()?;
-    let mesh = named.sources.mesh(&named.file, &named.bytes, unit)?;
-    Ok((mesh, input_file(MESH, named.name, &named.bytes)))
 }

@@ -1,6 +1,5 @@
 //! The tables `[stock]` and `[finished_part]`: material before it is cut, and the part that shall be left of it.
 
-use super::solid::read;
 use super::tables::{CylinderTable, pose};
 use crate::mesh::MeshUnit;
 use crate::orientation::{Quaternion, orientation_keys};
@@ -179,7 +178,7 @@ impl PartTable {
 
 /// The closed mesh of the file that is named here.
 fn closed(at: &Place<'_>, unit: Option<Word<MeshUnit>>) -> Result<(Arc<TriangleMesh>, InputFile), InputError> {
-    let (mesh, file) = read(at, unit.map_or(MeshUnit::Millimetre, |word| word.0))?;
+    let (mesh, file) = at.named_mesh(unit.map_or(MeshUnit::Millimetre, |word| word.0))?;
     if !mesh.is_closed() {
         return Err(at.error("is not closed: it has no inside", CLOSED));
     }

@@ -301,7 +301,7 @@ impl VisualTable {
             return Err(at.key("color").error("is no colour", "red, green and blue, each from 0 to 1"));
         }
         let pose = pose(self.xyz_mm, &orientation_keys!(self), at)?;
-        let (mesh, file) = super::solid::read(&at.key("mesh"), self.unit.map_or(MeshUnit::Millimetre, |word| word.0))?;
+        let (mesh, file) = at.key("mesh").named_mesh(self.unit.map_or(MeshUnit::Millimetre, |word| word.0))?;
         Ok((Visual { name: self.name.clone(), attached, mesh, pose, color }, file))
     }
 }

@@ -1,30 +1,31 @@
 //! The masses of a URDF in the frames of the rows.
 
+use super::arm::Arm;
 use super::forward::link_at;
 use super::read::{Kind, Urdf};
-use super::rows::Rows;
-use super::tree::Chain;
 use super::xml::quoted;
 use nalgebra::{Matrix3, Vector3};
-use stead_model::robot::{Inertial, Pose, Robot};
+use stead_model::robot::{Inertial, Pose};
 
 /// The body behind each joint of the chain, with the links that are fixed to it, in the frame of the row.
 ///
 /// # Errors
 /// Why the URDF does not state all six: a sentence without its full stop.
-pub(super) fn bodies(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> Result<[Inertial; 6], String> {
+pub(super) fn bodies(arm: &Arm<'_>) -> Result<[Inertial; 6], String> {
     let mut bodies = Vec::with_capacity(6);
-    for (link, row_from_link) in row_from_links(urdf, chain, rows, robot) {
-        let body = rigid(urdf, link)?.ok_or_else(|| format!("link {} has no mass", quoted(&urdf.links[link].name)))?;
+    for (link, row_from_link) in row_from_links(arm) {
+        let body =
+            rigid(arm.urdf, link)?.ok_or_else(|| format!("link {} has no mass", quoted(&arm.urdf.links[link].name)))?;
         let body = body.placed(&row_from_link);
         let checked = Inertial::new(body.mass(), *body.centre(), *body.inertia());
-        bodies.push(checked.map_err(|error| format!("link {}: {error}", quoted(&urdf.links[link].name)))?);
+        bodies.push(checked.map_err(|error| format!("link {}: {error}", quoted(&arm.urdf.links[link].name)))?);
     }
     <[Inertial; 6]>::try_from(bodies).map_err(|_| "not six bodies".to_owned())
 }
 
 /// The links behind the six moving joints, each with its pose in the frame of its row.
-pub(super) fn row_from_links(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot) -> [(usize, Pose<f64>); 6] {
+pub(super) fn row_from_links(arm: &Arm<'_>) -> [(usize, Pose<f64>); 6] {
+    let Arm { urdf, chain, rows, robot, .. } = arm;
     let mut base_from_row = rows.link_from_base;
     std::array::from_fn(|k| {
         let joint = chain.moving[k];

@@ -1,13 +1,15 @@
 //! The file of surroundings of an imported arm.
 
+use super::ImportedRobot;
 use super::collision::{LinkShape, LinkShapes};
+use super::rows::rounded;
 use super::visual::LinkVisual;
 use super::xml::one_line;
-use super::{ImportedRobot, rounded};
 use crate::mesh::MeshUnit;
+use crate::written::relative;
 use nalgebra::Vector3;
 use std::fmt::Write;
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 use stead_cell::Solid;
 use stead_model::robot::Pose;
 use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
@@ -53,10 +55,11 @@ pub(super) fn text(robot: &ImportedRobot, links: &LinkShapes, file: &Path) -> St
     text
 }
 
-fn visual(text: &mut String, LinkVisual { visual, file, unit }: &LinkVisual, out: &Path) {
+fn visual(text: &mut String, of: &LinkVisual, out: &Path) {
+    let visual = &of.visual;
     let name = Value::from(visual.name.as_str());
     let _ = writeln!(text, "\n[[visual]]\nname = {name}\nattached = \"{}\"", visual.attached);
-    let _ = writeln!(text, "mesh = {}", mesh_file(file, *unit, out));
+    let _ = writeln!(text, "mesh = {}", mesh_file(&of.file, of.unit, out));
     if let Some(color) = visual.color {
         let _ = writeln!(text, "color = {:?}", color.map(|part| (part * 1e3).round() / 1e3));
     }
@@ -78,7 +81,8 @@ fn place(text: &mut String, pose: &Pose<f64>) {
 }
 
 /// Writing to a text cannot fail.
-fn shape(text: &mut String, LinkShape { shape, file }: &LinkShape, out: &Path) {
+fn shape(text: &mut String, of: &LinkShape, out: &Path) {
+    let shape = &of.shape;
     let _ =
         writeln!(text, "\n[[shape]]\nname = {}\nattached = \"{}\"", Value::from(shape.name.as_str()), shape.attached);
     let round = |radius: f64, length: f64| format!("{{ radius = {:?}, length = {:?} }}", mm(radius), mm(length));
@@ -88,9 +92,8 @@ fn shape(text: &mut String, LinkShape { shape, file }: &LinkShape, out: &Path) {
         Solid::Capsule { radius, length } => writeln!(text, "capsule_mm = {}", round(*radius, *length)),
         Solid::Hull(_) | Solid::Mesh(_) => {
             let key = if matches!(shape.solid, Solid::Hull(_)) { "hull" } else { "mesh" };
-            let (path, unit) =
-                file.as_ref().map_or((Path::new(""), MeshUnit::Millimetre), |(path, unit)| (path.as_path(), *unit));
-            writeln!(text, "{key} = {}", mesh_file(path, unit, out))
+            let named = of.file.as_ref().map(|(path, unit)| mesh_file(path, *unit, out));
+            writeln!(text, "{key} = {}", named.unwrap_or_default())
         }
     };
     place(text, &shape.pose);
@@ -103,34 +106,4 @@ fn mm(value: f64) -> f64 {
 
 fn vector(value: &Vector3<f64>) -> String {
     format!("{:?}", [value.x, value.y, value.z].map(mm))
-}
-
-/// A path as it is named from a folder, with forward slashes; as it is where the two have nothing in common.
-fn relative(folder: &Path, file: &Path) -> String {
-    // The folder of a name alone is the working folder.
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let (folder, file) = (absolute(folder), absolute(file));
-    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
-    let has_common = folder.components().take(common).any(|part| matches!(part, Component::RootDir));
-    let named: PathBuf = if has_common {
-        let up = folder.components().skip(common).map(|_| Component::ParentDir);
-        up.chain(file.components().skip(common)).collect()
-    } else {
-        file
-    };
-    named.to_string_lossy().replace('\\', "/")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_are_named_from_the_folder_of_the_file() {
-        let named = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
-        assert_eq!(named("my", "my/meshes/a.stl"), "meshes/a.stl");
-        assert_eq!(named("my/cells", "robots/a.stl"), "../../robots/a.stl");
-        assert_eq!(named("", "a.stl"), "a.stl");
-    }
 }

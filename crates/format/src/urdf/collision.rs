@@ -1,11 +1,9 @@
 //! The `<collision>` shapes of a URDF as surroundings: each attached to a link of the arm, in the frame of its row.
 
+use super::arm::Arm;
 use super::bodies::{attached_to, row_from_links};
 use super::meshes::{found, is_read};
 use super::read::{Geometry, Urdf};
-use super::rows::Rows;
-use super::stand::Stand;
-use super::tree::Chain;
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
 use crate::surroundings::{CLEARANCE, attachment};
@@ -47,21 +45,16 @@ const CONVEX: f64 = 1e-3;
 ///
 /// # Errors
 /// [`InputError`] for a `<collision>` that says nothing that can be, and for a mesh file that cannot be read.
-pub(super) fn link_shapes(
-    urdf: &Urdf,
-    chain: &Chain,
-    rows: &Rows,
-    robot: &Robot,
-    stand: &Stand,
-) -> Result<LinkShapes, InputError> {
-    let mut read = Reading { urdf, shapes: Vec::new(), notes: Vec::new() };
+pub(super) fn link_shapes(arm: &Arm<'_>) -> Result<LinkShapes, InputError> {
+    let stand = &arm.stand;
+    let mut read = Reading { urdf: arm.urdf, shapes: Vec::new(), notes: Vec::new() };
     read.links(stand.link, &stand.cell_from_link(), Attachment::Base)?;
-    for ((link, row_from_link), number) in row_from_links(urdf, chain, rows, robot).into_iter().zip(1..) {
+    for ((link, row_from_link), number) in row_from_links(arm).into_iter().zip(1..) {
         read.links(link, &row_from_link, Attachment::Link(number))?;
     }
     let Reading { shapes, mut notes, .. } = read;
-    let zero = std::array::from_fn(|k| rows.rows[k].offset_deg.to_radians());
-    let mounted = robot.clone().mounted(&stand.mount.unwrap_or_else(Pose::identity));
+    let zero = std::array::from_fn(|k| arm.rows.rows[k].offset_deg.to_radians());
+    let mounted = arm.robot.clone().mounted(&stand.mount.unwrap_or_else(Pose::identity));
     let ignored = touching(&mounted, &zero, &shapes, &mut notes);
     Ok(LinkShapes { shapes, ignored, notes })
 }

@@ -1,12 +1,10 @@
 //! How far the rows, as they are written, are from the URDF.
 
+use super::arm::Arm;
 use super::forward::tip_at;
-use super::read::Urdf;
-use super::rows::Rows;
-use super::tree::Chain;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use stead_model::robot::{Pose, Robot};
+use stead_model::robot::Pose;
 
 /// Random postures that rows and URDF are compared in.
 pub const POSTURES: usize = 2000;
@@ -21,8 +19,9 @@ pub struct Deviation {
     pub angle_deg: f64,
 }
 
-/// Compares rows with their URDF; `limits` are those of the URDF. rad
-pub(super) fn deviation(urdf: &Urdf, chain: &Chain, rows: &Rows, robot: &Robot, limits: &[[f64; 2]; 6]) -> Deviation {
+/// Compares rows with their URDF, within the limits of the URDF.
+pub(super) fn deviation(arm: &Arm<'_>) -> Deviation {
+    let Arm { urdf, chain, rows, robot, limits, .. } = arm;
     let mut random = ChaCha8Rng::seed_from_u64(0);
     let mut largest = Deviation::default();
     for _ in 0..POSTURES {

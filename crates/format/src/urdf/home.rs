@@ -79,49 +79,31 @@ pub(super) fn controller_at(
     own: &Controller,
     home: &HomePose,
 ) -> Result<(Controller, bool), InputError> {
-    if home.angles_deg[4].abs() < STRAIGHT_DEG {
-        return Err(refused(format!("leaves axes 4 and 6 open: A5 is {} deg", home.angles_deg[4])));
-    }
-    // Half a quarter turn off zero with one sign is half a quarter turn off another zero with the other.
-    let is_open = |angle: &f64| (angle / 45.0 - (angle / 45.0).round()).abs() * 45.0 < 0.5;
-    if let Some(joint) = home.angles_deg.iter().position(is_open) {
-        let angle = home.angles_deg[joint];
-        return Err(refused(format!("leaves the sign of axis {} open: A{} is {angle} deg", joint + 1, joint + 1)));
-    }
-    // Both ways of counting axis 3, the maker's own first.
+    refuse_open(home)?;
+    // Both ways of counting axis 3, the maker's own first, each with a root at the base link and at axis 2.
     let is_fanuc = home.kind == ControllerKind::Fanuc;
-    let levels = [is_fanuc, !is_fanuc];
-    let angles = home.angles_deg.map(f64::to_radians);
-    let wanted = flange(home);
     let above = Vector3::z() * robot.rows()[0].translation.z;
-    let roots = own
-        .root_from_base
-        .map_or_else(Vec::new, |root| vec![root, Pose { translation: root.translation - above, ..root }]);
+    let roots = own.root_from_base.map(|root| [root, Pose { translation: root.translation - above, ..root }]);
+    let starts = [is_fanuc, !is_fanuc].into_iter().flat_map(|is_level| {
+        let with = Controller { kind: home.kind, is_j3_level: Some(is_level), ..*own };
+        roots.into_iter().flatten().map(move |root| Controller { root_from_base: Some(root), ..with })
+    });
+    let mut ways =
+        Ways { robot, angles: home.angles_deg.map(f64::to_radians), wanted: flange(home), found: Vec::new() };
     let mut nearest = f64::INFINITY;
-    for is_j3_level in levels {
-        for root in &roots {
-            let is_j3_level = Some(is_j3_level);
-            let with = Controller { kind: home.kind, is_j3_level, root_from_base: Some(*root), ..*own };
-            let (position, direction) = off(robot, &with, &angles, &wanted);
-            if position < POSITION && direction < DIRECTION {
-                return Ok((with, true));
-            }
-            nearest = nearest.min(position);
+    for with in starts.clone() {
+        let (position, direction) = off(robot, &with, &ways.angles, &ways.wanted);
+        if position < POSITION && direction < DIRECTION {
+            return Ok((with, true));
         }
+        nearest = nearest.min(position);
     }
-    let mut found: Vec<Controller> = Vec::new();
-    for is_j3_level in levels {
-        let is_j3_level = Some(is_j3_level);
-        for root in &roots {
-            let with = Controller { kind: home.kind, is_j3_level, ..*own };
-            let start = Tried { sign: [1.0; 6], offset: [0.0; 6], pose: *root };
-            search((robot, &with), &angles, &wanted, start, 0, &mut |tried| {
-                let (kind, root) = (home.kind, Some(*root));
-                let Tried { sign, offset, .. } = *tried;
-                found.push(Controller { kind, sign, offset, is_j3_level, root_from_base: root });
-            });
-        }
+    for start in starts {
+        let pose = start.root_from_base.unwrap_or_else(Pose::identity);
+        let counting = Controller { sign: [1.0; 6], offset: [0.0; 6], ..start };
+        ways.search(counting, &pose, 0);
     }
+    let mut found = ways.found;
     // With the sign of axis 5 the other way and half a turn more at axes 4 and 6 the flange is always where it was: of
     // two such ways the one that is nearer to the URDF is taken.
     let changes = |way: &Controller| {
@@ -137,6 +119,19 @@ pub(super) fn controller_at(
             nearest * 1e3
         ))),
         _ => Err(refused(format!("agrees with {} ways of counting: another pose tells which", found.len()))),
+    }
+}
+
+/// Refuses a pose that leaves axes or a sign open.
+fn refuse_open(home: &HomePose) -> Result<(), InputError> {
+    if home.angles_deg[4].abs() < STRAIGHT_DEG {
+        return Err(refused(format!("leaves axes 4 and 6 open: A5 is {} deg", home.angles_deg[4])));
+    }
+    // Half a quarter turn off zero with one sign is half a quarter turn off another zero with the other.
+    let is_open = |angle: &f64| (angle / 45.0 - (angle / 45.0).round()).abs() * 45.0 < 0.5;
+    match home.angles_deg.iter().zip(1..).find(|(angle, _)| is_open(angle)) {
+        Some((angle, joint)) => Err(refused(format!("leaves the sign of axis {joint} open: A{joint} is {angle} deg"))),
+        None => Ok(()),
     }
 }
 
@@ -171,38 +166,32 @@ fn distance(pose: &Pose<f64>, wanted: &Pose<f64>) -> (f64, f64) {
     ((pose.translation - wanted.translation).norm(), if is_small { turn.norm() } else { std::f64::consts::PI })
 }
 
-/// A way of counting, as far as it goes, and where it has brought the frame of the last row.
-#[derive(Clone, Copy)]
-struct Tried {
-    sign: [f64; 6],
-    offset: [f64; 6],
-    pose: Pose<f64>,
+/// The ways of counting by which angles bring the flange to a pose.
+struct Ways<'a> {
+    robot: &'a Robot,
+    angles: [f64; 6],
+    wanted: Pose<f64>,
+    found: Vec<Controller>,
 }
 
-/// Tries all signs and offsets of a joint and of those behind it.
-fn search(
-    (robot, counting): (&Robot, &Controller),
-    angles: &[f64; 6],
-    wanted: &Pose<f64>,
-    tried: Tried,
-    joint: usize,
-    found: &mut dyn FnMut(&Tried),
-) {
-    if joint == 6 {
-        let (position, direction) = distance(&tried.pose, wanted);
-        if position < POSITION && direction < DIRECTION {
-            found(&tried);
+impl Ways<'_> {
+    /// Tries all signs and offsets of a joint and of those behind it; `pose` is where the frame of the row before is.
+    fn search(&mut self, counting: Controller, pose: &Pose<f64>, joint: usize) {
+        if joint == 6 {
+            let (position, direction) = distance(pose, &self.wanted);
+            if position < POSITION && direction < DIRECTION {
+                self.found.push(counting);
+            }
+            return;
         }
-        return;
-    }
-    let before = tried.pose.then(&robot.rows()[joint]);
-    for sign in [1.0, -1.0] {
-        for offset in OFFSETS_DEG.map(f64::to_radians) {
-            let mut next = tried;
-            (next.sign[joint], next.offset[joint]) = (sign, offset);
-            let with = Controller { sign: next.sign, offset: next.offset, ..*counting };
-            next.pose = before.then(&about_z(with.joints(robot, angles)[joint]));
-            search((robot, counting), angles, wanted, next, joint + 1, found);
+        let before = pose.then(&self.robot.rows()[joint]);
+        for sign in [1.0, -1.0] {
+            for offset in OFFSETS_DEG.map(f64::to_radians) {
+                let mut next = counting;
+                (next.sign[joint], next.offset[joint]) = (sign, offset);
+                let turn = next.joints(self.robot, &self.angles)[joint];
+                self.search(next, &before.then(&about_z(turn)), joint + 1);
+            }
         }
     }
 }

@@ -14,6 +14,7 @@
 //! # Ok::<(), stead_disk::input::InputError>(())
 //! ```
 
+mod arm;
 mod bodies;
 mod cell_text;
 mod collision;
@@ -38,19 +39,16 @@ pub use home::HomePose;
 pub use rows::ImportedRow;
 pub use visual::LinkVisual;
 
+use arm::Arm;
 use deviation::deviation;
 use home::controller_at;
-use read::{Kind, Limit, Urdf};
-use rows::Rows;
-use stand::Stand;
+use read::Urdf;
 use std::path::{Path, PathBuf};
 use stead_disk::files::new::{Existing, write_all_new};
 use stead_disk::input::{InputError, InputFile, input_file, sha256};
 use stead_model::plausibility;
-use stead_model::robot::turns::Range;
-use stead_model::robot::{Axes23, Controller, ControllerKind, Inertial, Joint, Pose, Robot, RobotError};
+use stead_model::robot::{Controller, ControllerKind, Inertial, Pose};
 use stiffness::Borrowed;
-use tree::{Chain, Tree};
 use xml::{one_line, quoted};
 
 /// What may be asked of an import.
@@ -118,9 +116,6 @@ pub struct ImportedRobot {
 const REFUSED_MM: f64 = 0.5;
 /// Rows turned farther from their URDF than this are refused. deg
 const REFUSED_DEG: f64 = 0.1;
-/// Limits of a joint that turns without end. rad
-const ENDLESS: f64 = std::f64::consts::TAU;
-
 /// Reads a URDF and derives the robot file of its arm.
 ///
 /// # Errors
@@ -141,36 +136,25 @@ pub fn import_robot_text(file: &Path, text: &str, options: &ImportOptions<'_>) -
 
 fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, InputError> {
     let borrowed = options.stiffness_like.map(Borrowed::of).transpose()?;
-    let tree = Tree::new(urdf)?;
-    let chain = Chain::new(urdf, &tree, options.base_link, options.tip_link)?;
-    let limits = limits_of(urdf, &chain)?;
-    let rows = Rows::derive(urdf, &chain)?;
-    let limits_deg = std::array::from_fn(|k| mapped(&rows.rows[k], limits[k]));
-    let speeds = speeds_of(urdf, &chain)?;
-    let robot = checked(urdf, &chain, &rows, &limits_deg)?;
-    let deviation = deviation(urdf, &chain, &rows, &robot, &limits);
-    refuse_far(urdf, &chain, deviation)?;
-    let bodies = bodies::bodies(urdf, &chain, &rows, &robot);
-    let linkage_sums_deg = linkage_sums(urdf, &chain, &robot);
-    let stand = Stand::of(urdf, &chain, &rows);
+    let arm = Arm::new(urdf, options.base_link, options.tip_link)?;
+    let deviation = deviation(&arm);
+    refuse_far(&arm, deviation)?;
+    let bodies = bodies::bodies(&arm);
+    let linkage_sums_deg = arm.linkage_sums_deg();
     let mut imported = ImportedRobot {
         name: one_line(&urdf.name),
-        base_link: urdf.links[chain.base].name.clone(),
-        tip_link: urdf.links[chain.tip].name.clone(),
-        joints: chain.moving.map(|joint| urdf.joints[joint].name.clone()),
-        rows: rows.rows,
-        limits_deg,
-        max_speed_deg_per_s: speeds,
+        base_link: urdf.links[arm.chain.base].name.clone(),
+        tip_link: urdf.links[arm.chain.tip].name.clone(),
+        joints: arm.chain.moving.map(|joint| urdf.joints[joint].name.clone()),
+        rows: arm.rows.rows,
+        limits_deg: arm.limits_deg,
+        max_speed_deg_per_s: arm.speeds_deg,
         linkage_sums_deg,
-        link_from_base: rows.link_from_base,
-        mount: stand.mount,
-        flange_from_tip: rows.flange_from_tip,
+        link_from_base: arm.rows.link_from_base,
+        mount: arm.stand.mount,
+        flange_from_tip: arm.rows.flange_from_tip,
         deviation,
-        notes: notes::notes(urdf, &chain, &rows, deviation, borrowed.as_ref(), linkage_sums_deg.is_some())
-            .into_iter()
-            .chain(notes::stand(urdf, &chain, &stand, options.collision))
-            .chain(plausibility::joint_ranges(&robot))
-            .collect(),
+        notes: notes::notes(&arm, deviation, borrowed.as_ref(), linkage_sums_deg.is_some()),
         inputs: vec![input_file("robot", urdf.file.display().to_string(), urdf.text.as_bytes())],
         controller: None,
         bodies: bodies.as_ref().ok().copied(),
@@ -178,14 +162,12 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         link_visuals: Vec::new(),
         text: String::new(),
     };
-    imported.notes.extend(
-        bodies
-            .err()
-            .filter(|_| urdf.links.iter().any(|link| link.inertial.is_some()))
-            .map(|reason| format!("masses and inertias are not taken: {reason}")),
-    );
+    imported.notes.extend(notes::stand(&arm, options.collision));
+    imported.notes.extend(plausibility::joint_ranges(&arm.robot));
+    let masses = bodies.err().filter(|_| urdf.links.iter().any(|link| link.inertial.is_some()));
+    imported.notes.extend(masses.map(|reason| format!("masses and inertias are not taken: {reason}")));
     if let Some(home) = &options.home {
-        let (controller, is_own) = controller_at(&robot, &imported.controller_of_urdf(home.kind), home)?;
+        let (controller, is_own) = controller_at(&arm.robot, &imported.controller_of_urdf(home.kind), home)?;
         let found = "the controller counts its angles otherwise than the URDF: signs, offsets and root are those that agree with --home-deg";
         imported.notes.extend((!is_own).then(|| found.to_owned()));
         imported.controller = Some(controller);
@@ -194,23 +176,28 @@ fn imported(urdf: &Urdf, options: &ImportOptions<'_>) -> Result<ImportedRobot, I
         imported.notes.extend(meshes::missing(urdf).iter().map(|name| format!("mesh {} is not found", quoted(name))));
     }
     if options.collision {
-        let shapes = collision::link_shapes(urdf, &chain, &rows, &robot, &stand)?;
-        if shapes.shapes.is_empty() {
-            let allowed = "a URDF with <collision> shapes whose files are there, or an import without --collision";
-            let error = InputError::new(&urdf.file, "has no <collision> shape that can be read");
-            return Err(error.allowed(allowed));
-        }
-        imported.notes.extend(shapes.notes.iter().cloned());
-        let (visuals, notes) = visual::link_visuals(urdf, &chain, &rows, &robot, &stand, &shapes);
-        imported.notes.extend(notes);
-        imported.link_visuals = visuals;
-        imported.link_shapes = Some(shapes);
+        imported.add_shapes(&arm)?;
     }
     imported.text = toml_text::text(&imported, urdf, &sha256(urdf.text.as_bytes()), borrowed.as_ref());
     Ok(imported)
 }
 
 impl ImportedRobot {
+    /// Adds the shapes of the links, and what they look like.
+    fn add_shapes(&mut self, arm: &Arm<'_>) -> Result<(), InputError> {
+        let shapes = collision::link_shapes(arm)?;
+        if shapes.shapes.is_empty() {
+            let allowed = "a URDF with <collision> shapes whose files are there, or an import without --collision";
+            let error = InputError::new(&arm.urdf.file, "has no <collision> shape that can be read");
+            return Err(error.allowed(allowed));
+        }
+        let (visuals, notes) = visual::link_visuals(arm, &shapes);
+        self.notes.extend(shapes.notes.iter().cloned().chain(notes));
+        self.link_visuals = visuals;
+        self.link_shapes = Some(shapes);
+        Ok(())
+    }
+
     /// A controller that counts as the URDF does, its root at the base link.
     fn controller_of_urdf(&self, kind: ControllerKind) -> Controller {
         let (sign, offset) = (self.rows.map(|row| row.sign), self.rows.map(|row| row.offset_deg.to_radians()));
@@ -242,105 +229,16 @@ impl ImportedRobot {
     }
 }
 
-/// What the sum of joints 2 and 3 may be by their ranges, where a parallelogram drives axis 3 and neither of them turns
-/// by a whole turn. deg
-fn linkage_sums(urdf: &Urdf, chain: &Chain, robot: &Robot) -> Option<[f64; 2]> {
-    let [min, max] = robot.sums();
-    let axes_2_3 = Axes23 { linkage: true, sum: Range { min, max } };
-    let is_linkage = !chain.linkage(urdf).is_empty() && robot.clone().with_axes_2_3(Some(axes_2_3)).is_ok();
-    is_linkage.then(|| [min, max].map(|sum| rounded(sum.to_degrees())))
-}
-
-/// The limits of the six joints as the URDF states them. rad
-fn limits_of(urdf: &Urdf, chain: &Chain) -> Result<[[f64; 2]; 6], InputError> {
-    let mut limits = [[-ENDLESS, ENDLESS]; 6];
-    for (k, joint) in chain.moving.into_iter().enumerate() {
-        if urdf.joints[joint].kind == Kind::Continuous {
-            continue;
-        }
-        const WANTED: &str =
-            "<limit lower=\"..\" upper=\"..\" velocity=\"..\"/> in rad and rad/s, lower below upper, within 1e6 deg";
-        limits[k] = match urdf.joints[joint].limit {
-            None | Some(Limit { lower: None, upper: None, .. }) => {
-                return Err(urdf.joint_error(joint, "has no limits", WANTED));
-            }
-            Some(Limit { lower, upper, .. }) => [lower, upper].map(Option::unwrap_or_default),
-        };
-        let [lower, upper] = limits[k];
-        if lower >= upper || lower < -LARGEST_LIMIT || upper > LARGEST_LIMIT {
-            return Err(urdf.joint_error(joint, format!("has limits from {lower} to {upper} rad"), WANTED));
-        }
-    }
-    Ok(limits)
-}
-
-/// No limit and no speed is above this. rad, rad/s
-const LARGEST_LIMIT: f64 = 17440.0;
-
-/// The speeds of the six joints. deg/s
-fn speeds_of(urdf: &Urdf, chain: &Chain) -> Result<[Option<f64>; 6], InputError> {
-    let mut speeds = [None; 6];
-    for (k, joint) in chain.moving.into_iter().enumerate() {
-        let velocity = urdf.joints[joint].limit.and_then(|limit| limit.velocity).filter(|velocity| *velocity != 0.0);
-        if let Some(velocity) = velocity {
-            let speed = rounded(velocity.to_degrees());
-            if !(speed > 0.0 && velocity <= LARGEST_LIMIT) {
-                let problem = format!("has a speed of {velocity} rad/s");
-                return Err(urdf.joint_error(
-                    joint,
-                    problem,
-                    "a velocity above 0 and not above 1e6 deg/s, or 0 where it is not known",
-                ));
-            }
-            speeds[k] = Some(speed);
-        }
-    }
-    Ok(speeds)
-}
-
-/// An angle or speed in deg without the digits that rounding has made: to 1e-9 deg.
-fn rounded(degrees: f64) -> f64 {
-    (degrees * 1e9).round() / 1e9 + 0.0
-}
-
-/// Limits of a joint of the URDF (rad) as those of the row. deg
-fn mapped(row: &ImportedRow, limits: [f64; 2]) -> [f64; 2] {
-    let [from, to] = limits.map(|limit| rounded(row.sign * limit.to_degrees() + row.offset_deg));
-    if from <= to { [from, to] } else { [to, from] }
-}
-
-/// The arm that the rows make, with a compliance that nothing depends on.
-fn checked(urdf: &Urdf, chain: &Chain, rows: &Rows, limits_deg: &[[f64; 2]; 6]) -> Result<Robot, InputError> {
-    let joints = std::array::from_fn(|k| {
-        let (row, [min, max]) = (&rows.rows[k], limits_deg[k].map(f64::to_radians));
-        let (alpha, a, d) = (row.alpha_deg.to_radians(), row.a_mm / 1e3, row.d_mm / 1e3);
-        let (max_speed, max_acceleration, max_jerk) = (None, None, None);
-        Joint { alpha, a, d, min, max, max_speed, max_acceleration, max_jerk, compliance: 1e-6.into() }
-    });
-    Robot::new(urdf.name.as_str(), joints).map_err(|error| {
-        let number = match &error {
-            RobotError::Geometry { joint, .. } | RobotError::Limits { joint, .. } => *joint,
-            _ => 1,
-        };
-        let joint = chain.moving[number.clamp(1, 6) - 1];
-        urdf.joint_error(
-            joint,
-            format!("makes an arm that is not supported: {error}"),
-            "an elbow arm with a spherical wrist",
-        )
-    })
-}
-
-fn refuse_far(urdf: &Urdf, chain: &Chain, deviation: Deviation) -> Result<(), InputError> {
+fn refuse_far(arm: &Arm<'_>, deviation: Deviation) -> Result<(), InputError> {
     let Deviation { position_mm, angle_deg } = deviation;
     if position_mm <= REFUSED_MM && angle_deg <= REFUSED_DEG {
         return Ok(());
     }
-    let link = &urdf.links[chain.tip];
+    let link = &arm.urdf.links[arm.chain.tip];
     let problem =
         format!("is up to {position_mm:.3} mm and {angle_deg:.4} deg from where Denavit-Hartenberg rows have it");
     let allowed = "axes that meet and are at right angles so well that it is within 0.5 mm and 0.1 deg";
-    Err(urdf.error(link.byte, format!("link {}", quoted(&link.name)), problem, allowed))
+    Err(arm.urdf.error(link.byte, format!("link {}", quoted(&link.name)), problem, allowed))
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! What the user should know of an import.
 
+use super::arm::Arm;
 use super::deviation::Deviation;
-use super::read::{Kind, Urdf};
-use super::rounded;
-use super::rows::{Rows, written};
-use super::stand::Stand;
+use super::read::{Joint, Kind, Urdf};
+use super::rows::{Rows, rounded, written};
 use super::stiffness::Borrowed;
 use super::tree::Chain;
 use super::xml::quoted;
@@ -12,7 +11,8 @@ use nalgebra::Matrix3;
 use stead_numerics::rotation::zyx_from_rotation;
 
 /// Where the robot stands, as far as the URDF says it.
-pub(super) fn stand(urdf: &Urdf, chain: &Chain, stand: &Stand, is_written: bool) -> Option<String> {
+pub(super) fn stand(arm: &Arm<'_>, is_written: bool) -> Option<String> {
+    let Arm { urdf, chain, stand, .. } = arm;
     let [base, root] = [chain.base, chain.root].map(|link| quoted(&urdf.links[link].name));
     if let Some(joint) = chain.carrier(urdf) {
         let joint = quoted(&urdf.joints[joint].name);
@@ -38,14 +38,8 @@ pub(super) fn stand(urdf: &Urdf, chain: &Chain, stand: &Stand, is_written: bool)
 const NOTED_MM: f64 = 0.1;
 
 /// A sentence for each thing that a URDF does not say or that is not as usual.
-pub(super) fn notes(
-    urdf: &Urdf,
-    chain: &Chain,
-    rows: &Rows,
-    deviation: Deviation,
-    borrowed: Option<&Borrowed>,
-    is_linkage: bool,
-) -> Vec<String> {
+pub(super) fn notes(arm: &Arm<'_>, deviation: Deviation, borrowed: Option<&Borrowed>, is_linkage: bool) -> Vec<String> {
+    let Arm { urdf, chain, rows, .. } = arm;
     let mut notes = vec![match borrowed {
         Some(borrowed) => format!(
             "joint stiffness is that of another arm, {}: it ranks placements of arms of that class, and does not predict millimetres",
@@ -65,47 +59,58 @@ pub(super) fn notes(
     if lateral.abs() > 0.01 {
         notes.push(format!("lateral offset: the wrist is {:.3} mm beside the plane of axes 1 and 2", lateral.abs()));
     }
+    notes.extend(side_joints(urdf, chain, is_linkage));
+    notes.extend(chain.moving.iter().flat_map(|joint| limits(&urdf.joints[*joint])));
+    notes.extend(tip(&quoted(&urdf.links[chain.tip].name), rows));
+    notes
+}
+
+/// The joints beside the chain: those of a parallelogram that is taken for one, and those that are left out.
+fn side_joints(urdf: &Urdf, chain: &Chain, is_linkage: bool) -> Vec<String> {
     let linkage = if is_linkage { chain.linkage(urdf) } else { Vec::new() };
-    let names = |joints: &[usize]| -> Vec<String> {
-        joints.iter().take(12).map(|joint| quoted(&urdf.joints[*joint].name)).collect()
+    let names = |joints: &[usize]| {
+        let names = joints.iter().take(12).map(|joint| quoted(&urdf.joints[*joint].name));
+        names.collect::<Vec<String>>().join(", ")
     };
+    let mut notes = Vec::new();
     if !linkage.is_empty() {
         notes.push(format!(
             "joints {} follow joint {}: a parallelogram drives axis 3, and linkage = true is written; how far the sum of joints 2 and 3 \
              goes is not in a URDF: sum_min_deg and sum_max_deg are what their ranges allow, put in those of the data sheet",
-            names(&linkage).join(", "),
+            names(&linkage),
             quoted(&urdf.joints[chain.moving[2]].name)
         ));
     }
-    let side = names(&chain.side(urdf).into_iter().filter(|joint| !linkage.contains(joint)).collect::<Vec<_>>());
+    let side: Vec<usize> = chain.side(urdf).into_iter().filter(|joint| !linkage.contains(joint)).collect();
     if !side.is_empty() {
         notes.push(format!(
             "joints that are not in the chain are left out: {}; where they are a parallelogram or a spring beside the arm, limits and \
              stiffness of joints 2 and 3 depend on each other, which [axes_2_3] of the robot file says",
-            side.join(", ")
-        ));
-    }
-    for joint in chain.moving.map(|joint| &urdf.joints[joint]) {
-        if joint.kind == Kind::Continuous {
-            notes.push(format!(
-                "joint {} turns without end; its limits are written as a turn to either side",
-                quoted(&joint.name)
-            ));
-        }
-        if joint.limit.and_then(|limit| limit.velocity).is_none_or(|velocity| velocity == 0.0) {
-            notes.push(format!("joint {} has no speed in the URDF", quoted(&joint.name)));
-        }
-    }
-    let tip = rows.flange_from_tip;
-    let beside = libm::hypot(tip.translation.x, tip.translation.y) * 1e3;
-    if written(beside) > 1e-6 {
-        notes.push(format!("link {} is {beside:.3} mm beside axis 6", quoted(&urdf.links[chain.tip].name)));
-    }
-    if (tip.rotation - Matrix3::identity()).norm() > 1e-6 {
-        let link = quoted(&urdf.links[chain.tip].name);
-        notes.push(format!(
-            "link {link} is turned against the frame of the last row, whose z axis is axis 6: the robot file says how"
+            names(&side)
         ));
     }
     notes
+}
+
+/// A joint without limits, and one without a speed.
+fn limits(joint: &Joint) -> Vec<String> {
+    let name = quoted(&joint.name);
+    let has_no_speed = joint.limit.and_then(|limit| limit.velocity).is_none_or(|velocity| velocity == 0.0);
+    let endless = || format!("joint {name} turns without end; its limits are written as a turn to either side");
+    let speed = || format!("joint {name} has no speed in the URDF");
+    (joint.kind == Kind::Continuous).then(endless).into_iter().chain(has_no_speed.then(speed)).collect()
+}
+
+/// A tip link that is not on axis 6, or turned against it.
+fn tip(link: &str, rows: &Rows) -> Vec<String> {
+    let tip = rows.flange_from_tip;
+    let beside = libm::hypot(tip.translation.x, tip.translation.y) * 1e3;
+    let is_turned = (tip.rotation - Matrix3::identity()).norm() > 1e-6;
+    let off = || format!("link {link} is {beside:.3} mm beside axis 6");
+    let turned = || {
+        format!(
+            "link {link} is turned against the frame of the last row, whose z axis is axis 6: the robot file says how"
+        )
+    };
+    (written(beside) > 1e-6).then(off).into_iter().chain(is_turned.then(turned)).collect()
 }

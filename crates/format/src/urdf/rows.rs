@@ -273,6 +273,11 @@ pub(super) fn written(value: f64) -> f64 {
     (value * 1e11).round() / 1e11 + 0.0
 }
 
+/// An angle or speed in deg without the digits that rounding has made: to 1e-9 deg.
+pub(super) fn rounded(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9 + 0.0
+}
+
 /// An angle in rad as a file has it in deg: to 1e-12 deg, -180 as 180.
 fn angle_written(angle: f64) -> f64 {
     let degrees = if angle <= -PI { 180.0 } else { angle.to_degrees() };

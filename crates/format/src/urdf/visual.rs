@@ -1,13 +1,11 @@
 //! The `<visual>` meshes of a URDF: what the links look like, each in the frame of its row. The files stay where they
 //! are. A mesh that cannot be drawn is noted by its name, and the link is drawn by its collision mesh or illustrated.
 
+use super::arm::Arm;
 use super::bodies::{attached_to, row_from_links};
 use super::collision::LinkShapes;
 use super::meshes::{found, is_read};
 use super::read::{Geometry, Urdf};
-use super::rows::Rows;
-use super::stand::Stand;
-use super::tree::Chain;
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
 use nalgebra::Vector3;
@@ -15,7 +13,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid, Visual};
 use stead_disk::files;
-use stead_model::robot::{Pose, Robot};
+use stead_model::robot::Pose;
 
 /// What a link looks like, and the mesh file that it is made of, with its unit.
 #[derive(Debug, Clone)]
@@ -30,18 +28,12 @@ pub struct LinkVisual {
 
 /// What stands with the base and the six links behind the moving joints look like, each with all that is fixed to it,
 /// and notes on what is not drawn.
-pub(super) fn link_visuals(
-    urdf: &Urdf,
-    chain: &Chain,
-    rows: &Rows,
-    robot: &Robot,
-    stand: &Stand,
-    shapes: &LinkShapes,
-) -> (Vec<LinkVisual>, Vec<String>) {
+pub(super) fn link_visuals(arm: &Arm<'_>, shapes: &LinkShapes) -> (Vec<LinkVisual>, Vec<String>) {
+    let stand = &arm.stand;
     let base_from_cell = stand.mount.map_or_else(Pose::identity, |mount| mount.inverse());
-    let mut read = Reading { urdf, base_from_cell, visuals: Vec::new(), notes: Vec::new() };
+    let mut read = Reading { urdf: arm.urdf, base_from_cell, visuals: Vec::new(), notes: Vec::new() };
     read.links(stand.link, &stand.base_from_link, Attachment::Base, shapes);
-    for ((link, row_from_link), number) in row_from_links(urdf, chain, rows, robot).into_iter().zip(1..) {
+    for ((link, row_from_link), number) in row_from_links(arm).into_iter().zip(1..) {
         read.links(link, &row_from_link, Attachment::Link(number), shapes);
     }
     (read.visuals, read.notes)

@@ -7,8 +7,9 @@ mod tests;
 
 pub use file::*;
 
+use crate::Word;
 use crate::guesses::guesses;
-use crate::{Word, at_the_top};
+use crate::kind::read_unless;
 use material::Material;
 use std::path::{Path, PathBuf};
 use stead_disk::input::{InputError, InputFile, input_file};
@@ -42,10 +43,7 @@ pub fn read_forces(file: &Path) -> Result<ForcesRun, InputError> {
 pub(crate) fn read_forces_from(source: &TomlFile) -> Result<ForcesRun, InputError> {
     let document = source.parse()?;
     let at = document.root();
-    let file: ForcesFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
-        Some(kind @ (FileKind::RobotFile | FileKind::RunFile)) => kind.refused(source.file()),
-        _ => at_the_top::<ForcesFile>(error),
-    })?;
+    let file: ForcesFile = read_unless(&[FileKind::RobotFile, FileKind::RunFile], source, &document)?;
     let reading = file.reading.unwrap_or_default();
     let named = read_path(&at.key("path"), &reading, &source.sources)?;
     let tables = RemovalTables {
@@ -90,90 +88,34 @@ impl RemovalTables<'_> {
     /// # Errors
     /// Those of [`read_forces`].
     pub fn run(&self, named: NamedPath, source: &TomlFile, at: &Place<'_>) -> Result<ForcesRun, InputError> {
-        let mut inputs = vec![named.input.clone()];
-        let mut notes = named.notes;
-        let cut_at = at.key("cut");
         if let (Some(cut), false) = (self.cut, self.is_for_stability) {
-            check_cut(cut, &cut_at)?;
+            check_cut(cut, &at.key("cut"))?;
         }
-        let stated = self.cut.and_then(|cut| cut.spindle_rpm).map(|speed| speed.si() / std::f64::consts::TAU);
-        let Some(spindle_speed) = stated.or(named.spindle_speed) else {
-            return Err(cut_at.key("spindle_rpm").missing("the speed of the spindle, which the path does not state"));
-        };
-        if stated.is_none() {
-            notes.push(format!("spindle speed {:.0} 1/min, as the path states it", spindle_speed * 60.0).into());
-        }
+        let (spindle_speed, of_speed) = self.spindle_speed(named.spindle_speed, &at.key("cut"))?;
         let mill = end_mill(self.tool, self.material, at)?;
-        notes.extend(self.material.map(|material| material.0.note()));
-        let mut path = named.path;
-        if path.feed(0).is_none() {
-            let Some(feed) = self.cut.and_then(|cut| cut.feed_per_tooth_mm) else {
-                let allowed = "the feed per tooth, for the path has no feeds";
-                return Err(cut_at.key("feed_per_tooth_mm").missing(allowed));
-            };
-            let feed = feed.si() * mill.cutter.teeth().len() as f64 * spindle_speed;
-            let feeds = vec![feed; path.points().len()];
-            path = path.with_feeds(feeds).map_err(|error| cut_at.error(error.to_string(), "a feed above 0"))?;
-            notes
-                .push(format!("the path has no feeds: {:.4} mm/s everywhere, by feed_per_tooth_mm", feed * 1e3).into());
-        } else if self.cut.is_some_and(|cut| cut.feed_per_tooth_mm.is_some()) && !self.is_for_stability {
-            let problem = "is given, and the path has feeds";
-            return Err(cut_at.key("feed_per_tooth_mm").error(problem, "spindle_rpm alone"));
-        }
-        let mut before = Vec::new();
-        for (table, number) in self.before.iter().zip(1..) {
-            let at = at.key("before").element(number);
-            let reading = table.reading.as_ref().unwrap_or(&self.reading);
-            let named_before = read_path(&at.key("path"), reading, &source.sources)?;
-            if is_same(&named_before.file, &named.file) {
-                return Err(at
-                    .key("path")
-                    .error("is the path of the operation itself", "the path of an earlier operation"));
-            }
-            let mill = shape(&table.tool, outline(&table.tool, &at)?, &at)?;
-            before.push(Operation {
-                name: named_before.input.name.clone(),
-                path: named_before.path,
-                rapids: named_before.rapids,
-                mill,
-                spindle_speed,
-            });
-            inputs.push(named_before.input);
-        }
-        let stock_at = at.key("stock");
-        let stock = match self.stock.form(&path, &stock_at)? {
-            StockForm::Solid(PlacedSolid { solid, pose, file }) => {
-                inputs.extend(file);
-                Stock::Solid { solid, pose }
-            }
-            StockForm::Path { depth, layer } => {
-                let most = if mill.corner_radius > 0.0 { mill.corner_radius } else { mill.cutter.radius() };
-                if layer.is_some_and(|layer| layer >= most) {
-                    let of = if mill.corner_radius > 0.0 { "the corner radius" } else { "half the diameter" };
-                    let allowed = format!("a number above 0 and below {of}, {} mm", rounded_mm(most));
-                    return Err(stock_at.key("layer_mm").out_of_range(allowed));
-                }
-                Stock::Path(PathStock { depth, layer })
-            }
-        };
-        let finished_part = match self.finished_part {
-            Some(table) => {
-                let (mesh, pose, input) = table.mesh(&at.key("finished_part"))?;
-                inputs.push(input);
-                Some((mesh, pose))
-            }
-            None => None,
-        };
+        let (path, of_feed) = self.fed(named.path, &mill, spindle_speed, &at.key("cut"))?;
+        let (before, of_before): (Vec<_>, Vec<_>) =
+            self.before(&named.file, spindle_speed, source, at)?.into_iter().unzip();
+        let (stock, of_stock) = self.stock(&path, &mill, &at.key("stock"))?;
+        let finished_part = self.finished_part.map(|table| table.mesh(&at.key("finished_part"))).transpose()?;
+        let (finished_part, of_part) = finished_part.map(|(mesh, pose, input)| ((mesh, pose), input)).unzip();
+
+        let mut notes = named.notes;
+        notes.extend(of_speed.map(Note::from).into_iter().chain(self.material.map(|material| material.0.note())));
+        notes.extend(of_feed.map(Note::from));
         let unusual = unusual(self.tool, &mill, &path, spindle_speed, &stock, self.stock.cell());
         notes.extend(unusual.into_iter().map(Note::may_be_wrong));
+        let name = named.input.name.clone();
+        let inputs = [named.input].into_iter().chain(of_before).chain(of_stock).chain(of_part).collect();
         let problem = ForcesProblem {
             stock,
             before,
-            operation: Operation { name: named.input.name, path, rapids: named.rapids, mill, spindle_speed },
+            operation: Operation { name, path, rapids: named.rapids, mill, spindle_speed },
             finished_part,
             cell: self.stock.cell(),
             memory: self.stock.memory(),
         };
+        let stock_at = at.key("stock");
         let places = ForcesPlaces {
             stock: stock_at.error("", "").found_if(None),
             path: at.key(self.path_key).error("", ""),
@@ -181,6 +123,80 @@ impl RemovalTables<'_> {
         };
         let keep = self.stock.keep(&stock_at).map(|(file, at)| KeptForces::new(file, at));
         Ok(ForcesRun { problem, inputs, notes, keep, places })
+    }
+
+    /// The speed of the spindle (rev/s) that the table states, or the path, which a note says.
+    fn spindle_speed(&self, of_path: Option<f64>, at: &Place<'_>) -> Result<(f64, Option<String>), InputError> {
+        let stated = self.cut.and_then(|cut| cut.spindle_rpm).map(|speed| speed.si() / std::f64::consts::TAU);
+        let missing = || at.key("spindle_rpm").missing("the speed of the spindle, which the path does not state");
+        let speed = stated.or(of_path).ok_or_else(missing)?;
+        let note = || format!("spindle speed {:.0} 1/min, as the path states it", speed * 60.0);
+        Ok((speed, stated.is_none().then(note)))
+    }
+
+    /// The path with feeds: its own, or that of the feed per tooth at a spindle speed (rev/s), which a note says.
+    fn fed(
+        &self,
+        path: ToolPath,
+        mill: &EndMill,
+        spindle_speed: f64,
+        at: &Place<'_>,
+    ) -> Result<(ToolPath, Option<String>), InputError> {
+        let per_tooth = self.cut.and_then(|cut| cut.feed_per_tooth_mm);
+        let at = at.key("feed_per_tooth_mm");
+        if path.feed(0).is_some() {
+            return if per_tooth.is_some() && !self.is_for_stability {
+                Err(at.error("is given, and the path has feeds", "spindle_rpm alone"))
+            } else {
+                Ok((path, None))
+            };
+        }
+        let per_tooth = per_tooth.ok_or_else(|| at.missing("the feed per tooth, for the path has no feeds"))?;
+        let feed = per_tooth.si() * mill.cutter.teeth().len() as f64 * spindle_speed;
+        let feeds = vec![feed; path.points().len()];
+        let path = path.with_feeds(feeds).map_err(|error| at.error(error.to_string(), "a feed above 0"))?;
+        let note = format!("the path has no feeds: {:.4} mm/s everywhere, by feed_per_tooth_mm", feed * 1e3);
+        Ok((path, Some(note)))
+    }
+
+    /// The operations before that along the path of a file, each with its input file.
+    fn before(
+        &self,
+        file: &Path,
+        spindle_speed: f64,
+        source: &TomlFile,
+        at: &Place<'_>,
+    ) -> Result<Vec<(Operation, InputFile)>, InputError> {
+        let operation = |(table, number): (&BeforeTable, usize)| {
+            let at = at.key("before").element(number);
+            let reading = table.reading.as_ref().unwrap_or(&self.reading);
+            let named = read_path(&at.key("path"), reading, &source.sources)?;
+            if is_same(&named.file, file) {
+                let problem = "is the path of the operation itself";
+                return Err(at.key("path").error(problem, "the path of an earlier operation"));
+            }
+            let mill = shape(&table.tool, outline(&table.tool, &at)?, &at)?;
+            let name = named.input.name.clone();
+            Ok((Operation { name, path: named.path, rapids: named.rapids, mill, spindle_speed }, named.input))
+        };
+        self.before.iter().zip(1..).map(operation).collect()
+    }
+
+    /// The stock, and the mesh file that it comes from, if there is one.
+    fn stock(&self, path: &ToolPath, mill: &EndMill, at: &Place<'_>) -> Result<(Stock, Option<InputFile>), InputError> {
+        let (depth, layer) = match self.stock.form(path, at)? {
+            StockForm::Solid(PlacedSolid { solid, pose, file }) => return Ok((Stock::Solid { solid, pose }, file)),
+            StockForm::Path { depth, layer } => (depth, layer),
+        };
+        let (most, of) = match mill.corner_radius {
+            corner if corner > 0.0 => (corner, "the corner radius"),
+            _ => (mill.cutter.radius(), "half the diameter"),
+        };
+        if layer.is_some_and(|layer| layer >= most) {
+            let allowed = format!("a number above 0 and below {of}, {} mm", rounded_mm(most));
+            return Err(at.key("layer_mm").out_of_range(allowed));
+        }
+        Ok((Stock::Path(PathStock { depth, layer }), None))
     }
 }
 

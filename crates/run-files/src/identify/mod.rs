@@ -8,7 +8,7 @@ mod plan;
 pub use directions::{Directions, NamedDirections};
 pub use file::*;
 pub use held::HeldSprings;
-pub use plan::{PlanTable, TestTable, VolumeTable, read_plan};
+pub use plan::read_plan;
 
 use super::sheet::sheet_from;
 use held::{Held, held_from};

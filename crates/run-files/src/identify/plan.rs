@@ -1,10 +1,9 @@
 //! The table `[plan]` of an identification file.
 
 use super::directions::{Directions, NamedDirections};
-use super::{FitModel, IdentificationFile, Shared};
+use super::file::{IdentificationFile, PlanTable, TestTable, VolumeTable};
+use super::{FitModel, Shared};
 use nalgebra::Vector3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::path::Path;
 use stead_calibration::identification::design::{LoadDirections, Request, TestCases, Volume};
@@ -14,77 +13,13 @@ use stead_disk::input::InputError;
 use stead_format::place::{Place, required};
 use stead_format::quantity::{Expects, Quantity};
 use stead_format::scalars::Whole;
-use stead_format::shapes::{Array, Interval, List, Vector};
+use stead_format::shapes::{Array, Interval, List};
 use stead_format::toml_file::TomlFile;
-use stead_format::units::{Deg, Mm, N, Nm, NotNegative, Percent, Positive};
+use stead_format::units::Deg;
 use stead_model::plausibility;
 use stead_model::robot::Robot;
 use stead_numerics::message::Note;
 use stead_runs::PlanRun;
-
-/// Which measurements to choose.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PlanTable {
-    /// Number of configurations to measure; where left out, 20, and 60 for springs about three directions of every
-    /// joint (`fit.model = "full"`).
-    pub configurations: Option<Whole<1, 1000>>,
-    /// Size of the load.
-    pub load_n: N<Positive>,
-    /// Directions of the load in the base frame, whose z axis points up: `any` (where left out), `horizontal`,
-    /// `vertical` (down, as a weight hangs), or a list.
-    pub load_directions: Option<Directions>,
-    /// About where the reference points are, in the flange frame.
-    pub reference_points_mm: List<Vector<Mm>>,
-    /// Angles of the joint beside the compensator, in ascending order; without a compensator of joint 2, and then any
-    /// angle where left out.
-    pub levels_deg: Option<List<Deg>>,
-    /// Joint limits for measuring, where narrower ones than those of the robot are needed.
-    pub limits_deg: Option<Array<Interval<Deg>, 6>>,
-    /// No reference point may move further; 10 where left out.
-    pub max_deflection_mm: Option<Mm<Positive>>,
-    /// The point whose deflection is to be known, in the flange frame; the load point where left out.
-    pub tip_mm: Option<Vector<Mm>>,
-    /// Number of random poses at which it is to be known, under the load in any direction; 200 where left out.
-    pub tests: Option<Whole<1, 100000>>,
-    /// Poses and loads at which it is to be known, in place of `tests`.
-    pub test: Option<Vec<TestTable>>,
-    /// Random configurations to choose from; 2000 where left out, or `configurations` if that is more.
-    pub candidates: Option<Whole<2, 100000>>,
-    /// Seed of all random numbers: the same seed gives the same result; 1 where left out.
-    pub seed: Option<Whole<0, 9223372036854775807>>,
-    /// Starts of the search: a greedy one, the best random set, and others; 8 where left out.
-    pub starts: Option<Whole<2, 100000>>,
-    /// Random sets to compare with; 1000 where left out.
-    pub random_sets: Option<Whole<1, 100000>>,
-    /// A compliance with a larger expected standard deviation is warned of; 20 where left out.
-    pub hardly_seen_percent: Option<Percent<Positive>>,
-    /// Where wrist, flange, tip, load and reference points must be, in the base frame; anywhere where left out.
-    pub volume: Option<VolumeTable>,
-}
-
-/// Where wrist, flange, tip, load and reference points must be, in the base frame.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct VolumeTable {
-    /// Range `[min, max]` of the x coordinate; any where left out.
-    pub x_mm: Option<Interval<Mm>>,
-    /// Range `[min, max]` of the y coordinate; any where left out.
-    pub y_mm: Option<Interval<Mm>>,
-    /// Range `[min, max]` of the z coordinate; any where left out.
-    pub z_mm: Option<Interval<Mm>>,
-    /// Least distance from the z axis; 0 where left out.
-    pub min_radius_mm: Option<Mm<NotNegative>>,
-}
-
-/// A pose and a load.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct TestTable {
-    /// Joint angles.
-    pub joints_deg: Array<Deg, 6>,
-    /// Force at the tip, in the base frame.
-    pub force_n: Vector<N>,
-    /// Moment at the tip, in the base frame; 0 where left out.
-    pub moment_nm: Option<Vector<Nm>>,
-}
 
 /// Configurations where the file does not say. With 20 the springs normal to the axes would be known to 1.2 to 24 % (a
 /// KUKA KR 210-2 with springs in the wrist centre, random poses, 2.7 kN, 0.03 mm); with 60 to 0.7 to 13 %.

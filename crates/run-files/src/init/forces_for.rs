@@ -1,6 +1,6 @@
 //! A forces file for a tool path that is there.
 
-use super::run_for::{relative, tool_beside};
+use super::run_for::tool_beside;
 use super::stock::Guess;
 use crate::forces::{ReadingTable, path_of, rounded_mm};
 use std::path::Path;
@@ -11,7 +11,7 @@ use stead_disk::files::{
 use stead_disk::input::InputError;
 use stead_format::cam::{LengthUnit, TOOL_GUESSES, guessed_keys};
 use stead_format::sources::Sources;
-use stead_format::toml_file::commented;
+use stead_format::written::{commented, filled, relative, shown_if};
 
 /// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The
 /// cutter is that of the program, or that beside a task (`NAME-tool.toml`). What is not known is filled in by a guess,
@@ -35,19 +35,11 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
     let corner = of_program.and_then(|tool| tool.corner_radius).map(rounded_mm);
     let corner = corner.or(beside.as_ref().and_then(|tool| tool.corner_radius_mm).map(|corner| corner.written()));
     let length = of_program.and_then(|tool| tool.length).map(rounded_mm);
-    let about = |is_known: bool| if is_known { "as the program has it" } else { "" };
     let folder = out.parent().unwrap_or(Path::new(""));
     let quoted = |file: &Path| toml::Value::from(relative(folder, file)).to_string();
-    let half = diameter.unwrap_or(10.0) / 2.0;
-    let guess = stock.is_none().then(|| Guess::of_path(&known.path, 2.0 * half, corner.unwrap_or_default()));
-    let stock = match (stock, &guess) {
-        (Some(mesh), _) => format!(
-            "mesh = {}\n# unit = \"mm\"                        # of the mesh file; or \"m\"\n\
-             # xyz_mm = [0.0, 0.0, 0.0]             # where its origin is\n",
-            quoted(mesh)
-        ),
-        (None, guess) => guess.as_ref().map(Guess::row).unwrap_or_default(),
-    };
+    let number = |value: f64| format!("{value:?}");
+    let wide = diameter.unwrap_or(GUESSED_DIAMETER);
+    let guess = stock.is_none().then(|| Guess::of_path(&known.path, wide, corner.unwrap_or_default()));
     let has_feeds = known.path.feed(0).is_some();
     let guessed = [
         ("reading".to_owned(), !has_units),
@@ -59,41 +51,31 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
     ];
     let guessed = guessed.into_iter().filter(|(_, is_guess)| *is_guess).map(|(key, _)| key);
     let guesses: Vec<String> = guessed.chain(guessed_keys()).collect();
-    let mut text = format!(
-        "# Forces along a tool path from what it removes of the stock. Written by `stead init forces`. Replace the values that `guesses`\n\
-         # names by those of your cutter and stock, and take the names out. Run it with\n#     stead forces {} --out TASK.csv\n\n\
-         guesses = {guesses:?}\npath = {}\n",
-        out.display(),
-        quoted(path)
+    let of_tool: String = TOOL_GUESSES.iter().map(|(row, comment)| commented(row, comment)).collect();
+    let text = filled(
+        include_str!("forces_for.toml"),
+        &[
+            ("out", Some(out.display().to_string())),
+            ("guesses", Some(format!("{guesses:?}"))),
+            ("path", Some(quoted(path))),
+            ("no_unit", shown_if(!has_units)),
+            ("mesh", stock.map(quoted)),
+            ("has_mesh", shown_if(stock.is_some())),
+            ("stock", guess.as_ref().map(Guess::row)),
+            ("diameter", diameter.map(number)),
+            ("guessed_diameter", diameter.is_none().then(|| number(wide))),
+            ("corner", corner.map(number)),
+            ("no_corner", shown_if(corner.is_none())),
+            ("length", length.map(number)),
+            ("guessed_length", length.is_none().then(|| number(3.0 * wide))),
+            ("tool_guesses", Some(of_tool.trim_end().to_owned())),
+            ("speed", known.spindle_speed.map(|speed| number((speed * 6e4).round() / 1e3))),
+            ("no_speed", shown_if(known.spindle_speed.is_none())),
+            ("no_feeds", shown_if(!has_feeds)),
+        ],
     );
-    if !has_units {
-        text += &commented("reading = { units = \"mm\" }", "the program does not state its unit; or \"inch\"");
-    }
-    text += &commented(
-        "# material = \"aluminium-7075\"",
-        "published cutting coefficients, in place of kt_mpa to kre_n_per_mm",
-    );
-    text += &format!(
-        "\n[stock]                                # the material before it is cut, in the workpiece frame\n{stock}\n[tool]\n"
-    );
-    text += &commented(&format!("cutter_diameter_mm = {:?}", 2.0 * half), about(diameter.is_some()));
-    match corner {
-        Some(corner) => text += &commented(&format!("corner_radius_mm = {corner:?}"), about(true)),
-        None => text += &commented("# corner_radius_mm = 0.0", "half the diameter for a ball"),
-    }
-    let flutes = length.unwrap_or(6.0 * half);
-    let of_length = if length.is_some() { "as the program has it, perhaps with the shank" } else { "" };
-    text += &commented(&format!("flute_length_mm = {flutes:?}"), of_length);
-    TOOL_GUESSES.iter().for_each(|(row, comment)| text += &commented(row, comment));
-    text += "\n[cut]\n";
-    match known.spindle_speed {
-        Some(speed) => {
-            text += &commented(&format!("# spindle_rpm = {:?}", (speed * 6e4).round() / 1e3), "as the program has it")
-        }
-        None => text += &commented("spindle_rpm = 9000.0", "the path states none"),
-    }
-    if !has_feeds {
-        text += &commented("feed_per_tooth_mm = 0.05", "the path has no feeds");
-    }
     write_new(out, &text, existing)
 }
+
+/// Of a cutter that nothing is said of. mm
+const GUESSED_DIAMETER: f64 = 10.0;

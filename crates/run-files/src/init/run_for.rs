@@ -4,7 +4,7 @@ use super::ground::{Ground, ground};
 use super::stock::Guess;
 use nalgebra::Vector3;
 use serde::Deserialize;
-use std::path::{Component, Path, PathBuf, absolute};
+use std::path::{Path, PathBuf};
 use stead_disk::files::{
     self,
     new::{Existing, write_all_new},
@@ -18,6 +18,7 @@ use stead_format::surroundings::mount_of;
 use stead_format::task::read_csv;
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, ToolTable};
+use stead_format::written::{filled, relative, shown_if};
 use stead_model::robot::{Pose, Robot};
 use stead_model::task::ToolPath;
 
@@ -101,16 +102,22 @@ struct CutterFile {
     cut: Option<CutTable>,
 }
 
-/// The cutter that `stead import path` has written beside a task file, without the comment at the head of the file.
-fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
+/// The file of the cutter that `stead import path` has written beside a task file.
+fn file_of_cutter(task: &Path) -> Result<Option<(TomlFile, CutterFile)>, InputError> {
     let file = file_beside(task);
     if !file.is_file() {
         return Ok(None);
     }
     let source = TomlFile::read(&file)?;
-    let read: CutterFile = source.parse().and_then(|document: Document<'_>| document.read())?;
+    let read = source.parse().and_then(|document: Document<'_>| document.read())?;
+    Ok(Some((source, read)))
+}
+
+/// The cutter that is beside a task file, without the comment at the head of its file.
+fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
+    let Some((source, read)) = file_of_cutter(task)? else { return Ok(None) };
     if let (None, Some(_)) = (&read.tool, &read.cut) {
-        return Err(InputError::new(&file, "has [cut] without [tool]").allowed("a table [tool] beside [cut]"));
+        return Err(InputError::new(source.file(), "has [cut] without [tool]").allowed("a table [tool] beside [cut]"));
     }
     let is_head = |line: &&str| !line.trim_start_matches("# ").starts_with('[');
     let lines: Vec<&str> = source.text().lines().skip_while(is_head).collect();
@@ -127,37 +134,13 @@ fn cutter_beside(task: &Path) -> Result<Option<Cutter>, InputError> {
 
 /// The cutter that is beside a task file.
 pub(super) fn tool_beside(task: &Path) -> Result<Option<ToolTable>, InputError> {
-    let file = file_beside(task);
-    if !file.is_file() {
-        return Ok(None);
-    }
-    let source = TomlFile::read(&file)?;
-    let read: CutterFile = source.parse().and_then(|document: Document<'_>| document.read())?;
-    Ok(read.tool)
+    Ok(file_of_cutter(task)?.and_then(|(_, read)| read.tool))
 }
 
 /// The shapes of the links that `stead import robot --collision` has written beside a robot file.
 fn shapes_beside(robot: &Path) -> Option<PathBuf> {
     let cell = robot.with_file_name(format!("{}-cell.toml", robot.file_stem()?.to_string_lossy()));
     (shipped::text(robot).is_none() && cell.is_file()).then_some(cell)
-}
-
-/// The name of a file seen from a folder, with forward slashes; the whole name where there is no way between them.
-pub(super) fn relative(folder: &Path, file: &Path) -> String {
-    let (Ok(folder), Ok(file)) = (absolute(folder.join(".")), absolute(file)) else { return shown(file) };
-    let (from, to): (Vec<Component<'_>>, Vec<Component<'_>>) =
-        (folder.components().collect(), file.components().collect());
-    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-    // Another drive, or a way through a folder whose name is not known.
-    if common == 0 || from[common..].contains(&Component::ParentDir) {
-        return shown(&file);
-    }
-    let up = std::iter::repeat_n(Component::ParentDir, from.len() - common);
-    shown(&up.chain(to[common..].iter().copied()).collect::<PathBuf>())
-}
-
-fn shown(file: &Path) -> String {
-    file.to_string_lossy().replace('\\', "/")
 }
 
 /// A length to the next 10 mm. mm
@@ -201,73 +184,38 @@ fn text(robot: &Robot, path: &ToolPath, area: [[f64; 2]; 3], known: &Known) -> S
     guesses.extend(stock.as_ref().map(|stock| format!("stock.{}", stock.key)));
     guesses.extend(known.cutter.iter().flat_map(|own| own.guesses.iter().filter(is_taken).cloned()));
     guesses.extend((!is_loaded).then(|| "forces".to_owned()));
-    let mut text = format!(
-        "\
-# A run: where to put the workpiece so that the robot machines it most accurately. Written by `stead init place`. Replace
-# the values that `guesses` names by those of your cell, and take the names out; `stead check` shows what was understood.
-
-guesses = {guesses:?}
-robot = {}{}
-task = {}
-{}{}
-[spindle]                              # a spindle across the flange. The tool frame in the flange frame, as the controller
-xyz_mm = [200.0, 0.0, 150.0]           # has it for this tool (TCP); its z axis points out of the spindle to the work. In place of
-abc_deg = [0.0, 90.0, 0.0]             # abc_deg: rotation, wpr_deg, rpy_deg or quaternion_wxyz
-
-[cell]                                 # from the reach of the arm: where the workpiece origin may stand, in {}
-x_mm = {:<31} # the middle of the path is at {x:?}, {y:?}, {z:?} mm of the workpiece frame
-y_mm = {}
-z_mm = {:<31} # {about_heights}
-# yaw_deg = [-180.0, 180.0]            # how the workpiece may be turned about the vertical; or q4, sin(yaw / 2)
-# A robot on a pedestal or a wall, a part on its side: the page cell_setup has the tables.
-
-{AXES}# xyz_mm = [{:?}, 0.0, 0.0]          # a point on its axis
-# range_deg = [-180.0, 180.0]
-# speed_deg_per_s = 60.0
-# use = \"indexed\"
-
-[constraints]
-min_inverse_condition = 0.15           # of the scaled Jacobian: distance from singularities, 0 to below 1
-characteristic_length_mm = {:<11} # by which the translational part of the Jacobian is scaled: a quarter of the reach
-joint_margin_deg = 2.0                 # kept from every joint limit
-
-[criterion]                            # what is minimised
-direction = \"total\"                    # the whole deflection counts: one part alone can be balanced while the tool is off
-force_uncertainty = 0.1                # the plan must also stand force errors of this share in any direction
-
-[redundancy]                           # the spindle may turn about the tool axis, by the angle beta
-beta_step_deg = 5.0                    # grid of beta; a fraction of 360
-feed_mm_per_s = {feed:<22} # {about_feed}
-max_spindle_turn_deg_per_mm = {turn:<8} # {about_turn}
-
-[postures]
-allowed = [\"front\"]                    # wrist in front of axis 1, not over the back of the robot, where cables may be in the way
-",
-        known.robot,
-        if known.has_stiffness { "" } else { LIKE },
-        known.task,
-        known.surroundings.as_ref().map_or(String::new(), |name| format!(
-            "surroundings = {name}   # shapes of the links; those of table, fence and fixture belong beside them\n"
-        )),
-        known.removes().map_or("", |_| MATERIAL),
-        if known.mount.is_some() { "the cell frame: [mount] of the surroundings" } else { "the base frame" },
-        range(area[0]),
-        range(area[1]),
-        range(heights),
-        rounded(0.6 * reach),
-        format!("{:?}", rounded(reach / 4.0)),
-    );
-    if let Some(stock) = &stock {
-        text.push_str(&format!("\n{STOCK}{}", stock.row()));
-    }
-    if let Some(cutter) = &known.cutter {
-        let end = cutter.text.find("\n[cut]").filter(|_| known.has_forces).unwrap_or(cutter.text.len());
-        text.push_str(&format!("\n{}\n", cutter.text[..end].trim_end()));
-    }
-    if !is_loaded {
-        text.push_str(FORCES);
-    }
-    text
+    let cutter = known.cutter.as_ref().map(|own| {
+        let end = own.text.find("\n[cut]").filter(|_| known.has_forces).unwrap_or(own.text.len());
+        own.text[..end].trim_end().to_owned()
+    });
+    let frame = if known.mount.is_some() { "the cell frame: [mount] of the surroundings" } else { "the base frame" };
+    filled(
+        include_str!("run_for.toml"),
+        &[
+            ("guesses", Some(format!("{guesses:?}"))),
+            ("robot", Some(known.robot.clone())),
+            ("like", shown_if(!known.has_stiffness)),
+            ("task", Some(known.task.clone())),
+            ("surroundings", known.surroundings.clone()),
+            ("removes", shown_if(stock.is_some())),
+            ("frame", Some(frame.to_owned())),
+            ("x_mm", Some(range(area[0]))),
+            ("middle", Some(format!("{x:?}, {y:?}, {z:?}"))),
+            ("y_mm", Some(range(area[1]))),
+            ("z_mm", Some(range(heights))),
+            ("about_z", Some(about_heights)),
+            ("table", Some(format!("{:?}", rounded(0.6 * reach)))),
+            ("length", Some(format!("{:?}", rounded(reach / 4.0)))),
+            ("feed", Some(feed)),
+            ("about_feed", Some(about_feed)),
+            ("turn", Some(turn)),
+            ("about_turn", Some(about_turn)),
+            ("stock", stock.as_ref().map(Guess::row)),
+            ("has_cutter", shown_if(cutter.is_some())),
+            ("cutter", cutter),
+            ("unloaded", shown_if(!is_loaded)),
+        ],
+    )
 }
 
 /// Where the origin of the workpiece may be above a ground (m), and where that comes from.
@@ -318,13 +266,10 @@ fn spindle_turn(path: &ToolPath) -> (String, String) {
     });
     let fastest = rates.fold(0.0, f64::max);
     if fastest < SPINDLE_TURN / AXIS_ROOM {
-        let about = "how fast the spindle turns in space: a plan that turns faster is driven more slowly".to_owned();
-        return (format!("{SPINDLE_TURN:?}"), about);
+        return (format!("{SPINDLE_TURN:?}"), "a plan that turns faster is driven more slowly".to_owned());
     }
     let turn = (fastest * AXIS_ROOM * 10.0).ceil() / 10.0;
-    let about =
-        format!("how fast the spindle turns in space: the tool axis alone turns by up to {fastest:.2} along the path");
-    (format!("{turn:?}"), about)
+    (format!("{turn:?}"), format!("the tool axis alone turns by up to {fastest:.2} along the path"))
 }
 
 /// The limit on the turn of the spindle that the guide recommends. deg/mm
@@ -332,49 +277,6 @@ const SPINDLE_TURN: f64 = 0.5;
 /// By how much (as a factor) the spindle may turn faster than the tool axis does where that is the fastest, so that
 /// beta is free there.
 const AXIS_ROOM: f64 = 1.25;
-
-/// For an arm that states no joint stiffness.
-const LIKE: &str = "
-# stiffness_like = \"kuka-kr270-r2700\" # the robot states no joint stiffness, without which nothing can be placed: that of a shipped arm
-#                                        of the class compares placements, and does not predict millimetres";
-
-/// What stands for cutting coefficients.
-const MATERIAL: &str =
-    "# material = \"aluminium-7075\"          # published cutting coefficients in place of those of [tool]\n";
-
-/// Tables of external axes, to be taken in; the second is not at its end.
-const AXES: &str = "\
-# [[external_axis]]                    # a rail under the robot
-# name = \"rail\"
-# kind = \"rail\"
-# carries = \"robot\"
-# direction = [0.0, 1.0, 0.0]          # in the cell frame: that of the base while all axes are at zero
-# range_mm = [-1000.0, 1000.0]
-# speed_mm_per_s = 500.0
-# use = \"fixed\"                        # one position for the path; or \"indexed\" (one for each segment), \"continuous\"
-
-# [[external_axis]]                    # a table that turns the workpiece
-# name = \"table\"
-# kind = \"turntable\"
-# carries = \"workpiece\"
-# axis = [0.0, 0.0, 1.0]
-";
-
-/// Stock for a task that has no forces.
-const STOCK: &str = "\
-[stock]                                # the material before it is cut: what the path passes over, up to depth_mm above the tip, or a
-#                                      # layer, layer_mm; or allowance_mm, box_mm and xyz_mm, a closed mesh. In place of it: one
-#                                      # engagement for the whole path, in [cut], or one force in its frame, [forces] without [cut]
-";
-
-/// Forces for a task that has none.
-const FORCES: &str = "
-[forces]                               # the task has no forces. What the workpiece does to the tool, in the path's own frame
-feed_n = -60.0                         # along the feed
-normal_n = 120.0                       # to the left of the feed: towards or away from the wall
-axis_n = 40.0                          # along the tool axis, from the work into the spindle
-# In place of [forces]: the cutter and its cut, tables [tool] and [cut]
-";
 
 /// The ends of a path along an axis of the workpiece frame. m
 fn ends(path: &ToolPath, axis: usize) -> [f64; 2] {

@@ -1,7 +1,7 @@
 //! The stock of a new file, where none is named: that which the path itself tells.
 
 use crate::forces::rounded_mm;
-use stead_format::toml_file::commented;
+use stead_format::written::commented;
 use stead_model::cutting::{Coefficients, Cutter, Rotation};
 use stead_model::task::ToolPath;
 use stead_numerics::monitor::Monitor;
@@ -35,7 +35,7 @@ impl Guess {
 
     /// The row of the file.
     pub fn row(&self) -> String {
-        commented(&format!("{} = {}", self.key, self.value), self.comment)
+        commented(&format!("{} = {}", self.key, self.value), self.comment).trim_end().to_owned()
     }
 }
 

@@ -1,5 +1,7 @@
 //! The tables `[criterion]` and `[[segment]]` of a run file: what is minimised.
 
+use super::reading::Reading;
+use super::segments::by_segment;
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -157,14 +159,13 @@ impl CriterionTable {
     /// figure than the mean, and a confidence where nothing is known of the errors of the compliances.
     pub(super) fn criterion(
         &self,
-        segments: &[SegmentTable],
+        reading: &Reading<'_>,
         robot: &Robot,
         task: &Task,
         force_uncertainty: f64,
         sets: Vec<Robot>,
-        root: &Place<'_>,
     ) -> Result<Criterion, InputError> {
-        let at = root.key("criterion");
+        let at = reading.at.key("criterion");
         let weights = match (self.direction, &self.weights) {
             (Some(_), Some(_)) => {
                 return Err(at.key("weights").error("is there beside criterion.direction", "one of the two"));
@@ -207,7 +208,11 @@ impl CriterionTable {
             weights,
             aggregate,
             joint_travel_weight,
-            segment_weights: segment_weights(segments, task.segments().len(), &root.key("segment"))?,
+            segment_weights: segment_weights(
+                reading.run.segment.as_deref().unwrap_or_default(),
+                task.segments().len(),
+                &reading.at.key("segment"),
+            )?,
             force_uncertainty,
             confidence,
             stiffness,
@@ -299,16 +304,8 @@ fn segment_weights(tables: &[SegmentTable], count: usize, at: &Place<'_>) -> Res
     if tables.is_empty() {
         return Ok(Vec::new());
     }
-    let mut weights = vec![None; count];
-    for (table, place) in tables.iter().zip(1..) {
-        let at = at.element(place).key("number");
-        let Some(weight) = weights.get_mut(table.number.count() - 1) else {
-            return Err(at.error("is no segment of the task", format!("whole numbers from 1 to {count}")));
-        };
-        if weight.replace(table.weight.si()).is_some() {
-            return Err(at.error("is there twice", "each segment once"));
-        }
-    }
+    let weights = tables.iter().map(|table| (table.number.count(), table.weight.si()));
+    let weights = by_segment(weights, count, at, || format!("whole numbers from 1 to {count}"))?;
     Ok(weights.into_iter().map(|weight| weight.unwrap_or(1.0)).collect())
 }
 

@@ -1,5 +1,6 @@
 //! The table `[forces]`, and which of the sources of forces a run has.
 
+use super::segments::by_segment;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,16 +47,9 @@ impl ForcesTable {
     fn wrenches(&self, path: &ToolPath, at: &Place<'_>) -> Result<Vec<Wrench>, InputError> {
         let vector = |forces: [N; 3]| Vector3::from(forces.map(Quantity::si));
         let count = path.segments().len();
-        let mut own = vec![None; count];
-        for (table, place) in self.segment.iter().flatten().zip(1..) {
-            let at = at.key("segment").element(place).key("number");
-            let Some(forces) = own.get_mut(table.number.count() - 1) else {
-                return Err(at.error("is no segment of the task", format!("whole numbers from 1 to {count}")));
-            };
-            if forces.replace(vector([table.feed_n, table.normal_n, table.axis_n])).is_some() {
-                return Err(at.error("is there twice", "each segment once"));
-            }
-        }
+        let own = self.segment.iter().flatten();
+        let own = own.map(|table| (table.number.count(), vector([table.feed_n, table.normal_n, table.axis_n])));
+        let own = by_segment(own, count, &at.key("segment"), || format!("whole numbers from 1 to {count}"))?;
         let all = vector([self.feed_n, self.normal_n, self.axis_n]);
         let at = |(index, point): (usize, &PathPoint)| Wrench {
             force: point.workpiece_from_point() * own[path.segment_of(index)].unwrap_or(all),

@@ -4,6 +4,8 @@ mod of_points;
 
 pub(super) use of_points::PointLeans;
 
+use super::reading::Reading;
+use super::segments::by_segment;
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -96,73 +98,22 @@ impl LeanTable {
         self.force.is_none()
     }
 
-    /// Where the tool may lean along a task, whose file has forces of its own or not, with values of beta over a turn.
+    /// Where the tool may lean along a task, whose file has forces of its own or not.
     ///
     /// # Errors
     /// [`InputError`] with file, line and field: a cutter that is not described, a lean that it does not allow, a
     /// segment that is not there, a point that asks for more than these tables allow, more states than memory holds.
     pub(super) fn space(
         &self,
+        reading: &Reading<'_>,
         task: &Task,
         of_points: &PointLeans,
-        tool: Option<&ToolTable>,
-        beta_count: usize,
         has_columns: bool,
-        at: &Place<'_>,
     ) -> Result<Arc<LeanSpace>, InputError> {
-        let Some(tool) = tool else {
-            let allowed =
-                "a table [tool] with cutter_diameter_mm and corner_radius_mm: how a tool leans depends on its end";
-            return Err(at.error("is there without the cutter that leans", allowed));
-        };
-        let radius = tool.cutter_diameter_mm.si() / 2.0;
-        let corner = tool.corner_radius_mm.map_or(0.0, Quantity::si);
-        if corner > radius * (1.0 + 1e-9) {
-            let allowed = format!("at most {}, half of tool.cutter_diameter_mm", radius * 1e3);
-            return Err(
-                at.error("leans a cutter whose corner is larger than its radius (tool.corner_radius_mm)", allowed)
-            );
-        }
-        if tool.taper_deg.is_some_and(|taper| taper.si() > 0.0) {
-            return Err(at.error("leans a tapered cutter", "a ball, bull nose or flat cutter with straight sides"));
-        }
-        let end = CutterEnd { radius, corner };
-        if let Some(word) = self.rule.filter(|word| end.is_ball() && word.0 != ContactRule::Centre) {
-            let problem = format!("is \"{}\" for a ball, which leans about its centre", word.0.word());
-            let allowed = "\"centre\", or no rule, or a smaller tool.corner_radius_mm";
-            return Err(at.key("rule").error(problem, allowed).found_if(None));
-        }
-        let has_normals = task.path().surface_normals().is_some();
-        let contact = match self.rule {
-            Some(word) => word.0,
-            None if end.is_ball() => ContactRule::Centre,
-            None if has_normals => ContactRule::Contact,
-            None => ContactRule::Plane,
-        };
-        let interval = |ends: Option<Interval<Deg<LeanAngle>>>| {
-            let [min, max] = ends.map_or([0.0; 2], Interval::si);
-            problem::Interval { min, max }
-        };
-        let all = LeanRange { lead: interval(self.lead_deg), tilt: interval(self.tilt_deg) };
-        let mut segments = vec![all; task.segments().len()];
-        let mut is_named = vec![false; segments.len()];
-        for (table, number) in self.segment.iter().flatten().zip(1..) {
-            let at = at.key("segment").element(number);
-            let index = table.number.get() as usize - 1;
-            let Some(range) = segments.get_mut(index) else {
-                let allowed = format!("1 to {}, the segments of the task", task.segments().len());
-                return Err(at.key("number").error("is no segment of the task", allowed));
-            };
-            if std::mem::replace(&mut is_named[index], true) {
-                return Err(at.key("number").error("is there twice", "each segment once"));
-            }
-            if let Some(lead) = table.lead_deg {
-                range.lead = interval(Some(lead));
-            }
-            if let Some(tilt) = table.tilt_deg {
-                range.tilt = interval(Some(tilt));
-            }
-        }
+        let at = &reading.at.key("lean");
+        let end = end_of(reading.run.tool.as_ref(), at)?;
+        let contact = self.contact(&end, task, at)?;
+        let segments = self.of_segments(task.segments().len(), at)?;
         let path = task.path();
         let range = |point: usize| {
             let is_scored = path.is_scored(point);
@@ -181,16 +132,38 @@ impl LeanTable {
         };
         check_max_lean(&space, at)?;
         space.check(path).map_err(|error| at.error(format!("cannot be: {error}"), "leans that the cutter allows"))?;
-        let [lead, tilt] = space.half_counts().map(|half| 2 * half + 1);
-        let (leans, memory) = (lead * tilt, space.memory(beta_count) as f64);
-        if leans > MOST_LEANS || memory > MOST_MEMORY {
-            let key = if lead > tilt { "lead_step_deg" } else { "tilt_step_deg" };
-            let problem =
-                format!("makes {leans} leans a point with {beta_count} values of beta ({:.1} GB)", memory / 1e9);
-            let allowed = format!("a wider step, {MOST_LEANS} leans and {} GB at the most", MOST_MEMORY / 1e9);
-            return Err(at.key(key).error(problem, allowed));
-        }
+        check_size(&space, reading.redundancy.beta_count, at)?;
         Ok(Arc::new(space))
+    }
+
+    /// What stays where it is when the tool leans.
+    fn contact(&self, end: &CutterEnd, task: &Task, at: &Place<'_>) -> Result<ContactRule, InputError> {
+        match self.rule {
+            Some(word) if end.is_ball() && word.0 != ContactRule::Centre => {
+                let problem = format!("is \"{}\" for a ball, which leans about its centre", word.0.word());
+                let allowed = "\"centre\", or no rule, or a smaller tool.corner_radius_mm";
+                Err(at.key("rule").error(problem, allowed).found_if(None))
+            }
+            Some(word) => Ok(word.0),
+            None if end.is_ball() => Ok(ContactRule::Centre),
+            None if task.path().surface_normals().is_some() => Ok(ContactRule::Contact),
+            None => Ok(ContactRule::Plane),
+        }
+    }
+
+    /// The ranges of lead and tilt of each segment.
+    fn of_segments(&self, count: usize, at: &Place<'_>) -> Result<Vec<LeanRange>, InputError> {
+        let interval = |ends: Option<Interval<Deg<LeanAngle>>>, left_out: problem::Interval| {
+            ends.map(Interval::si).map_or(left_out, |[min, max]| problem::Interval { min, max })
+        };
+        let none = LeanRange::NONE;
+        let all = LeanRange { lead: interval(self.lead_deg, none.lead), tilt: interval(self.tilt_deg, none.tilt) };
+        let own = self.segment.iter().flatten().map(|table| {
+            let (lead, tilt) = (interval(table.lead_deg, all.lead), interval(table.tilt_deg, all.tilt));
+            (table.number.count(), LeanRange { lead, tilt })
+        });
+        let own = by_segment(own, count, &at.key("segment"), || format!("1 to {count}, the segments of the task"))?;
+        Ok(own.into_iter().map(|range| range.unwrap_or(all)).collect())
     }
 
     /// What the user should know of a tool that leans, whose forces come from a stock or not.
@@ -223,6 +196,38 @@ impl LeanTable {
         }
         notes.into_iter().map(Note::from).collect()
     }
+}
+
+/// The end of the cutter that leans.
+fn end_of(tool: Option<&ToolTable>, at: &Place<'_>) -> Result<CutterEnd, InputError> {
+    let Some(tool) = tool else {
+        let allowed =
+            "a table [tool] with cutter_diameter_mm and corner_radius_mm: how a tool leans depends on its end";
+        return Err(at.error("is there without the cutter that leans", allowed));
+    };
+    let radius = tool.cutter_diameter_mm.si() / 2.0;
+    let corner = tool.corner_radius_mm.map_or(0.0, Quantity::si);
+    if corner > radius * (1.0 + 1e-9) {
+        let problem = "leans a cutter whose corner is larger than its radius (tool.corner_radius_mm)";
+        return Err(at.error(problem, format!("at most {}, half of tool.cutter_diameter_mm", radius * 1e3)));
+    }
+    if tool.taper_deg.is_some_and(|taper| taper.si() > 0.0) {
+        return Err(at.error("leans a tapered cutter", "a ball, bull nose or flat cutter with straight sides"));
+    }
+    Ok(CutterEnd { radius, corner })
+}
+
+/// Refuses more leans of a point than are planned, and more states than memory holds.
+fn check_size(space: &LeanSpace, beta_count: usize, at: &Place<'_>) -> Result<(), InputError> {
+    let [lead, tilt] = space.half_counts().map(|half| 2 * half + 1);
+    let (leans, memory) = (lead * tilt, space.memory(beta_count) as f64);
+    if leans <= MOST_LEANS && memory <= MOST_MEMORY {
+        return Ok(());
+    }
+    let key = if lead > tilt { "lead_step_deg" } else { "tilt_step_deg" };
+    let problem = format!("makes {leans} leans a point with {beta_count} values of beta ({:.1} GB)", memory / 1e9);
+    let allowed = format!("a wider step, {MOST_LEANS} leans and {} GB at the most", MOST_MEMORY / 1e9);
+    Err(at.key(key).error(problem, allowed))
 }
 
 /// Refuses a largest angle below the least lean of a point.

@@ -9,8 +9,10 @@ mod notes;
 mod orientations;
 mod output;
 mod postures;
+mod reading;
 mod redundancy;
 mod removed;
+mod segments;
 mod stability;
 mod stages;
 #[cfg(test)]
@@ -30,13 +32,14 @@ pub use redundancy::RedundancyTable;
 pub use stability::PathStabilityTable;
 pub use tables::{CellTable, ConstraintsTable, OrientationTable, ReferenceTable, SearchTable, TransferTable};
 
+use crate::Word;
 use crate::forces::BeforeTable;
 use crate::forces::material::Material;
-use crate::{Word, at_the_top};
+use crate::kind::read_unless;
 use lean::LeanTable;
+use reading::Reading;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use stages::Reading;
 use std::path::Path;
 use stead_disk::input::InputError;
 use stead_format::compliance_matrix::{BaseComplianceTable, PartComplianceTable};
@@ -158,10 +161,7 @@ pub(crate) fn read_from(source: &TomlFile, monitor: &Monitor) -> Result<Run, Rea
 
 /// The run that a parsed file asks for.
 pub(crate) fn read_run_tables(source: &TomlFile, document: &Document<'_>, monitor: &Monitor) -> Result<Run, ReadError> {
-    let run: RunFile = document.read().map_err(|error| match FileKind::of(source.text().as_bytes()) {
-        Some(kind @ (FileKind::RobotFile | FileKind::ForcesFile)) => kind.refused(source.file()),
-        _ => at_the_top::<RunFile>(error),
-    })?;
+    let run: RunFile = read_unless(&[FileKind::RobotFile, FileKind::ForcesFile], source, document)?;
     let at = document.root();
     let redundancy = run.redundancy.redundancy(&at.key("redundancy"))?;
     Reading { source, run: &run, at, monitor, redundancy }.run()

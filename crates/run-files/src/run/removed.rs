@@ -1,16 +1,15 @@
 //! The table `[stock]` of a run: forces from what its path removes.
 
+use super::reading::Reading;
 use crate::forces::{NamedPath, RemovalTables};
 use std::sync::Arc;
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_format::document::NamedFile;
 use stead_format::place::Place;
 use stead_format::task::Imported;
-use stead_format::toml_file::TomlFile;
 use stead_model::task::lean::Lean;
 use stead_model::task::{LeanForces, PointLeanForces, Task, TaskError, ToolPath};
 use stead_numerics::message::Note;
-use stead_numerics::monitor::Monitor;
 use stead_problem::lean::LeanSpace;
 use stead_removal::outcome::RemovalForces;
 use stead_runs::ReadError;
@@ -48,13 +47,7 @@ impl Removal {
     ///
     /// # Errors
     /// [`ReadError`]: what the computation finds wrong, and a stop.
-    pub fn leaning(
-        &self,
-        task: Task,
-        space: &LeanSpace,
-        source: &TomlFile,
-        monitor: &Monitor,
-    ) -> Result<Task, ReadError> {
+    pub fn leaning(&self, reading: &Reading<'_>, task: Task, space: &LeanSpace) -> Result<Task, ReadError> {
         let key = format!("{} {space:?}", self.key);
         let wrong = |error: TaskError| self.run.located(&error.into());
         let make = || {
@@ -75,7 +68,7 @@ impl Removal {
             }
             let upright = Task::new(self.forces.path.clone(), self.forces.wrenches()).map_err(wrong)?;
             let paths: Vec<ToolPath> = ways.iter().map(|way| upright.leaned(&space.rule, way).path().clone()).collect();
-            let found = self.run.leaning(&self.forces, &paths, monitor)?;
+            let found = self.run.leaning(&self.forces, &paths, reading.monitor)?;
             let of_point = |point: usize| {
                 let all = || places.iter().map(|place| &found[*place][point]);
                 let tilts = 2 * half[1] + 1;
@@ -88,25 +81,23 @@ impl Removal {
             };
             LeanForces::new((0..task.points().len()).map(of_point).collect()).map_err(wrong)
         };
-        let forces = source.sources.made(key, make)?;
+        let forces = reading.source.sources.made(key, make)?;
         task.with_lean_forces(forces).map_err(wrong)
     }
 }
 
 /// Computes the forces of a task, once for all runs of shared sources in which nothing that they depend on differs.
-/// `feed` (m/s) is that of a path that states none.
+/// The feed of `[redundancy]` is that of a path that states none.
 ///
 /// # Errors
 /// [`ReadError`]: forces from two places, what [`RemovalTables::run`] and the computation find wrong, and a stop.
 pub(super) fn removed(
+    reading: &Reading<'_>,
     tables: &RemovalTables<'_>,
     imported: Imported,
     file: &NamedFile,
-    feed: f64,
-    source: &TomlFile,
-    at: &Place<'_>,
-    monitor: &Monitor,
 ) -> Result<Removed, ReadError> {
+    let (at, feed) = (&reading.at, reading.redundancy.feed);
     let alone = "force columns in the task, [forces], or [stock], [tool] and [cut]: one of them";
     if imported.wrenches.is_some() {
         let problem = format!("the task {} has force columns already: forces come from one place only", file.name);
@@ -127,12 +118,12 @@ pub(super) fn removed(
         notes: Vec::new(),
         input: input_file("task", &file.name, &file.bytes),
     };
-    let run = tables.run(path, source, at)?;
+    let run = tables.run(path, reading.source, at)?;
     // Of the cut nothing else counts, such as depths for the stability.
     let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
     let others = RemovalTables { reading: tables.reading.clone(), cut: None, is_for_stability: false, ..*tables };
     let key = format!("{others:?} {cut:?} {:?} {feed:?}", run.inputs);
-    let outcome = source.sources.made(key.clone(), || run.forces(monitor))?;
+    let outcome = reading.source.sources.made(key.clone(), || run.forces(reading.monitor))?;
     let edges = outcome.points.iter().map(|point| point.edge).collect();
     let cut = outcome.path.clone();
     let task = Task::new(if is_fed { cut.without_feeds() } else { cut }, outcome.wrenches())

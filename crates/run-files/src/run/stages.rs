@@ -1,17 +1,18 @@
 //! A run file read stage by stage: the arm, the forces along the path, the scoring, the surroundings and
 //! the leans of the tool, each with its own notes and input files, and the problem of them all.
 
+use super::ReferenceTable;
 use super::criterion::ReadSets;
 use super::external_axes::{check_axes, external_axes};
 use super::forces::ForceTables;
 use super::lean::PointLeans;
 use super::notes::{cutter_notes, direction_note, force_note, override_note, speed_note, tilt_note};
 use super::postures::check_postures;
+use super::reading::Reading;
 use super::redundancy::check_axis_turns;
 use super::removed::{Removal, removed};
 use super::tables::{check_path_points, check_tables};
 use super::yielding::{base_note, on_its_base, part_compliances};
-use super::{ReferenceTable, RunFile};
 use crate::forces::{ReadingTable, RemovalTables};
 use crate::guesses::guesses;
 use crate::stated::stated;
@@ -27,24 +28,14 @@ use stead_model::external_axis::ExternalAxis;
 use stead_model::robot::{Robot, Spindle};
 use stead_model::task::Task;
 use stead_numerics::message::{Note, Warning};
-use stead_numerics::monitor::Monitor;
 use stead_problem::criterion::Criterion;
 use stead_problem::lean::LeanSpace;
-use stead_problem::problem::{Problem, ProblemParts, Redundancy};
+use stead_problem::problem::{Problem, ProblemParts};
 use stead_problem::setup::Setup;
 use stead_runs::{ReadError, Run};
 use stead_simulation::arm::Variant;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 use stead_simulation::stability_analysis::runout_note;
-
-/// A run file with all that reading it needs.
-pub(super) struct Reading<'r> {
-    pub source: &'r TomlFile,
-    pub run: &'r RunFile,
-    pub at: Place<'r>,
-    pub monitor: &'r Monitor,
-    pub redundancy: Redundancy,
-}
 
 /// The arm on its mount, with its spindle.
 struct Arm {
@@ -209,7 +200,7 @@ impl<'r> Reading<'r> {
         let has_columns = imported.wrenches.is_some();
         let (task, removal, inputs, notes) = match self.removal_tables()? {
             Some(tables) => {
-                let removed = removed(&tables, imported, &file, self.redundancy.feed, self.source, at, self.monitor)?;
+                let removed = removed(self, &tables, imported, &file)?;
                 (removed.task, Some(removed.removal), removed.inputs, removed.notes)
             }
             None => {
@@ -257,8 +248,7 @@ impl<'r> Reading<'r> {
         let ReadSets { robots, inputs, notes: of_sets } = table.sets(robot, narrowed, at)?;
         let forces = load.removal.as_ref().map(|removal| &*removal.forces);
         let (force_uncertainty, about) = table.force_errors(forces, &at.key("criterion"))?;
-        let segments = run.segment.as_deref().unwrap_or_default();
-        let criterion = table.criterion(segments, robot, task, force_uncertainty, robots, at)?;
+        let criterion = table.criterion(self, robot, task, force_uncertainty, robots)?;
         Ok(Scoring { criterion, inputs, notes: about.map(Note::from).into_iter().collect(), of_sets })
     }
 
@@ -280,12 +270,10 @@ impl<'r> Reading<'r> {
             let notes = load.of_points.unused().map(Note::from).into_iter().collect();
             return Ok((task, Leaning { space: None, notes }));
         };
-        let at = self.at.key("lean");
-        let (tool, beta_count) = (self.run.tool.as_ref(), self.redundancy.beta_count);
-        let space = table.space(&task, &load.of_points, tool, beta_count, load.has_columns, &at)?;
+        let space = table.space(self, &task, &load.of_points, load.has_columns)?;
         let notes = table.notes(&space, load.removal.is_some(), task.path().first_unscored().is_some());
         let task = match load.removal.as_ref().filter(|_| table.computes_forces() && !space.is_closed()) {
-            Some(removal) => removal.leaning(task, &space, self.source, self.monitor)?,
+            Some(removal) => removal.leaning(self, task, &space)?,
             None => task,
         };
         Ok((task, Leaning { space: Some(space).filter(|space| !space.is_closed()), notes }))
@@ -301,8 +289,7 @@ impl<'r> Reading<'r> {
     ) -> Result<Problem, InputError> {
         let Self { run, at, .. } = self;
         let (scene, transfer) = (around.scene.scene.clone(), run.transfer.unwrap_or_default());
-        let (tool, tool_at, path) = (run.tool.as_ref(), &at.key("tool"), task.path());
-        let segment_moves = transfer.segment_moves(&arm.robot, &arm.spindle, scene.as_deref(), path, tool, tool_at)?;
+        let segment_moves = transfer.segment_moves(self, &arm.robot, &arm.spindle, scene.as_deref(), task.path())?;
         let orientations = run.cell.orientations(&task, &at.key("cell"))?;
         let parts = ProblemParts {
             robot: arm.robot.clone(),

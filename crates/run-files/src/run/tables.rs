@@ -1,6 +1,7 @@
 //! The tables of a run file, each with the domain object that it becomes.
 
 use super::certificate::Memory;
+use super::reading::Reading;
 use crate::Word;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -258,16 +259,16 @@ impl TransferTable {
         }
     }
 
-    /// The moves between segments among the shapes of a scene, with the tool that a table states.
+    /// The moves between segments among the shapes of a scene, with the tool of the run.
     pub(super) fn segment_moves(
         &self,
+        reading: &Reading<'_>,
         robot: &Robot,
         spindle: &Spindle,
         scene: Option<&Scene>,
         path: &ToolPath,
-        tool: Option<&ToolTable>,
-        at: &Place<'_>,
     ) -> Result<SegmentMoves, InputError> {
+        let (tool, at) = (reading.run.tool.as_ref(), reading.at.key("tool"));
         let cutter_diameter = tool.map(|tool| tool.cutter_diameter_mm.si());
         let body = tool.map(ToolTable::body).unwrap_or_default();
         let joined = scene.map(|scene| ToolScene::new(robot, &spindle.flange_from_tool, scene, path, body)).transpose();

@@ -184,8 +184,8 @@ fn number(unit: Unit, value: Option<f64>) -> TableCell {
 }
 
 /// The name of a bound: `z_max`, `joint_2_min`.
-fn name_of(Side { limit, is_upper }: Side) -> String {
-    let limit = match limit {
+fn name_of(side: Side) -> String {
+    let limit = match side.limit {
         Limit::CellX => "x".to_owned(),
         Limit::CellY => "y".to_owned(),
         Limit::CellZ => "z".to_owned(),
@@ -207,5 +207,5 @@ fn name_of(Side { limit, is_upper }: Side) -> String {
         Limit::StepOver => "step_over".to_owned(),
         Limit::ContactTolerance => "contact_tolerance".to_owned(),
     };
-    format!("{limit}_{}", if is_upper { "max" } else { "min" })
+    format!("{limit}_{}", if side.is_upper { "max" } else { "min" })
 }

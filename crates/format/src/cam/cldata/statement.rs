@@ -57,10 +57,10 @@ impl<'a> Statement<'a> {
     }
 
     /// That it is wrong.
-    pub fn fail(&self, (problem, allowed): (impl Into<String>, impl Into<String>)) -> InputError {
+    pub fn fail(&self, refusal: (impl Into<String>, impl Into<String>)) -> InputError {
         let found = if self.minors.is_empty() { self.name().to_owned() } else { self.text() };
-        let error = InputError::new(self.file, problem).at_line(self.line).in_field(self.name());
-        error.found(format!("'{found}'")).allowed(allowed)
+        let error = InputError::new(self.file, refusal.0).at_line(self.line).in_field(self.name());
+        error.found(format!("'{found}'")).allowed(refusal.1)
     }
 
     /// How many numbers it has, for messages.

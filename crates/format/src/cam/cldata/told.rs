@@ -1,6 +1,6 @@
 //! The dialect of a CLDATA file, and the rows of its words.
 
-use super::super::word_of;
+use super::super::units::word_of;
 use super::dialect::{COMMON, CamFormat, DIALECTS, Dialect, Effect, Sign};
 
 impl CamFormat {

@@ -36,9 +36,9 @@ impl Block<'_> {
     }
 
     /// That one of its words is wrong.
-    pub fn fail(&self, (letter, value): Word, (problem, allowed): (impl Into<String>, &str)) -> InputError {
-        let error = InputError::new(self.file, problem).at_line(self.line).in_field(letter.to_string());
-        error.found(format!("'{letter}{value}'")).allowed(allowed)
+    pub fn fail(&self, word: Word, refusal: (impl Into<String>, &str)) -> InputError {
+        let error = InputError::new(self.file, refusal.0).at_line(self.line).in_field(word.0.to_string());
+        error.found(format!("'{}{}'", word.0, word.1)).allowed(refusal.1)
     }
 }
 

@@ -3,7 +3,7 @@
 //! Angles count as those of the tool against the workpiece, right-handed about the axes x (A), y (B) and z (C), as ISO
 //! 841 has it for tables too. C turns the other one: the tool axis is Rz(C) Rx(A) z, or Rz(C) Ry(B) z.
 
-use super::super::word_of;
+use super::super::units::word_of;
 use nalgebra::{Rotation3, Vector3};
 
 /// Which rotary axes a machine has, and what they turn.

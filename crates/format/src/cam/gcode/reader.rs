@@ -8,7 +8,7 @@ use super::super::refusals::*;
 use super::super::tool::ProgramTool;
 use super::super::{CamFormat, LARGEST, LengthUnit, Program, ReadSettings};
 use super::block::{Block, Word};
-use super::codes::{CODES, Code, Tilt};
+use super::codes::{Code, Tilt, code_of};
 use super::comment;
 use super::motion::Motion;
 use nalgebra::{Rotation3, Vector3};
@@ -63,14 +63,6 @@ struct Codes {
     is_home: bool,
     is_dwell: bool,
     tilt: Option<Tilt>,
-}
-
-/// What a code does, where it is known.
-fn code_of(value: f64) -> Option<Code> {
-    let tenths = (value * 10.0).round();
-    let is_code = (tenths - value * 10.0).abs() < 1e-6 && (0.0..1e4).contains(&tenths);
-    let row = CODES.binary_search_by_key(&(tenths as i64), |(code, _)| *code).ok();
-    row.filter(|_| is_code).map(|row| CODES[row].1)
 }
 
 impl<'a> Reader<'a> {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::robot::{moving_robot_from, robot_from};
 use std::path::Path;
 use stead_simulation::arm::testing::{spindle, tx200};
 

@@ -10,9 +10,11 @@ mod rows;
 mod stand;
 mod visual;
 
+use super::tree::{Chain, Tree};
 use super::*;
 use crate::robot::robot_from;
 use crate::toml_file::TomlFile;
+use stead_model::robot::{Joint, Robot};
 
 const FIXTURES: [(&str, &str); 4] = [
     ("kuka", include_str!("../fixtures/kuka.urdf")),

@@ -4,9 +4,9 @@ use super::super::super::arc::Arc;
 use super::super::super::refusals::*;
 use super::super::super::{LARGEST, Move};
 use super::super::block::{Block, Word};
-use super::super::codes::Code;
+use super::super::codes::{Code, code_of};
 use super::super::motion::Motion;
-use super::{Reader, code_of};
+use super::Reader;
 use nalgebra::{Rotation3, Unit, Vector3};
 use stead_disk::input::InputError;
 
@@ -74,7 +74,7 @@ impl Reader<'_> {
         let from = Target { place: self.course.place, angles: self.modes.angles };
         let first_move = self.course.program.moves.len();
         if is_arc && is_cut {
-            self.go_round(block, motion, [from, end])?;
+            self.go_round(block, motion, &from, &end)?;
         } else if end.place.iter().all(Option::is_some) {
             for part in if is_cut { from.parts_to(&end) } else { vec![end] } {
                 let part = self.end(block, &part, !is_cut)?;
@@ -109,7 +109,7 @@ impl Reader<'_> {
     }
 
     /// Goes along an arc.
-    fn go_round(&mut self, block: &Block<'_>, motion: Motion, [from, end]: [Target; 2]) -> Result<(), InputError> {
+    fn go_round(&mut self, block: &Block<'_>, motion: Motion, from: &Target, end: &Target) -> Result<(), InputError> {
         ensure!(end.angles == from.angles, block.fail_at("ABC", TURNING_ARC));
         let is_plain = self.settings.machine.is_none() || end.angles == [0.0; 3];
         ensure!(is_plain, block.fail_at("IJKR", TILTED_ARC));
@@ -121,7 +121,7 @@ impl Reader<'_> {
         let [start, end_of_arc, centre] = [ends[0], ends[1], centre].map(|place| frame.place(place));
         let axis = Unit::new_normalize(frame.rotation * axis);
         let arc = Arc { start, end: end_of_arc, centre, axis, more_turns: 0 };
-        let end = self.end(block, &end, false)?;
+        let end = self.end(block, end, false)?;
         self.course.go_round(arc, end, true, block.line).map_err(|words| block.fail_at("IJKR", words))
     }
 
