@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 first.get_or_init(|| started.elapsed().as_secs_f64());
             }
         });
-        let bound = best(&run.problem, value, &CertificateSettings::new(percent / 100.0), true, &monitor)?;
+        let bound = best(&run.problem, value, &CertificateSettings::new(percent / 100.0), &monitor)?;
         println!(
             "{name:<16}  {percent:>5}  {allowed:>9}  {:>7.1}  {:>14.1}  {:.7}  {:.7}  {} ({:?})",
             started.elapsed().as_secs_f64(),

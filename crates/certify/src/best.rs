@@ -1,80 +1,51 @@
 //! The best placement: a lower bound of the objective.
 
 use super::active_cells::ActiveCells;
-use super::at_rest::without_axes;
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
 use super::keeps_open::{KeepsOpen, counted_boxes};
 use super::leaning;
-use super::model::Model;
+use super::model::{Keeps, Model};
 use super::region::Region;
-use super::requirements::certifiable;
+use super::requirements::Leaf;
 use rayon::prelude::*;
 use std::sync::Arc;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_problem::problem::Problem;
 use stead_problem::sense::Sense;
 use stead_problem::settings::CertificateSettings;
-use stead_problem::symmetry::{Unsupported, Upright};
 
-/// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (what
-/// is minimised, m) by more than the gap of the settings.
-///
-/// Limits between neighbouring points are relaxed, and those of joints 1, 4 and 6; with `with_limits` the rate of beta
-/// is kept, where one is set, else the turn of the spindle, where that is limited. The result does not depend on the
-/// number of threads.
-///
-/// # Errors
-/// Why the problem cannot be certified this way.
-pub fn best(
-    problem: &Problem,
-    value: f64,
-    settings: &CertificateSettings,
-    with_limits: bool,
-    monitor: &Monitor,
-) -> Result<Bound, Unsupported> {
-    let CertificateSettings { gap, memory, .. } = *settings;
-    certifiable(problem, memory)?;
-    let alone = without_axes(problem)?;
-    let problem = alone.as_ref();
-    if Upright::of(problem).is_err() {
-        return Ok(leaning::best(problem, value, settings, monitor));
+/// Bounds the objective of all placements from below: see [`super::best()`].
+pub(super) fn bound_of(leaf: &Leaf, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
+    match leaf.leans {
+        true => leaning::best(&leaf.problem, value, settings, monitor),
+        false => upright(&leaf.problem, value, settings, monitor),
     }
-    let keeps = if with_limits { Keeps::of(problem) } else { Keeps::NOTHING };
+}
+
+/// The same of an upright tool.
+fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
+    let CertificateSettings { gap, memory, .. } = *settings;
+    let keeps = Keeps::of(problem);
     let (model, whole) = (Model::new(problem, keeps), whole(problem));
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective: model.objective, memory };
     // Of no placement anything is known until the tables are made.
     let ceiling = search.ceiling();
-    let mut nodes = 0;
     let coarse = CoarseBounds::new(&model, monitor, || search.report(monitor, 0.0, 1, 0));
-    let left = coarse.and_then(|coarse| {
-        let left = survivors(&model, &coarse, whole, ceiling, &mut nodes, monitor)?;
+    let begun = coarse.and_then(|coarse| {
+        let left = survivors(&model, &coarse, whole, ceiling, monitor)?;
         Ok((coarse, left))
     });
-    let left = match left {
-        Ok(left) => left,
-        Err(stop) => {
-            let open = vec![(whole, 0.0)];
-            let Keeps { with_rate, with_turn } = keeps;
-            return Ok(Bound {
-                value,
-                met: None,
-                bound: 0.0,
-                with_rate,
-                with_turn,
-                nodes: 0,
-                status: stop.into(),
-                keeps_open: None,
-                open,
-            });
-        }
+    let (coarse, (left, nodes)) = match begun {
+        Ok(begun) => begun,
+        Err(stop) => return search.not_begun(whole, stop),
     };
-    let (coarse, left) = left;
+    let full = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
     // Parts of finer tables are for many boxes each: for a few the cells of heading take less time.
     let at_once = left.len() < MANY || with_cells_at_once(&model, &coarse, &left, ceiling, monitor);
-    let full = at_once.then(|| Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0))));
-    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: full.clone() }).collect();
+    let known = at_once.then(|| Arc::clone(&full));
+    let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: known.clone() }).collect();
     let all = Parts {
         start,
         nodes,
@@ -84,15 +55,14 @@ pub fn best(
     };
     let (mut bound, known) = search.explore(all, monitor, |_| None);
     if bound.falls_short() {
-        let full = ActiveCells::full(model.points.len(), model.table.headings(0));
         let boxes = counted_boxes(&bound.open, &known).into_iter();
         let counted = KeepsOpen::of(&model, boxes.map(|(region, known)| (region, known.as_deref().unwrap_or(&full))));
         bound.keeps_open = Some(counted).filter(|counted| counted.states > 0);
     }
-    Ok(bound)
+    bound
 }
 
-/// The boxes that the coarse tables leave open.
+/// The boxes that the coarse tables leave open, each with its bound, and how many were bounded.
 ///
 /// # Errors
 /// Why the caller ended it.
@@ -101,16 +71,14 @@ fn survivors(
     coarse: &CoarseBounds,
     whole: Region,
     ceiling: f64,
-    nodes: &mut usize,
     monitor: &Monitor,
-) -> Result<Vec<(f64, Region)>, Stop> {
-    let mut open = vec![whole];
-    let mut left = Vec::new();
+) -> Result<(Vec<(f64, Region)>, usize), Stop> {
+    let (mut open, mut left, mut nodes) = (vec![whole], Vec::new(), 0);
     while !open.is_empty() {
         if let Some(stop) = monitor.stop() {
             return Err(stop);
         }
-        *nodes += open.len();
+        nodes += open.len();
         // Where the caller asks to stop nothing is known, which is a bound too.
         let bound = |region| if monitor.should_stop() { None } else { coarse.lower_bound(model, region) };
         let bounds: Vec<Option<f64>> = open.par_iter().map(bound).collect();
@@ -126,7 +94,7 @@ fn survivors(
         }
         open = next;
     }
-    Ok(left)
+    Ok((left, nodes))
 }
 
 /// Boxes left by the coarse tables from which on their finer levels are used.

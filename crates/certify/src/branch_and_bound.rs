@@ -2,6 +2,7 @@
 
 use super::keeps_open::KeepsOpen;
 use super::load::Objective;
+use super::model::Keeps;
 use super::region::Region;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -9,7 +10,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use stead_numerics::monitor::{Monitor, Progress, Stop};
 use stead_problem::criterion::Aggregate;
-use stead_problem::problem::{Placement, Problem};
+use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
 
 /// A bound of the objective over all placements of the cell: a lower one ([`super::best()`]), or an upper one
@@ -116,26 +117,6 @@ pub(super) struct Open<T> {
     pub known: T,
 }
 
-/// Which limits on beta along the path a bound keeps. Where both are set, that is the rate of beta alone: the two
-/// together can leave two ranges.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Keeps {
-    pub with_rate: bool,
-    pub with_turn: bool,
-}
-
-impl Keeps {
-    pub const NOTHING: Self = Self { with_rate: false, with_turn: false };
-
-    /// What a bound can keep of the limits of a problem.
-    pub fn of(problem: &Problem) -> Self {
-        let limits = &problem.redundancy;
-        let with_rate = limits.max_beta_rate.is_some();
-        let turns = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
-        Self { with_rate, with_turn: turns && !with_rate }
-    }
-}
-
 /// What a search is for.
 pub(super) struct BranchAndBound {
     /// From below, or from above.
@@ -226,6 +207,23 @@ impl BranchAndBound {
         if self.objective.aggregate == Aggregate::Rms { farther(sum) } else { sum }
     }
 
+    /// The bound of a search that was stopped before anything was known: none.
+    pub fn not_begun(&self, whole: Region, stop: Stop) -> Bound {
+        self.found(None, 0.0, 0, stop.into(), vec![(whole, 0.0)])
+    }
+
+    fn found(
+        &self,
+        met: Option<Placement>,
+        bound: f64,
+        nodes: usize,
+        status: Status,
+        open: Vec<(Region, f64)>,
+    ) -> Bound {
+        let Keeps { with_rate, with_turn } = self.keeps;
+        Bound { value: self.value, met, bound, with_rate, with_turn, nodes, status, keeps_open: None, open }
+    }
+
     /// Goes from boxes to their parts until no bound is past the ceiling, the caller ends it, the memory is used up, or
     /// the bound can no longer change.
     ///
@@ -268,9 +266,7 @@ impl BranchAndBound {
         let bound = self.objective.value(sign * farthest) * (1.0 + sign * ROUNDING);
         let value = |queued: &Queued<T>| self.objective.value(queued.open.bound);
         let open = left.iter().map(|queued| (queued.open.region, value(queued))).collect();
-        let Keeps { with_rate, with_turn } = self.keeps;
-        let bound =
-            Bound { value: self.value, met, bound, with_rate, with_turn, nodes, status, keeps_open: None, open };
+        let bound = self.found(met, bound, nodes, status, open);
         (bound, left.into_iter().map(|queued| queued.open.known).collect())
     }
 

@@ -1,12 +1,20 @@
 //! The cell and the task as seen along axis 1: radius, height, yaw less azimuth. For a hanging arm y and z change sign.
 
-use super::compliance_table::Extent;
 use super::load::Load;
 use super::region::{Point, Region};
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::wrap;
 use stead_model::task::PathPoint;
 use stead_problem::problem::{Cell, Placement, Problem};
+
+/// The extent of tables: where path points of placements of the cell can be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    /// Radius, from and to. m
+    pub radius: (f64, f64),
+    /// Height, from and to. m
+    pub height: (f64, f64),
+}
 
 /// Which way up the arm stands: +1, or -1 upside down.
 pub(super) fn side(problem: &Problem) -> f64 {

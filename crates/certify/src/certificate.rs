@@ -1,10 +1,9 @@
 //! The certificate: bounds around the best and the worst placement found, what they relax, and how they ended.
 
 use super::branch_and_bound::{Bound, Status};
-use super::orientations::{OpenIn, best_in_all};
+use super::part::{OpenIn, Part, certifiable_from_above, left_out, together};
 use super::region::Region;
 use super::relaxed::relaxed_value;
-use super::requirements::{certifiable, certifiable_from_above, left_out};
 use super::worst::worst;
 use serde::{Serialize, Serializer};
 use std::time::{Duration, Instant};
@@ -129,27 +128,27 @@ pub fn certify(
         Some(Stop::Deadline) => Err(NoProof::TimeLimit),
         None => Ok(()),
     };
-    let prove = |sense: Sense, placement: &Placement, value: &dyn Fn() -> Option<f64>| -> Result<Proof, NoProof> {
-        match sense {
-            Sense::Min => certifiable(problem, settings.memory)?,
-            Sense::Max => certifiable_from_above(problem, settings.memory)?,
-        }
+    let comparable = |value: &dyn Fn() -> Option<f64>| {
         ended()?;
-        let Some(value) = value() else { return Err(ended().err().unwrap_or(NoProof::NoRelaxedValue)) };
-        if value <= CANCELLATION {
-            return Err(NoProof::Cancelled);
+        match value() {
+            None => Err(ended().err().unwrap_or(NoProof::NoRelaxedValue)),
+            Some(value) if value <= CANCELLATION => Err(NoProof::Cancelled),
+            Some(value) => Ok(value),
         }
-        let (bound, parts) = match sense {
-            Sense::Min => best_in_all(problem, value, &settings, &monitor)?,
-            Sense::Max => (worst(problem, value, &settings, &monitor)?, Vec::new()),
-        };
-        Ok(Proof { found: value, parts, ..Proof::new(problem, sense, *placement, bound) })
     };
-    let best = prove(Sense::Min, found, &|| Some(objective));
-    let worst = match found_worst {
-        Some(found) => prove(Sense::Max, found, &|| relaxed_value(problem, found, &monitor)),
-        None => Err(NoProof::NotLookedFor),
+    let of_best = || {
+        let part = Part::of(problem, settings.memory).map_err(together)?;
+        let value = comparable(&|| Some(objective))?;
+        let (bound, parts) = part.bound_from_below(value, &settings, &monitor)?;
+        Ok(Proof { parts, ..Proof::new(problem, Sense::Min, *found, bound) })
     };
+    let of_worst = |placement: &Placement| {
+        certifiable_from_above(problem, settings.memory)?;
+        let value = comparable(&|| relaxed_value(problem, placement, &monitor))?;
+        let bound = worst(problem, value, &settings, &monitor)?;
+        Ok(Proof { found: value, ..Proof::new(problem, Sense::Max, *placement, bound) })
+    };
+    let (best, worst) = (of_best(), found_worst.map_or(Err(NoProof::NotLookedFor), of_worst));
     let warnings = shortfalls(&settings, &best, &worst);
     Certificate { settings, best, worst, warnings, wall: started.elapsed().as_secs_f64() }
 }

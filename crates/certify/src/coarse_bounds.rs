@@ -1,12 +1,13 @@
 //! What a path point costs at least, whatever the heading: minorants over radius, height and direction of the feed.
 
 use super::arm::Arm;
-use super::compliance_table::{ComplianceTable, Extent, Steps};
-use super::cost::{CORNERS, joined_sets};
+use super::cell::Extent;
+use super::compliance_table::{ComplianceTable, Steps};
+use super::cost::{CORNERS, Direction, joined_sets};
 use super::kind::{Kind, kinds};
-use super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant, rounded};
+use super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, below_all, minorant, rounded};
 use super::model::Model;
-use super::region::{Point, Region};
+use super::region::{Point, PolarModel, Region};
 use super::sliding_min::joined;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -80,7 +81,7 @@ impl CoarseBounds {
             }
             let row = |row: &usize| match monitor.should_stop() {
                 true => Vec::new(),
-                false => part_of(model, &kinds, (0, [row / counts[1], row % counts[1]]), 0..counts[2]),
+                false => part_of(model, &kinds, 0, [row / counts[1], row % counts[1]], 0..counts[2]),
             };
             let rows: Vec<Vec<Affine>> = some.par_iter().with_max_len(1).map(row).collect();
             entries.extend(rows.into_iter().flatten());
@@ -133,7 +134,8 @@ impl CoarseBounds {
 
     /// The entries of a level at a radius, height and direction, of a kind of load, in all classes.
     #[inline]
-    fn entries(&self, model: &Model, number: i32, [i, j, k]: [usize; 3], kind: usize) -> &[Affine] {
+    fn entries(&self, model: &Model, number: i32, at: [usize; 3], kind: usize) -> &[Affine] {
+        let [i, j, k] = at;
         if let Ok(number) = usize::try_from(number) {
             let level = &self.levels[number];
             let at = (((i * level.counts[1] + j) * level.counts[2] + k) * self.kinds.len() + kind) * 4;
@@ -146,7 +148,7 @@ impl CoarseBounds {
         let part = row[kind * parts + k / PART].get_or_init(|| {
             let first = k / PART * PART;
             let kinds = std::slice::from_ref(&self.kinds[kind]);
-            let part = part_of(model, kinds, (*level, [i, j]), first..first + PART);
+            let part = part_of(model, kinds, *level, [i, j], first..first + PART);
             let part: Box<[[Affine; 4]]> = part.chunks_exact(4).map(|e| [e[0], e[1], e[2], e[3]]).collect();
             self.made.fetch_add(size_of_val(&*part) as u64, Ordering::Relaxed);
             part
@@ -178,64 +180,17 @@ impl CoarseBounds {
         let mut totals = [0.0; CORNERS];
         let aggregate = model.objective.aggregate;
         let [a, b, g] = region.half;
-        let heading = TAU / self.steps.headings as f64;
         for span in &model.segments {
             let mut sums = [[0.0f64; 4]; 4];
             for point in span.clone() {
                 let Some((kind, size_of_load)) = self.kind_of[point] else { continue };
                 let Some(p) = model.placed(point, region) else { continue };
-                let ratio =
-                    (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading)
-                        * 2.0;
-                let (number, size) = self.finest(ratio)?;
-                let counts = self.counts(number);
-                let (length, turn) = (self.steps.length * size, heading * size);
-                let along = [(p.r, self.extent.radius.0), (p.z, self.extent.height.0)]
-                    .map(|(value, from)| (value - from) / length + 0.5);
-                let [i, j] = along.map(|k| k as usize);
-                if along.iter().any(|k| *k < 0.0) || i >= counts[0] || j >= counts[1] {
-                    return None;
-                }
-                let chi = (p.chi + model.points[point].load.turn).rem_euclid(TAU);
-                let k = (chi / turn + 0.5) as usize;
-                let off = [
-                    p.r - self.extent.radius.0 - length * i as f64,
-                    p.z - self.extent.height.0 - length * j as f64,
-                    chi - turn * k as f64,
-                ];
-                let at = [i, j, k % counts[2]];
-                for (class, e) in self.entries(model, number, at, kind).iter().enumerate() {
-                    let sum = &mut sums[class];
+                let Near { number, at, off } = self.nearest(&p, model.points[point].load.turn)?;
+                for (sum, e) in sums.iter_mut().zip(self.entries(model, number, at, kind)) {
                     if e.value == f32::INFINITY {
                         sum[0] = f64::INFINITY;
-                        continue;
-                    }
-                    let s = e.slope.map(|slope| size_of_load * f64::from(slope));
-                    // Below the score everywhere in the box: at its middle, and slopes.
-                    let least = size_of_load * f64::from(e.value) + s[0] * off[0] + s[1] * off[1] + s[2] * off[2]
-                        - s[0].abs() * p.remainder_r
-                        - s[2].abs() * p.remainder_chi;
-                    let slopes = [
-                        s[0] * p.slope_r[0] + s[2] * p.slope_chi[0],
-                        s[1],
-                        s[0] * p.slope_r[1] + s[2] * p.slope_chi[1],
-                    ];
-                    match aggregate {
-                        Aggregate::Mean => {
-                            sum[0] += least;
-                            (0..3).for_each(|k| sum[k + 1] += slopes[k]);
-                        }
-                        // The tangent of the square, which is above it nowhere.
-                        Aggregate::Rms if least > 0.0 => {
-                            sum[0] += least * least;
-                            (0..3).for_each(|k| sum[k + 1] += 2.0 * least * slopes[k]);
-                        }
-                        Aggregate::Rms => {}
-                        // Of the largest of several affine functions the least need not be at a corner.
-                        Aggregate::Max => {
-                            let spread = (0..3).map(|k| slopes[k].abs() * region.half[k]).sum::<f64>();
-                            sum[0] = sum[0].max(least - spread);
-                        }
+                    } else {
+                        add(aggregate, sum, least_over(e, size_of_load, off, &p), region);
                     }
                 }
             }
@@ -248,6 +203,72 @@ impl CoarseBounds {
             totals = joined(aggregate, &totals, &best);
         }
         Some(totals.iter().copied().fold(f64::INFINITY, f64::min))
+    }
+
+    /// The entries that answer for a point over a box, of a load turned against its feed (rad); `None` where none does.
+    #[inline(always)]
+    fn nearest(&self, p: &PolarModel, load_turn: f64) -> Option<Near> {
+        let heading = TAU / self.steps.headings as f64;
+        let ratio =
+            (p.reach[0] / self.steps.length).max(p.reach[1] / self.steps.length).max(p.reach[2] / heading) * 2.0;
+        let (number, size) = self.finest(ratio)?;
+        let counts = self.counts(number);
+        let (length, turn) = (self.steps.length * size, heading * size);
+        let from = [self.extent.radius.0, self.extent.height.0];
+        let along = [(p.r, from[0]), (p.z, from[1])].map(|(value, from)| (value - from) / length + 0.5);
+        let [i, j] = along.map(|k| k as usize);
+        if along.iter().any(|k| *k < 0.0) || i >= counts[0] || j >= counts[1] {
+            return None;
+        }
+        let chi = (p.chi + load_turn).rem_euclid(TAU);
+        let k = (chi / turn + 0.5) as usize;
+        let off = [p.r - from[0] - length * i as f64, p.z - from[1] - length * j as f64, chi - turn * k as f64];
+        Some(Near { number, at: [i, j, k % counts[2]], off })
+    }
+}
+
+/// The entries nearest to a point.
+struct Near {
+    /// The number of their level.
+    number: i32,
+    at: [usize; 3],
+    /// The point less the node, in radius, height (m) and direction of the load (rad).
+    off: [f64; 3],
+}
+
+/// Below the score of a point everywhere in a box, by an entry for loads of size 1 that is `off` the point: at the
+/// middle of the box, and slopes by its sides.
+#[inline(always)]
+fn least_over(e: &Affine, size_of_load: f64, off: [f64; 3], p: &PolarModel) -> (f64, [f64; 3]) {
+    let s = e.slope.map(|slope| size_of_load * f64::from(slope));
+    let least = size_of_load * f64::from(e.value) + s[0] * off[0] + s[1] * off[1] + s[2] * off[2]
+        - s[0].abs() * p.remainder_r
+        - s[2].abs() * p.remainder_chi;
+    let by = |side: usize| s[0] * p.slope_r[side] + s[2] * p.slope_chi[side];
+    (least, [by(0), s[1], by(1)])
+}
+
+/// Adds the score of a point, below which an affine function over a box is, to what others cost: at the middle, and
+/// slopes.
+#[inline(always)]
+fn add(aggregate: Aggregate, sum: &mut [f64; 4], below: (f64, [f64; 3]), region: &Region) {
+    let (least, slopes) = below;
+    match aggregate {
+        Aggregate::Mean => {
+            sum[0] += least;
+            (0..3).for_each(|k| sum[k + 1] += slopes[k]);
+        }
+        // The tangent of the square, which is above it nowhere.
+        Aggregate::Rms if least > 0.0 => {
+            sum[0] += least * least;
+            (0..3).for_each(|k| sum[k + 1] += 2.0 * least * slopes[k]);
+        }
+        Aggregate::Rms => {}
+        // Of the largest of several affine functions the least need not be at a corner.
+        Aggregate::Max => {
+            let spread = (0..3).map(|k| slopes[k].abs() * region.half[k]).sum::<f64>();
+            sum[0] = sum[0].max(least - spread);
+        }
     }
 }
 
@@ -296,10 +317,10 @@ fn half_of(table: &ComplianceTable, level: usize) -> [f64; 3] {
 }
 
 /// Some directions of kinds of load, in all classes, at a radius and height of a level of the table of compliances.
-fn part_of(model: &Model, kinds: &[Kind], (level, at): (usize, [usize; 2]), some: Range<usize>) -> Vec<Affine> {
-    let of = |arm, table, first| part_of_set((arm, table, first), kinds, (level, at), some.clone());
-    let own = of(&model.arm, &model.table, model.first);
-    let others = model.others.iter().map(|set| of(&set.arm, &set.table, set.first));
+fn part_of(model: &Model, kinds: &[Kind], level: usize, at: [usize; 2], some: Range<usize>) -> Vec<Affine> {
+    let of = |arm, table| part_of_set(arm, table, kinds, level, at, some.clone());
+    let own = of(&model.arm, &model.table);
+    let others = model.others.iter().map(|set| of(&set.arm, &set.table));
     let mut sets: Vec<Vec<Affine>> = std::iter::once(own).chain(others).collect();
     if sets.len() == 1 {
         return sets.swap_remove(0);
@@ -317,33 +338,31 @@ fn part_of(model: &Model, kinds: &[Kind], (level, at): (usize, [usize; 2]), some
     (0..sets[0].len()).map(joined).collect()
 }
 
-/// The same under one set of stiffness: an arm, its table, and the compliance of its joint 1 (rad/(N m)).
+/// The same under one set of stiffness: an arm, and its table.
 fn part_of_set(
-    (arm, table, first): (&Arm, &ComplianceTable, f64),
+    arm: &Arm,
+    table: &ComplianceTable,
     kinds: &[Kind],
-    (level, at): (usize, [usize; 2]),
+    level: usize,
+    at: [usize; 2],
     some: Range<usize>,
 ) -> Vec<Affine> {
     let node = table.place(level, at);
     let half = half_of(table, level);
     let mut out = vec![EMPTY; some.len() * kinds.len() * 4];
-    // sin and cos of the directions of the load.
-    let directions: Vec<(f64, f64)> = some.map(|k| libm::sincos(half[2] * k as f64)).collect();
+    let directions: Vec<Direction> = some.map(|k| Direction::new(half[2] * k as f64)).collect();
     let mut space = Vec::new();
     for class in PostureClass::ALL {
         let mut found: Vec<ModelledRegion> = Vec::new();
         let mut unknown = false;
+        let around = Around { arm, table, class, node };
         for cell in 0..table.headings(level) {
-            unknown |= !collect(arm, table, level, at, cell, node, class, &mut found);
+            unknown |= !around.collect(level, at, cell, &mut found);
         }
         for (number, kind) in kinds.iter().enumerate() {
-            for (k, (sine, cosine)) in directions.iter().enumerate() {
-                let place = (k * kinds.len() + number) * 4 + class.index();
-                if unknown {
-                    out[place] = ZERO;
-                    continue;
-                }
-                out[place] = minorant(&found, kind, (*sine, *cosine), first, half, &mut space);
+            for (k, direction) in directions.iter().enumerate() {
+                let below = if unknown { ZERO } else { minorant(&found, kind, direction, half, &mut space) };
+                out[(k * kinds.len() + number) * 4 + class.index()] = below;
             }
         }
     }

@@ -6,11 +6,12 @@
 //! out.
 
 use super::arm::{Arm, ArmCompliance};
+use super::cell::Extent;
 use super::enclosure::Enclosure;
 use super::interval_simd::{Lanes, WIDTH};
 use super::moment::{MOMENTS, MomentModel};
 use super::number::PAIRS;
-use super::over_regions::{heading_over, is_sure, pair_factors, remainders};
+use super::over_regions::{FUNCTIONS, REMAINDERS, heading_over, is_sure, pair_factors, remainders};
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -38,15 +39,6 @@ pub(super) struct AffineModel {
     pub sure: bool,
 }
 
-/// The extent of a table: what placements of the cell can ask for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Extent {
-    /// Radius, from and to. m
-    pub radius: (f64, f64),
-    /// Height, from and to. m
-    pub height: (f64, f64),
-}
-
 /// Steps of the coarsest level; each level has half the steps of the one before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Steps {
@@ -55,11 +47,6 @@ pub(super) struct Steps {
     /// Number of cells of heading, a power of two, 64 or more.
     pub headings: usize,
 }
-
-/// Functions modelled: see [`AffineModel::values`].
-pub(super) const FUNCTIONS: usize = 6;
-/// Remainders of them: see [`AffineModel::remainder`].
-pub(super) const REMAINDERS: usize = 4;
 
 /// Neighbouring headings made at once.
 const CHUNK: usize = 16;
@@ -195,14 +182,14 @@ impl ComplianceTable {
     }
 
     /// Radius and height of a node. m
-    pub fn place(&self, level: usize, [i, j]: [usize; 2]) -> [f64; 2] {
+    pub fn place(&self, level: usize, at: [usize; 2]) -> [f64; 2] {
         let length = self.length(level);
-        [self.extent.radius.0 + length * i as f64, self.extent.height.0 + length * j as f64]
+        [self.extent.radius.0 + length * at[0] as f64, self.extent.height.0 + length * at[1] as f64]
     }
 
     /// Whether there is such a node.
-    pub fn holds(&self, level: usize, [i, j]: [usize; 2]) -> bool {
-        self.levels.get(level).is_some_and(|l| i < l.counts[0] && j < l.counts[1])
+    pub fn holds(&self, level: usize, at: [usize; 2]) -> bool {
+        self.levels.get(level).is_some_and(|l| at[0] < l.counts[0] && at[1] < l.counts[1])
     }
 
     /// Middle of a cell of heading. rad

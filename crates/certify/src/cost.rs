@@ -54,17 +54,15 @@ pub(super) struct Turned {
 
 impl Direction {
     pub fn new(chi: f64) -> Self {
-        Self::of(libm::sincos(chi))
-    }
-
-    pub fn of((sine, cosine): (f64, f64)) -> Self {
+        let (sine, cosine) = libm::sincos(chi);
         Self { sine, cosine, sine2: 2.0 * sine * cosine, cosine2: cosine * cosine - sine * sine }
     }
 
     /// The compliance at a point in the frame of its load: from m, d1, d2, c_rz, c_tz and c_zz in the radial frame, and
     /// what joint 1 adds at radius r. m/N
     #[inline(always)]
-    pub fn seen(&self, [m, d1, d2, cr, ct, zz]: [f64; 6], r: f64, first: f64) -> Yielding {
+    pub fn seen(&self, values: [f64; 6], r: f64, first: f64) -> Yielding {
+        let [m, d1, d2, cr, ct, zz] = values;
         let half = 0.5 * first * r * r;
         let (d1, Self { sine, cosine, sine2, cosine2 }) = (d1 - half, self);
         Yielding {
@@ -105,8 +103,8 @@ impl Direction {
 
 /// See [`Turned::joint1`].
 #[inline(always)]
-pub(super) fn of_joint1(factors: &[f64; 6], length: f64, r: f64, [h_r, h_chi]: [f64; 2], first: f64) -> [f64; 4] {
-    let [plane, x, y, ..] = *factors;
+pub(super) fn of_joint1(factors: &[f64; 6], length: f64, r: f64, half: [f64; 2], first: f64) -> [f64; 4] {
+    let ([plane, x, y, ..], [h_r, h_chi]) = (*factors, half);
     let far = r + h_r;
     let swing = 2.0 * length * h_chi;
     // r^2 (S11 + S22 - x) / 2, the tangential part of S.
@@ -154,8 +152,8 @@ impl<'a> PointCost<'a> {
     /// What a node says of a tangent, in a cell of heading of that half width (rad): `off` is where the point is from
     /// the node, in radius and height.
     #[inline(always)]
-    fn model(&self, turned: &Turned, (known, moments): Known<'_>, off: [f64; 2], half_cell: f64) -> Linear {
-        let p = &self.placed;
+    fn model(&self, turned: &Turned, known: Known<'_>, off: [f64; 2], half_cell: f64) -> Linear {
+        let (p, (known, moments)) = (&self.placed, known);
         let [h_r, h_z, h_chi] = p.reach;
         let [plane, x, y, g, h, axial] = turned.factors;
         let get = |f: usize, k: usize| f64::from(known.values[f][k]);
@@ -299,7 +297,8 @@ pub(super) const NOTHING: (f64, [f64; 3]) = (0.0, [0.0; 3]);
 /// slopes). For the largest score, the least of it over the box at every corner. m, for the root of the mean of squares
 /// m^2
 #[inline]
-pub(super) fn cost_at_corners((min, slope): (f64, [f64; 3]), region: &Region, aggregate: Aggregate) -> [f64; CORNERS] {
+pub(super) fn cost_at_corners(below: (f64, [f64; 3]), region: &Region, aggregate: Aggregate) -> [f64; CORNERS] {
+    let (min, slope) = below;
     if min <= 0.0 {
         return [0.0; CORNERS];
     }
@@ -335,7 +334,8 @@ pub(super) fn joined_sets(over: Over, all: impl ExactSizeIterator<Item = (f64, [
 
 /// Values at the corners of a box of an affine function: at the middle, and how much it changes to the upper sides.
 #[inline(always)]
-fn corners(middle: f64, [x, y, z]: [f64; 3]) -> [f64; CORNERS] {
+fn corners(middle: f64, sides: [f64; 3]) -> [f64; CORNERS] {
+    let [x, y, z] = sides;
     let (low, high) = (middle - z, middle + z);
     [low - x - y, low + x - y, low - x + y, low + x + y, high - x - y, high + x - y, high - x + y, high + x + y]
 }

@@ -34,7 +34,8 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
 
     /// Sine and cosine of the heading, the last variable: in the middle, and intervals that hold them.
     #[inline(always)]
-    pub fn heading(middle: [Lanes; 2], [sine, cosine]: [Interval; 2], half: [f64; V]) -> (Self, Self) {
+    pub fn heading(middle: [Lanes; 2], over: [Interval; 2], half: [f64; V]) -> (Self, Self) {
+        let [sine, cosine] = over;
         let negative = |i: Interval| Interval { middle: -i.middle, radius: i.radius };
         let (mut s, mut c) = (Self::fixed(0.0, half), Self::fixed(0.0, half));
         (s.value, s.gradient[V - 1], s.second[V - 1]) = (sine, cosine, negative(sine));

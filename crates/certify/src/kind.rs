@@ -2,6 +2,7 @@
 
 use super::load::Load;
 use super::region::Point;
+use super::yielding::norm;
 
 /// A load of size 1 that stands for others of size 1, which differ from it by as much at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +24,7 @@ const SPREADS: [f64; 5] = [1e-13, 0.01, 0.03, 0.1, 0.3];
 
 /// A load of size 1, and how many times as large another one is; `None` of one without a force.
 fn unit(load: &Load) -> Option<(Load, f64)> {
-    let size = length(&load.force);
+    let size = norm(load.force);
     let [force, moment] = [load.force, load.moment].map(|v| v.map(|x| x / size));
     (size > 0.0).then_some((Load { force, moment, error: load.error / size, turn: 0.0, ..*load }, size))
 }
@@ -34,17 +35,13 @@ fn apart(a: &Load, b: &Load) -> Option<[f64; 3]> {
     let long = a.directions.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
     let near = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-13 * long);
     let alike = a.directions.iter().zip(&b.directions).all(|(a, b)| near(a, b)) && (a.error - b.error).abs() <= 1e-13;
-    let off = |a: &[f64; 3], b: &[f64; 3]| length(&std::array::from_fn(|k| a[k] - b[k]));
+    let off = |a: &[f64; 3], b: &[f64; 3]| norm(std::array::from_fn(|k| a[k] - b[k]));
     let part = match (a.part, b.part) {
         (None, None) => 0.0,
         (Some(a), Some(b)) => a.apart(&b),
         _ => return None,
     };
     alike.then(|| [off(&a.force, &b.force), off(&a.moment, &b.moment), part])
-}
-
-fn length([x, y, z]: &[f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
 }
 
 /// The kinds of load of path points, those of most weight first; and for each point the number of its kind and how many

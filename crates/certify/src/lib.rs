@@ -18,11 +18,13 @@
 //! 5. `model` puts these together. `lower_bound` adds the points up by dynamic programming over cells of heading
 //!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
-//!    `at_rest` makes external axes that stand still part of the cell, `segments` bounds segments one by one where
-//!    these axes stand elsewhere for each, `keeps_open` counts what a bound that falls short leaves undecided,
-//!    `orientations` joins the bounds of several orientations of the part, `forecast` says when a gap will be reached.
-//!    `leaning` is all of this for tools that lean, in other coordinates.
-//! 7. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
+//!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls short
+//!    leaves undecided, `forecast` says when a gap will be reached. `leaning` is all of this for tools that lean, in
+//!    other coordinates.
+//! 7. `part` is a problem as a tree of what is bounded by itself: orientations of the part, of which the least bound
+//!    holds, and segments where external axes stand elsewhere for each, compared with a `low_value`. `requirements` is
+//!    what bounds ask of each.
+//! 8. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!
 //! ```
@@ -63,17 +65,17 @@ mod keeps_open;
 mod kind;
 mod leaning;
 mod load;
+mod low_value;
 mod lower_bound;
 mod minorant;
 mod model;
 mod moment;
 mod number;
-mod orientations;
 mod over_regions;
+mod part;
 mod region;
 mod relaxed;
 mod requirements;
-mod segments;
 mod sliding_min;
 mod upper_bound;
 mod worst;
@@ -82,15 +84,13 @@ mod yielding;
 #[cfg(test)]
 mod tests;
 
-pub use best::best;
 pub use branch_and_bound::{Bound, Status};
 pub use certificate::{
     BOUND_DECIMALS, Certificate, MAX_GAP_PERCENT, NoProof, OpenBox, Proof, Relaxation, certify, no_certificate,
 };
 pub use forecast::{Forecast, Outlook};
 pub use keeps_open::KeepsOpen;
-pub use orientations::OpenIn;
+pub use part::{OpenIn, best, certifiable, expected_cost};
 pub use region::Region;
 pub use relaxed::relaxed_value;
-pub use requirements::{certifiable, expected_cost};
 pub use worst::worst;

@@ -181,14 +181,14 @@ impl<'a> Pass<'a> {
         self.targets.extend(self.active.cells(point, class.index()));
         if let Some(before) = before {
             let (low, high) = self.model.steps(self.region, &self.points, point, self.width);
-            let sources = (&before.cells[..], &before.sums[..]);
-            self.neighbours.compute(sources, (-high, -low), self.active.count(), &self.targets);
+            let (steps, count) = ((-high, -low), self.active.count());
+            self.neighbours.compute(&before.cells, &before.sums, steps, count, &self.targets);
         }
-        let room = self.targets.len();
+        let most = self.targets.len();
         let mut row = Row {
-            cells: Vec::with_capacity(room),
-            costs: Vec::with_capacity(room),
-            sums: Vec::with_capacity(room),
+            cells: Vec::with_capacity(most),
+            costs: Vec::with_capacity(most),
+            sums: Vec::with_capacity(most),
             min: INFINITE,
         };
         let answer = self.answer(point);
@@ -214,7 +214,8 @@ impl<'a> Pass<'a> {
         let Model { table, arm, others, .. } = self.model;
         let answers = table.answers(level, [placed.reach[0], placed.reach[1]]);
         let (at, off) = table.nearest(level, placed.r, placed.z).filter(|_| answers)?;
-        let others = others.iter().map(|set| (cost.with_first(set.first), set.table.nodes_at(&set.arm, level, at)));
+        let others =
+            others.iter().map(|set| (cost.with_first(set.arm.joint1), set.table.nodes_at(&set.arm, level, at)));
         Some(Answer { point: cost, nodes: table.nodes_at(arm, level, at), others: others.collect(), off })
     }
 
@@ -253,7 +254,7 @@ impl<'a> Pass<'a> {
             let is_end = place + 1 == number;
             if !is_end {
                 let steps = self.model.steps(self.region, &self.points, start + place + 1, self.width);
-                self.neighbours.compute((&cells, &after), steps, self.active.count(), &row.cells);
+                self.neighbours.compute(&cells, &after, steps, self.active.count(), &row.cells);
             }
             (cells, after) = (Vec::with_capacity(row.cells.len()), Vec::with_capacity(row.cells.len()));
             for (number, ((cell, cost), sum)) in row.cells.iter().zip(&row.costs).zip(&row.sums).enumerate() {

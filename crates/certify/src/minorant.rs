@@ -1,12 +1,13 @@
 //! Affine functions below what a path point costs, whatever the heading.
 
 use super::arm::Arm;
-use super::compliance_table::{AffineModel, ComplianceTable, FUNCTIONS, Node, REMAINDERS};
+use super::compliance_table::{AffineModel, ComplianceTable, Node};
 use super::cost::{Direction, Known, of_joint1};
 use super::kind::Kind;
 use super::load::Load;
 use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
+use super::over_regions::{FUNCTIONS, REMAINDERS};
 use super::yielding::{Tangent, Yielding};
 use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
@@ -65,43 +66,46 @@ fn coarseness(known: &AffineModel) -> f32 {
     (m + d).max(v + zz)
 }
 
-/// The regions around a node, cut up where their models are coarse; false where nothing is known of one.
-#[expect(clippy::too_many_arguments, reason = "one node and all it is cut from")]
-pub(super) fn collect(
-    arm: &Arm,
-    table: &ComplianceTable,
-    level: usize,
-    at: [usize; 2],
-    cell: usize,
-    node: [f64; 2],
-    class: PostureClass,
-    out: &mut Vec<ModelledRegion>,
-) -> bool {
-    let finest = level + 1 == COARSE_LEVELS.min(table.depth());
-    let (node_at, moments) = table.nodes_at(arm, level, at).known(cell, class);
-    match node_at {
-        Node::Empty => return true,
-        Node::Unknown if finest => return false,
-        Node::Known(known) if finest || f64::from(coarseness(known)) <= COARSE * arm.typical_compliance() => {
-            let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
-            let place = table.place(level, at);
-            out.push(ModelledRegion::new((known, moments), half, place[0], [place[0] - node[0], place[1] - node[1]]));
-            return true;
+/// The nodes of a table in one class, as regions about a radius and height.
+pub(super) struct Around<'a> {
+    pub arm: &'a Arm,
+    pub table: &'a ComplianceTable,
+    pub class: PostureClass,
+    /// m
+    pub node: [f64; 2],
+}
+
+impl Around<'_> {
+    /// The regions around a node, cut up where their models are coarse; false where nothing is known of one.
+    pub fn collect(&self, level: usize, at: [usize; 2], cell: usize, out: &mut Vec<ModelledRegion>) -> bool {
+        let Self { arm, table, class, node } = *self;
+        let finest = level + 1 == COARSE_LEVELS.min(table.depth());
+        let (node_at, moments) = table.nodes_at(arm, level, at).known(cell, class);
+        match node_at {
+            Node::Empty => return true,
+            Node::Unknown if finest => return false,
+            Node::Known(known) if finest || f64::from(coarseness(known)) <= COARSE * arm.typical_compliance() => {
+                let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
+                let [r, z] = table.place(level, at);
+                let off = [r - node[0], z - node[1]];
+                out.push(ModelledRegion::new((known, moments), half, [r, arm.joint1], off));
+                return true;
+            }
+            _ => {}
         }
-        _ => {}
+        let mut known = true;
+        for (down, left) in [(true, true), (true, false), (false, true), (false, false)] {
+            let side = |k: usize, low: bool| if low { (2 * k).checked_sub(1) } else { Some(2 * k + 1) };
+            let (Some(i), Some(j)) = (side(at[0], down), side(at[1], left)) else { continue };
+            if !table.holds(level + 1, [i, j]) {
+                continue;
+            }
+            for part in [2 * cell, 2 * cell + 1] {
+                known &= self.collect(level + 1, [i, j], part, out);
+            }
+        }
+        known
     }
-    let mut known = true;
-    for (down, left) in [(true, true), (true, false), (false, true), (false, false)] {
-        let side = |k: usize, low: bool| if low { (2 * k).checked_sub(1) } else { Some(2 * k + 1) };
-        let (Some(i), Some(j)) = (side(at[0], down), side(at[1], left)) else { continue };
-        if !table.holds(level + 1, [i, j]) {
-            continue;
-        }
-        for part in [2 * cell, 2 * cell + 1] {
-            known &= collect(arm, table, level + 1, [i, j], part, node, class, out);
-        }
-    }
-    known
 }
 
 /// A region of headings, radii and heights: an affine model of the compliances with what it leaves out.
@@ -115,13 +119,17 @@ pub(super) struct ModelledRegion {
     moments: Option<MomentModel>,
     half: [f64; 3],
     r: f64,
+    /// Compliance of joint 1. rad/(N m)
+    first: f64,
     /// Radius and height less those of the node. m
     off: [f64; 2],
 }
 
 impl ModelledRegion {
-    /// Of a model about a radius, within `half` of its place, which is `off` the node.
-    pub fn new((known, moments): Known<'_>, half: [f64; 3], r: f64, off: [f64; 2]) -> Self {
+    /// Of a model about a radius (m), with a compliance of joint 1 (rad/(N m)), within `half` of its place, which is
+    /// `off` the node.
+    pub fn new(known: Known<'_>, half: [f64; 3], of: [f64; 2], off: [f64; 2]) -> Self {
+        let ((known, moments), [r, first]) = (known, of);
         let values = known.values.map(|v| v.map(f64::from));
         let remainder = known.remainder.map(f64::from);
         // Slopes change by at most what twice the second-order sum says.
@@ -131,22 +139,27 @@ impl ModelledRegion {
             (libm::hypot(values[a][0], values[b][0]) + moved, moved)
         };
         let (d, v) = (of(1, 2, remainder[1]), of(3, 4, remainder[2]));
-        Self { values, remainder, max_size: [d.0, v.0], moved: [d.1, v.1], moments: moments.copied(), half, r, off }
+        Self {
+            values,
+            remainder,
+            max_size: [d.0, v.0],
+            moved: [d.1, v.1],
+            moments: moments.copied(),
+            half,
+            r,
+            first,
+            off,
+        }
     }
 
     /// An affine model by radius, height and direction of the load of `<C, S>` in the region, for directions within
     /// `h_chi` (rad), without what moments add; `vertical` where entries of C out of the plan count.
     #[inline(always)]
-    fn model(
-        &self,
-        (factors, lengths): &([f64; 6], [f64; 2]),
-        is_vertical: bool,
-        h_chi: f64,
-        first: f64,
-    ) -> AroundRegion {
+    fn model(&self, turned: &([f64; 6], [f64; 2]), is_vertical: bool, h_chi: f64) -> AroundRegion {
+        let (factors, lengths) = turned;
         let [plane, x, y, g, h, axial] = *factors;
         let [length, vertical] = *lengths;
-        let [j_value, j_r, j_chi, j_rest] = of_joint1(factors, length, self.r, [self.half[0], h_chi], first);
+        let [j_value, j_r, j_chi, j_rest] = of_joint1(factors, length, self.r, [self.half[0], h_chi], self.first);
         let mut of: [f64; 4] =
             std::array::from_fn(|k| plane * self.values[0][k] + x * self.values[1][k] + y * self.values[2][k]);
         let mut by_chi = 2.0 * (x * self.values[2][0] - y * self.values[1][0]) + j_chi;
@@ -173,10 +186,10 @@ impl ModelledRegion {
     /// An affine function by radius, height and direction of the load below `<C, S>` everywhere in the region, for
     /// directions within `h_chi` (rad): its value at the middle (m), and slopes.
     #[inline(always)]
-    fn least(&self, tangent: &Tangent, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
-        let turned = direction.turned(tangent, load, self.r, [self.half[0], h_chi], first);
+    fn least(&self, tangent: &Tangent, load: &Load, direction: &Direction, h_chi: f64) -> (f64, [f64; 3]) {
+        let turned = direction.turned(tangent, load, self.r, [self.half[0], h_chi], self.first);
         let AroundRegion { value, slopes, by_heading, remainder } =
-            self.model(&(turned.factors, turned.lengths), true, h_chi, first);
+            self.model(&(turned.factors, turned.lengths), true, h_chi);
         let value = value + load.of_part(tangent) - remainder;
         // The heading is free within its cell.
         let (Some(turned), Some(known)) = (&turned.moment, &self.moments) else {
@@ -193,12 +206,12 @@ impl ModelledRegion {
     #[inline(always)]
     fn least_absolute(
         &self,
-        (turned, of_part): &(([f64; 6], [f64; 2]), f64),
+        turned: &([f64; 6], [f64; 2]),
+        of_part: f64,
         is_vertical: bool,
         h_chi: f64,
-        first: f64,
     ) -> (f64, [f64; 3]) {
-        let AroundRegion { value, slopes, by_heading, remainder } = self.model(turned, is_vertical, h_chi, first);
+        let AroundRegion { value, slopes, by_heading, remainder } = self.model(turned, is_vertical, h_chi);
         let value = value + of_part;
         let sign = if value < 0.0 { -1.0 } else { 1.0 };
         (value.abs() - remainder - by_heading.abs() * self.half[2], slopes.map(|slope| sign * slope))
@@ -207,7 +220,7 @@ impl ModelledRegion {
     /// By how much the scores of the loads of a kind can differ from that of its own: what the norms of C and D make of
     /// the differences in force, moment and part. m
     #[inline(never)]
-    fn spread(&self, kind: &Kind, first: f64) -> f64 {
+    fn spread(&self, kind: &Kind) -> f64 {
         let far = self.r + self.half[0];
         let up = |f: usize, remainder: f64| {
             let [value, slopes @ ..] = self.values[f];
@@ -216,8 +229,8 @@ impl ModelledRegion {
         let [d, v] = self.max_size;
         let largest = Yielding { m: up(0, self.remainder[0]), d: [d, 0.0], v: [v, 0.0], zz: up(5, self.remainder[3]) };
         let part = kind.load.part.map_or(0.0, |part| part.size());
-        let c = largest.size() + first * far * far + part;
-        let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + first * far);
+        let c = largest.size() + self.first * far * far + part;
+        let d = self.moments.map_or(0.0, |moments| moments.size(self.half) + self.first * far);
         // Loads of a kind have forces of size 1.
         let by_part = kind.part_spread * (1.0 + kind.load.error);
         kind.load.most_scored() * (c * kind.force_spread + d * kind.moment_spread + by_part)
@@ -225,12 +238,12 @@ impl ModelledRegion {
 
     /// The same below the score.
     #[inline(always)]
-    fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, first: f64) -> (f64, [f64; 3]) {
-        let seen = load.with_part(direction.seen(self.values.map(|value| value[0]), self.r, first));
+    fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64) -> (f64, [f64; 3]) {
+        let seen = load.with_part(direction.seen(self.values.map(|value| value[0]), self.r, self.first));
         let by_moment = self.moments.map_or([0.0; 3], |known| {
-            direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, first)
+            direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, self.first)
         });
-        let least = |tangent: &Tangent| self.least(tangent, load, direction, h_chi, first);
+        let least = |tangent: &Tangent| self.least(tangent, load, direction, h_chi);
         if load.is_linear() {
             let tangent = load.of_first();
             // With the sign that the value has.
@@ -280,38 +293,36 @@ fn each_least(
     Some(lowest)
 }
 
-/// Below what all of the states cost, for a kind of load and its direction (sine and cosine) within `half` of the node.
+/// Below what all of the states cost, for a kind of load and its direction within `half` of the node.
 /// `space` is for work.
 pub(super) fn minorant(
     found: &[ModelledRegion],
     kind: &Kind,
-    direction: (f64, f64),
-    first: f64,
+    direction: &Direction,
     half: [f64; 3],
     space: &mut Vec<(f64, [f64; 3])>,
 ) -> Affine {
     if found.is_empty() {
         return EMPTY;
     }
-    let direction = Direction::of(direction);
     let h_chi = half[2];
     let first_tangent = kind.load.of_first();
-    let turned = (direction.factors(&first_tangent), kind.load.of_part(&first_tangent));
+    let (turned, of_part) = (direction.factors(&first_tangent), kind.load.of_part(&first_tangent));
     let is_spread = kind.force_spread != 0.0 || kind.moment_spread != 0.0 || kind.part_spread != 0.0;
     let lowest = if !kind.load.is_linear() || kind.load.has_moment() {
         each_least(found, space, |region| {
-            let (least, slopes) = region.least_score(&kind.load, &direction, h_chi, first);
-            (least - if is_spread { region.spread(kind, first) } else { 0.0 }, slopes)
+            let (least, slopes) = region.least_score(&kind.load, direction, h_chi);
+            (least - if is_spread { region.spread(kind) } else { 0.0 }, slopes)
         })
-    } else if turned.0.1[1] != 0.0 || turned.0.0[5] != 0.0 {
+    } else if turned.1[1] != 0.0 || turned.0[5] != 0.0 {
         each_least(found, space, |region| {
-            let (least, slopes) = region.least_absolute(&turned, true, h_chi, first);
-            (least - if is_spread { region.spread(kind, first) } else { 0.0 }, slopes)
+            let (least, slopes) = region.least_absolute(&turned, of_part, true, h_chi);
+            (least - if is_spread { region.spread(kind) } else { 0.0 }, slopes)
         })
     } else {
         each_least(found, space, |region| {
-            let (least, slopes) = region.least_absolute(&turned, false, h_chi, first);
-            (least - if is_spread { region.spread(kind, first) } else { 0.0 }, slopes)
+            let (least, slopes) = region.least_absolute(&turned, of_part, false, h_chi);
+            (least - if is_spread { region.spread(kind) } else { 0.0 }, slopes)
         })
     };
     let Some(lowest) = lowest else { return ZERO };

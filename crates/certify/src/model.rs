@@ -1,7 +1,6 @@
 //! What bounds are made of: the arm, how it yields all over the cell, and the path points.
 
 use super::arm::Arm;
-use super::branch_and_bound::Keeps;
 use super::cell::{Yaws, extent, points_of};
 use super::compliance_table::{ComplianceTable, Steps};
 use super::cost::PointCost;
@@ -18,13 +17,31 @@ use stead_problem::symmetry::Upright;
 pub(super) const STEPS: Steps = Steps { length: 0.025, headings: 128 };
 pub(super) const LEVELS: usize = 6;
 
+/// Which limits on beta along the path a bound keeps. Where both are set, that is the rate of beta alone: the two
+/// together can leave two ranges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Keeps {
+    pub with_rate: bool,
+    pub with_turn: bool,
+}
+
+impl Keeps {
+    pub const NOTHING: Self = Self { with_rate: false, with_turn: false };
+
+    /// What a bound can keep of the limits of a problem.
+    pub fn of(problem: &Problem) -> Self {
+        let limits = &problem.redundancy;
+        let with_rate = limits.max_beta_rate.is_some();
+        let turns = limits.max_spindle_turn.is_some() || limits.max_spindle_speed.is_some();
+        Self { with_rate, with_turn: turns && !with_rate }
+    }
+}
+
 /// The arm with another set of stiffness than the first.
 #[derive(Debug)]
 pub(super) struct OtherSet {
     pub arm: Arm,
     pub table: ComplianceTable,
-    /// Compliance of joint 1. rad/(N m)
-    pub first: f64,
 }
 
 /// What is to be bounded, prepared.
@@ -37,8 +54,6 @@ pub(super) struct Model {
     /// Changes of the heading from the point before, less that of the direction of the feed, that the limits on beta
     /// allow. rad
     pub changes: Vec<BetaStep>,
-    /// Compliance of joint 1. rad/(N m)
-    pub first: f64,
     /// The same arm with the other sets of stiffness that a score covers, where there are several.
     pub others: Vec<OtherSet>,
     /// How the scores under the sets make up that of a point.
@@ -54,9 +69,8 @@ impl Model {
         let extent = extent(problem);
         let arm = |robot: &Robot| Arm::new(problem, robot, extent.radius.0);
         let table = || ComplianceTable::new(extent, STEPS, LEVELS);
-        let first = |robot: &Robot| robot.compliances_at(&[0.0; 6])[0];
         let robots = problem.scored_robots();
-        let other = |robot: &Robot| OtherSet { arm: arm(robot), table: table(), first: first(robot) };
+        let other = |robot: &Robot| OtherSet { arm: arm(robot), table: table() };
         // A growing beta turns the spindle about axis 1 or against it.
         let sign = Upright::of(problem).map_or(1.0, |upright| upright.rotation_sign);
         let change = |point: usize| match problem.redundancy.max_beta_rate {
@@ -75,7 +89,6 @@ impl Model {
             changes: (0..points.len()).map(change).collect(),
             points,
             segments: problem.task.segments().to_vec(),
-            first: first(&robots[0]),
             others: robots[1..].iter().map(other).collect(),
             over: problem.criterion.stiffness.as_ref().map_or(Over::Mean, |sets| sets.over),
             yaws: Yaws::new(problem),
@@ -113,6 +126,6 @@ impl Model {
     /// Every point over a box, where something is known of it.
     pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost<'_>>> {
         let placed = (0..self.points.len()).map(|point| self.placed(point, region));
-        placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.first))).collect()
+        placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.arm.joint1))).collect()
     }
 }

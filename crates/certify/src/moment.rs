@@ -81,14 +81,8 @@ impl TurnedMoment {
     /// Of `W^T u` and the moment in the frame of the load, which has this direction (sine and cosine) against the
     /// azimuth, for radii within `half[0]` of r and directions within `half[1]`; `first` is the compliance of joint 1
     /// (rad/(N m)).
-    pub fn new(
-        a: [f64; 3],
-        m: [f64; 3],
-        (sine, cosine): (f64, f64),
-        r: f64,
-        [h_r, h_chi]: [f64; 2],
-        first: f64,
-    ) -> Self {
+    pub fn new(a: [f64; 3], m: [f64; 3], direction: (f64, f64), r: f64, half: [f64; 2], first: f64) -> Self {
+        let ((sine, cosine), [h_r, h_chi]) = (direction, half);
         let own = [
             a[0] * m[0] + a[1] * m[1],
             a[1] * m[0] - a[0] * m[1],
@@ -120,7 +114,8 @@ impl TurnedMoment {
 
     /// What is known of it where the state is `off` the node in radius and height, within `reach` of that in radius,
     /// height and direction, and within half a cell of heading (rad).
-    pub fn part(&self, known: &MomentModel, off: [f64; 2], [h_r, h_z, h_chi]: [f64; 3], half_cell: f64) -> MomentPart {
+    pub fn part(&self, known: &MomentModel, off: [f64; 2], reach: [f64; 3], half_cell: f64) -> MomentPart {
+        let [h_r, h_z, h_chi] = reach;
         let [value, by_r, by_chi, remainder] = self.joint1;
         let mut part = MomentPart { value, by: [by_r, 0.0, 0.0], by_chi, remainder };
         for (group, (first, count, order)) in GROUPS.into_iter().enumerate() {
@@ -154,13 +149,8 @@ impl TurnedMoment {
 
 /// The displacement under a moment, both in the frame of a load of this direction (sine and cosine): by the functions
 /// of D in the radial frame, and what joint 1 adds at radius r. m
-pub(super) fn moved(
-    [p, a, d0, d1, rz, tz, zr, zt, zz]: [f64; MOMENTS],
-    m: [f64; 3],
-    (sine, cosine): (f64, f64),
-    r: f64,
-    first: f64,
-) -> [f64; 3] {
+pub(super) fn moved(values: [f64; MOMENTS], m: [f64; 3], direction: (f64, f64), r: f64, first: f64) -> [f64; 3] {
+    let ([p, a, d0, d1, rz, tz, zr, zt, zz], (sine, cosine)) = (values, direction);
     let tz = tz + first * r;
     // The first axis of the load is at chi against the radial direction.
     let (x, y, z) = (m[0] * cosine - m[1] * sine, m[0] * sine + m[1] * cosine, m[2]);

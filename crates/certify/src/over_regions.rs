@@ -1,11 +1,15 @@
 //! What enclosures tell of a region of states, for any number of variables.
 
 use super::arm::{Arm, ArmCompliance, LimitSpan, Margins};
-use super::compliance_table::{FUNCTIONS, REMAINDERS};
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::interval_simd::{Lanes, WIDTH};
 use std::f64::consts::{PI, TAU};
+
+/// Functions modelled: m, d1, d2, c_rz, c_tz and c_zz of [`ArmCompliance`].
+pub(super) const FUNCTIONS: usize = 6;
+/// Remainders of them: of m, of the length of (d1, d2), of that of (c_rz, c_tz), and of c_zz.
+pub(super) const REMAINDERS: usize = 4;
 
 /// Sine and cosine of four headings, the last variable, each within that half width.
 pub(super) fn heading_over<const V: usize, const P: usize>(

@@ -39,19 +39,20 @@ pub(super) struct SlidingMin {
 }
 
 impl SlidingMin {
-    /// Into `out`: for each target cell k the least value of the source cells from k + low to k + high, in a circle of
-    /// `count` cells. Both lists grow.
+    /// Into `out`: for each target cell k the least value of the source cells from k + low to k + high, the two of
+    /// `steps`, in a circle of `count` cells. Both lists grow.
     ///
     /// The window moves up from target to target, over the sources and then over them again a turn later. It is two
     /// parts: of the one, the least from each source on is kept, of the other, the least of all.
     pub fn compute(
         &mut self,
-        (cells, values): (&[u16], &[[f64; CORNERS]]),
-        (low, high): (isize, isize),
+        cells: &[u16],
+        values: &[[f64; CORNERS]],
+        steps: (isize, isize),
         count: usize,
         targets: &[u16],
     ) {
-        let number = cells.len();
+        let ((low, high), number) = (steps, cells.len());
         let width = (high - low + 1).max(0) as usize;
         self.out.clear();
         if number == 0 || width == 0 {

@@ -3,13 +3,13 @@
 //! Dropping limits lowers the objective of a placement, so this is no upper bound of values with the rate of beta or
 //! joint steps.
 
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts, halves, widest};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
 use super::cell::{placement_in, whole};
 use super::compliance_table::{ComplianceTable, Steps};
-use super::model::Model;
+use super::model::{Keeps, Model};
+use super::part::certifiable_from_above;
 use super::region::Region;
 use super::relaxed::relaxed_value;
-use super::requirements::certifiable_from_above;
 use super::upper_bound::{BoxBounds, Inherited};
 use std::sync::Arc;
 use stead_numerics::monitor::Monitor;

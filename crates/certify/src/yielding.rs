@@ -27,7 +27,8 @@ pub(super) struct Tangent {
 
 impl Yielding {
     /// Of a symmetric matrix.
-    pub fn of([x, y, z]: [[f64; 3]; 3]) -> Self {
+    pub fn of(matrix: [[f64; 3]; 3]) -> Self {
+        let [x, y, z] = matrix;
         let v = [0.5 * (x[2] + z[0]), 0.5 * (y[2] + z[1])];
         Self { m: 0.5 * (x[0] + y[1]), d: [0.5 * (x[0] - y[1]), 0.5 * (x[1] + y[0])], v, zz: z[2] }
     }
@@ -71,8 +72,8 @@ impl Yielding {
 
     /// The displacement under a force.
     #[inline(always)]
-    pub fn times(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let Self { m, d, v, zz } = self;
+    pub fn times(&self, force: [f64; 3]) -> [f64; 3] {
+        let (Self { m, d, v, zz }, [x, y, z]) = (self, force);
         [(m + d[0]) * x + d[1] * y + v[0] * z, d[1] * x + (m - d[0]) * y + v[1] * z, v[0] * x + v[1] * y + zz * z]
     }
 }

@@ -13,7 +13,7 @@
 //! frame if turning it about axis 1 changes nothing, as bounds require.
 
 use super::super::number::Number;
-use super::inverse::Posed;
+use super::posed::Posed;
 use super::vector::Vector;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector3};
 use stead_model::robot::{Geometry, Joint, NormalSprings, Pose, Robot, Spindle};
@@ -130,8 +130,7 @@ impl Beside {
             xz: T::constant(self.tool[(0, 2)]),
             yz: T::constant(self.tool[(1, 2)]),
         };
-        let (sine, cosine) = posed.tool.heading();
-        sum = sum.turned(sine, cosine);
+        sum = sum.turned(posed.tool.sine, posed.tool.cosine);
         for BaseSpring { compliance, shift, turn } in &self.base {
             let up = height.plus(-self.base_height);
             let v = Vector {

@@ -27,7 +27,7 @@
 use super::super::interval_simd::{Lanes, Mask};
 use super::super::number::{Number, ZERO};
 use super::constants::Arm;
-use super::inverse::Posed;
+use super::posed::Posed;
 use super::singularity::UNDONE;
 use super::vector::Vector;
 

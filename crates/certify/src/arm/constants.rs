@@ -20,6 +20,8 @@ pub(in super::super) struct Arm {
     pub(in super::super) axis6: Vector3<f64>,
     /// The tool axis, where it is not along axis 1.
     pub(super) leaning: Option<Vector3<f64>>,
+    /// Compliance of joint 1. rad/(N m)
+    pub(in super::super) joint1: f64,
     /// Compliances of joints 2 and 3, and what they are like. rad/(N m)
     pub(super) laws: [Law; 2],
     typical: f64,
@@ -82,13 +84,11 @@ pub(in super::super) enum LimitSpan {
 
 impl LimitSpan {
     /// Of limits in rad.
-    pub fn of((min, max): (f64, f64)) -> Self {
-        if max - min >= 2.0 * PI {
-            Self::Full
-        } else if max - min > PI {
-            Self::Wide
-        } else {
-            Self::Narrow
+    pub fn of(limits: (f64, f64)) -> Self {
+        match limits.1 - limits.0 {
+            width if width >= 2.0 * PI => Self::Full,
+            width if width > PI => Self::Wide,
+            _ => Self::Narrow,
         }
     }
 }
@@ -113,13 +113,7 @@ impl Arm {
     }
 
     /// With a frame whose third axis is the tool axis, and whether entries of the compliance out of the plan count.
-    fn with_tool(
-        problem: &Problem,
-        robot: &Robot,
-        nearest: f64,
-        frame: &Matrix3<f64>,
-        [is_vertical, is_axial]: [bool; 2],
-    ) -> Self {
+    fn with_tool(problem: &Problem, robot: &Robot, nearest: f64, frame: &Matrix3<f64>, parts: [bool; 2]) -> Self {
         let compliances = robot.compliances_at(&[0.0; 6]);
         let geometry = robot.geometry().clone();
         // Eq. 10 with beta zero.
@@ -139,12 +133,13 @@ impl Arm {
             needs: limits.needs,
             links: Links { upper_arm, forearm, limits: distances2 },
             bend: Bend { limit: limits.in_line },
-            is_vertical,
-            is_axial,
+            is_vertical: parts[0],
+            is_axial: parts[1],
             has_moments: problem.task.wrenches().any(|wrench| wrench.moment.norm() > 0.0),
             lever,
             axis6: root_from_flange.column(2).into_owned(),
             leaning: None,
+            joint1: compliances[0],
             laws: [1, 2].map(|j| Law::of(joint(j))),
             typical: compliances[1].max(compliances[2]) / 3.0,
             compliances: std::array::from_fn(|k| compliances[k + 3]),

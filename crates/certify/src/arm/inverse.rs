@@ -17,159 +17,27 @@
 //!
 //! See [`stead_model::robot::Robot::inverse`] for the same with angles.
 
-use super::super::interval_simd::{Lanes, Mask};
+use super::super::interval_simd::Mask;
 use super::super::number::Number;
 use super::constants::{Arm, LimitSpan};
+use super::posed::{Elbow, FirstJoint, Signs, Tool, Wrist, turned};
 use super::vector::{InPlane, Vector};
-use nalgebra::Vector3;
-use stead_model::robot::PostureClass;
 
 /// Squared lengths must be above this to be divided by. m^2
 const MIN_LENGTH2: f64 = 1e-6;
 
-/// The signs that a posture class stands for.
-#[derive(Clone, Copy)]
-pub(super) struct Signs {
-    /// +1 with the wrist centre in front of axis 1, -1 behind it.
-    pub side: f64,
-    /// Sign of delta.
-    pub elbow: f64,
-}
-
-impl Signs {
-    pub fn of(class: PostureClass) -> Self {
-        let posture = class.postures()[0];
-        Self {
-            side: if posture.is_back() { -1.0 } else { 1.0 },
-            elbow: if posture.is_delta_negative() { -1.0 } else { 1.0 },
-        }
-    }
-}
-
-/// Where the tool centre point is.
-pub(super) struct Place<T> {
-    /// From the root of the arm. m
-    pub tip: Vector<T>,
-    /// The wrist centre in plan. m
-    pub wrist: [T; 2],
-    /// Squared distance of the tool centre point from axis 1. m^2
-    pub radius2: T,
-}
-
-/// What turns with the spindle, in the radial frame.
-pub(super) struct Tool<T> {
-    sine: T,
-    cosine: T,
-    /// What it turns about, where that is not axis 1.
-    leaning: Option<Vector3<f64>>,
-    /// Tool centre point from the wrist centre, t. m
-    pub lever: Vector<T>,
-    /// a_6.
-    pub axis6: Vector<T>,
-}
-
-impl<T: Number> Tool<T> {
-    /// At a heading, given by its sine and cosine.
-    #[inline(always)]
-    pub fn new(arm: &Arm, sine: T, cosine: T) -> Self {
-        let of = |v: &Vector3<f64>| turned(sine, cosine, arm.leaning.as_ref(), v);
-        Self { sine, cosine, leaning: arm.leaning, lever: of(&arm.lever), axis6: of(&arm.axis6) }
-    }
-
-    /// Sine and cosine of the heading.
-    #[inline(always)]
-    pub fn heading(&self) -> (T, T) {
-        (self.sine, self.cosine)
-    }
-
-    /// R(eta) v.
-    #[inline(always)]
-    pub fn turned(&self, v: &Vector3<f64>) -> Vector<T> {
-        turned(self.sine, self.cosine, self.leaning.as_ref(), v)
-    }
-}
-
-/// A vector turned about axis 1, or about another axis.
-#[inline(always)]
-fn turned<T: Number>(sine: T, cosine: T, leaning: Option<&Vector3<f64>>, v: &Vector3<f64>) -> Vector<T> {
-    let Some(axis) = leaning else {
-        let (x, y) = (cosine.scale(v.x) - sine.scale(v.y), sine.scale(v.x) + cosine.scale(v.y));
-        return Vector { x, y, z: T::constant(v.z) };
-    };
-    let along = axis * axis.dot(v);
-    let (off, across) = (v - along, axis.cross(v));
-    let entry = |k: usize| (cosine.scale(off[k]) + sine.scale(across[k])).plus(along[k]);
-    Vector { x: entry(0), y: entry(1), z: entry(2) }
-}
-
-/// Joint 1 against the azimuth of the tool centre point.
-pub(super) struct FirstJoint<T> {
-    /// Distance of the wrist centre from axis 1 along the arm, rho. m
-    pub forward: T,
-    /// What its square is at most, true wherever the wrist centre is. m^2
-    pub forward_squared_high: Lanes,
-    pub cosine: T,
-    pub sine: T,
-}
-
-/// The plane arm: shoulder, elbow and wrist centre.
-pub(super) struct Elbow<T> {
-    /// Wrist centre from the shoulder.
-    pub from_shoulder: InPlane<T>,
-    /// Elbow from the shoulder: along the arm, and up times `lift`. m
-    elbow: [T; 2],
-    pub sin_delta: T,
-    /// The square of that, nowhere continued.
-    pub sin_delta_squared: T,
-    /// Squared distance of the wrist centre from the shoulder. m^2
-    pub distance2: T,
-    /// Sines and cosines of joints 2 and 3.
-    pub angles: [[T; 2]; 2],
-    /// Not negative where the bound on conditioning allows the elbow.
-    pub margin: T,
-    /// sin(theta - min), sin(max - theta) of joints 2 and 3.
-    pub joint_margins: [[T; 2]; 2],
-    /// The same of their sum, where it has limits.
-    pub sum_margins: Option<[T; 2]>,
-    /// Where one of these is sure to be violated.
-    pub violated: Mask,
-}
-
-/// Axes 4 to 6, in the radial frame.
-pub(super) struct Wrist<T> {
-    /// Wrist centre from the elbow.
-    pub from_elbow: InPlane<T>,
-    pub axis4: Vector<T>,
-    /// Component of axis 4 along the arm.
-    pub axis4_along: T,
-    /// z_4 . a_6.
-    pub dot46: T,
-    pub sine5_squared: T,
-    /// 1 / sin^2 theta_5, continued: see [`super::super::continuation`].
-    pub inverse5: T,
-    /// Not negative where the bound on conditioning allows the wrist.
-    pub margin: T,
-    /// cos theta_5 above that of its limits.
-    pub joint5_margin: T,
-}
-
-/// One state, joint by joint.
-///
-/// By reference: an enclosure is large to copy.
-pub(super) struct Posed<'a, T> {
-    pub signs: Signs,
-    pub tool: &'a Tool<T>,
-    pub first: &'a FirstJoint<T>,
-    pub elbow: &'a Elbow<T>,
-    pub wrist: &'a Wrist<T>,
-    /// Tool centre point from axes 2 and 3.
-    pub tips: &'a [InPlane<T>; 2],
-}
-
 impl Arm {
+    /// What turns with the spindle, at a heading given by its sine and cosine.
+    #[inline(always)]
+    pub(super) fn tool<T: Number>(&self, sine: T, cosine: T) -> Tool<T> {
+        let of = |v| turned(sine, cosine, self.leaning.as_ref(), v);
+        Tool { sine, cosine, leaning: self.leaning, lever: of(&self.lever), axis6: of(&self.axis6) }
+    }
+
     /// Joint 1, from the wrist centre in plan; `regular` loses the lanes in which that may be too near to axis 1.
     #[inline(always)]
-    pub(super) fn first_joint<T: Number>(&self, [wx, wy]: [T; 2], signs: Signs, regular: &mut Mask) -> FirstJoint<T> {
+    pub(super) fn first_joint<T: Number>(&self, wrist: [T; 2], signs: Signs, regular: &mut Mask) -> FirstJoint<T> {
+        let [wx, wy] = wrist;
         let lateral = self.geometry.lateral;
         let radius2 = wx.square() + wy.square();
         let forward2 = radius2.plus(-lateral * lateral);
@@ -275,17 +143,18 @@ impl Arm {
 
 /// sin(theta - min) and sin(max - theta) of an angle with limits (rad).
 #[inline(always)]
-fn limit_margins<T: Number>((min, max): (f64, f64), sine: T, cosine: T) -> [T; 2] {
-    let ((s0, c0), (s1, c1)) = (libm::sincos(min), libm::sincos(max));
+fn limit_margins<T: Number>(limits: (f64, f64), sine: T, cosine: T) -> [T; 2] {
+    let ((s0, c0), (s1, c1)) = (libm::sincos(limits.0), libm::sincos(limits.1));
     [sine.scale(c0) - cosine.scale(s0), cosine.scale(s1) - sine.scale(c1)]
 }
 
 /// Where an angle is sure to be outside its limits.
 #[inline(always)]
-fn is_outside<T: Number>(span: LimitSpan, [min, max]: [T; 2]) -> Mask {
+fn is_outside<T: Number>(span: LimitSpan, margins: [T; 2]) -> Mask {
+    let [min, max] = margins.map(|margin| margin.is_negative());
     match span {
         LimitSpan::Full => Mask::splat(false),
-        LimitSpan::Wide => min.is_negative() & max.is_negative(),
-        LimitSpan::Narrow => min.is_negative() | max.is_negative(),
+        LimitSpan::Wide => min & max,
+        LimitSpan::Narrow => min | max,
     }
 }

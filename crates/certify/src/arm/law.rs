@@ -40,7 +40,8 @@ impl Law {
     /// A number times the compliance at the angle of this sine and cosine: true within the limits of the joint.
     /// `regular` loses the lanes in which too little is known. rad/(N m)
     #[inline(always)]
-    pub fn times<T: Number>(&self, number: T, [sine, cosine]: [T; 2], regular: &mut Mask) -> T {
+    pub fn times<T: Number>(&self, number: T, angle: [T; 2], regular: &mut Mask) -> T {
+        let [sine, cosine] = angle;
         match *self {
             Self::Constant(value) => number.scale(value),
             Self::Range { middle, slope, at: (s, c) } => {

@@ -20,6 +20,7 @@ mod conditioning;
 mod constants;
 mod inverse;
 mod law;
+mod posed;
 mod singularity;
 mod vector;
 
@@ -28,7 +29,7 @@ use super::moment::MOMENTS;
 use super::number::Number;
 pub(super) use beside::is_base_alike;
 pub(super) use constants::{Arm, LimitSpan};
-use inverse::{Place, Posed, Signs, Tool};
+use posed::{Place, Posed, Signs, Tool};
 pub(super) use singularity::needed_condition;
 use stead_model::robot::PostureClass;
 use vector::{InPlane, Vector};
@@ -78,6 +79,9 @@ pub(super) struct Margins<T> {
 /// One of the components of a vector.
 type Component<T> = fn(&Vector<T>) -> T;
 
+/// m, d1, d2, c_rz and c_tz, and c_zz of [`ArmCompliance`]. m/N
+type Compliance<T> = (T, T, T, [T; 2], T);
+
 impl Arm {
     /// Evaluates one posture class for a tool centre point at a radius and height (m) and a heading; `None` where none
     /// of the lanes is allowed.
@@ -89,7 +93,7 @@ impl Arm {
         cosine: T,
         class: PostureClass,
     ) -> Option<ArmCompliance<T>> {
-        let tool = Tool::new(self, sine, cosine);
+        let tool = self.tool(sine, cosine);
         let wrist = [radius - tool.lever.x, -tool.lever.y];
         let place =
             Place { tip: Vector { x: radius, y: T::constant(0.0), z: height }, wrist, radius2: radius.square() };
@@ -97,24 +101,24 @@ impl Arm {
     }
 
     /// The same of a tool that leans, in the frame of the workpiece about axis 1, with a turn about the tool axis; and
-    /// with joint 1, whose compliance is `first` (rad/(N m)).
+    /// with joint 1.
     pub fn evaluate_leaning<T: Number>(
         &self,
-        [x, y, z]: [T; 3],
+        at: [T; 3],
         sine: T,
         cosine: T,
-        first: f64,
         class: PostureClass,
     ) -> Option<ArmCompliance<T>> {
-        let tool = Tool::new(self, sine, cosine);
+        let [x, y, z] = at;
+        let tool = self.tool(sine, cosine);
         let wrist = [x - tool.lever.x, y - tool.lever.y];
         let (x2, y2) = (x.square(), y.square());
         let place = Place { tip: Vector { x, y, z }, wrist, radius2: x2 + y2 };
         let mut all = self.evaluate_at(&place, &tool, class)?;
         // Joint 1 moves the tool centre point by (-y, x).
-        all.m = all.m + place.radius2.scale(0.5 * first);
-        all.d1 = all.d1 + (y2 - x2).scale(0.5 * first);
-        all.d2 = all.d2 - (x * y).scale(first);
+        all.m = all.m + place.radius2.scale(0.5 * self.joint1);
+        all.d1 = all.d1 + (y2 - x2).scale(0.5 * self.joint1);
+        all.d2 = all.d2 - (x * y).scale(self.joint1);
         Some(all)
     }
 
@@ -158,17 +162,7 @@ impl Arm {
         if violated.all() {
             return None;
         }
-        let (mut m, mut d1, mut d2, mut vertical, mut axial) = self.compliance(&posed, &mut regular);
-        if let Some(beside) = &self.beside {
-            let more = beside.compliance(&posed, &self.geometry, place.tip.x, place.tip.z);
-            (m, d1, d2) = (m + (more.xx + more.yy).scale(0.5), d1 + (more.xx - more.yy).scale(0.5), d2 + more.xy);
-            if self.is_vertical {
-                vertical = [vertical[0] + more.xz, vertical[1] + more.yz];
-            }
-            if self.is_axial {
-                axial = axial + more.zz;
-            }
-        }
+        let (m, d1, d2, vertical, axial) = self.compliance(&posed, place, &mut regular);
         let moments = self.has_moments.then(|| self.under_moments(&posed, &mut regular));
         let margins = Margins {
             elbow: elbow.margin,
@@ -183,7 +177,24 @@ impl Arm {
 
     /// m, d1, d2, and c_rz, c_tz and c_zz where some force or scored direction is along axis 1.
     #[inline(always)]
-    fn compliance<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> (T, T, T, [T; 2], T) {
+    fn compliance<T: Number>(&self, posed: &Posed<'_, T>, place: &Place<T>, regular: &mut Mask) -> Compliance<T> {
+        let (mut m, mut d1, mut d2, mut vertical, mut axial) = self.of_joints(posed, regular);
+        if let Some(beside) = &self.beside {
+            let more = beside.compliance(posed, &self.geometry, place.tip.x, place.tip.z);
+            (m, d1, d2) = (m + (more.xx + more.yy).scale(0.5), d1 + (more.xx - more.yy).scale(0.5), d2 + more.xy);
+            if self.is_vertical {
+                vertical = [vertical[0] + more.xz, vertical[1] + more.yz];
+            }
+            if self.is_axial {
+                axial = axial + more.zz;
+            }
+        }
+        (m, d1, d2, vertical, axial)
+    }
+
+    /// The same of joints 2 to 6 about their axes.
+    #[inline(always)]
+    fn of_joints<T: Number>(&self, posed: &Posed<'_, T>, regular: &mut Mask) -> Compliance<T> {
         let (axis4, axis6, lever) = (posed.wrist.axis4, posed.tool.axis6, posed.tool.lever);
         let v4 = axis4.cross(lever);
         // s v_5 = (z_4 x z_6) x t = z_6 (z_4 . t) - z_4 (z_6 . t).

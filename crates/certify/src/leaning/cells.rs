@@ -27,8 +27,6 @@ const CUTS: usize = 400;
 #[derive(Debug)]
 pub(super) struct Cells {
     pub arm: Arm,
-    /// Compliance of joint 1. rad/(N m)
-    pub first: f64,
     kinds: Vec<Kind>,
     /// What a load of size 1 costs where most placements are of no interest: more need not be known at first. m
     enough: f64,
@@ -69,20 +67,21 @@ struct Candidate {
 }
 
 /// Pieces of a cell; of each and each kind of load the value in the middle of what it shares with the cell, and slopes.
-#[derive(Default)]
 struct Candidates {
+    /// The number of kinds.
+    kinds: usize,
     all: Vec<Candidate>,
     of: Vec<(f64, [f64; 3])>,
 }
 
 impl Cells {
     /// For tool centre points up to a radius, between two heights (m).
-    pub fn new((arm, first): (Arm, f64), kinds: Vec<Kind>, enough: f64, radius: f64, height: (f64, f64)) -> Self {
+    pub fn new(arm: Arm, kinds: Vec<Kind>, enough: f64, radius: f64, height: (f64, f64)) -> Self {
         let corner = [-radius, -radius, height.0];
         let counts = [2.0 * radius, 2.0 * radius, height.1 - height.0].map(|w| (w / (2.0 * LARGEST)) as usize + 1);
         let largest: Vec<Cell> = std::iter::repeat_with(Cell::default).take(counts.iter().product()).collect();
         let made = AtomicU64::new(size_of_val(largest.as_slice()) as u64);
-        Self { arm, first, kinds, enough, corner, counts, largest, made }
+        Self { arm, kinds, enough, corner, counts, largest, made }
     }
 
     /// What cells of that extent take while nothing is known of them. bytes
@@ -172,16 +171,16 @@ impl Cells {
             for first in (0..TURNS).step_by(WIDTH) {
                 let mut pieces = [whole; WIDTH];
                 pieces.iter_mut().enumerate().for_each(|(k, piece)| piece.number[TURN] = (first + k) as u16);
-                self.evaluate(&mut all, &pieces, (level, at), class);
+                self.evaluate(&mut all, &pieces, level, at, class);
             }
         }
         let (mut cuts, enough) = (0, if level < COARSE { self.enough } else { f64::INFINITY });
         for kind in 0..kinds {
-            while let Some(number) = all.to_cut((kind, kinds), level, enough).filter(|_| cuts < CUTS) {
+            while let Some(number) = all.to_cut(kind, level, enough).filter(|_| cuts < CUTS) {
                 cuts += 1;
                 let piece = all.all[number].piece.within(level, at);
-                all.remove(number, kinds);
-                self.evaluate(&mut all, &piece.cut(level), (level, at), class);
+                all.remove(number);
+                self.evaluate(&mut all, &piece.cut(level), level, at, class);
             }
         }
         self.finish(&all, begun, half_of(level))
@@ -193,12 +192,13 @@ impl Cells {
         &self,
         all: &mut Candidates,
         pieces: &[Piece; WIDTH],
-        (level, at): (usize, [usize; 3]),
+        level: usize,
+        at: [usize; 3],
         class: PostureClass,
     ) {
         let place = pieces.map(|piece| std::array::from_fn(|k| self.middle_of(&piece, k)));
         let half: [f64; LEANING] = std::array::from_fn(|k| pieces[0].half(k));
-        let known = known_over((&self.arm, self.first), &place, half, class);
+        let known = known_over(&self.arm, &place, half, class);
         for (k, (piece, known)) in pieces.iter().zip(known).enumerate() {
             if known == Known::Empty || pieces[..k].contains(piece) {
                 continue;
@@ -221,7 +221,7 @@ impl Cells {
             }
             debug_assert_eq!(all.of.len() - first, self.kinds.len());
             piece.order.sort_by(|a, b| bends[usize::from(*b)].total_cmp(&bends[usize::from(*a)]));
-            all.push(piece, None, self, (level, at));
+            all.push(piece, None, self, level, at);
         }
     }
 
@@ -245,7 +245,7 @@ impl Cells {
             left.extend((0..made.pieces.len()).map(|k| (*made, k)));
         }
         left.retain(|(of, k)| of.pieces[*k].meets(level, at));
-        let mut all = Candidates::default();
+        let mut all = Candidates { kinds, all: Vec::new(), of: Vec::new() };
         for (number, (made, k)) in left.into_iter().enumerate() {
             let piece = made.pieces[k];
             let shared = piece.within(level, at);
@@ -255,7 +255,7 @@ impl Cells {
                 let moved: f64 = (0..3).map(|side| slope[side] * off[side]).sum();
                 all.of.push((f64::from(e.value) + moved, slope));
             }
-            all.push(piece, Some(number as u32), self, (level, at));
+            all.push(piece, Some(number as u32), self, level, at);
         }
         all
     }
@@ -263,7 +263,7 @@ impl Cells {
     /// `begun` is the number of pieces that the cell began with.
     fn finish(&self, all: &Candidates, begun: usize, half: f64) -> Box<Made> {
         let kinds = self.kinds.len();
-        let below: Box<[Affine]> = (0..kinds).map(|kind| all.below(kind, kinds, half)).collect();
+        let below: Box<[Affine]> = (0..kinds).map(|kind| all.below(kind, half)).collect();
         let mut is_left = vec![false; begun];
         all.all.iter().filter_map(|candidate| candidate.inherited).for_each(|k| is_left[k as usize] = true);
         let replaced = (0..begun as u32).filter(|k| !is_left[*k as usize]).collect();
@@ -284,14 +284,15 @@ impl Cells {
 
 impl Candidates {
     /// A piece for a cell; its bounds are in `of` already.
-    fn push(&mut self, piece: Piece, inherited: Option<u32>, cells: &Cells, (level, at): (usize, [usize; 3])) {
+    fn push(&mut self, piece: Piece, inherited: Option<u32>, cells: &Cells, level: usize, at: [usize; 3]) {
         let shared = piece.within(level, at);
         let off = std::array::from_fn(|k| cells.middle_of(&shared, k) - cells.middle(level, k, at[k]));
         let half = std::array::from_fn(|k| shared.half(k));
         self.all.push(Candidate { piece, inherited, off, half });
     }
 
-    fn remove(&mut self, number: usize, kinds: usize) {
+    fn remove(&mut self, number: usize) {
+        let kinds = self.kinds;
         self.all.swap_remove(number);
         let last = self.of.len() - kinds;
         for kind in 0..kinds {
@@ -301,9 +302,9 @@ impl Candidates {
     }
 
     /// The piece that costs least under one kind of load, and how little that is.
-    fn least(&self, kind: usize, kinds: usize) -> Option<(usize, f64)> {
+    fn least(&self, kind: usize) -> Option<(usize, f64)> {
         let low = |number: usize| {
-            let ((value, slope), half) = (self.of[number * kinds + kind], self.all[number].half);
+            let ((value, slope), half) = (self.of[number * self.kinds + kind], self.all[number].half);
             value - (0..3).map(|k| slope[k].abs() * half[k]).sum::<f64>()
         };
         let all = (0..self.all.len()).map(|number| (number, low(number)));
@@ -311,30 +312,30 @@ impl Candidates {
     }
 
     /// What a function with these slopes may be in the middle of the cell, not to be above a piece anywhere in it.
-    fn left(&self, number: usize, place: usize, slope: [f64; 3]) -> f64 {
-        let ((value, own), Candidate { off, half, .. }) = (self.of[place], &self.all[number]);
+    fn left(&self, number: usize, kind: usize, slope: [f64; 3]) -> f64 {
+        let ((value, own), Candidate { off, half, .. }) = (self.of[number * self.kinds + kind], &self.all[number]);
         value - (0..3).map(|k| (own[k] - slope[k]).abs() * half[k] + slope[k] * off[k]).sum::<f64>()
     }
 
     /// The piece that limits the bound of a kind of load with slopes like these.
-    fn limiting(&self, kind: usize, kinds: usize, slope: [f64; 3]) -> Option<(usize, f64)> {
-        let all = (0..self.all.len()).map(|number| (number, self.left(number, number * kinds + kind, slope)));
+    fn limiting(&self, kind: usize, slope: [f64; 3]) -> Option<(usize, f64)> {
+        let all = (0..self.all.len()).map(|number| (number, self.left(number, kind, slope)));
         all.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// A piece that keeps the bound of a kind of load below `enough`, and is not good enough for cells of this level.
-    fn to_cut(&self, (kind, kinds): (usize, usize), level: usize, enough: f64) -> Option<usize> {
-        let (least, _) = self.least(kind, kinds).filter(|least| least.1 < enough)?;
+    fn to_cut(&self, kind: usize, level: usize, enough: f64) -> Option<usize> {
+        let (least, _) = self.least(kind).filter(|least| least.1 < enough)?;
         let is_open = |number: &usize| !self.all[*number].piece.is_fine(level);
-        let limiting = || self.limiting(kind, kinds, self.of[least * kinds + kind].1).map(|found| found.0);
+        let limiting = || self.limiting(kind, self.of[least * self.kinds + kind].1).map(|found| found.0);
         Some(least).filter(is_open).or_else(|| limiting().filter(is_open))
     }
 
     /// Below all pieces for one kind of load.
-    fn below(&self, kind: usize, kinds: usize, half: f64) -> Affine {
-        let Some((least, _)) = self.least(kind, kinds) else { return EMPTY };
-        let slope = self.of[least * kinds + kind].1;
-        let value = self.limiting(kind, kinds, slope).map_or(f64::INFINITY, |found| found.1);
+    fn below(&self, kind: usize, half: f64) -> Affine {
+        let Some((least, _)) = self.least(kind) else { return EMPTY };
+        let slope = self.of[least * self.kinds + kind].1;
+        let value = self.limiting(kind, slope).map_or(f64::INFINITY, |found| found.1);
         rounded(value, slope, [half; 3])
     }
 }

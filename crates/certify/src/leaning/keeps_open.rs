@@ -37,7 +37,7 @@ impl Leaning {
 
 /// Counts what is known of the states of a piece of a cell.
 fn add(counted: &mut KeepsOpen, cells: &Cells, place: [f64; LEANING], half: [f64; LEANING], class: PostureClass) {
-    let Some(y) = enclosed((&cells.arm, cells.first), &[place; WIDTH], half, class) else { return };
+    let Some(y) = enclosed(&cells.arm, &[place; WIDTH], half, class) else { return };
     match judged(&cells.arm, &y, 0, half) {
         Known::Empty => {}
         Known::Unknown => counted.add_unknown(),

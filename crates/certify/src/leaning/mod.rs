@@ -13,13 +13,14 @@ mod piece;
 mod states;
 
 use super::arm::Arm;
-use super::branch_and_bound::{Bound, BranchAndBound, Keeps, Open, Parts};
+use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts};
 use super::cell::{Yaws, extent, side, whole};
 use super::cost::{CORNERS, cost_at_corners};
 use super::keeps_open::counted_boxes;
 use super::kind::kinds_of;
 use super::load::{Load, Objective};
 use super::minorant::Affine;
+use super::model::Keeps;
 use super::region::Region;
 use super::sliding_min::{INFINITE, joined, min_into, plus};
 use cells::{Cells, LEVELS};
@@ -171,10 +172,9 @@ impl Leaning {
                 Aggregate::Rms => libm::sqrt(ceiling / sizes().map(|size| size * size).sum::<f64>()),
                 Aggregate::Max => ceiling / sizes().fold(0.0, f64::max),
             };
-        let first = robot.compliances_at(&[0.0; 6])[0];
         let cells = |(axis, (kinds, _)): (&Vector3<f64>, (Vec<_>, Vec<_>))| {
             let arm = Arm::leaning(problem, &robot, nearest, *axis);
-            Cells::new((arm, first), kinds, enough, extent.radius.1, extent.height)
+            Cells::new(arm, kinds, enough, extent.radius.1, extent.height)
         };
         let all = axes.iter().zip(of_axes).map(cells).collect();
         Self {
@@ -310,7 +310,7 @@ impl Leaning {
                     let below = cells.below(level, [i, j, k], class);
                     let Some(e) = below.get(kind).filter(|e| e.value < f32::INFINITY) else { continue };
                     if let Some(place) = found.get_mut(count) {
-                        *place = Some(Part::new(cells, level, [i, j, k], e, (middle, half)));
+                        *place = Some(Part::new(cells, level, [i, j, k], e, &Region { middle, half }));
                     }
                     count += 1;
                 }
@@ -350,8 +350,9 @@ struct Part {
 }
 
 impl Part {
-    /// Of the box with that middle and those half widths.
-    fn new(cells: &Cells, level: usize, at: [usize; 3], e: &Affine, (middle, half): ([f64; 3], [f64; 3])) -> Self {
+    /// Of a box.
+    fn new(cells: &Cells, level: usize, at: [usize; 3], e: &Affine, of: &Box3) -> Self {
+        let Box3 { middle, half } = *of;
         let slope = e.slope.map(f64::from);
         let mut part = Self { value: f64::from(e.value), slope, off: [0.0; 3], half: [0.0; 3] };
         for k in 0..3 {

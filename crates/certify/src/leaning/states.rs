@@ -2,13 +2,12 @@
 //! spindle about its axis.
 
 use super::super::arm::{Arm, ArmCompliance};
-use super::super::compliance_table::{FUNCTIONS, REMAINDERS};
 use super::super::enclosure::Enclosure;
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::kind::Kind;
 use super::super::minorant::{Affine, ZERO, rounded};
 use super::super::number::{LEANING, LEANING_PAIRS};
-use super::super::over_regions::{heading_over, is_sure, remainders};
+use super::super::over_regions::{FUNCTIONS, REMAINDERS, heading_over, is_sure, remainders};
 use super::super::yielding::{Tangent, Yielding};
 use stead_model::robot::PostureClass;
 
@@ -57,29 +56,28 @@ impl Below {
     pub const NOTHING: Self = Self { affine: ZERO, share: 1.0, turning: 0.0 };
 }
 
-/// What is known of four regions (x, y, z, turn) of those half widths; `first` is the compliance of joint 1
-/// (rad/(N m)).
+/// What is known of four regions (x, y, z, turn) of those half widths.
 pub(super) fn known_over(
-    (arm, first): (&Arm, f64),
+    arm: &Arm,
     place: &[[f64; LEANING]; WIDTH],
     half: [f64; LEANING],
     class: PostureClass,
 ) -> [Known; WIDTH] {
-    match enclosed((arm, first), place, half, class) {
+    match enclosed(arm, place, half, class) {
         None => [Known::Empty; WIDTH],
         Some(y) => std::array::from_fn(|lane| judged(arm, &y, lane, half)),
     }
 }
 
 pub(super) fn enclosed(
-    (arm, first): (&Arm, f64),
+    arm: &Arm,
     place: &[[f64; LEANING]; WIDTH],
     half: [f64; LEANING],
     class: PostureClass,
 ) -> Option<ArmCompliance<Enclosed>> {
     let (sine, cosine) = heading_over(place.map(|p| p[3]), half);
     let at = |k: usize| Enclosed::variable(Lanes(place.map(|p| p[k])), k, half);
-    arm.evaluate_leaning([at(0), at(1), at(2)], sine, cosine, first, class)
+    arm.evaluate_leaning([at(0), at(1), at(2)], sine, cosine, class)
 }
 
 pub(super) fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {

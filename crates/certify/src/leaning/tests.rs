@@ -1,8 +1,8 @@
 //! Tools that lean, layer by layer against the reference evaluator, and with parts broken on purpose.
 
 use super::super::kind::Kind;
+use super::super::part::{certifiable, certifiable_from_above};
 use super::super::relaxed_value;
-use super::super::requirements::{certifiable, certifiable_from_above};
 use super::super::tests::{Setting, hanging_arm, leaning, odd_arm, seeded, share};
 use super::states::{Known, States, TURN, known_over};
 use super::*;
@@ -26,7 +26,6 @@ struct Leant {
     setting: Setting,
     arm: Arm,
     axis: Vector3<f64>,
-    first: f64,
 }
 
 /// An allowed state as bounds have it.
@@ -45,7 +44,7 @@ impl Leant {
         let robot = problem.robot.clone();
         let axis = axes_of(&problem)[0];
         let arm = Arm::leaning(&problem, &robot, extent(&problem).radius.0, axis);
-        Self { setting: Setting::new(problem), arm, axis, first: robot.compliances_at(&[0.0; 6])[0] }
+        Self { setting: Setting::new(problem), arm, axis }
     }
 
     fn all() -> Vec<(&'static str, Self)> {
@@ -152,7 +151,7 @@ fn violations(leant: &Leant, (_, judged, change, turn): Change) -> [usize; 3] {
         let half: [f64; 4] = [scale * 0.025; 4];
         let corner: [f64; 4] = std::array::from_fn(|_| share(&mut random));
         let middle: [f64; 4] = std::array::from_fn(|k| state.at[k] - corner[k] * half[k]);
-        let [known, ..] = known_over((&leant.arm, leant.first), &[middle; WIDTH], judged(half), state.class);
+        let [known, ..] = known_over(&leant.arm, &[middle; WIDTH], judged(half), state.class);
         let kind = leant.kind(state.point);
         for shot in 0..8 {
             let by: [f64; 4] =
@@ -214,7 +213,7 @@ fn lost_at_the_limit(times: f64) -> [usize; 2] {
             for size in [1.0, 0.1, 1e-3] {
                 let corner: [f64; 4] = std::array::from_fn(|_| share(&mut random));
                 let middle = std::array::from_fn(|k| state.at[k] - corner[k] * 0.025 * size);
-                let [known, ..] = known_over((&arm, leant.first), &[middle; WIDTH], [0.025 * size; 4], state.class);
+                let [known, ..] = known_over(&arm, &[middle; WIDTH], [0.025 * size; 4], state.class);
                 counts[0] += usize::from(known == Known::Empty);
             }
         }

@@ -1,9 +1,10 @@
 //! Boxes of placements: where they put a point, and what it costs over them.
 
-use super::super::compliance_table::{AffineModel, Node, REMAINDERS, known_over};
+use super::super::compliance_table::{AffineModel, Node, known_over};
 use super::super::cost::PointCost;
 use super::super::interval_simd::WIDTH;
 use super::super::moment::MomentModel;
+use super::super::over_regions::REMAINDERS;
 use super::super::region::PolarModel;
 use super::*;
 use stead_model::robot::NormalSprings;
@@ -120,7 +121,7 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
         (mutation.known)(&mut known);
         moments.iter_mut().for_each(mutation.moments);
         (mutation.placed)(&mut placed);
-        let one = PointCost::new(&setting.model.points[point], placed, setting.model.first * mutation.joint1);
+        let one = PointCost::new(&setting.model.points[point], placed, setting.model.arm.joint1 * mutation.joint1);
         let min = one.min_cost(
             (&known, moments.as_ref()),
             off,

@@ -1,11 +1,12 @@
 //! The closed form, its constraints, and the nodes of the table.
 
 use super::super::arm::{Arm, Margins};
-use super::super::compliance_table::{AffineModel, Node, REMAINDERS, nodes_over};
+use super::super::compliance_table::{AffineModel, Node, nodes_over};
 use super::super::cost::Direction;
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::moment::MOMENTS;
 use super::super::number::{Number, Slope};
+use super::super::over_regions::REMAINDERS;
 use super::*;
 
 /// The functions of the compliance, and those of [`super::super::moment::MomentModel`].
@@ -73,7 +74,7 @@ fn functions(setting: &Setting) -> usize {
 /// The score by the formula of the certificate.
 fn score(setting: &Setting, point: usize, [r, _, chi]: [f64; 3], (values, moments): &Values) -> f64 {
     let load = &setting.model.points[point].load;
-    let (direction, first) = (Direction::new(chi + load.turn), setting.model.first);
+    let (direction, first) = (Direction::new(chi + load.turn), setting.model.arm.joint1);
     load.score(&load.with_part(direction.seen(*values, r, first)), direction.moved(*moments, load, r, first))
 }
 

@@ -4,7 +4,7 @@ use super::super::branch_and_bound::{Bound, Status};
 use super::super::certificate::{Certificate, NoProof, Proof, certify};
 use super::*;
 use crate::at_rest::without_axes;
-use crate::requirements::certifiable_from_above;
+use crate::part::certifiable_from_above;
 use crate::{best, certifiable};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
@@ -218,7 +218,7 @@ fn a_bound_on_a_turntable_is_below_what_it_is_at_any_angle() {
     problem.setup = Setup::at_rest(&problem.external_axes);
     let settings = CertificateSettings::new(0.2);
     let value = 0.1075e-3;
-    let bound = best(&problem, value, &settings, true, &Monitor::silent()).unwrap();
+    let bound = best(&problem, value, &settings, &Monitor::silent()).unwrap();
     assert!(bound.bound > 0.5 * value, "{}", bound.bound);
     for angle in [-0.05, -0.02, 0.0, 0.03, 0.05] {
         let mut there = problem.clone();

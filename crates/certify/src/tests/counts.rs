@@ -56,7 +56,7 @@ fn counted(name: &str, problem: Problem) -> String {
     let settings = CertificateSettings { time_limit: None, ..CertificateSettings::new(0.01) };
     let until = std::time::Instant::now() + std::time::Duration::from_secs(150);
     let monitor = Monitor::silent().with_deadline(Some(until));
-    let Bound { bound, mut open, status, .. } = best(&setting.problem, value, &settings, true, &monitor).unwrap();
+    let Bound { bound, mut open, status, .. } = best(&setting.problem, value, &settings, &monitor).unwrap();
     let mut text =
         format!("{name}: value {:.5} mm, bound {:.5}, {status:?}, {} open\n", value * 1e3, bound * 1e3, open.len());
     open.sort_by(|a, b| a.1.total_cmp(&b.1));

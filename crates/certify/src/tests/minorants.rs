@@ -1,10 +1,12 @@
 //! The coarse tables: minorants whatever the heading, and the coarser levels above them.
 
+use super::super::cell::Extent;
 use super::super::coarse_bounds::CoarseBounds;
-use super::super::compliance_table::{AffineModel, ComplianceTable, Extent, Node, Steps};
+use super::super::compliance_table::{AffineModel, ComplianceTable, Node, Steps};
+use super::super::cost::Direction;
 use super::super::kind::{Kind, kinds};
 use super::super::load::Load;
-use super::super::minorant::{Affine, EMPTY, ModelledRegion, ZERO, below_all, collect, minorant};
+use super::super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, below_all, minorant};
 use super::*;
 use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::Planner;
@@ -19,7 +21,6 @@ pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: S
         points: b.points.clone(),
         segments: b.segments.clone(),
         changes: b.changes.clone(),
-        first: b.first,
         others: Vec::new(),
         over: b.over,
         yaws: b.yaws,
@@ -81,7 +82,8 @@ fn states(model: &Model, class: PostureClass, mutation: &Mutation) -> Option<Vec
                 let mut known = *known;
                 (mutation.known)(&mut known);
                 let half = [table.length(0), table.length(0), PI / table.headings(0) as f64];
-                found.push(ModelledRegion::new((&known, moments), half, node[0], [0.0, 0.0]));
+                let first = model.arm.joint1 * mutation.joint1;
+                found.push(ModelledRegion::new((&known, moments), half, [node[0], first], [0.0, 0.0]));
             }
         }
     }
@@ -103,11 +105,10 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
         let Some(found) = states(&model, class, mutation) else { continue };
         let load = &model.points[point].load;
         let half = [steps.length, steps.length, turn * mutation.chi];
-        let direction = libm::sincos(place[2] + load.turn);
+        let direction = Direction::new(place[2] + load.turn);
         // The load of another point stands for it, as coarse tables have kinds of load.
         let (kind, size) = kind_of(&model, point, mutation.spread);
-        let first = model.first * mutation.joint1;
-        let mut e = minorant(&found, &kind, direction, first, half, &mut Vec::new());
+        let mut e = minorant(&found, &kind, &direction, half, &mut Vec::new());
         e.value *= size;
         e.slope = e.slope.map(|slope| slope * size);
         if e == ZERO {
@@ -210,8 +211,8 @@ fn regions_cut_up_are_below_the_cost_too() {
         let model = local(&setting, along(place[0]), along(place[1]), COARSE, 3);
         let node = model.table.place(0, [1, 1]);
         let mut found = Vec::new();
-        let known = (0..COARSE.headings)
-            .all(|cell| collect(&model.arm, &model.table, 0, [1, 1], cell, node, class, &mut found));
+        let around = Around { arm: &model.arm, table: &model.table, node, class };
+        let known = (0..COARSE.headings).all(|cell| around.collect(0, [1, 1], cell, &mut found));
         if !known {
             continue;
         }
@@ -219,9 +220,9 @@ fn regions_cut_up_are_below_the_cost_too() {
         let turn = TAU / COARSE.headings as f64;
         let half = [COARSE.length, COARSE.length, turn];
         let load = &model.points[point].load;
-        let direction = libm::sincos(place[2] + load.turn);
+        let direction = Direction::new(place[2] + load.turn);
         let kind = Kind { load: *load, force_spread: 0.0, moment_spread: 0.0, part_spread: 0.0 };
-        let e = minorant(&found, &kind, direction, model.first, half, &mut Vec::new());
+        let e = minorant(&found, &kind, &direction, half, &mut Vec::new());
         for _ in 0..6 {
             let s = shares(&mut random);
             let off = [s[0] * COARSE.length, s[1] * COARSE.length, s[2] * turn];

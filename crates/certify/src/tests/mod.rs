@@ -16,10 +16,9 @@ mod minorants;
 mod planner;
 
 use super::arm::Arm;
-use super::branch_and_bound::Keeps;
 use super::cell::whole;
 use super::compliance_table::ComplianceTable;
-use super::model::Model;
+use super::model::{Keeps, Model};
 use super::region::{Point, Region};
 use nalgebra::{Matrix6, Vector3, Vector6};
 use rand::{RngExt, SeedableRng};
