@@ -3,11 +3,13 @@
 mod leaning;
 
 use super::slacks::NEAR_STEPS;
+use super::solution::moved;
 use super::*;
 use nalgebra::DMatrix;
 use stead_model::robot::{Parameter, Uncertainty, angles::yaw_from_q4};
 use stead_numerics::monitor::Monitor;
-use stead_problem::problem::{BetaPlan, Interval};
+use stead_planning::redundancy::off_grid;
+use stead_problem::problem::{BetaPlan, Interval, Problem};
 use stead_problem::testing::{
     assert_sound, corners, five_segments, five_segments_compensated, with_axes_2_3, with_turn_limits,
 };

@@ -213,7 +213,7 @@ fn states(problem: &Problem, placement: &Placement) -> Result<LeanStates, Box<dy
                     let Some(state) = found.state.as_ref().filter(|_| found.is_allowed()) else { continue };
                     let (posture, joints) = (found.posture, state.joints);
                     let kinds = &PairKind::OF_STATES;
-                    if problem.next_hit(point, angle, placement, posture, kinds, &mut known).is_none() {
+                    if problem.at(placement).next_hit(point, angle, posture, kinds, &mut known).is_none() {
                         all.push(Allowed { lean, beta, posture, joints, length: 1 });
                     }
                 }
