@@ -5,6 +5,7 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use std::path::Path;
+use stead_assessment::benchmark::DeflectedCircle;
 use stead_assessment::comparison::{Comparison, assess};
 use stead_assessment::map::{Elbow, Map};
 use stead_numerics::monitor::Monitor;
@@ -40,8 +41,18 @@ fn one_map_finer_by(bencher: Bencher, fineness: usize) {
     let class = Elbow::Up.forward_class(robot);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be started");
     let silent = Monitor::silent();
-    let map =
-        || pool.install(|| Map::new(black_box(&comparison.benchmark), robot, class, grid, [1.0, 2.0], &silent, &|| {}));
+    let map = || {
+        pool.install(|| {
+            Map::new(
+                &DeflectedCircle::new(black_box(&comparison.benchmark), robot),
+                class,
+                grid,
+                [1.0, 2.0],
+                &silent,
+                &|| {},
+            )
+        })
+    };
     let circles = map().count();
     bencher.counter(ItemsCount::new(circles)).bench_local(map);
 }

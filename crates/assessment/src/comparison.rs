@@ -1,6 +1,6 @@
 //! Comparison of robots: every robot, both elbows, both loads, zones, and the selection.
 
-use super::benchmark::{Benchmark, MAX_DEFLECTION, Obstacle};
+use super::benchmark::{Benchmark, DeflectedCircle, MAX_DEFLECTION, Obstacle};
 use super::map::{Elbow, Grid, Map};
 use super::ranking::{Accuracy, Capable, Competitor, Selection, order};
 use super::zone::{self, Zone};
@@ -269,6 +269,7 @@ impl Comparison {
         let sheet = *robot.data_sheet();
         let force = self.benchmark.in_plane_force();
         let rated_load = sheet.payload.map(|payload| self.rated_share * payload * self.selection.gravity / force);
+        let deflected = DeflectedCircle::new(&self.benchmark, robot);
         let maps = Elbow::BOTH.map(|name| {
             let elbow = match self.elbow_names {
                 ElbowNames::Geometric => name,
@@ -276,7 +277,7 @@ impl Comparison {
             };
             let class = elbow.forward_class(robot);
             let loads = [1.0, rated_load.unwrap_or(1.0)];
-            (name, Map::new(&self.benchmark, robot, class, self.grid, loads, monitor, row_done))
+            (name, Map::new(&deflected, class, self.grid, loads, monitor, row_done))
         });
         let mut configurations = Vec::with_capacity(4);
         let loads = [(Load::Test, Some(1.0)), (Load::Rated, rated_load)];

@@ -1,6 +1,6 @@
 //! Circularity over a plane of the cell (Klimchik 2017, Fig. 15 to 19).
 
-use super::benchmark::{Benchmark, DeflectedCircle, Obstacle, Profile};
+use super::benchmark::{DeflectedCircle, Obstacle, Profile};
 use rayon::prelude::*;
 use serde::Serialize;
 use stead_model::robot::{PostureClass, PostureWord, Robot};
@@ -94,15 +94,13 @@ impl<const N: usize> Map<N> {
     /// to stop, the rest is left undone and the map is of no use. Rows of the grid are shared among the threads of
     /// rayon's pool; the result does not depend on their number.
     pub fn new(
-        benchmark: &Benchmark,
-        robot: &Robot,
+        deflected: &DeflectedCircle<'_>,
         class: PostureClass,
         grid: Grid,
         loads: [f64; N],
         monitor: &Monitor,
         row_done: &(dyn Fn() + Sync),
     ) -> Self {
-        let deflected = DeflectedCircle::new(benchmark, robot);
         let rows = (0..grid.counts[1]).into_par_iter().map_init(Profile::default, |profile, row| {
             let first = row * grid.counts[0];
             let mill = |index: usize| deflected.circularity(grid.place(index), class, loads, profile);

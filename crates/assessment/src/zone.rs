@@ -45,9 +45,9 @@ pub fn optimal(grid: &Grid, values: &[f64], intervals: usize) -> Option<Zone> {
 
 /// The zone of `intervals` steps a side about a node of the grid (column and row); `None` where a node of it has no
 /// value or is off the grid. With an odd number of steps the centre is half a step below the node on both axes.
-pub fn about(grid: &Grid, values: &[f64], [column, row]: [usize; 2], intervals: usize) -> Option<Zone> {
+pub fn about(grid: &Grid, values: &[f64], node: [usize; 2], intervals: usize) -> Option<Zone> {
     let before = intervals.div_ceil(2);
-    let corner = [column.checked_sub(before)?, row.checked_sub(before)?];
+    let corner = [node[0].checked_sub(before)?, node[1].checked_sub(before)?];
     if corner[0] + intervals >= grid.counts[0] || corner[1] + intervals >= grid.counts[1] {
         return None;
     }

@@ -55,8 +55,8 @@ pub fn cut(problem: &ForcesProblem, monitor: &Monitor) -> Result<CutResult, Forc
     let cell = match problem.cell {
         Some(cell) => cell,
         None => {
-            let run =
-                Run::new(problem, diameter / FIRST, None, Requested::Forces, "cutting, to choose the cell", monitor)?;
+            let stage = "cutting, to choose the cell";
+            let run = Run::new(problem, diameter / FIRST, None, Requested::Forces, stage, monitor)?;
             let cell = run.cell_for(operation);
             first = Some(run);
             cell
@@ -65,17 +65,11 @@ pub fn cut(problem: &ForcesProblem, monitor: &Monitor) -> Result<CutResult, Forc
     let window = window_for(cell);
     // The first run is that with cells twice as large, where they are.
     let known = first.filter(|run| (run.workpiece.cell() - 2.0 * cell).abs() < 1e-12 && run.path.window == window);
+    let stage = "cutting with cells twice as large";
     // Of that its sums alone are kept.
     let Run { path, found, .. } = match known {
         Some(run) => run,
-        None => Run::new(
-            problem,
-            2.0 * cell,
-            Some(window),
-            Requested::Forces,
-            "cutting with cells twice as large",
-            monitor,
-        )?,
+        None => Run::new(problem, 2.0 * cell, Some(window), Requested::Forces, stage, monitor)?,
     };
     let fine = Run::new(problem, cell, Some(window), Requested::Turns, "cutting", monitor)?;
     Ok(fine.result(operation, &Loads { path: &path, found: &found }))

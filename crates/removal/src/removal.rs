@@ -155,6 +155,7 @@ impl Workpiece {
     }
 
     /// Tiles that were met.
+    #[cfg(test)]
     pub fn tile_count(&self) -> usize {
         self.tiles.len()
     }

@@ -59,7 +59,10 @@ impl<const N: usize> Drive<N> {
             if load[j].abs() > NO_LOAD { spring + self.backlash[j].copysign(spring) } else { spring }
         })
     }
+}
 
+#[cfg(test)]
+impl<const N: usize> Drive<N> {
     /// Energy in the springs. J
     pub fn energy(&self, q: &SVector<f64, N>, reference: &SVector<f64, N>) -> f64 {
         let each = (0..N).map(|j| (self.stiffness[j], beyond(self.backlash[j], q[j] - reference[j])));

@@ -113,8 +113,8 @@ pub fn period_variation(run: &Run, window: [f64; 2], period: f64) -> Option<f64>
 const WHOLE: f64 = 1e-6;
 
 /// Steps between two times (s); none if the run does not have them all.
-pub(super) fn steps(run: &Run, [from, to]: [f64; 2]) -> Option<std::ops::Range<usize>> {
-    let [first, last] = [(from / run.step - 1e-9).ceil(), (to / run.step + 1e-9).floor()];
+pub(super) fn steps(run: &Run, window: [f64; 2]) -> Option<std::ops::Range<usize>> {
+    let [first, last] = [(window[0] / run.step - 1e-9).ceil(), (window[1] / run.step + 1e-9).floor()];
     let range = first.max(0.0) as usize..last.max(0.0) as usize + 1;
     (!range.is_empty() && range.end <= run.samples.len()).then_some(range)
 }

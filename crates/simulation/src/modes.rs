@@ -6,21 +6,21 @@
 //! `zeta`; its natural frequency is that without damping, near `omega = |s|`.
 
 use super::arm::Arm;
-use nalgebra::{Complex, DMatrix, DVector, Matrix3, SMatrix, SVector, Schur, Vector3};
+use nalgebra::{Complex, DMatrix, DVector, Matrix3, Matrix3xX, SMatrix, SVector, Schur, Vector3};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// An arm linearised about a state of rest.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LinearArm<const N: usize> {
+pub struct LinearArm {
     /// kg m^2
-    pub mass: SMatrix<f64, N, N>,
+    pub mass: DMatrix<f64>,
     /// N m s/rad
-    pub damping: SMatrix<f64, N, N>,
+    pub damping: DMatrix<f64>,
     /// Springs and gravity, the backlash taken up. N m/rad
-    pub stiffness: SMatrix<f64, N, N>,
+    pub stiffness: DMatrix<f64>,
     /// Velocity of the tip per unit speed of each joint. m/rad
-    pub tip: SMatrix<f64, 3, N>,
+    pub tip: Matrix3xX<f64>,
 }
 
 /// A mode: a free vibration, or an overdamped motion.
@@ -46,23 +46,29 @@ impl Mode {
     }
 }
 
-impl<const N: usize> LinearArm<N> {
+impl LinearArm {
     /// The arm at rest at angles `q` (rad), with its damping times `damping_scale`.
-    pub fn of(arm: &Arm<N>, q: &SVector<f64, N>, damping_scale: f64) -> Self {
+    pub fn of<const N: usize>(arm: &Arm<N>, q: &SVector<f64, N>, damping_scale: f64) -> Self {
         let posed = arm.chain.at(q);
+        let dynamic = |matrix: SMatrix<f64, N, N>| DMatrix::from_column_slice(N, N, matrix.as_slice());
         Self {
-            mass: posed.mass_matrix(&arm.chain),
-            damping: SMatrix::from_diagonal(&(arm.drive.damping * damping_scale)),
-            stiffness: arm.stiffness(&posed, &arm.drive.stiffness),
-            tip: posed.tip_jacobian(),
+            mass: dynamic(posed.mass_matrix(&arm.chain)),
+            damping: dynamic(SMatrix::from_diagonal(&(arm.drive.damping * damping_scale))),
+            stiffness: dynamic(arm.stiffness(&posed, &arm.drive.stiffness)),
+            tip: Matrix3xX::from_column_slice(posed.tip_jacobian().as_slice()),
         }
+    }
+
+    /// Number of its joints.
+    fn joints(&self) -> usize {
+        self.mass.nrows()
     }
 
     /// Natural frequencies without damping, ascending: square roots of the eigenvalues of `M^-1 K`. Hz; none where the
     /// mass matrix is not positive definite. A mode that gravity makes unstable counts as 0 Hz.
     pub fn undamped(&self) -> Option<Vec<f64>> {
-        let factor = to_dynamic(&self.mass).cholesky()?;
-        let half = factor.l().solve_lower_triangular(&to_dynamic(&self.stiffness))?;
+        let factor = self.mass.clone().cholesky()?;
+        let half = factor.l().solve_lower_triangular(&self.stiffness)?;
         let both = factor.l().solve_lower_triangular(&half.transpose())?;
         let both = (&both + both.transpose()) / 2.0;
         if !is_within_reach(&both) {
@@ -76,11 +82,12 @@ impl<const N: usize> LinearArm<N> {
 
     /// The state matrix `[0, 1; -M^-1 K, -M^-1 C]`; none where the mass matrix is not positive definite.
     pub fn state_matrix(&self) -> Option<DMatrix<f64>> {
-        let factor = to_dynamic(&self.mass).cholesky()?;
-        let mut matrix = DMatrix::zeros(2 * N, 2 * N);
-        matrix.view_mut((0, N), (N, N)).fill_with_identity();
-        matrix.view_mut((N, 0), (N, N)).copy_from(&-factor.solve(&to_dynamic(&self.stiffness)));
-        matrix.view_mut((N, N), (N, N)).copy_from(&-factor.solve(&to_dynamic(&self.damping)));
+        let factor = self.mass.clone().cholesky()?;
+        let n = self.joints();
+        let mut matrix = DMatrix::zeros(2 * n, 2 * n);
+        matrix.view_mut((0, n), (n, n)).fill_with_identity();
+        matrix.view_mut((n, 0), (n, n)).copy_from(&-factor.solve(&self.stiffness));
+        matrix.view_mut((n, n), (n, n)).copy_from(&-factor.solve(&self.damping));
         Some(matrix)
     }
 
@@ -107,7 +114,7 @@ impl<const N: usize> LinearArm<N> {
         // Next to the eigenvalue, so that the matrix has an inverse.
         let near = s * (1.0 + 1e-9) + Complex::new(1e-300, 0.0);
         let factor = self.dynamic_stiffness(near).lu();
-        let mut shape = DVector::from_fn(N, |k, _| Complex::new(1.0 + k as f64 / 7.0, 0.3));
+        let mut shape = DVector::from_fn(self.joints(), |k, _| Complex::new(1.0 + k as f64 / 7.0, 0.3));
         for _ in 0..4 {
             shape = factor.solve(&shape)?;
             let norm = shape.norm();
@@ -115,14 +122,14 @@ impl<const N: usize> LinearArm<N> {
         }
         let largest = shape.iter().copied().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()))?;
         let joints: Vec<f64> = shape.iter().map(|amplitude| (amplitude / largest).re).collect();
-        let tip = self.tip * SVector::<f64, N>::from_column_slice(&joints);
+        let tip = &self.tip * DVector::from_column_slice(&joints);
         let damping_ratio = if size > 0.0 { -s.re / size } else { 0.0 };
         Some(Mode { frequency: size / TAU, undamped: None, damping_ratio, joints, tip })
     }
 
     /// `s^2 M + s C + K`.
     fn dynamic_stiffness(&self, s: Complex<f64>) -> DMatrix<Complex<f64>> {
-        DMatrix::from_fn(N, N, |row, column| {
+        DMatrix::from_fn(self.joints(), self.joints(), |row, column| {
             let at = (row, column);
             s * s * self.mass[at] + s * self.damping[at] + Complex::from(self.stiffness[at])
         })
@@ -132,7 +139,7 @@ impl<const N: usize> LinearArm<N> {
     /// columns are directions of the force; none in a resonance without damping.
     pub fn response(&self, frequency: f64) -> Option<Matrix3<Complex<f64>>> {
         let matrix = self.dynamic_stiffness(Complex::new(0.0, TAU * frequency));
-        let jacobian = DMatrix::from_fn(N, 3, |row, column| Complex::from(self.tip[(column, row)]));
+        let jacobian = DMatrix::from_fn(self.joints(), 3, |row, column| Complex::from(self.tip[(column, row)]));
         let angles = matrix.lu().solve(&jacobian)?;
         let response = jacobian.transpose() * angles;
         Some(Matrix3::from_fn(|row, column| response[(row, column)]))
@@ -158,10 +165,6 @@ pub(crate) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let steps = QR_STEPS * matrix.nrows();
     let schur = Schur::try_new(matrix, f64::EPSILON, steps)?;
     Some(schur.complex_eigenvalues().iter().copied().collect())
-}
-
-fn to_dynamic<const N: usize>(matrix: &SMatrix<f64, N, N>) -> DMatrix<f64> {
-    DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
 }
 
 #[cfg(test)]

@@ -130,7 +130,7 @@ impl Simulation {
             verdict,
             analysis_verdict,
             judgement,
-            modes: linear_at(job.setup, 0.0)?.modes()?,
+            modes: linear_at(job.setup, 0.0)?.modes().ok_or(StabilityError::Singular)?,
             wall,
             filtered,
             roughness,

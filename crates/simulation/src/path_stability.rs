@@ -4,8 +4,7 @@ use super::arm::Variant;
 use super::stability_analysis::{CutStability, StabilityError, cut_stability, linear_of};
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use stead_model::cutting::PassCut;
-use stead_model::cutting::{CutFrame, Cutter};
+use stead_model::cutting::{CutFrame, Cutter, PassCut};
 use stead_model::robot::{Robot, Spindle};
 
 /// The cut along a tool path, and how stability is analysed.

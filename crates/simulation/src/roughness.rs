@@ -3,8 +3,7 @@
 use super::surface::Trail;
 use serde::Serialize;
 use std::f64::consts::{LN_2, PI, TAU};
-use stead_model::cutting::Cutter;
-use stead_model::cutting::PassCut;
+use stead_model::cutting::{Cutter, PassCut};
 
 /// Heights of a wall at equal distances along the feed, y over x.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,6 +1,6 @@
 //! An arm on a straight pass: what a simulation and a stability analysis have in common.
 
-use super::arm::{AnyArm, Arm, Missing, Variant};
+use super::arm::{AnyArm, Missing, Variant};
 use super::motion::Motion;
 use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
@@ -39,14 +39,11 @@ impl Setup {
     /// # Errors
     /// [`Missing`] when the robot says too little for the variant.
     pub fn arm(&self) -> Result<AnyArm, Missing> {
-        fn scale<const N: usize>(arm: &mut Arm<N>, by: f64) {
-            arm.drive.damping *= by;
-        }
         let start = self.motion.motors(0.0).0;
         let mut arm = AnyArm::new(&self.robot, &self.spindle, self.variant, &start)?;
         match &mut arm {
-            AnyArm::Six(arm) => scale(arm, self.damping_scale),
-            AnyArm::Eighteen(arm) => scale(arm, self.damping_scale),
+            AnyArm::Six(arm) => arm.drive.damping *= self.damping_scale,
+            AnyArm::Eighteen(arm) => arm.drive.damping *= self.damping_scale,
         }
         Ok(arm)
     }

@@ -8,8 +8,7 @@ use super::stability::{Lobe, Plant, SemiDiscretisation, Verdict, ZeroOrder, Zero
 pub use super::stability_error::StabilityError;
 use nalgebra::{Complex, Matrix3, Vector3};
 use serde::Serialize;
-use stead_model::cutting::PassCut;
-use stead_model::cutting::{CutFrame, Cutter};
+use stead_model::cutting::{CutFrame, Cutter, PassCut};
 use stead_model::plausibility;
 use stead_model::robot::{Robot, Spindle};
 use stead_numerics::message::{Note, Warning};
@@ -105,7 +104,7 @@ pub fn analyse(
     };
     let speeds = between(settings.speeds, settings.points);
     Ok(StabilityAnalysis {
-        modes: linear.modes()?,
+        modes: linear.modes().ok_or(StabilityError::Singular)?,
         frequency_response: linear.frequency_response(&frame, &between(settings.frequencies, FREQUENCIES))?,
         cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
         lobes: lobes(&plant, cutter, cut, &speeds, settings.max_depth, monitor)?,
@@ -156,7 +155,7 @@ pub fn cut_stability(
 ///
 /// # Errors
 /// [`StabilityError::Missing`] when the robot says too little for the variant.
-pub fn linear_at(setup: &Setup, distance: f64) -> Result<AnyLinearArm, StabilityError> {
+pub fn linear_at(setup: &Setup, distance: f64) -> Result<LinearArm, StabilityError> {
     let motors = setup.motion.motors_at(distance, 0.0).0;
     linear_of(&setup.robot, &setup.spindle, setup.variant, setup.damping_scale, &motors)
 }
@@ -171,61 +170,23 @@ pub fn linear_of(
     variant: Variant,
     damping_scale: f64,
     theta: &[f64; 6],
-) -> Result<AnyLinearArm, StabilityError> {
-    fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6], damping_scale: f64) -> Box<LinearArm<N>> {
-        Box::new(LinearArm::of(arm, &arm.at_rest(&Arm::<N>::spread(motors)), damping_scale))
+) -> Result<LinearArm, StabilityError> {
+    fn about<const N: usize>(arm: &Arm<N>, motors: &[f64; 6], damping_scale: f64) -> LinearArm {
+        LinearArm::of(arm, &arm.at_rest(&Arm::<N>::spread(motors)), damping_scale)
     }
     Ok(match AnyArm::new(robot, spindle, variant, theta)? {
-        AnyArm::Six(arm) => AnyLinearArm::Six(about(&arm, theta, damping_scale)),
-        AnyArm::Eighteen(arm) => AnyLinearArm::Eighteen(about(&arm, theta, damping_scale)),
+        AnyArm::Six(arm) => about(&arm, theta, damping_scale),
+        AnyArm::Eighteen(arm) => about(&arm, theta, damping_scale),
     })
 }
 
-/// A [`LinearArm`] of as many joints as its arm has.
-#[derive(Debug, Clone, PartialEq)]
-pub enum AnyLinearArm {
-    /// Six joints.
-    Six(Box<LinearArm<6>>),
-    /// Eighteen.
-    Eighteen(Box<LinearArm<18>>),
-}
-
-impl AnyLinearArm {
-    /// All modes, by natural frequency.
-    ///
-    /// # Errors
-    /// [`StabilityError::Singular`].
-    pub fn modes(&self) -> Result<Vec<Mode>, StabilityError> {
-        let modes = match self {
-            Self::Six(linear) => linear.modes(),
-            Self::Eighteen(linear) => linear.modes(),
-        };
-        modes.ok_or(StabilityError::Singular)
-    }
-
-    /// The response of the tip to a force of a frequency (Hz) in each direction of the base frame. m/N
-    ///
-    /// # Errors
-    /// [`StabilityError::Singular`] in a resonance without damping.
-    pub fn response(&self, frequency: f64) -> Result<Matrix3<Complex<f64>>, StabilityError> {
-        let response = match self {
-            Self::Six(linear) => linear.response(frequency),
-            Self::Eighteen(linear) => linear.response(frequency),
-        };
-        response.ok_or(StabilityError::Singular)
-    }
-
+impl LinearArm {
     /// The tip as a plant of the stability analysis.
     ///
     /// # Errors
     /// [`StabilityError::Plant`].
     pub fn plant(&self, frame: &CutFrame) -> Result<Plant, StabilityError> {
-        let directions = [frame.feed, frame.normal, frame.axis];
-        let plant = match self {
-            Self::Six(linear) => Plant::of_arm(linear, directions),
-            Self::Eighteen(linear) => Plant::of_arm(linear, directions),
-        };
-        Ok(plant?)
+        Ok(Plant::of_arm(self, [frame.feed, frame.normal, frame.axis])?)
     }
 
     /// Frequency response in the plane of the cut at frequencies (Hz).
@@ -242,7 +203,7 @@ impl AnyLinearArm {
             pairs.map(|(row, column)| response[(row, column)] * (to[row] * from[column])).sum()
         };
         let response = |frequency: &f64| {
-            let response = self.response(*frequency)?;
+            let response = self.response(*frequency).ok_or(StabilityError::Singular)?;
             Ok(FrequencyResponse {
                 frequency: *frequency,
                 feed: along(&response, &frame.feed, &frame.feed),

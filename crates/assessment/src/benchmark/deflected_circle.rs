@@ -2,7 +2,7 @@
 
 use super::{Benchmark, JUMP, LimitsAt, MAX_DEFLECTION, Obstacle, StiffnessModel, Turning};
 use crate::circle::least_squares;
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::{
@@ -108,29 +108,6 @@ impl<'a> DeflectedCircle<'a> {
         }
     }
 
-    /// First-order circularity `load |F| (lambda_max - lambda_min)`, or with the sum where the wrench turns against the
-    /// tool, with the in-plane compliance at the centre of the circle. m
-    ///
-    /// # Errors
-    /// [`Obstacle::Reach`] when the centre is out of reach.
-    pub fn first_order(&self, centre: [f64; 2], class: PostureClass, load: f64) -> Result<f64, Obstacle> {
-        let joints = self.joints(centre, class)?;
-        let plane = &self.benchmark.plane;
-        let unit = |direction: &Vector3<f64>| {
-            let moved = self.displacement(&joints, direction, &Vector3::zeros());
-            [moved.dot(&plane.x), moved.dot(&plane.y)]
-        };
-        let ([xx, xy], [yx, yy]) = (unit(&plane.x), unit(&plane.y));
-        let eigenvalues = Matrix2::new(xx, (xy + yx) / 2.0, (xy + yx) / 2.0, yy).symmetric_eigenvalues();
-        let (max, min) = (eigenvalues.max(), eigenvalues.min());
-        Ok(load
-            * self.benchmark.in_plane_force()
-            * match self.benchmark.turning {
-                Turning::WithTool => max - min,
-                Turning::AgainstTool => max + min,
-            })
-    }
-
     /// Joint angles at every point of the circle, wrapped or not, or why it cannot be gone round.
     fn go_round(&self, centre: [f64; 2], class: PostureClass, angles: &mut Vec<[f64; 6]>) -> Result<(), Obstacle> {
         angles.clear();
@@ -186,11 +163,12 @@ impl<'a> DeflectedCircle<'a> {
 
     /// Whether the sum of joints 2 and 3 stays within its limits between two values, for the least angles of the
     /// joints: all of them but for the whole turns that bring these within their ranges.
-    fn sum_within(&self, min: &[f64; 6], [least, largest]: [f64; 2]) -> Result<(), Obstacle> {
+    fn sum_within(&self, min: &[f64; 6], sums: [f64; 2]) -> Result<(), Obstacle> {
         let Some(range) = self.robot.sum_range() else { return Ok(()) };
         let turns = |j: usize| self.ranges[j].lowest(min[j]) - min[j];
         let by = turns(1) + self.robot.geometry().fold * turns(2);
-        let is_within = least + by >= range.min - ANGLE_ROUNDING && largest + by <= range.max + ANGLE_ROUNDING;
+        let [least, largest] = sums.map(|sum| sum + by);
+        let is_within = least >= range.min - ANGLE_ROUNDING && largest <= range.max + ANGLE_ROUNDING;
         if is_within { Ok(()) } else { Err(Obstacle::AxesSum) }
     }
 
@@ -307,4 +285,30 @@ fn joints_of(robot: &Robot, yielding: [bool; 6]) -> Cow<'_, Robot> {
 fn fits(range: &Range, min: f64, max: f64) -> bool {
     let lowest = range.lowest(min);
     lowest + (max - min) <= range.max + ANGLE_ROUNDING
+}
+
+#[cfg(test)]
+impl DeflectedCircle<'_> {
+    /// First-order circularity `load |F| (lambda_max - lambda_min)`, or with the sum where the wrench turns against the
+    /// tool, with the in-plane compliance at the centre of the circle. m
+    ///
+    /// # Errors
+    /// [`Obstacle::Reach`] when the centre is out of reach.
+    pub(super) fn first_order(&self, centre: [f64; 2], class: PostureClass, load: f64) -> Result<f64, Obstacle> {
+        let joints = self.joints(centre, class)?;
+        let plane = &self.benchmark.plane;
+        let unit = |direction: &Vector3<f64>| {
+            let moved = self.displacement(&joints, direction, &Vector3::zeros());
+            [moved.dot(&plane.x), moved.dot(&plane.y)]
+        };
+        let ([xx, xy], [yx, yy]) = (unit(&plane.x), unit(&plane.y));
+        let eigenvalues = nalgebra::Matrix2::new(xx, (xy + yx) / 2.0, (xy + yx) / 2.0, yy).symmetric_eigenvalues();
+        let (max, min) = (eigenvalues.max(), eigenvalues.min());
+        Ok(load
+            * self.benchmark.in_plane_force()
+            * match self.benchmark.turning {
+                Turning::WithTool => max - min,
+                Turning::AgainstTool => max + min,
+            })
+    }
 }

@@ -7,7 +7,7 @@
 //! about the least-squares circle (eq. 28 to 32). To first order, with the force turning with the tool, the
 //! displacement is that of a quadratic form: a mean shift of radius, and an ellipse that no shift of the centre
 //! removes, so that the circularity is `|F| (lambda_max - lambda_min)` of the in-plane compliance, whatever the
-//! direction of the force ([`DeflectedCircle::first_order`]).
+//! direction of the force.
 
 mod deflected_circle;
 #[cfg(test)]
@@ -44,8 +44,8 @@ impl Plane {
     }
 
     /// A point of the plane in the base frame. m
-    pub fn point(&self, [x, y]: [f64; 2]) -> Vector3<f64> {
-        self.origin + self.x * x + self.y * y
+    pub fn point(&self, place: [f64; 2]) -> Vector3<f64> {
+        self.origin + self.x * place[0] + self.y * place[1]
     }
 }
 

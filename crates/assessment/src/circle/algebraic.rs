@@ -19,7 +19,8 @@ const STEPS: usize = 20;
 
 impl Moments {
     /// Adds a point.
-    pub fn add(&mut self, [x, y]: Point) {
+    pub fn add(&mut self, point: Point) {
+        let [x, y] = point;
         let z = x * x + y * y;
         self.xx += x * x;
         self.xy += x * y;

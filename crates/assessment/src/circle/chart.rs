@@ -93,7 +93,8 @@ impl Chart for Far {
     type At = FarAt;
     const STEEPEST: f64 = 1.15;
 
-    fn at([angle, curvature]: Point) -> FarAt {
+    fn at(coordinates: Point) -> FarAt {
+        let [angle, curvature] = coordinates;
         let (sine, cosine) = libm::sincos(angle);
         FarAt { normal: [cosine, sine], curvature }
     }
@@ -144,7 +145,8 @@ pub(super) enum Middle {
 
 impl Middle {
     /// The centre `x / w, y / w`, at infinity for a weight of zero.
-    pub fn from_homogeneous([x, y]: Point, weight: f64) -> Self {
+    pub fn from_homogeneous(place: Point, weight: f64) -> Self {
+        let [x, y] = place;
         let length = libm::hypot(x, y);
         if length <= weight.abs() / Far::MAX {
             return if length > 0.0 { Self::Near([x / weight, y / weight]) } else { Self::Near([0.0, 0.0]) };
@@ -165,7 +167,8 @@ impl Middle {
     }
 
     /// Another centre on the same chart.
-    pub fn moved(self, [dx, dy]: Point) -> Self {
+    pub fn moved(self, by: Point) -> Self {
+        let [dx, dy] = by;
         match self {
             Self::Near([x, y]) => Self::Near([x + dx, y + dy]),
             Self::Far([x, y]) => Self::Far([x + dx, (y + dy).clamp(-2.0 * Far::MAX, 2.0 * Far::MAX)]),

@@ -38,8 +38,8 @@ pub fn least_squares(points: &[[f64; 2]]) -> Result<Fit, CircleError> {
     }
     let frame = Frame::of(&spread);
     let set = Set { points, frame: &frame, stride: 1 };
-    let ([x, y], weight) = moments.centre(points.len() as f64, frame.unit);
-    let mut best = set.minimum(Middle::from_homogeneous([x, y], weight));
+    let (centre, weight) = moments.centre(points.len() as f64, frame.unit);
+    let mut best = set.minimum(Middle::from_homogeneous(centre, weight));
     if best.sum > SCATTERED * points.len() as f64 {
         let few = Set { stride: points.len().div_ceil(ENOUGH), ..set };
         let found = starts().map(|start| few.minimum(start));

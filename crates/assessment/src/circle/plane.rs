@@ -63,8 +63,8 @@ impl FittedPlane {
     }
 
     /// The place of a point of the plane in the frame of the points.
-    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 3] {
-        (self.center + self.x_axis * x + self.y_axis * y).into()
+    pub fn place(&self, point: [f64; 2]) -> [f64; 3] {
+        (self.center + self.x_axis * point[0] + self.y_axis * point[1]).into()
     }
 }
 

@@ -128,7 +128,8 @@ impl CompensatedPath {
 }
 
 /// The share by which the mean became smaller; none where there was nothing to reduce.
-pub fn reduction([before, after]: [MeanAndMax; 2]) -> Option<f64> {
+pub fn reduction(before_and_after: [MeanAndMax; 2]) -> Option<f64> {
+    let [before, after] = before_and_after;
     (before.mean > 0.0).then(|| 1.0 - after.mean / before.mean)
 }
 

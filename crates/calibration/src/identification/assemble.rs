@@ -5,7 +5,7 @@ use super::distribution::{half_width, tail};
 use super::error::IdentifyError;
 use super::gauge::Gauge;
 use super::law::{ArmFit, ArmParameter, Law, Quantity, fit};
-use super::made::{NEGATIVE, made};
+use super::made::{NEGATIVE, about_axes, made};
 use super::model::{Layout, Noise, Observation, Parameter};
 use super::normal_equations::FreeParameters;
 use super::outcome::{Estimate, Held, HeldReason, Identified, RowResult};
@@ -15,7 +15,7 @@ use super::setup::{Setup, SetupFit};
 use super::sheet::Reading;
 use super::springs::{FitModel, stated_normal};
 use nalgebra::Vector6;
-use stead_model::robot::{Compensator, Compliance, Robot, RobotError};
+use stead_model::robot::{Compliance, Robot};
 
 /// What to try where springs about the axes alone do not fit.
 pub(super) const FULL_HINT: &str = "; springs normal to the axes may explain the readings: fit.model = \"full\"";
@@ -115,7 +115,7 @@ impl<const N: usize> Assembly<'_, N> {
         let arm = fit(normal, self.free.joints, solution, &self.layout.angles, law)?;
         let estimates = self.arm(&arm, variance, width)?;
         let (robot, at_lowest) = match self.problem.model {
-            FitModel::Axes => (self.robot(&arm)?, vec![]),
+            FitModel::Axes => (about_axes(self.problem, &arm, &arm.values, |_, alone| alone)?, vec![]),
             FitModel::Full => made(self.problem, &self.gauge, &arm, variance)?,
         };
         let estimates = match self.problem.model {
@@ -182,32 +182,6 @@ impl<const N: usize> Assembly<'_, N> {
         }
         let estimates = arm.parameters.iter().enumerate();
         Ok(estimates.map(|(index, p)| interval(*p, None, arm.values[index], deviation(index), width)).collect())
-    }
-
-    /// The starting arm with the estimated parameters.
-    fn robot(&self, arm: &ArmFit<N>) -> Result<Robot, RobotError> {
-        let value = |joint: usize, quantity: Quantity| {
-            let place = arm.parameters.iter().position(|p| p.joint == joint && p.quantity == quantity);
-            place.map(|place| arm.values[place])
-        };
-        let start = &self.problem.robot;
-        let is_whole = (0..6).all(|joint| value(joint, Quantity::Compliance).is_some());
-        let found = start.with_compliances(std::array::from_fn(|joint| {
-            let Some(alone) = value(joint, Quantity::Compliance) else { return start.joints()[joint].compliance };
-            match (self.problem.varying, value(joint, Quantity::SpringStiffness), value(joint, Quantity::FreeLength)) {
-                (Some((_, Law::Spring(geometry))), Some(spring_stiffness), Some(free_length)) => {
-                    let (a, l, alpha) = (geometry.a, geometry.l, geometry.alpha);
-                    let compensator = Compensator { spring_stiffness, a, l, alpha, free_length };
-                    Compliance::Compensated { alone, compensator }
-                }
-                _ => Compliance::Constant(alone),
-            }
-        }))?;
-        // Joints that the readings do not tell of keep what they are given.
-        Ok(match start.stiffness_like() {
-            Some(other) if !is_whole => found.with_stiffness_like(other),
-            _ => found,
-        })
     }
 
     fn rows(&self, arm: &ArmFit<N>) -> Vec<RowResult> {

@@ -25,14 +25,6 @@ pub struct Elastic<const N: usize> {
     pub base_from_flange: Pose<f64>,
 }
 
-impl From<&Frames<f64>> for Elastic<AXES> {
-    /// About the joint axes alone.
-    fn from(frames: &Frames<f64>) -> Self {
-        let lines = std::array::from_fn(|joint| (frames.axes[joint], frames.origins[joint]));
-        Self { lines, held: frames.held(), base_from_flange: frames.base_from_flange }
-    }
-}
-
 impl<const N: usize> Elastic<N> {
     /// Without a load, at joint angles in rad.
     pub fn unloaded(robot: &Robot, theta: &[f64; 6]) -> Self {

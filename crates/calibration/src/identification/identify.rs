@@ -11,6 +11,7 @@ use super::outcome::Identified;
 use super::problem::Problem;
 use super::response::Response;
 use super::setup::{Setup, check, estimate};
+use super::sheet::Sheet;
 use super::springs::{AXES, FULL, FitModel, column, compliances_of, held, spring};
 use super::warnings::warnings;
 use nalgebra::SVector;
@@ -42,12 +43,15 @@ pub fn identify(problem: &Problem, monitor: &Monitor) -> Result<Identified, Iden
     Ok(identified)
 }
 
-/// All of it but the warnings, and the test of the load point; reported as a stage.
-fn fitted(
-    problem: &Problem,
-    stage: &'static str,
-    monitor: &Monitor,
-) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
+/// All of an identification but the warnings, and the test of the load point.
+type Fitted = Result<(Identified, Option<LoadPointTest>), IdentifyError>;
+
+/// That of a problem, reported as a stage.
+fn fitted(problem: &Problem, stage: &'static str, monitor: &Monitor) -> Fitted {
+    if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
+        // The joint keeps the law that it has in the starting arm: there is none to fit.
+        return fitted(&Problem { varying: None, ..problem.clone() }, stage, monitor);
+    }
     match problem.model {
         FitModel::Axes => fitted_of::<AXES>(problem, stage, monitor),
         FitModel::Full => fitted_of::<FULL>(problem, stage, monitor),
@@ -55,17 +59,9 @@ fn fitted(
 }
 
 /// The same with so many springs.
-fn fitted_of<const N: usize>(
-    problem: &Problem,
-    stage: &'static str,
-    monitor: &Monitor,
-) -> Result<(Identified, Option<LoadPointTest>), IdentifyError> {
+fn fitted_of<const N: usize>(problem: &Problem, stage: &'static str, monitor: &Monitor) -> Fitted {
     monitor.go_on()?;
     let round_done = |done: usize| monitor.report(Progress::Steps { stage, done, total: 1 + ROUNDS });
-    if problem.varying.is_some_and(|(joint, _)| problem.hold[joint]) {
-        // The joint keeps the law that it has in the starting arm: there is none to fit.
-        return fitted(&Problem { varying: None, ..problem.clone() }, stage, monitor);
-    }
     let sheet = &problem.sheet;
     let layout = Layout::new(sheet, problem.model, problem.varying.map(|(joint, _)| joint), problem.angle_tolerance);
     let flanges: Vec<Pose<f64>> = sheet.configurations.iter().map(|c| problem.robot.forward(&c.theta)).collect();
@@ -97,10 +93,7 @@ fn fitted_of<const N: usize>(
             break;
         }
         kept.clone_from(&robust.kept);
-        // A point whose deflections are all outliers has a place all the same.
-        let is_lost = |point: usize| !sheet.readings.iter().zip(&kept).any(|(r, kept)| *kept && r.point == point);
-        let lost: Vec<bool> = (0..sheet.points.len()).map(is_lost).collect();
-        used = sheet.readings.iter().zip(&kept).map(|(reading, kept)| *kept || lost[reading.point]).collect();
+        used = used_for_setup(sheet, &kept);
         setup = estimate(sheet, &flanges, &used, Some(&setup.tracker_from_base.rotation))?;
         let (about, _) = equilibria.about(&setup, &robust.solution);
         settled = equilibria.settled(&setup, about, &kept);
@@ -125,6 +118,14 @@ fn fitted_of<const N: usize>(
         not_at_rest: settled.not_at_rest,
     };
     Ok((assembly.assemble(dropped)?, load_point))
+}
+
+/// The readings by which base transform and reference points are estimated where these are no outliers: a point whose
+/// deflections all are has a place all the same.
+fn used_for_setup(sheet: &Sheet, kept: &[bool]) -> Vec<bool> {
+    let is_lost = |point: usize| !sheet.readings.iter().zip(kept).any(|(r, kept)| *kept && r.point == point);
+    let lost: Vec<bool> = (0..sheet.points.len()).map(is_lost).collect();
+    sheet.readings.iter().zip(kept).map(|(reading, kept)| *kept || lost[reading.point]).collect()
 }
 
 /// Refuses a deflection far larger than the one predicted by the starting arm.

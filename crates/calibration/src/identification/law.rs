@@ -6,8 +6,9 @@
 //! there Gauss-Newton on the compliances themselves, together with those of the other joints, gives the least sum of
 //! squares over all readings: the errors are normal in the compliances, not in their inverses.
 
+use super::inverse::{MIN_PIVOT, scaled_inverse};
 use super::normal_equations::{NormalEquations, Solution};
-use super::spring::{Geometry, scaled_inverse, spring_start};
+use super::spring::{Geometry, spring_start};
 use super::springs::{column, spring};
 use nalgebra::{DMatrix, DVector, SVector, Vector3};
 use serde::Serialize;
@@ -34,13 +35,13 @@ pub struct ArmParameter {
 
 impl ArmParameter {
     /// The compliance of a spring.
-    pub fn of_spring(Spring { joint, about }: Spring) -> Self {
-        let quantity = match about {
+    pub fn of_spring(spring: Spring) -> Self {
+        let quantity = match spring.about {
             About::Z => Quantity::Compliance,
             About::X => Quantity::AboutX,
             About::Y => Quantity::AboutY,
         };
-        Self { joint, quantity }
+        Self { joint: spring.joint, quantity }
     }
 
     /// The spring whose compliance it is, or of whose law.
@@ -270,7 +271,7 @@ impl<'a, const N: usize> Fit<'a, N> {
     /// A Gauss-Newton step, and the size of each parameter.
     fn step(&self, iterate: &Iterate<N>) -> Option<(DVector<f64>, DVector<f64>)> {
         let (matrix, gradient) = self.equations(iterate);
-        let step = scaled_inverse(&matrix)? * gradient;
+        let step = scaled_inverse(&matrix, MIN_PIVOT)? * gradient;
         let size = |parameter: &ArmParameter| match self.place(parameter) {
             Some(place) => iterate.law[place].abs().max(f64::MIN_POSITIVE),
             None => iterate.joints[parameter.column()].abs().max(f64::MIN_POSITIVE),
@@ -302,7 +303,7 @@ impl<'a, const N: usize> Fit<'a, N> {
     /// From stiffnesses to the numbers that robot files have.
     fn finish(&self, iterate: Iterate<N>, number: usize, unidentifiable: LawError) -> Result<ArmFit<N>, LawError> {
         let (matrix, _) = self.equations(&iterate);
-        let covariance = scaled_inverse(&matrix).ok_or(unidentifiable)?;
+        let covariance = scaled_inverse(&matrix, MIN_PIVOT).ok_or(unidentifiable)?;
         let size = self.parameters.len();
         let mut change = DMatrix::<f64>::identity(size, size);
         let mut values = DVector::zeros(size);

@@ -8,7 +8,7 @@ use super::model::Parameter;
 use super::problem::Problem;
 use super::springs::{AXES, FULL, bearings, column, compliances_of, spring};
 use nalgebra::{DMatrix, DVector};
-use stead_model::robot::{Compensator, Compliance, NormalSprings, Robot, SpringModel};
+use stead_model::robot::{Compensator, Compliance, NormalSprings, Robot, RobotError, SpringModel};
 
 /// A compliance so many standard deviations below zero is not negative by chance.
 pub(super) const NEGATIVE: f64 = 6.0;
@@ -148,34 +148,42 @@ fn robot<const N: usize>(
     compliances: &[f64; FULL],
 ) -> Result<Robot, IdentifyError> {
     let start = &problem.robot;
-    let value = |joint: usize, quantity: Quantity| {
-        let place = arm.parameters.iter().position(|p| p.joint == joint && p.quantity == quantity);
-        place.map(|place| values[place])
-    };
-    let laws: [Compliance; 6] = std::array::from_fn(|joint| {
-        let alone = value(joint, Quantity::Compliance);
-        match (problem.varying, alone, value(joint, Quantity::SpringStiffness), value(joint, Quantity::FreeLength)) {
-            (Some((_, Law::Spring(geometry))), Some(alone), Some(spring_stiffness), Some(free_length)) => {
-                let (a, l, alpha) = (geometry.a, geometry.l, geometry.alpha);
-                let compensator = Compensator { spring_stiffness, a, l, alpha, free_length };
-                Compliance::Compensated { alone, compensator }
-            }
-            (_, Some(_), ..) => Compliance::Constant(compliances[joint]),
-            // Held: the law of the starting arm.
-            _ => start.joints()[joint].compliance,
-        }
-    });
     let bearings = bearings(start);
     let normal = std::array::from_fn(|joint| NormalSprings {
         compliance: [0, 1].map(|about| compliances[AXES + 2 * joint + about]),
         bearing: bearings[joint],
     });
-    let robot = start.with_compliances(laws)?.with_normal_springs(Some(normal))?;
-    let robot = robot.with_spring_model(Some(SpringModel::Full)).with_stiffness_measured_from(problem.measured_from);
-    // Springs that the readings do not tell of keep what they are given.
+    let robot = about_axes(problem, arm, values, |joint, _| compliances[joint])?.with_normal_springs(Some(normal))?;
+    Ok(robot.with_spring_model(Some(SpringModel::Full)).with_stiffness_measured_from(problem.measured_from))
+}
+
+/// The starting arm with other springs about its axes: with a law where one was found, else with the compliance of a
+/// joint (from 0) for its estimate. Joints that the readings do not tell of keep what they are given.
+pub(super) fn about_axes<const N: usize>(
+    problem: &Problem,
+    arm: &ArmFit<N>,
+    values: &DVector<f64>,
+    compliance: impl Fn(usize, f64) -> f64,
+) -> Result<Robot, RobotError> {
+    let start = &problem.robot;
+    let value = |joint: usize, quantity: Quantity| {
+        let place = arm.parameters.iter().position(|p| p.joint == joint && p.quantity == quantity);
+        place.map(|place| values[place])
+    };
+    let found = start.with_compliances(std::array::from_fn(|joint| {
+        let Some(alone) = value(joint, Quantity::Compliance) else { return start.joints()[joint].compliance };
+        match (problem.varying, value(joint, Quantity::SpringStiffness), value(joint, Quantity::FreeLength)) {
+            (Some((_, Law::Spring(geometry))), Some(spring_stiffness), Some(free_length)) => {
+                let (a, l, alpha) = (geometry.a, geometry.l, geometry.alpha);
+                let compensator = Compensator { spring_stiffness, a, l, alpha, free_length };
+                Compliance::Compensated { alone, compensator }
+            }
+            _ => Compliance::Constant(compliance(joint, alone)),
+        }
+    }))?;
     let is_whole = (0..6).all(|joint| value(joint, Quantity::Compliance).is_some());
     Ok(match start.stiffness_like() {
-        Some(other) if !is_whole => robot.with_stiffness_like(other),
-        _ => robot,
+        Some(other) if !is_whole => found.with_stiffness_like(other),
+        _ => found,
     })
 }

@@ -30,6 +30,7 @@ mod equilibria;
 mod error;
 pub mod gauge;
 mod identify;
+mod inverse;
 pub mod law;
 mod load_point;
 mod made;

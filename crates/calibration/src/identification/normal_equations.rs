@@ -1,6 +1,7 @@
 //! Normal equations of the compliances, kept sparse: configurations with different angles of the varying joint share no
 //! column but those of the other joints, so that the matrix is an arrow and everything below is linear in its size.
 
+use super::inverse::inverse_over;
 use super::model::{Layout, Observation, Parameter};
 use super::sheet::Sheet;
 use super::springs::column;
@@ -47,12 +48,12 @@ pub struct FreeParameters<const N: usize> {
 impl<const N: usize> FreeParameters<N> {
     /// Holds a parameter; whether it was free before.
     fn hold(&mut self, parameter: Parameter) -> bool {
-        let slot = match parameter {
-            Parameter::Joint(joint) => &mut self.joints[joint],
-            Parameter::Normal(spring) => &mut self.joints[column(spring)],
-            Parameter::Group(group) => &mut self.groups[group],
-        };
-        std::mem::replace(slot, false)
+        let was_free = self.contains(parameter);
+        match parameter {
+            Parameter::Group(group) => self.groups[group] = false,
+            joint => self.joints[column(joint.spring(None))] = false,
+        }
+        was_free
     }
 
     /// How many there are.
@@ -63,9 +64,8 @@ impl<const N: usize> FreeParameters<N> {
     /// Whether a parameter is free.
     pub fn contains(&self, parameter: Parameter) -> bool {
         match parameter {
-            Parameter::Joint(joint) => self.joints[joint],
-            Parameter::Normal(spring) => self.joints[column(spring)],
             Parameter::Group(group) => self.groups[group],
+            joint => self.joints[column(joint.spring(None))],
         }
     }
 }
@@ -162,7 +162,7 @@ impl<const N: usize> NormalEquations<N> {
         if !zero_columns.is_empty() {
             return zero_columns.into_iter().map(|parameter| Unidentifiable { parameters: vec![parameter] }).collect();
         }
-        let joints = free_joints(free);
+        let joints: Vec<usize> = (0..N).filter(|joint| free.joints[*joint]).collect();
         if joints.is_empty() {
             return vec![];
         }
@@ -244,7 +244,7 @@ impl<const N: usize> NormalEquations<N> {
                 rhs -= group.coupling * (*rest / group.diagonal);
             }
         }
-        let covariance = inverse(&self.reduced(free), free)?;
+        let covariance = inverse_over(&self.reduced(free), |joint| free.joints[joint], 0.0)?;
         let step = covariance * rhs;
         let mut follow = Vec::with_capacity(groups.len());
         for (index, group) in self.groups.iter().enumerate() {
@@ -257,27 +257,6 @@ impl<const N: usize> NormalEquations<N> {
         }
         Some(Solution { joints: joints + step, groups, covariance, follow })
     }
-}
-
-/// The free springs in order.
-fn free_joints<const N: usize>(free: &FreeParameters<N>) -> Vec<usize> {
-    (0..N).filter(|joint| free.joints[*joint]).collect()
-}
-
-/// The inverse over the free springs, zero elsewhere.
-fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>, free: &FreeParameters<N>) -> Option<SMatrix<f64, N, N>> {
-    let joints = free_joints(free);
-    let scale: Vec<f64> = joints.iter().map(|j| 1.0 / libm::sqrt(matrix[(*j, *j)])).collect();
-    let size = joints.len();
-    let scaled = DMatrix::from_fn(size, size, |a, b| matrix[(joints[a], joints[b])] * scale[a] * scale[b]);
-    let inverse = scaled.cholesky()?.inverse();
-    let mut whole = SMatrix::zeros();
-    for a in 0..size {
-        for b in 0..size {
-            whole[(joints[a], joints[b])] = (inverse[(a, b)] + inverse[(b, a)]) / 2.0 * scale[a] * scale[b];
-        }
-    }
-    Some(whole)
 }
 
 impl<const N: usize> Solution<N> {

@@ -65,7 +65,7 @@ mod tests {
             let (force, moment) = (Vector3::new(wrench[0], wrench[1], wrench[2]), Vector3::new(wrench[3], wrench[4], wrench[5]));
             let compliances = [1e-6, 2e-6, 3e-6, 4e-6, 5e-6, 6e-6];
             let moved = displacement(&frames, &load, &compliances, &force, &moment);
-            let response = Response::new(&Elastic::from(&frames), &read, &load, &force, &moment);
+            let response = Response::<6>::new(&Elastic::unloaded(robot, &theta), &read, &load, &force, &moment);
             let linear = response.linear * Vector6::from(compliances);
             let angular = response.angular * Vector6::from(compliances);
             prop_assert!((angular - moved.angular).norm() < 1e-14);

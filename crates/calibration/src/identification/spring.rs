@@ -1,7 +1,8 @@
 //! A compensator's spring: how the stiffness of its joint hangs on its unknowns, and their first estimate.
 
+use super::inverse::{MIN_PIVOT, inverse_over};
 use super::normal_equations::{NormalEquations, Solution};
-use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde::Serialize;
 
 /// Where the two ends of a compensator's spring are.
@@ -51,35 +52,14 @@ pub(super) fn spring_start<const N: usize>(
     }
     // What is held is known, as far as the weights go.
     let is_free = |joint: usize| joints[joint] && normal.varying != Some(joint);
-    let shared = DMatrix::from_fn(N, N, |a, b| {
-        if is_free(a) && is_free(b) { normal.shared[(a, b)] } else { f64::from(u8::from(a == b)) }
-    });
     (0..N).filter(|joint| !is_free(*joint)).for_each(|joint| {
         coupling.fill_column(joint, 0.0);
         coupling_rhs[joint] = 0.0;
     });
-    let shared = SMatrix::<f64, N, N>::from_iterator(scaled_inverse(&shared)?.iter().copied());
+    let shared = inverse_over(&normal.shared, is_free, MIN_PIVOT)?;
     let matrix = matrix - coupling * shared * coupling.transpose();
     let rhs = rhs - coupling * shared * coupling_rhs;
-    let inverse = scaled_inverse(&DMatrix::from_iterator(3, 3, matrix.iter().copied()))?;
-    Some(Matrix3::from_iterator(inverse.iter().copied()) * rhs)
-}
-
-/// The inverse of a symmetric matrix that is positive definite after scaling its diagonal to one, well enough.
-pub(super) fn scaled_inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    const MIN_PIVOT: f64 = 1e-7;
-    let size = matrix.nrows();
-    let scale: Vec<f64> = matrix.diagonal().iter().map(|value| 1.0 / libm::sqrt(*value)).collect();
-    let scaled = DMatrix::from_fn(size, size, |a, b| (matrix[(a, b)] + matrix[(b, a)]) / 2.0 * scale[a] * scale[b]);
-    if !scaled.iter().all(|value| value.is_finite()) {
-        return None;
-    }
-    let factor = scaled.cholesky()?;
-    if factor.l().diagonal().min() < MIN_PIVOT {
-        return None;
-    }
-    let inverse = factor.inverse();
-    Some(DMatrix::from_fn(size, size, |a, b| (inverse[(a, b)] + inverse[(b, a)]) / 2.0 * scale[a] * scale[b]))
+    Some(inverse_over(&matrix, |_| true, MIN_PIVOT)? * rhs)
 }
 
 #[cfg(test)]

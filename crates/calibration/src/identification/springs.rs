@@ -57,8 +57,8 @@ impl FitModel {
 }
 
 /// A spring as identification files name it: `joints[3].x`.
-pub fn key_name(Spring { joint, about }: Spring) -> String {
-    format!("joints[{}].{}", joint + 1, about.name())
+pub fn key_name(spring: Spring) -> String {
+    format!("joints[{}].{}", spring.joint + 1, spring.about.name())
 }
 
 /// The spring of a column.
@@ -70,11 +70,11 @@ pub fn spring(column: usize) -> Spring {
 }
 
 /// The column of a spring.
-pub fn column(Spring { joint, about }: Spring) -> usize {
-    match about {
-        About::Z => joint,
-        About::X => AXES + 2 * joint,
-        About::Y => AXES + 2 * joint + 1,
+pub fn column(spring: Spring) -> usize {
+    match spring.about {
+        About::Z => spring.joint,
+        About::X => AXES + 2 * spring.joint,
+        About::Y => AXES + 2 * spring.joint + 1,
     }
 }
 
@@ -89,9 +89,9 @@ pub fn compliances_of<const N: usize>(robot: &Robot, theta: &[f64; 6]) -> SVecto
 }
 
 /// The compliance of a spring normal to an axis as the robot file states it, zero where it states none. rad/(N m)
-pub fn stated_normal(robot: &Robot, Spring { joint, about }: Spring) -> f64 {
-    let place = usize::from(about == About::Y);
-    robot.stated_normal_springs().map_or(0.0, |springs| springs[joint].compliance[place])
+pub fn stated_normal(robot: &Robot, spring: Spring) -> f64 {
+    let place = usize::from(spring.about == About::Y);
+    robot.stated_normal_springs().map_or(0.0, |springs| springs[spring.joint].compliance[place])
 }
 
 /// Which columns are held, for springs about the axes and those about x and y of each joint.

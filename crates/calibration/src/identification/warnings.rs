@@ -144,43 +144,29 @@ fn held(problem: &Problem, result: &Identified) -> Vec<Warning> {
             FitModel::Full => spring.to_string(),
         };
         let is_unstated = spring.about != About::Z && problem.robot.stated_normal_springs().is_none();
-        match (held.reason, layout.angle(held.parameter)) {
-            (HeldReason::Asked, _) if is_unstated => Warning::new(
-                "held",
-                format!(
-                    "the spring of {joint} is held rigid, as asked: the robot file states no springs normal to the axes; intervals \
-                     and covariance take it for exact"
-                ),
+        let message = match (held.reason, layout.angle(held.parameter)) {
+            (HeldReason::Asked, _) if is_unstated => format!(
+                "the spring of {joint} is held rigid, as asked: the robot file states no springs normal to the axes; intervals \
+                 and covariance take it for exact"
             ),
-            (HeldReason::Unidentifiable, _) if is_unstated => Warning::new(
-                "unidentifiable",
-                format!(
-                    "the compliance of {joint} is not identifiable: it is taken for rigid, since the robot file states no springs \
-                     normal to the axes, and intervals and covariance take that for exact"
-                ),
+            (HeldReason::Unidentifiable, _) if is_unstated => format!(
+                "the compliance of {joint} is not identifiable: it is taken for rigid, since the robot file states no springs \
+                 normal to the axes, and intervals and covariance take that for exact"
             ),
-            (HeldReason::Asked, _) => Warning::new(
-                "held",
-                format!(
-                    "the compliance of {joint} is held at the value of the robot file, as asked: intervals and covariance \
-                     take it for exact"
-                ),
+            (HeldReason::Asked, _) => format!(
+                "the compliance of {joint} is held at the value of the robot file, as asked: intervals and covariance \
+                 take it for exact"
             ),
-            (HeldReason::Unidentifiable, None) => Warning::new(
-                "unidentifiable",
-                format!(
-                    "the compliance of {joint} is not identifiable: it keeps the value of the robot file, which intervals \
-                     and covariance take for exact"
-                ),
+            (HeldReason::Unidentifiable, None) => format!(
+                "the compliance of {joint} is not identifiable: it keeps the value of the robot file, which intervals \
+                 and covariance take for exact"
             ),
-            (HeldReason::Unidentifiable, Some(angle)) => Warning::new(
-                "unidentifiable",
-                format!(
-                    "the compliance of {joint} at {:.2} deg is not identifiable: there it follows from its other angles",
-                    angle.to_degrees()
-                ),
+            (HeldReason::Unidentifiable, Some(angle)) => format!(
+                "the compliance of {joint} at {:.2} deg is not identifiable: there it follows from its other angles",
+                angle.to_degrees()
             ),
-        }
+        };
+        Warning::new(if held.reason == HeldReason::Asked { "held" } else { "unidentifiable" }, message)
     };
     result.held.iter().map(warning).collect()
 }

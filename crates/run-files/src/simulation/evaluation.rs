@@ -88,7 +88,7 @@ impl ProfileTable {
 /// # Errors
 /// [`InputError`] at the field that says how many steps there are.
 pub(super) fn check_step(setup: &Setup, cut: &PassCut, at: &Place<'_>) -> Result<(), InputError> {
-    let Ok(modes) = linear_at(setup, 0.0).and_then(|linear| linear.modes()) else { return Ok(()) };
+    let Some(modes) = linear_at(setup, 0.0).ok().and_then(|linear| linear.modes()) else { return Ok(()) };
     let swinging = modes.iter().filter(|mode| mode.damping_ratio < DAMPED);
     let fastest = swinging.fold(0.0_f64, |max, mode| max.max(mode.frequency));
     let turns_per_second = cut.spindle_speed / std::f64::consts::TAU;

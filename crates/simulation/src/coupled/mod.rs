@@ -15,8 +15,7 @@ use super::setup::Setup;
 use super::surface::{Node, Trail};
 use nalgebra::Vector3;
 use serde::Serialize;
-use stead_model::cutting::{CutError, PassCut};
-use stead_model::cutting::{CutFrame, Cutter};
+use stead_model::cutting::{CutError, CutFrame, Cutter, PassCut};
 use stead_numerics::monitor::{Monitor, Progress, Stop};
 
 /// What is to be simulated.
@@ -129,8 +128,8 @@ impl CutPlane {
     }
 
     /// A force of milling in the base frame. N
-    fn force(&self, [feed, normal, axis]: [f64; 3]) -> Vector3<f64> {
-        self.feed * feed + self.normal * normal + self.axis * axis
+    fn force(&self, on_tool: [f64; 3]) -> Vector3<f64> {
+        self.feed * on_tool[0] + self.normal * on_tool[1] + self.axis * on_tool[2]
     }
 
     /// Nominal place of the tool centre at a distance (m) along the pass.

@@ -2,7 +2,7 @@ use super::*;
 use crate::arm::testing::{spindle, start, tx200};
 use crate::arm::{AnyArm, Arm, Variant};
 
-fn linear(damping_scale: f64) -> LinearArm<6> {
+fn linear(damping_scale: f64) -> LinearArm {
     let arm = Arm::six(&tx200(), &spindle(), Variant::Springs, &start()).unwrap();
     LinearArm::of(&arm, &start().into(), damping_scale)
 }
@@ -45,19 +45,19 @@ fn shapes_are_those_of_the_eigenvalues() {
     // Without damping the shapes are real, and tell the eigenvalue apart by Rayleigh's quotient.
     let free = super::tests::linear(0.0);
     for mode in free.modes().unwrap() {
-        let shape = SVector::<f64, 6>::from_column_slice(&mode.joints);
-        let square = (shape.transpose() * free.stiffness * shape)[0] / (shape.transpose() * free.mass * shape)[0];
+        let shape = DVector::from_column_slice(&mode.joints);
+        let square = shape.dot(&(&free.stiffness * &shape)) / shape.dot(&(&free.mass * &shape));
         assert!((square.sqrt() / TAU - mode.frequency).abs() < 1e-9 * mode.frequency);
-        assert!((mode.tip - free.tip * shape).norm() < 1e-15);
+        assert!((mode.tip - &free.tip * shape).norm() < 1e-15);
     }
 }
 
 /// A chain of one joint has a closed form.
 #[test]
 fn one_joint_swings_as_the_formula_says() {
-    let one = |value: f64| SMatrix::<f64, 1, 1>::new(value);
+    let one = |value: f64| DMatrix::from_element(1, 1, value);
     let (mass, stiffness, damping) = (2.0, 800.0, 16.0);
-    let tip = SMatrix::<f64, 3, 1>::new(0.0, 0.5, 0.0);
+    let tip = Matrix3xX::from_column_slice(&[0.0, 0.5, 0.0]);
     let linear = LinearArm { mass: one(mass), damping: one(damping), stiffness: one(stiffness), tip };
     let modes = linear.modes().unwrap();
     assert_eq!(modes.len(), 1);
@@ -80,14 +80,14 @@ fn the_response_starts_from_the_static_compliance() {
         panic!("the variant has eighteen joints");
     };
     let linear = LinearArm::of(&arm, &arm.at_rest(&Arm::<18>::spread(&start())), 1.0);
-    let compliance = linear.tip * linear.stiffness.try_inverse().unwrap() * linear.tip.transpose();
+    let compliance = &linear.tip * linear.stiffness.clone().try_inverse().unwrap() * linear.tip.transpose();
     let response = linear.response(0.0).unwrap();
     assert!((response.map(|r| r.re) - compliance).amax() < 1e-12 * compliance.amax());
     // Pairs that swing, and by themselves those that creep: 36 states.
     let modes = linear.modes().unwrap();
     let states: usize = modes.iter().map(|mode| if mode.damping_ratio < 1.0 { 2 } else { 1 }).sum();
     assert_eq!(states, 36);
-    let at = LinearArm { stiffness: (linear.stiffness + linear.stiffness.transpose()) / 2.0, ..linear }
+    let at = LinearArm { stiffness: (&linear.stiffness + linear.stiffness.transpose()) / 2.0, ..linear }
         .response(30.0)
         .unwrap();
     assert!((at - at.transpose()).map(|r| r.norm()).amax() < 1e-12 * at.map(|r| r.norm()).amax());

@@ -3,9 +3,9 @@
 
 use nalgebra::Matrix3x2;
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::PassCut;
-use stead_model::cutting::{Arc, Engagement, EngagementError, Integrals, MillingDirection};
-use stead_model::cutting::{Coefficients, Cutter};
+use stead_model::cutting::{
+    Arc, Coefficients, Cutter, Engagement, EngagementError, Integrals, MillingDirection, PassCut,
+};
 
 /// `K_j` of every tooth as means over equal parts of a turn, at a depth of cut: `F = sum_j K_j (u(t) - u(t - tau_j))`.
 /// N/m

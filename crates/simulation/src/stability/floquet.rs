@@ -6,9 +6,7 @@ use crate::modes::eigenvalues;
 use nalgebra::{Complex, DMatrix, Matrix2, Matrix2x3, Matrix3x2, Vector2, Vector3};
 use serde::Serialize;
 use std::f64::consts::TAU;
-use stead_model::cutting::Cutter;
-use stead_model::cutting::EngagementError;
-use stead_model::cutting::PassCut;
+use stead_model::cutting::{Cutter, EngagementError, PassCut};
 
 /// Kind of instability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

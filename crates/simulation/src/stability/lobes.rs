@@ -7,8 +7,7 @@ use crate::stability_error::StabilityError;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use stead_model::cutting::Cutter;
-use stead_model::cutting::PassCut;
+use stead_model::cutting::{Cutter, PassCut};
 use stead_numerics::monitor::{Monitor, Progress};
 
 /// Critical depths of cut at a spindle speed; `None` where all depths up to the largest are stable.

@@ -54,13 +54,14 @@ impl Plant {
     /// # Errors
     /// [`PlantError`] for an arm whose mass matrix has no inverse, or whose stiffness and damping are beyond all
     /// numbers.
-    pub fn of_arm<const N: usize>(arm: &LinearArm<N>, directions: [Vector3<f64>; 3]) -> Result<Self, PlantError> {
+    pub fn of_arm(arm: &LinearArm, directions: [Vector3<f64>; 3]) -> Result<Self, PlantError> {
         let a = arm.state_matrix().ok_or(PlantError::Singular)?;
-        let tip = DMatrix::from_fn(3, N, |row, joint| directions[row].dot(&arm.tip.column(joint)));
-        let mass = DMatrix::from_fn(N, N, |row, column| arm.mass[(row, column)]);
-        let (mut b, mut c) = (DMatrix::zeros(2 * N, 3), DMatrix::zeros(2, 2 * N));
-        b.view_mut((N, 0), (N, 3)).copy_from(&mass.cholesky().ok_or(PlantError::Singular)?.solve(&tip.transpose()));
-        c.view_mut((0, 0), (2, N)).copy_from(&tip.rows(0, 2));
+        let n = arm.mass.nrows();
+        let tip = DMatrix::from_fn(3, n, |row, joint| directions[row].dot(&arm.tip.column(joint)));
+        let mass = arm.mass.clone().cholesky().ok_or(PlantError::Singular)?;
+        let (mut b, mut c) = (DMatrix::zeros(2 * n, 3), DMatrix::zeros(2, 2 * n));
+        b.view_mut((n, 0), (n, 3)).copy_from(&mass.solve(&tip.transpose()));
+        c.view_mut((0, 0), (2, n)).copy_from(&tip.rows(0, 2));
         Self::new(a, b, c)
     }
 

@@ -7,8 +7,7 @@ use crate::modes::LinearArm;
 use crate::surface::Node;
 use nalgebra::{DMatrix, DVector, Matrix2, SVector, Vector3};
 use std::f64::consts::{PI, TAU};
-use stead_model::cutting::PassCut;
-use stead_model::cutting::{Coefficients, Cut, Cutter, MillingDirection as Way, Rotation, Tooth};
+use stead_model::cutting::{Coefficients, Cut, Cutter, MillingDirection as Way, PassCut, Rotation, Tooth};
 
 mod time_domain;
 

@@ -4,9 +4,7 @@ use super::directional::{exit, mean};
 use super::plant::Plant;
 use nalgebra::{Complex, Matrix2x3, Matrix3x2};
 use std::f64::consts::TAU;
-use stead_model::cutting::Cutter;
-use stead_model::cutting::EngagementError;
-use stead_model::cutting::PassCut;
+use stead_model::cutting::{Cutter, EngagementError, PassCut};
 
 /// The frequency response of a tool tip, from which the zero-order solution is read at any spindle speed.
 ///
@@ -142,7 +140,8 @@ fn square_root(z: Complex<f64>) -> Complex<f64> {
 }
 
 /// The second pair in the order in which it goes on from the first.
-fn matched(first: &[Complex<f64>; 2], [a, b]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
-    let [straight, crossed] = [[a, b], [b, a]].map(|[a, b]| (a - first[0]).norm_sqr() + (b - first[1]).norm_sqr());
-    if straight <= crossed { [a, b] } else { [b, a] }
+fn matched(first: &[Complex<f64>; 2], second: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
+    let crossed = [second[1], second[0]];
+    let off = |pair: [Complex<f64>; 2]| (pair[0] - first[0]).norm_sqr() + (pair[1] - first[1]).norm_sqr();
+    if off(second) <= off(crossed) { second } else { crossed }
 }

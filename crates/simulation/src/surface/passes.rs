@@ -147,9 +147,10 @@ fn times<S: Simd>(
     query: &ToothQuery<'_>,
     met: &Met,
     rays: &Rays,
-    [xs, ys]: &[[f64; LANES]; 2],
-    [vx, vy]: [f64; 2],
+    centres: &[[f64; LANES]; 2],
+    shares: [f64; 2],
 ) -> [f64; LANES] {
+    let ([xs, ys], [vx, vy]) = (centres, shares);
     let inverse = 1.0 / met.radius;
     let mut times = [0.0; LANES];
     for start in starts::<S>() {
@@ -195,8 +196,8 @@ fn places<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, times: &[f64; LAN
 
 /// Moves the beginning of each ray to the arc of an earlier tooth, where that is farther.
 #[inline(always)]
-fn advance<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, [xs, ys]: &[[f64; LANES]; 2], rays: &mut Rays) {
-    let square = met.radius * met.radius;
+fn advance<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, centres: &[[f64; LANES]; 2], rays: &mut Rays) {
+    let ([xs, ys], square) = (centres, met.radius * met.radius);
     for start in starts::<S>() {
         let (sine, cosine) = (Lanes::load(simd, &rays.sine, start), Lanes::load(simd, &rays.cosine, start));
         let (dx, dy) = (Lanes::load(simd, xs, start) - query.centre[0], Lanes::load(simd, ys, start) - query.centre[1]);

@@ -38,7 +38,8 @@ pub struct Rays {
 impl Rays {
     /// Rays that lag behind a first one, given by its sine and cosine.
     #[inline(always)]
-    pub fn lagging<S: Simd>(simd: S, [sine, cosine]: [f64; 2], lags: &[[f64; LANES]; 2]) -> Self {
+    pub fn lagging<S: Simd>(simd: S, first: [f64; 2], lags: &[[f64; LANES]; 2]) -> Self {
+        let [sine, cosine] = first;
         let zero = [0.0; LANES];
         let mut rays = Self { sine: zero, cosine: zero, from: zero, to: zero };
         for start in starts::<S>() {
@@ -52,8 +53,8 @@ impl Rays {
     /// Limits the rays to the block, from a centre to a radius (m). `ledge` is a height above which nothing is left
     /// behind the centre (m). Whether there is anything left to cut.
     #[inline(always)]
-    pub fn enter<S: Simd>(&mut self, simd: S, stock: &Stock, [x, y]: [f64; 2], radius: f64, ledge: f64) -> bool {
-        let zero = Lanes::splat(simd, 0.0);
+    pub fn enter<S: Simd>(&mut self, simd: S, stock: &Stock, centre: [f64; 2], radius: f64, ledge: f64) -> bool {
+        let ([x, y], zero) = (centre, Lanes::splat(simd, 0.0));
         let mut any = false;
         for start in starts::<S>() {
             let (sine, cosine) = (Lanes::load(simd, &self.sine, start), Lanes::load(simd, &self.cosine, start));

@@ -137,10 +137,8 @@ fn direction(loads: &LoadDirections, random: &mut ChaCha8Rng) -> Vector3<f64> {
 }
 
 /// Why a configuration is not allowed: the count that it belongs to.
-fn rejection(
-    request: &Request,
-    LoadCase { theta, force, moment }: &LoadCase,
-) -> Option<fn(&mut Rejected) -> &mut usize> {
+fn rejection(request: &Request, load_case: &LoadCase) -> Option<fn(&mut Rejected) -> &mut usize> {
+    let LoadCase { theta, force, moment } = load_case;
     let frames = Frames::new(&request.robot, theta);
     let flange = &frames.base_from_flange;
     let at = |place: &Vector3<f64>| flange.point(place);

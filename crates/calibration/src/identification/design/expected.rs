@@ -6,12 +6,11 @@ use super::super::model::{Layout, Noise, ObservationModel, Parameter};
 use super::super::normal_equations::{NormalEquations, Unidentifiable};
 use super::super::setup::Setup;
 use super::super::sheet::{LoadCase, Sheet};
-use super::super::spring::scaled_inverse;
 use super::super::springs::{spring, stated_normal};
 use super::super::synthetic::{MeasuringCell, sheet};
 use super::parameters::{InformationMatrix, Parameters};
 use super::request::Request;
-use nalgebra::{DMatrix, SVector};
+use nalgebra::SVector;
 use serde::Serialize;
 use stead_model::robot::{About, Compliance, Pose, Robot, Spring};
 
@@ -106,22 +105,6 @@ pub fn seen<const N: usize>(
     )
 }
 
-/// Covariance of the free numbers of the arm, zero elsewhere; nothing where they are not told.
-pub fn covariance<const P: usize>(
-    information: &InformationMatrix<P>,
-    free: &[bool; P],
-) -> Option<InformationMatrix<P>> {
-    let free: Vec<usize> = (0..P).filter(|k| free[*k]).collect();
-    let inverse = scaled_inverse(&DMatrix::from_fn(free.len(), free.len(), |i, j| information[(free[i], free[j])]))?;
-    let mut covariance = InformationMatrix::<P>::zeros();
-    for (i, a) in free.iter().enumerate() {
-        for (j, b) in free.iter().enumerate() {
-            covariance[(*a, *b)] = inverse[(i, j)];
-        }
-    }
-    Some(covariance)
-}
-
 /// Standard deviation of something with these derivatives by the numbers of the arm.
 pub fn deviation<const P: usize>(covariance: &InformationMatrix<P>, derivatives: &SVector<f64, P>) -> f64 {
     libm::sqrt((covariance * derivatives).dot(derivatives).max(0.0))
@@ -159,20 +142,26 @@ pub fn expected_compensator<const P: usize>(
 }
 
 /// The covariances by which the compliance of a joint at an angle is judged.
+pub(super) struct Covariances<const P: usize> {
+    pub plan: InformationMatrix<P>,
+    /// Of the random sets that identify all.
+    pub random: Vec<InformationMatrix<P>>,
+    pub best_random: Option<InformationMatrix<P>>,
+}
+
+/// The expected standard deviations of all compliances, but for those on their own.
 pub(super) fn expected_compliances<const P: usize>(
     request: &Request,
     parameters: &Parameters<'_>,
     gauge: &Gauge,
     free: &[bool; P],
-    plan: &InformationMatrix<P>,
-    random: &[InformationMatrix<P>],
-    best_random: Option<&InformationMatrix<P>>,
+    by: &Covariances<P>,
 ) -> Vec<ExpectedCompliance> {
     let bar = |(column, angle): (usize, Option<f64>)| {
         let at = angle.unwrap_or_default();
         let row = parameters.row(column, at);
         let Spring { joint, about } = spring(column);
-        let mut spread: Vec<f64> = random.iter().map(|covariance| deviation(covariance, &row)).collect();
+        let mut spread: Vec<f64> = by.random.iter().map(|covariance| deviation(covariance, &row)).collect();
         spread.sort_by(f64::total_cmp);
         ExpectedCompliance {
             joint,
@@ -180,8 +169,8 @@ pub(super) fn expected_compliances<const P: usize>(
             angle,
             value: known(&request.robot, gauge, spring(column), at),
             deviation: None,
-            by_law: deviation(plan, &row),
-            best_random: best_random.map(|covariance| deviation(covariance, &row)),
+            by_law: deviation(&by.plan, &row),
+            best_random: by.best_random.as_ref().map(|covariance| deviation(covariance, &row)),
             median_random: spread.get(spread.len() / 2).copied(),
         }
     };

@@ -161,9 +161,12 @@ pub fn values<const P: usize>(
     informations: &[InformationMatrix<P>],
     sets: &[Vec<usize>],
 ) -> Vec<f64> {
-    let sum =
-        |set: &Vec<usize>| set.iter().fold(InformationMatrix::<P>::zeros(), |sum, index| sum + informations[*index]);
-    sets.iter().map(|set| criterion.value(&sum(set))).collect()
+    sets.iter().map(|set| criterion.value(&sum_over(informations, set))).collect()
+}
+
+/// The sum over a set.
+pub(super) fn sum_over<const P: usize>(informations: &[InformationMatrix<P>], set: &[usize]) -> InformationMatrix<P> {
+    set.iter().fold(InformationMatrix::zeros(), |sum, index| sum + informations[*index])
 }
 
 /// The best set of `size` from the greedy start and from these, each improved as long as an exchange helps. `None` when

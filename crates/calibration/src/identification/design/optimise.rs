@@ -1,6 +1,7 @@
 //! The choice of measurements as a whole.
 
 use super::super::gauge::Gauge;
+use super::super::inverse::{MIN_PIVOT, inverse_over};
 use super::super::law::{Law, LawError};
 use super::super::model::{Layout, Parameter};
 use super::super::setup::{SetupError, estimate};
@@ -9,9 +10,9 @@ use super::super::springs::{AXES, FULL, FitModel, spring};
 use super::candidates::{Candidates, draw_candidates, test_cases};
 use super::error::DesignError;
 use super::expected::{
-    ExpectedCompliance, covariance, expected_compensator, expected_compliances, normal_of, seen, sheet_of,
+    Covariances, ExpectedCompliance, expected_compensator, expected_compliances, normal_of, seen, sheet_of,
 };
-use super::fedorov::{IOptimality, exchange, random_set, values};
+use super::fedorov::{IOptimality, exchange, random_set, sum_over, values};
 use super::order::{ordered, travel};
 use super::parameters::{FULL_PARAMETERS, InformationMatrix, MAX_PARAMETERS, Parameters};
 use super::request::{Request, TestCases};
@@ -66,10 +67,12 @@ fn designed<const N: usize, const P: usize>(request: &Request, monitor: &Monitor
             all_unobservable.push(spot);
         }
     }
-    let spreads: Vec<InformationMatrix<P>> = random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect();
-    let best_random = random.best.and_then(|best| pool.covariance(&random.sets[best]));
-    let mut compliances =
-        expected_compliances(request, &pool.parameters, &gauge, &pool.free, &planned, &spreads, best_random.as_ref());
+    let covariances = Covariances {
+        plan: planned,
+        random: random.sets.par_iter().filter_map(|set| pool.covariance(set)).collect(),
+        best_random: random.best.and_then(|best| pool.covariance(&random.sets[best])),
+    };
+    let mut compliances = expected_compliances(request, &pool.parameters, &gauge, &pool.free, &covariances);
     compliances.iter_mut().for_each(|c| c.deviation = own_deviation(request, c, &layout, &alone));
     let weakly_observed = weakly_observed(request, &load_cases, &compliances);
     Ok(Design {
@@ -80,7 +83,7 @@ fn designed<const N: usize, const P: usize>(request: &Request, monitor: &Monitor
         load_cases,
         sheet,
         compliances,
-        compensator: expected_compensator(request, &planned),
+        compensator: expected_compensator(request, &covariances.plan),
         errors: random.errors(chosen.value),
         deflection: pool.parameters.deflection(request, &pool.tests),
         gauge,
@@ -137,8 +140,7 @@ impl<'a, const P: usize> Pool<'a, P> {
 
     /// Covariance of the parameters of the arm from a set; nothing where they are not identifiable.
     fn covariance(&self, set: &[usize]) -> Option<InformationMatrix<P>> {
-        let sum = set.iter().fold(InformationMatrix::<P>::zeros(), |sum, index| sum + self.informations[*index]);
-        covariance(&sum, &self.free)
+        inverse_over(&sum_over(&self.informations, set), |k| self.free[k], MIN_PIVOT)
     }
 }
 

@@ -82,9 +82,10 @@ impl<'a> Parameters<'a> {
         &self,
         points: &[Vector3<f64>],
         load_point: &Vector3<f64>,
-        LoadCase { theta, force, moment }: &LoadCase,
+        load_case: &LoadCase,
         unit: f64,
     ) -> Vec<SMatrix<f64, 3, P>> {
+        let LoadCase { theta, force, moment } = load_case;
         let arm = Elastic::<N>::unloaded(self.robot, theta);
         let at = |place| arm.base_from_flange.point(place);
         let load = at(load_point);

@@ -81,9 +81,9 @@ fn weak_text(request: &Request, gauge: &Gauge, weak: &WeaklyObserved) -> String 
 }
 
 /// The line about which a spring turns: the axis of its joint, or a direction normal to it.
-fn axis_name(model: FitModel, Spring { joint, about }: Spring) -> String {
-    match (model, about) {
-        (FitModel::Axes, _) | (_, About::Z) => format!("axis {}", joint + 1),
-        (FitModel::Full, _) => format!("{} of joint {}", about.name(), joint + 1),
+fn axis_name(model: FitModel, spring: Spring) -> String {
+    match (model, spring.about) {
+        (FitModel::Axes, _) | (_, About::Z) => format!("axis {}", spring.joint + 1),
+        (FitModel::Full, about) => format!("{} of joint {}", about.name(), spring.joint + 1),
     }
 }
