@@ -120,7 +120,8 @@ proptest! {
         let scale = elastic.scale_at(&robot.compliances_at(&theta));
         let pressed = load(wrench);
         let taken = elastic.taken(&theta);
-        let rest = elastic.settle(&theta, &scale, &taken, &pressed, 1.0, Coordinates::zeros()).unwrap();
+        let commanded = Commanded { arm: &elastic, theta: &theta, load: &pressed, scale, taken };
+        let rest = commanded.settle(1.0, Coordinates::zeros()).unwrap();
         let posed = elastic.posed(&theta, &(scale * rest));
         let applied = elastic.applied(&posed, &pressed, 1.0);
         let off = rest - scale.tr_mul(&(posed.torques(&applied) + taken));
