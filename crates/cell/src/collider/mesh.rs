@@ -235,12 +235,11 @@ fn parts(mesh: &TriangleMesh) -> Option<Vec<Part>> {
 /// The distance and direction of two hulls where that is enough; else the distance of what is in them, with that
 /// direction where it is as large.
 fn unless_by_hulls(hulls: (f64, Option<Vector>), limit: f64, distance: impl FnOnce() -> f64) -> (f64, Option<Vector>) {
-    let (apart, axis) = hulls;
-    if apart >= limit && apart > 0.0 {
+    if hulls.0 >= limit && hulls.0 > 0.0 {
         return hulls;
     }
     let distance = distance();
-    (distance, axis.filter(|_| apart > 0.0 && (distance - apart).abs() <= SAME))
+    (distance, hulls.1.filter(|_| hulls.0 > 0.0 && (distance - hulls.0).abs() <= SAME))
 }
 
 /// How far two triangles are apart at the least: along the normals of both, and along the line between their middles. m

@@ -266,12 +266,8 @@ impl Scene {
     }
 
     fn clearance_of(&self, poses: &Poses, numbers: impl Iterator<Item = usize>) -> Option<Clearance> {
-        let mut bounds: Vec<(f64, usize)> = numbers
-            .map(|number| {
-                let pair = &self.pairs[number];
-                (self.bound(pair, poses, f64::INFINITY) - pair.required, number)
-            })
-            .collect();
+        let room = |pair: &Pair| self.bound(pair, poses, f64::INFINITY) - pair.required;
+        let mut bounds: Vec<_> = numbers.map(|number| (room(&self.pairs[number]), number)).collect();
         bounds.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut best: Option<(f64, Clearance)> = None;
         for (bound, number) in bounds {

@@ -160,10 +160,8 @@ impl Scene {
                 continue;
             }
             let rooms = [from.1, to.1].map(|poses| self.room(number, poses, travel));
-            for (share, room) in [(0.0, rooms[0]), (1.0, rooms[1])] {
-                if room < 0.0 {
-                    return Some(MotionHit { share, pair: number });
-                }
+            if let Some(end) = rooms.iter().position(|room| *room < 0.0) {
+                return Some(MotionHit { share: end as f64, pair: number });
             }
             if rooms[0] + rooms[1] < travel {
                 open.push(OpenPair { rooms, ..pair });
