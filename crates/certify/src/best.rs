@@ -4,9 +4,9 @@ use super::active_cells::ActiveCells;
 use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
-use super::keeps_open::{KeepsOpen, counted_boxes};
+use super::keeps_open::KeepsOpen;
 use super::leaning;
-use super::model::{Keeps, Model};
+use super::model::Model;
 use super::region::Region;
 use super::requirements::Leaf;
 use rayon::prelude::*;
@@ -27,9 +27,9 @@ pub(super) fn bound_of(leaf: &Leaf, value: f64, settings: &CertificateSettings, 
 /// The same of an upright tool.
 fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
     let CertificateSettings { gap, memory, .. } = *settings;
-    let keeps = Keeps::of(problem);
-    let (model, whole) = (Model::new(problem, keeps), whole(problem));
-    let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective: model.objective, memory };
+    let (model, whole) = (Model::new(problem), whole(problem));
+    let Model { keeps, objective, .. } = model;
+    let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective, memory };
     // Of no placement anything is known until the tables are made.
     let ceiling = search.ceiling();
     let coarse = CoarseBounds::new(&model, monitor, || search.report(monitor, 0.0, 1, 0));
@@ -52,14 +52,12 @@ fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monito
         of: |open: &Open<Known>| parts(&model, &coarse, open, ceiling, monitor),
         used: || model.used() + coarse.used(),
         bytes: |active: &Known| active.as_ref().map_or(0, |active| active.bytes()),
+        points: model.points.len(),
+        count: |counted: &mut KeepsOpen, region: &Region, active: &Known, point: usize| {
+            counted.add_point(&model, region, active.as_deref().unwrap_or(&full), point);
+        },
     };
-    let (mut bound, known) = search.explore(all, monitor, |_| None);
-    if bound.falls_short() {
-        let boxes = counted_boxes(&bound.open, &known).into_iter();
-        let counted = KeepsOpen::of(&model, boxes.map(|(region, known)| (region, known.as_deref().unwrap_or(&full))));
-        bound.keeps_open = Some(counted).filter(|counted| counted.states > 0);
-    }
-    bound
+    search.explore(all, monitor, |_| None)
 }
 
 /// The boxes that the coarse tables leave open, each with its bound, and how many were bounded.

@@ -68,19 +68,6 @@ impl From<Stop> for Status {
 }
 
 impl Bound {
-    /// Whether the search ended by itself before what was requested.
-    pub(super) fn falls_short(&self) -> bool {
-        !matches!(self.status, Status::Reached | Status::Interrupted)
-    }
-
-    /// With the open boxes of another search and what it took; limits that one of them drops are not kept.
-    pub(super) fn and(mut self, other: Self) -> Self {
-        self.open.extend(other.open);
-        self.nodes += other.nodes;
-        (self.with_rate, self.with_turn) = (self.with_rate && other.with_rate, self.with_turn && other.with_turn);
-        self
-    }
-
     /// How much better (of the worst: worse) than the value a placement may be, relative to the value.
     pub fn gap(&self) -> f64 {
         (1.0 - self.bound / self.value).abs()
@@ -134,7 +121,7 @@ pub(super) struct BranchAndBound {
 }
 
 /// What a search is made of.
-pub(super) struct Parts<T, P, U, B> {
+pub(super) struct Parts<T, P, U, B, C> {
     /// The boxes to begin with.
     pub start: Vec<Open<T>>,
     /// The number of boxes bounded before.
@@ -145,6 +132,10 @@ pub(super) struct Parts<T, P, U, B> {
     pub used: U,
     /// What is known of a box takes. Bytes
     pub bytes: B,
+    /// The number of path points.
+    pub points: usize,
+    /// Counts what is known of the states of one of them in a box.
+    pub count: C,
 }
 
 /// A box in the queue.
@@ -231,7 +222,8 @@ impl BranchAndBound {
     /// down, not by cutting all of it. Only from above, where nothing is known of them yet, the boxes to begin with
     /// come before, in the order given. Where boxes are left that tables cannot distinguish, `improve` is asked for a
     /// value further out than the one compared with, from among them; with one the search goes on. The result does not
-    /// depend on the number of threads. What is known of the boxes that are left is returned beside them.
+    /// depend on the number of threads. Where it ends by itself before what was requested, what keeps boxes open is
+    /// counted.
     pub fn explore<T: Send + Sync>(
         mut self,
         mut parts: Parts<
@@ -239,10 +231,11 @@ impl BranchAndBound {
             impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
             impl Fn() -> u64 + Sync,
             impl Fn(&T) -> u64 + Sync,
+            impl Fn(&mut KeepsOpen, &Region, &T, usize) + Sync,
         >,
         monitor: &Monitor,
         mut improve: impl FnMut(&[Region]) -> Option<(f64, Placement)>,
-    ) -> (Bound, Vec<T>) {
+    ) -> Bound {
         let mut queue = Queue::new(self.sign(), self.sense, std::mem::take(&mut parts.start));
         let (mut nodes, mut met) = (parts.nodes, None);
         let status = loop {
@@ -266,8 +259,12 @@ impl BranchAndBound {
         let bound = self.objective.value(sign * farthest) * (1.0 + sign * ROUNDING);
         let value = |queued: &Queued<T>| self.objective.value(queued.open.bound);
         let open = left.iter().map(|queued| (queued.open.region, value(queued))).collect();
-        let bound = self.found(met, bound, nodes, status, open);
-        (bound, left.into_iter().map(|queued| queued.open.known).collect())
+        let mut found = self.found(met, bound, nodes, status, open);
+        if !matches!(status, Status::Reached | Status::Interrupted) {
+            let known: Vec<T> = left.into_iter().map(|queued| queued.open.known).collect();
+            found.keeps_open = KeepsOpen::of(&found.open, &known, parts.points, parts.count);
+        }
+        found
     }
 
     /// Cuts boxes until none is left, or the bound stays where boxes are that are not to be cut further.
@@ -284,6 +281,7 @@ impl BranchAndBound {
             impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
             impl Fn() -> u64 + Sync,
             impl Fn(&T) -> u64 + Sync,
+            impl Fn(&mut KeepsOpen, &Region, &T, usize) + Sync,
         >,
     ) -> Result<(), Status> {
         let ceiling = self.sign() * self.ceiling();

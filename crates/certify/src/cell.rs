@@ -2,10 +2,11 @@
 
 use super::load::Load;
 use super::region::{Point, Region};
+use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::angles::wrap;
 use stead_model::task::PathPoint;
-use stead_problem::problem::{Cell, Placement, Problem};
+use stead_problem::problem::{Cell, Problem};
 
 /// The extent of tables: where path points of placements of the cell can be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +20,26 @@ pub(super) struct Extent {
 /// Which way up the arm stands: +1, or -1 upside down.
 pub(super) fn side(problem: &Problem) -> f64 {
     problem.robot.geometry().base_from_root[(2, 2)].signum()
+}
+
+/// A vector of the frame of the workpiece, seen along axis 1.
+pub(super) fn seen(v: &Vector3<f64>, side: f64) -> Vector3<f64> {
+    Vector3::new(v.x, v.y * side, v.z * side)
+}
+
+/// Axes this near to each other (sine) are one: printed digits.
+pub(super) const SAME: f64 = 1e-9;
+
+/// The tool axes of a path, in the frame of the workpiece about axis 1.
+pub(super) fn axes_of(problem: &Problem) -> Vec<Vector3<f64>> {
+    let mut axes: Vec<Vector3<f64>> = Vec::new();
+    for point in problem.task.points() {
+        let axis = seen(&point.axis, side(problem));
+        if axes.iter().all(|other| (other - axis).norm() > SAME) {
+            axes.push(axis);
+        }
+    }
+    axes
 }
 
 /// Path points, what acts on them and what is scored.
@@ -40,7 +61,7 @@ pub(super) fn points_of(problem: &Problem) -> Vec<Point> {
 }
 
 /// The corners of the cell about axis 1, x and y. m
-fn corners(cell: &Cell, problem: &Problem) -> [[f64; 2]; 2] {
+pub(super) fn corners(cell: &Cell, problem: &Problem) -> [[f64; 2]; 2] {
     let root = problem.robot.geometry().root_in_base;
     let [x, y, _] = cell.position;
     [[x.min - root.x, x.max - root.x], [y.min - root.y, y.max - root.y]]
@@ -78,29 +99,6 @@ pub(super) fn too_near(problem: &Problem) -> Option<f64> {
     let farthest = points_of(problem).iter().map(|p| p.distance).fold(0.0, f64::max);
     let missing = NEAREST - (region.middle[0] - region.half[0] - farthest);
     (missing > 0.0).then_some(missing)
-}
-
-/// Azimuths tried about axis 1.
-const AZIMUTHS: usize = 1440;
-
-/// The placement of the cell that is nearest to the middle of a box, whatever its azimuth.
-pub(super) fn placement_in(problem: &Problem, region: &Region) -> Placement {
-    let (side, root, cell) = (side(problem), problem.robot.geometry().root_in_base, &problem.cell);
-    let [radius, height, turn] = region.middle;
-    let z = root.z + side * height;
-    let at = |azimuth: f64| {
-        let (sine, cosine) = libm::sincos(azimuth);
-        let wanted =
-            Placement { x: root.x + radius * cosine, y: root.y + radius * sine, z, yaw: azimuth + side * turn };
-        let inside = cell.clamp(&wanted);
-        let off = libm::hypot(inside.x - wanted.x, inside.y - wanted.y) + radius * wrap(inside.yaw - wanted.yaw).abs();
-        (off, inside)
-    };
-    let [x, y] = corners(cell, problem);
-    let corners = [(x[0], y[0]), (x[0], y[1]), (x[1], y[0]), (x[1], y[1])].map(|(x, y)| libm::atan2(y, x));
-    let even = (1..AZIMUTHS).map(|k| TAU * k as f64 / AZIMUTHS as f64);
-    let all = even.chain(corners).map(at);
-    all.fold(at(0.0), |best, other| if other.0 < best.0 { other } else { best }).1
 }
 
 /// Nearer to axis 1 nothing is known of a path point. m

@@ -1,10 +1,11 @@
 //! The certificate: bounds around the best and the worst placement found, what they relax, and how they ended.
 
 use super::branch_and_bound::{Bound, Status};
-use super::part::{OpenIn, Part, certifiable_from_above, left_out, together};
+use super::cell::NEAREST;
+use super::part::{OpenIn, Part, are_segments_apart, expected_cost, together};
 use super::region::Region;
 use super::relaxed::relaxed_value;
-use super::worst::worst;
+use super::worst::{certifiable_from_above, worst};
 use serde::{Serialize, Serializer};
 use std::time::{Duration, Instant};
 use stead_numerics::digits::{figures, trimmed};
@@ -15,7 +16,7 @@ use stead_problem::criterion::CANCELLATION;
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::sense::Sense;
 use stead_problem::settings::CertificateSettings;
-use stead_problem::symmetry::Unsupported;
+use stead_problem::symmetry::{Unsupported, require_certain_compliances, require_free_beta, require_no_travel};
 
 /// Gaps in per cent are rounded up to this many decimals.
 const GAP_DECIMALS: usize = 4;
@@ -155,10 +156,8 @@ pub fn certify(
 
 /// The warning that a problem cannot be certified.
 pub fn no_certificate(reason: &Unsupported) -> Warning {
-    let help = match reason {
-        Unsupported::TooLarge { .. } => " by certificate.memory_gb",
-        _ => "",
-    };
+    let last = if let Unsupported::Several(all) = reason { all.last() } else { Some(reason) };
+    let help = if let Some(Unsupported::TooLarge { .. }) = last { " by certificate.memory_gb" } else { "" };
     Warning::new("no-certificate", format!("no certificate: {reason}{help}; the workpiece is placed without one"))
 }
 
@@ -199,6 +198,21 @@ fn scope(problem: &Problem) -> String {
     let lying = if problem.orientations.len() > 1 { ", lying in any of its orientations" } else { "" };
     let axes = if problem.external_axes.is_empty() { "" } else { ", with the external axes anywhere in their ranges" };
     format!("in this cell{lying}{axes}")
+}
+
+/// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in
+/// words.
+fn left_out(problem: &Problem) -> Vec<String> {
+    let nearest = format!("the deflection of path points nearer than {} mm to axis 1", NEAREST * 1e3);
+    let all = [
+        (require_no_travel(problem).is_err(), "travel of the joints in the objective"),
+        (require_certain_compliances(problem).is_err(), "errors of the compliances in the scores"),
+        (require_free_beta(problem).is_err(), "beta that stays along the path"),
+        (expected_cost(problem).is_some(), &nearest),
+        (!problem.external_axes.is_empty(), "which position of the external axes goes with which x, y, z and yaw"),
+        (are_segments_apart(problem), "that all segments have the same x, y, z and yaw"),
+    ];
+    all.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words.to_owned()).collect()
 }
 
 impl Certificate {

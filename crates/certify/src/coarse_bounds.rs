@@ -5,7 +5,7 @@ use super::cell::Extent;
 use super::compliance_table::{ComplianceTable, Steps};
 use super::cost::{CORNERS, Direction, joined_sets};
 use super::kind::{Kind, kinds};
-use super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, below_all, minorant, rounded};
+use super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, minorant, rounded};
 use super::model::Model;
 use super::region::{Point, PolarModel, Region};
 use super::sliding_min::joined;
@@ -310,10 +310,34 @@ impl Level {
     }
 }
 
+/// An affine function below several, each true within `half` of its own middle.
+pub(super) fn below_all(
+    once: impl Iterator<Item = ([f64; 3], Affine)>,
+    again: impl Iterator<Item = ([f64; 3], Affine)>,
+    half: [f64; 3],
+) -> Affine {
+    let lowest = once.filter(|(_, e)| e.value < f32::INFINITY).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    let Some((_, lowest)) = lowest else { return EMPTY };
+    if lowest == ZERO {
+        return ZERO;
+    }
+    let slope = lowest.slope.map(f64::from);
+    let mut value = f64::INFINITY;
+    for (off, e) in again.filter(|(_, e)| e.value < f32::INFINITY) {
+        let mut v = f64::from(e.value);
+        for k in 0..3 {
+            v -= slope[k] * off[k] + (f64::from(e.slope[k]) - slope[k]).abs() * half[k];
+        }
+        value = value.min(v);
+    }
+    rounded(value, slope, half)
+}
+
 /// How far from a node of a level of the table of compliances its entry is true, in radius, height and direction of the
 /// load.
 fn half_of(table: &ComplianceTable, level: usize) -> [f64; 3] {
-    [table.length(level), table.length(level), TAU / table.headings(level) as f64]
+    let [r, z, heading] = table.half(level);
+    [r, z, 2.0 * heading]
 }
 
 /// Some directions of kinds of load, in all classes, at a radius and height of a level of the table of compliances.

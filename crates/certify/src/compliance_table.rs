@@ -7,11 +7,10 @@
 
 use super::arm::{Arm, ArmCompliance};
 use super::cell::Extent;
-use super::enclosure::Enclosure;
+use super::enclosure::{Enclosure, FUNCTIONS, REMAINDERS, remainders};
 use super::interval_simd::{Lanes, WIDTH};
 use super::moment::{MOMENTS, MomentModel};
-use super::number::PAIRS;
-use super::over_regions::{FUNCTIONS, REMAINDERS, heading_over, is_sure, pair_factors, remainders};
+use super::region::PolarModel;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -192,9 +191,23 @@ impl ComplianceTable {
         self.levels.get(level).is_some_and(|l| at[0] < l.counts[0] && at[1] < l.counts[1])
     }
 
+    /// What a node of a level speaks for: half widths in radius, height (m) and heading (rad).
+    pub fn half(&self, level: usize) -> [f64; 3] {
+        [self.length(level), self.length(level), PI / self.headings(level) as f64]
+    }
+
     /// Middle of a cell of heading. rad
     pub fn heading(&self, level: usize, cell: usize) -> f64 {
         TAU / self.headings(level) as f64 * (cell as f64 + 0.5)
+    }
+
+    /// The nodes that answer for a point over a box, and how far it is from them in radius and height (m); `None` where
+    /// none do.
+    #[inline]
+    pub fn answer<'a>(&'a self, arm: &'a Arm, level: usize, placed: &PolarModel) -> Option<(NodesAt<'a>, [f64; 2])> {
+        let answers = self.answers(level, [placed.reach[0], placed.reach[1]]);
+        let (at, off) = self.nearest(level, placed.r, placed.z).filter(|_| answers)?;
+        Some((self.nodes_at(arm, level, at), off))
     }
 
     /// The nodes of a radius and height.
@@ -218,8 +231,7 @@ impl ComplianceTable {
 
     /// The nodes of neighbouring cells of heading from `first` on.
     fn made(&self, arm: &Arm, level: usize, at: [usize; 2], first: usize, class: PostureClass) -> Option<Box<Nodes>> {
-        let half = [self.length(level), self.length(level), PI / self.headings(level) as f64];
-        let [r, z] = self.place(level, at);
+        let (half, [r, z]) = (self.half(level), self.place(level, at));
         let moments = arm.has_moments.then(|| Box::new([None; CHUNK]));
         let mut nodes = Box::new(Nodes { nodes: [Node::Empty; CHUNK], moments });
         for start in (0..CHUNK).step_by(WIDTH) {
@@ -241,6 +253,12 @@ impl ComplianceTable {
 }
 
 impl<'a> NodesAt<'a> {
+    /// Radius and height of the nodes (m), and the middle of a cell of heading (rad).
+    pub fn place(&self, cell: usize) -> [f64; 3] {
+        let [r, z] = self.table.place(self.level, self.at);
+        [r, z, self.table.heading(self.level, cell)]
+    }
+
     /// The node of a cell of heading, and how it yields to moments, where some act.
     #[inline]
     pub fn known(&self, cell: usize, class: PostureClass) -> (&'a Node, Option<&'a MomentModel>) {
@@ -281,7 +299,7 @@ pub(super) fn enclosed(
     half: [f64; 3],
     class: PostureClass,
 ) -> Option<ArmCompliance<Enclosure>> {
-    let (sine, cosine) = heading_over(place.map(|p| p[2]), half);
+    let (sine, cosine) = Enclosure::heading(place.map(|p| p[2]), half);
     let radius = <Enclosure>::variable(Lanes(place.map(|p| p[0])), 0, half);
     let height = Enclosure::variable(Lanes(place.map(|p| p[1])), 1, half);
     arm.evaluate(radius, height, sine, cosine, class)
@@ -294,14 +312,14 @@ fn judged(arm: &Arm, y: &ArmCompliance<Enclosure>, lane: usize, half: [f64; 3]) 
     if !y.regular.lane(lane) {
         return (Node::Unknown, None);
     }
-    let sure = is_sure(arm, y, lane);
+    let sure = arm.is_sure(y, lane);
     let functions = [&y.m, &y.d1, &y.d2, &y.vertical[0], &y.vertical[1], &y.axial];
     let of = |f: &Enclosure| {
         let f = f.middle();
         [f.value.0[lane], f.gradient[0].0[lane], f.gradient[1].0[lane], f.gradient[2].0[lane]]
     };
     let values = functions.map(of);
-    let factors = pair_factors::<3, PAIRS>(half);
+    let factors = <Enclosure>::pair_factors(half);
     let remainder = remainders(&functions, lane, half).map(|r| (r * (1.0 + 1e-6)) as f32);
     if !remainder.iter().all(|r| *r < 1e30) {
         return (Node::Unknown, None);

@@ -6,9 +6,9 @@
 
 use super::compliance_table::AffineModel;
 use super::load::Load;
+use super::load::{Tangent, Yielding};
 use super::moment::{MOMENTS, MomentModel, MomentPart, TurnedMoment, moved};
 use super::region::{Point, PolarModel, Region};
-use super::yielding::{Tangent, Yielding};
 use stead_problem::criterion::{Aggregate, Over};
 
 /// What a node tells: how it yields to forces and, where some moment acts, to moments.
@@ -58,19 +58,15 @@ impl Direction {
         Self { sine, cosine, sine2: 2.0 * sine * cosine, cosine2: cosine * cosine - sine * sine }
     }
 
-    /// The compliance at a point in the frame of its load: from m, d1, d2, c_rz, c_tz and c_zz in the radial frame, and
-    /// what joint 1 adds at radius r. m/N
+    /// The compliance at a point in the frame of its load, that of the part included: from m, d1, d2, c_rz, c_tz and
+    /// c_zz in the radial frame, and what joint 1 adds at radius r. m/N
     #[inline(always)]
-    pub fn seen(&self, values: [f64; 6], r: f64, first: f64) -> Yielding {
+    pub fn seen(&self, values: [f64; 6], load: &Load, r: f64, first: f64) -> Yielding {
         let [m, d1, d2, cr, ct, zz] = values;
         let half = 0.5 * first * r * r;
         let (d1, Self { sine, cosine, sine2, cosine2 }) = (d1 - half, self);
-        Yielding {
-            m: m + half,
-            d: [d1 * cosine2 + d2 * sine2, d2 * cosine2 - d1 * sine2],
-            v: [cr * cosine + ct * sine, ct * cosine - cr * sine],
-            zz,
-        }
+        let d = [d1 * cosine2 + d2 * sine2, d2 * cosine2 - d1 * sine2];
+        load.with_part(Yielding { m: m + half, d, v: [cr * cosine + ct * sine, ct * cosine - cr * sine], zz })
     }
 
     /// The displacement under the moment of a load, in the frame of the load: by the functions of [`MomentModel`] in
@@ -250,8 +246,7 @@ impl<'a> PointCost<'a> {
                 self.direction.moved(at, self.load, p.r, self.first)
             }
         };
-        let (sharp, of_error) =
-            self.load.tangents(&self.load.with_part(self.direction.seen(at, p.r, self.first)), by_moment);
+        let (sharp, of_error) = self.load.tangents(&self.direction.seen(at, self.load, p.r, self.first), by_moment);
         let least = |tangent: &Tangent| {
             let half = [p.reach[0], p.reach[2]];
             let turned = self.direction.turned(tangent, self.load, p.r, half, self.first);

@@ -1,10 +1,129 @@
 //! Intervals that are sure to hold the value, the gradient and the second derivatives of a function over a region.
+//!
+//! Interval arithmetic is in lanes, by middle and radius, without outward rounding: what is proven with it is proven up
+//! to rounding.
 
-use super::continuation::{Bend, Links};
-use super::interval::Interval;
-use super::interval_simd::{Lanes, Mask};
-use super::number::{Number, PAIRS, Slope, VARIABLES, ZERO, pairs};
-use std::ops::{Add, Mul, Neg, Sub};
+mod functions;
+
+use super::interval_simd::{Lanes, WIDTH};
+use super::number::{Number, PAIRS, VARIABLES, ZERO, pairs};
+use std::f64::consts::{PI, TAU};
+
+/// Functions modelled: m, d1, d2, c_rz, c_tz and c_zz of [`ArmCompliance`].
+pub(super) const FUNCTIONS: usize = 6;
+/// Remainders of them: of m, of the length of (d1, d2), of that of (c_rz, c_tz), and of c_zz.
+pub(super) const REMAINDERS: usize = 4;
+
+/// An interval: all numbers within `radius` of `middle`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interval {
+    pub middle: Lanes,
+    pub radius: Lanes,
+}
+
+impl Interval {
+    /// A single number.
+    #[inline(always)]
+    pub fn point(middle: Lanes) -> Self {
+        Self { middle, radius: ZERO }
+    }
+
+    /// From its ends.
+    #[inline(always)]
+    pub fn between(low: Lanes, high: Lanes) -> Self {
+        Self { middle: (low + high) * 0.5, radius: (high - low) * 0.5 }
+    }
+
+    /// Lower end.
+    #[inline(always)]
+    pub fn low(self) -> Lanes {
+        self.middle - self.radius
+    }
+
+    /// Upper end.
+    #[inline(always)]
+    pub fn high(self) -> Lanes {
+        self.middle + self.radius
+    }
+
+    /// The largest magnitude in it.
+    #[inline(always)]
+    pub fn magnitude(self) -> Lanes {
+        self.middle.abs() + self.radius
+    }
+
+    /// What two intervals that hold the same number leave for it.
+    #[inline(always)]
+    pub fn cut(self, other: Self) -> Self {
+        Self::between(self.low().max(other.low()), self.high().min(other.high()))
+    }
+
+    #[inline(always)]
+    pub fn add(self, other: Self) -> Self {
+        Self { middle: self.middle + other.middle, radius: self.radius + other.radius }
+    }
+
+    #[inline(always)]
+    pub fn sub(self, other: Self) -> Self {
+        Self { middle: self.middle - other.middle, radius: self.radius + other.radius }
+    }
+
+    #[inline(always)]
+    pub fn mul(self, other: Self) -> Self {
+        Self {
+            middle: self.middle * other.middle,
+            radius: self.middle.abs() * other.radius + self.radius * (other.middle.abs() + other.radius),
+        }
+    }
+
+    /// The square: non-negative.
+    #[inline(always)]
+    pub fn square(self) -> Self {
+        let m = self.middle.abs();
+        let high = (m + self.radius) * (m + self.radius);
+        let low = (m - self.radius).max(ZERO);
+        Self::between(low * low, high)
+    }
+
+    #[inline(always)]
+    pub fn scale(self, factor: f64) -> Self {
+        Self { middle: self.middle * factor, radius: self.radius * factor.abs() }
+    }
+}
+
+/// A value and its gradient.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Slope<const V: usize = VARIABLES> {
+    pub value: Lanes,
+    pub gradient: [Lanes; V],
+}
+
+impl<const V: usize> Slope<V> {
+    /// The independent variable number `index`.
+    #[inline(always)]
+    pub fn variable(value: Lanes, index: usize) -> Self {
+        let mut gradient = [ZERO; V];
+        gradient[index] = Lanes::splat(1.0);
+        Self { value, gradient }
+    }
+
+    /// Sine and cosine of the heading, the last variable, given as plain numbers.
+    #[inline(always)]
+    pub fn heading(sine: Lanes, cosine: Lanes) -> (Self, Self) {
+        let of = |value: Lanes, slope: Lanes| {
+            let mut gradient = [ZERO; V];
+            gradient[V - 1] = slope;
+            Self { value, gradient }
+        };
+        (of(sine, cosine), of(cosine, -sine))
+    }
+
+    /// A function of it, from its value and derivative there.
+    #[inline(always)]
+    fn through(self, value: Lanes, derivative: Lanes) -> Self {
+        Self { value, gradient: self.gradient.map(|g| g * derivative) }
+    }
+}
 
 /// Intervals for the value, the gradient and the second derivatives over a region; and the value and the gradient in
 /// its middle, which with the next derivatives give a second, often closer, interval for each.
@@ -32,16 +151,24 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
         out
     }
 
-    /// Sine and cosine of the heading, the last variable: in the middle, and intervals that hold them.
+    /// Sine and cosine of four headings, the last variable, each within its half width. rad
     #[inline(always)]
-    pub fn heading(middle: [Lanes; 2], over: [Interval; 2], half: [f64; V]) -> (Self, Self) {
-        let [sine, cosine] = over;
+    pub fn heading(angles: [f64; WIDTH], half: [f64; V]) -> (Self, Self) {
+        let ends = angles.map(|angle| sine_cosine_over(angle - half[V - 1], angle + half[V - 1]));
+        let middle = angles.map(libm::sincos);
+        let sine = Interval::between(Lanes(ends.map(|e| e.0.0)), Lanes(ends.map(|e| e.0.1)));
+        let cosine = Interval::between(Lanes(ends.map(|e| e.1.0)), Lanes(ends.map(|e| e.1.1)));
         let negative = |i: Interval| Interval { middle: -i.middle, radius: i.radius };
         let (mut s, mut c) = (Self::fixed(0.0, half), Self::fixed(0.0, half));
         (s.value, s.gradient[V - 1], s.second[V - 1]) = (sine, cosine, negative(sine));
         (c.value, c.gradient[V - 1], c.second[V - 1]) = (cosine, negative(sine), negative(cosine));
-        (s.middle, c.middle) = Slope::heading(middle[0], middle[1]);
+        (s.middle, c.middle) = Slope::heading(Lanes(middle.map(|m| m.0)), Lanes(middle.map(|m| m.1)));
         (s, c)
+    }
+
+    /// What the second derivatives of each pair of variables are multiplied by.
+    pub fn pair_factors(half: [f64; V]) -> [f64; P] {
+        Self::PAIR.map(|(i, j)| half[i] * half[j] * if i == j { 0.5 } else { 1.0 })
     }
 
     /// Value and gradient in the middle.
@@ -98,227 +225,39 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
     }
 }
 
-/// The half widths of whichever is not a constant.
-#[inline(always)]
-fn widths<const V: usize, const P: usize>(a: &Enclosure<V, P>, b: &Enclosure<V, P>) -> [f64; V] {
-    std::array::from_fn(|k| a.half[k].max(b.half[k]))
+/// See [`super::compliance_table::AffineModel::remainder`]: of m, d1, d2, c_rz, c_tz and c_zz; with what is lost by
+/// writing values with fewer digits.
+pub(super) fn remainders<const V: usize, const P: usize>(
+    functions: &[&Enclosure<V, P>; FUNCTIONS],
+    lane: usize,
+    half: [f64; V],
+) -> [f64; REMAINDERS] {
+    let second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
+    let mut remainder = [0.0; REMAINDERS];
+    for (p, factor) in Enclosure::<V, P>::pair_factors(half).into_iter().enumerate() {
+        remainder[0] += second(0, p) * factor;
+        remainder[1] += libm::hypot(second(1, p), second(2, p)) * factor;
+        remainder[2] += libm::hypot(second(3, p), second(4, p)) * factor;
+        remainder[3] += second(5, p) * factor;
+    }
+    let size = |f: usize| {
+        let middle = functions[f].middle();
+        middle.value.0[lane].abs() + (0..V).map(|k| middle.gradient[k].0[lane].abs() * half[k]).sum::<f64>()
+    };
+    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
+    std::array::from_fn(|f| remainder[f] + 1e-7 * lost[f])
 }
 
-impl<const V: usize, const P: usize> Add for Enclosure<V, P> {
-    type Output = Self;
-    #[inline(never)]
-    fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value.add(other.value),
-            gradient: std::array::from_fn(|k| self.gradient[k].add(other.gradient[k])),
-            second: std::array::from_fn(|p| self.second[p].add(other.second[p])),
-            middle: self.middle + other.middle,
-            half: widths(&self, &other),
-        }
-        .tightened()
-    }
-}
-
-impl<const V: usize, const P: usize> Sub for Enclosure<V, P> {
-    type Output = Self;
-    #[inline(never)]
-    fn sub(self, other: Self) -> Self {
-        Self {
-            value: self.value.sub(other.value),
-            gradient: std::array::from_fn(|k| self.gradient[k].sub(other.gradient[k])),
-            second: std::array::from_fn(|p| self.second[p].sub(other.second[p])),
-            middle: self.middle - other.middle,
-            half: widths(&self, &other),
-        }
-        .tightened()
-    }
-}
-
-impl<const V: usize, const P: usize> Mul for Enclosure<V, P> {
-    type Output = Self;
-    #[inline(never)]
-    fn mul(self, other: Self) -> Self {
-        let (a, b) = (&self, &other);
-        Self {
-            value: a.value.mul(b.value),
-            gradient: std::array::from_fn(|k| a.gradient[k].mul(b.value).add(b.gradient[k].mul(a.value))),
-            second: std::array::from_fn(|p| {
-                let (k, l) = Self::PAIR[p];
-                let outer = a.second[p].mul(b.value).add(b.second[p].mul(a.value));
-                let cross = a.gradient[k].mul(b.gradient[l]);
-                let cross = if k == l { cross.scale(2.0) } else { cross.add(a.gradient[l].mul(b.gradient[k])) };
-                outer.add(cross)
-            }),
-            middle: self.middle * other.middle,
-            half: widths(a, b),
-        }
-        .tightened()
-    }
-}
-
-impl<const V: usize, const P: usize> Neg for Enclosure<V, P> {
-    type Output = Self;
-    #[inline(never)]
-    fn neg(self) -> Self {
-        self.scale(-1.0)
-    }
-}
-
-impl<const V: usize, const P: usize> Number for Enclosure<V, P> {
-    #[inline(always)]
-    fn constant(value: f64) -> Self {
-        Self::fixed(value, [0.0; V])
-    }
-    #[inline(never)]
-    fn scale(self, factor: f64) -> Self {
-        Self {
-            value: self.value.scale(factor),
-            gradient: self.gradient.map(|g| g.scale(factor)),
-            second: self.second.map(|s| s.scale(factor)),
-            middle: self.middle.scale(factor),
-            half: self.half,
-        }
-    }
-    #[inline(always)]
-    fn plus(self, term: f64) -> Self {
-        let value = Interval { middle: self.value.middle + term, radius: self.value.radius };
-        Self { value, middle: self.middle.plus(term), ..self }
-    }
-    #[inline(never)]
-    fn square(self) -> Self {
-        Self {
-            value: self.value.square(),
-            gradient: self.gradient.map(|g| g.mul(self.value).scale(2.0)),
-            second: std::array::from_fn(|p| {
-                let (k, l) = Self::PAIR[p];
-                let product = if k == l { self.gradient[k].square() } else { self.gradient[k].mul(self.gradient[l]) };
-                self.second[p].mul(self.value).add(product).scale(2.0)
-            }),
-            middle: self.middle.square(),
-            half: self.half,
-        }
-        .tightened()
-    }
-    #[inline(never)]
-    fn sqrt(self) -> Self {
-        let (low, high) = (self.value.low().sqrt(), self.value.high().sqrt());
-        let (a, b) = (Lanes::splat(1.0) / high, Lanes::splat(1.0) / low);
-        let first = Interval::between(a * 0.5, b * 0.5);
-        let second = Interval::between(b * b * b * -0.25, a * a * a * -0.25);
-        self.through(self.middle.sqrt(), Interval::between(low, high), first, second)
-    }
-    #[inline(never)]
-    fn inverse_sqrt(self) -> Self {
-        let one = Lanes::splat(1.0);
-        let (a, b) = (one / self.value.high(), one / self.value.low());
-        let (p, q) = (a.sqrt(), b.sqrt());
-        let first = Interval::between(q * b * -0.5, p * a * -0.5);
-        let second = Interval::between(p * a * a * 0.75, q * b * b * 0.75);
-        self.through(self.middle.inverse_sqrt(), Interval::between(p, q), first, second)
-    }
-    #[inline(never)]
-    fn reciprocal(self) -> Self {
-        let (a, b) = (Lanes::splat(1.0) / self.value.high(), Lanes::splat(1.0) / self.value.low());
-        let (a2, b2) = (a * a, b * b);
-        let (a3, b3) = (a2 * a, b2 * b);
-        let first = Interval::between(-(a2.max(b2)), -(a2.min(b2)));
-        let second = Interval::between(a3.min(b3) * 2.0, a3.max(b3) * 2.0);
-        self.through(self.middle.reciprocal(), Interval::between(a.min(b), a.max(b)), first, second)
-    }
-    #[inline(never)]
-    fn arctangent(self) -> Self {
-        let (low, high) = (self.value.low(), self.value.high());
-        let value = Interval::between(Lanes(low.0.map(libm::atan)), Lanes(high.0.map(libm::atan)));
-        let first = |t: Lanes| Lanes::splat(1.0) / (t * t + 1.0);
-        let (a, b) = (first(low), first(high));
-        let holds = |t: f64| low.at_most(Lanes::splat(t)) & Lanes::splat(t).at_most(high);
-        let steepest = holds(0.0).select(Lanes::splat(1.0), a.max(b));
-        // -2 t / (1 + t^2)^2 is least and largest at 1 / sqrt 3 and at -1 / sqrt 3.
-        let bend = |t: Lanes, first: Lanes| t * first * first * -2.0;
-        let (p, q) = (bend(low, a), bend(high, b));
-        let (turn, most) = (1.0 / 3.0_f64.sqrt(), 0.375 * 3.0_f64.sqrt());
-        let least = holds(turn).select(Lanes::splat(-most), p.min(q));
-        let largest = holds(-turn).select(Lanes::splat(most), p.max(q));
-        let second = Interval::between(least, largest);
-        self.through(self.middle.arctangent(), value, Interval::between(a.min(b), steepest), second)
-    }
-    #[inline(never)]
-    fn elbow(self, links: &Links) -> [Self; 3] {
-        let [s, alpha, beta] = self.middle.elbow(links);
-        let (low, high) = (self.value.low(), self.value.high());
-        let ([s0, d0, c0], [s1, d1, c1]) = (links.sine(low), links.sine(high));
-        // The sine is concave in q, and largest at the right angle.
-        let one = Lanes::splat(1.0);
-        let holds_top = low.at_most(Lanes::splat(links.square())) & Lanes::splat(links.square()).at_most(high);
-        let top = holds_top.select(one, s0.max(s1));
-        let sine = Interval::between(s0.min(s1), top);
-        let first = Interval::between(d1, d0);
-        // The second derivative is largest in magnitude at the ends, least at the right angle, and zero where
-        // continued.
-        let bend = 1.0 / (2.0 * links.upper_arm * links.forearm);
-        let beyond = low.less(Lanes::splat(links.limits[0])) | Lanes::splat(links.limits[1]).less(high);
-        let flattest = beyond.select(Lanes::splat(0.0), holds_top.select(Lanes::splat(-bend * bend), c0.max(c1)));
-        let second = Interval::between(c0.min(c1), flattest);
-        let inverse = Interval::between(one / high, one / low);
-        let inverse2 = Interval::between(one / (high * high), one / (low * low));
-        let inverse3 = Interval::between(one / (high * high * high), one / (low * low * low));
-        let half = 0.5 * (links.upper_arm * links.upper_arm - links.forearm * links.forearm);
-        let area = links.upper_arm * links.forearm;
-        let along = inverse.scale(half);
-        let along = Interval { middle: along.middle + 0.5, radius: along.radius };
-        let across = [
-            sine.mul(inverse),
-            first.mul(inverse).sub(sine.mul(inverse2)),
-            second.mul(inverse).sub(first.mul(inverse2).scale(2.0)).add(sine.mul(inverse3).scale(2.0)),
-        ]
-        .map(|i| i.scale(area));
-        [
-            self.through(s, sine, first, second),
-            self.through(alpha, along, inverse2.scale(-half), inverse3.scale(2.0 * half)),
-            self.through(beta, across[0], across[1], across[2]),
-        ]
-    }
-    #[inline(never)]
-    fn wrist(self, bend: &Bend) -> Self {
-        let (low, high) = (self.value.low(), self.value.high());
-        let ([v0, d0, c0], [v1, d1, c1]) = (bend.inverse(low), bend.inverse(high));
-        // Convex, least at zero, and so is the second derivative where it is not continued; there it is zero.
-        let zero = Lanes::splat(0.0);
-        let holds_zero = low.at_most(zero) & zero.at_most(high);
-        let min_value = holds_zero.select(Lanes::splat(1.0), v0.min(v1));
-        let limit = Lanes::splat(bend.limit);
-        let beyond = limit.less(high) | low.less(-limit);
-        let min_second = beyond.select(zero, holds_zero.select(Lanes::splat(2.0), c0.min(c1)));
-        let second = Interval::between(min_second, c0.max(c1));
-        self.through(
-            self.middle.wrist(bend),
-            Interval::between(min_value, v0.max(v1)),
-            Interval::between(d0, d1),
-            second,
-        )
-    }
-    #[inline(always)]
-    fn is_negative(self) -> Mask {
-        self.value.high().less(ZERO)
-    }
-    #[inline(always)]
-    fn low(self) -> Lanes {
-        self.value.low()
-    }
-    #[inline(always)]
-    fn high(self) -> Lanes {
-        self.value.high()
-    }
-    #[inline(always)]
-    fn assume_above(self, floor: f64, sure: &mut Mask) -> Self {
-        let floor = Lanes::splat(floor);
-        let fine = floor.less(self.value.low());
-        *sure = *sure & fine;
-        // Elsewhere some number that does no harm.
-        let one = Lanes::splat(1.0);
-        let value =
-            Interval { middle: fine.select(self.value.middle, one), radius: fine.select(self.value.radius, ZERO) };
-        let middle = Slope { value: fine.select(self.middle.value, one), ..self.middle };
-        Self { value, middle, ..self }
-    }
+/// Least and largest sine and cosine between two angles less than a turn apart. rad
+fn sine_cosine_over(from: f64, to: f64) -> ((f64, f64), (f64, f64)) {
+    let (s0, c0) = libm::sincos(from);
+    let (s1, c1) = libm::sincos(to);
+    // Whether an angle of that kind (plus whole turns) is between.
+    let holds = |angle: f64| ((to - angle) / TAU).floor() > ((from - angle) / TAU).floor();
+    let range = |a: f64, b: f64, top: f64| {
+        let high = if holds(top) { 1.0 } else { a.max(b) };
+        let low = if holds(top + PI) { -1.0 } else { a.min(b) };
+        (low, high)
+    };
+    (range(s0, s1, PI / 2.0), range(c0, c1, 0.0))
 }

@@ -4,10 +4,8 @@ use super::active_cells::ActiveCells;
 use super::compliance_table::{AffineModel, Node, enclosed};
 use super::interval_simd::WIDTH;
 use super::model::Model;
-use super::over_regions::sure_to_hold;
 use super::region::Region;
 use serde::Serialize;
-use std::f64::consts::PI;
 use std::fmt;
 use stead_model::robot::PostureClass;
 
@@ -33,62 +31,55 @@ const NAMES: [&str; 6] =
 const BOXES: usize = 8;
 const POINTS: usize = 8;
 
-/// The open boxes that are counted, those of least bound, each with what is known of it.
-pub(super) fn counted_boxes<'a, T>(open: &[(Region, f64)], known: &'a [T]) -> Vec<(Region, &'a T)> {
-    let mut all: Vec<_> = open.iter().zip(known).collect();
-    all.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
-    all.into_iter().take(BOXES).map(|((region, _), known)| (*region, known)).collect()
-}
-
-/// The numbers of the path points that are counted in a box, of so many.
-pub(super) fn counted_points(count: usize) -> impl Iterator<Item = usize> {
-    (0..count).step_by(count.div_ceil(POINTS).max(1))
-}
-
 impl KeepsOpen {
-    /// Of boxes with the cells of heading that are still of interest in each.
-    pub(super) fn of<'a>(model: &Model, boxes: impl Iterator<Item = (Region, &'a ActiveCells)>) -> Self {
+    /// Of open boxes with what is known of each, and so many path points, by what `count` adds of each; `None` where no
+    /// state counts.
+    pub(super) fn of<T>(
+        open: &[(Region, f64)],
+        known: &[T],
+        points: usize,
+        count: impl Fn(&mut Self, &Region, &T, usize),
+    ) -> Option<Self> {
+        let mut all: Vec<_> = open.iter().zip(known).collect();
+        all.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
         let mut counted = Self::default();
-        for (region, active) in boxes {
-            counted_points(model.points.len()).for_each(|point| counted.add_point(model, &region, active, point));
+        for ((region, _), known) in all.into_iter().take(BOXES) {
+            let points = (0..points).step_by(points.div_ceil(POINTS).max(1));
+            points.for_each(|point| count(&mut counted, region, known, point));
         }
-        counted
+        Some(counted).filter(|counted| counted.states > 0)
     }
 
-    fn add_point(&mut self, model: &Model, region: &Region, active: &ActiveCells, point: usize) {
+    /// Counts the states of a path point in a box, with the cells of heading that are still of interest.
+    pub(super) fn add_point(&mut self, model: &Model, region: &Region, active: &ActiveCells, point: usize) {
         let Model { table, arm, .. } = model;
         let level = active.level;
         let Some(placed) = model.placed(point, region) else { return };
-        if !table.answers(level, [placed.reach[0], placed.reach[1]]) {
-            return;
-        }
-        let Some((at, _)) = table.nearest(level, placed.r, placed.z) else { return };
-        let (nodes, [r, z]) = (table.nodes_at(arm, level, at), table.place(level, at));
-        let half = [table.length(level), table.length(level), PI / table.headings(level) as f64];
+        let Some((nodes, _)) = table.answer(arm, level, &placed) else { return };
         for class in PostureClass::ALL {
             for cell in active.cells(point, class.index()).map(usize::from) {
                 match nodes.known(cell, class).0 {
                     Node::Empty => {}
-                    Node::Unknown => self.add_unknown(),
+                    Node::Unknown => self.add(None),
                     Node::Known(AffineModel { sure: true, .. }) => self.states += 1,
                     Node::Known(_) => {
-                        let place = [r, z, table.heading(level, cell)];
-                        let y = enclosed(arm, &[place; WIDTH], half, class);
-                        self.add_undecided(y.map_or([true; 6], |y| sure_to_hold(arm, &y.margins, 0)));
+                        let y = enclosed(arm, &[nodes.place(cell); WIDTH], table.half(level), class);
+                        self.add(Some(y.map_or([true; 6], |y| arm.sure_to_hold(&y.margins, 0))));
                     }
                 }
             }
         }
     }
 
-    /// Counts a state of which nothing is known.
-    pub(super) fn add_unknown(&mut self) {
-        (self.states, self.unknown) = (self.states + 1, self.unknown + 1);
-    }
-
-    /// Counts a state that may be allowed or not, where it is known which constraints hold.
-    pub(super) fn add_undecided(&mut self, holds: [bool; 6]) {
-        (self.states, self.undecided) = (self.states + 1, self.undecided + 1);
+    /// Counts a state that may be allowed or not, where it is known which constraints hold, or one of which nothing is
+    /// known.
+    pub(super) fn add(&mut self, holds: Option<[bool; 6]>) {
+        self.states += 1;
+        let Some(holds) = holds else {
+            self.unknown += 1;
+            return;
+        };
+        self.undecided += 1;
         self.by.iter_mut().zip(holds).for_each(|(count, holds)| *count += usize::from(!holds));
     }
 

@@ -1,8 +1,8 @@
 //! Kinds of load: loads that coarse tables treat as one, up to their size.
 
 use super::load::Load;
+use super::load::norm;
 use super::region::Point;
-use super::yielding::norm;
 
 /// A load of size 1 that stands for others of size 1, which differ from it by as much at most.
 #[derive(Debug, Clone, Copy, PartialEq)]

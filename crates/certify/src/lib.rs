@@ -5,25 +5,23 @@
 //! more angle. That makes bounds possible that hold for every placement of the cell, every posture scheme and every
 //! plan of beta.
 //!
-//! 1. `arm` is the closed form, evaluated in two number types: `number` (value and gradient) and `enclosure` (intervals
-//!    for value, gradient and second derivatives; `interval`, `interval_simd`, `continuation`). `over_regions` is what
-//!    these tell of a region.
+//! 1. `arm` is the closed form, evaluated in the two number types (`number`) of `enclosure`: value and gradient, and
+//!    intervals for value, gradient and second derivatives over a region (`interval_simd`, `continuation`).
 //! 2. `compliance_table` holds, node by node, an affine model of the compliance with its remainder (of how the arm
 //!    yields to moments too, `moment`), or that no state is allowed.
 //! 3. `load` is what acts on a point and what of its deflection is scored, with the lower bound of the score that is
-//!    linear in the compliance (`yielding`); `coarse_bounds` minimises it over the heading once for all placements:
+//!    linear in the compliance; `coarse_bounds` minimises it over the heading once for all placements:
 //!    minorants over radius, height and direction of the load (`minorant`), for kinds of load (`kind`).
 //! 4. `cell` is the cell seen along axis 1, `region` a box of placements, `cost` a bound of a path point's score over
 //!    it.
 //! 5. `model` puts these together. `lower_bound` adds the points up by dynamic programming over cells of heading
 //!    (`active_cells`, `sliding_min`), with the limits on beta, at the corners of a box.
 //! 6. `branch_and_bound` goes through the boxes, most promising first: from below for the best placement (`best`).
-//!    `at_rest` makes external axes that stand still part of the cell, `keeps_open` counts what a bound that falls short
-//!    leaves undecided, `forecast` says when a gap will be reached. `leaning` is all of this for tools that lean, in
-//!    other coordinates.
+//!    `keeps_open` counts what a bound that falls short leaves undecided, `forecast` says when a gap will be reached.
+//!    `leaning` is all of this for tools that lean, in other coordinates.
 //! 7. `part` is a problem as a tree of what is bounded by itself: orientations of the part, of which the least bound
-//!    holds, and segments where external axes stand elsewhere for each, compared with a `low_value`. `requirements` is
-//!    what bounds ask of each.
+//!    holds, and segments where external axes have another position for each. `requirements` is what bounds need of
+//!    each, with external axes at one position as part of the cell.
 //! 8. `worst` is the same for the worst placement, from above (`upper_bound`) and with the rate of beta dropped;
 //!    `relaxed` is the objective of a placement then.
 //!
@@ -48,7 +46,6 @@
 
 mod active_cells;
 mod arm;
-mod at_rest;
 mod best;
 mod branch_and_bound;
 mod cell;
@@ -59,19 +56,16 @@ mod continuation;
 mod cost;
 mod enclosure;
 mod forecast;
-mod interval;
 mod interval_simd;
 mod keeps_open;
 mod kind;
 mod leaning;
 mod load;
-mod low_value;
 mod lower_bound;
 mod minorant;
 mod model;
 mod moment;
 mod number;
-mod over_regions;
 mod part;
 mod region;
 mod relaxed;
@@ -79,7 +73,6 @@ mod requirements;
 mod sliding_min;
 mod upper_bound;
 mod worst;
-mod yielding;
 
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,7 @@
 use super::active_cells::ActiveCells;
 use super::compliance_table::{Node, NodesAt};
 use super::cost::{CORNERS, NOTHING, PointCost, cost_at_corners, joined_sets};
-use super::model::Model;
+use super::model::{Model, OtherSet};
 use super::region::Region;
 use super::sliding_min::{INFINITE, SlidingMin, joined, min_into};
 use std::f64::consts::TAU;
@@ -210,13 +210,13 @@ impl<'a> Pass<'a> {
     /// What answers for a point all over the box, if anything does.
     fn answer(&self, point: usize) -> Option<Answer<'a>> {
         let cost = self.points[point]?;
-        let (placed, level) = (&cost.placed, self.active.level);
-        let Model { table, arm, others, .. } = self.model;
-        let answers = table.answers(level, [placed.reach[0], placed.reach[1]]);
-        let (at, off) = table.nearest(level, placed.r, placed.z).filter(|_| answers)?;
-        let others =
-            others.iter().map(|set| (cost.with_first(set.arm.joint1), set.table.nodes_at(&set.arm, level, at)));
-        Some(Answer { point: cost, nodes: table.nodes_at(arm, level, at), others: others.collect(), off })
+        let (Model { table, arm, others, .. }, level) = (self.model, self.active.level);
+        let (nodes, off) = table.answer(arm, level, &cost.placed)?;
+        let of = |set: &'a OtherSet| {
+            let (nodes, _) = set.table.answer(&set.arm, level, &cost.placed)?;
+            Some((cost.with_first(set.arm.joint1), nodes))
+        };
+        Some(Answer { point: cost, nodes, others: others.iter().map(of).collect::<Option<_>>()?, off })
     }
 
     /// What a point costs at least in a cell; `None` where none of its states is allowed.

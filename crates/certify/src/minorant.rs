@@ -3,13 +3,11 @@
 use super::arm::Arm;
 use super::compliance_table::{AffineModel, ComplianceTable, Node};
 use super::cost::{Direction, Known, of_joint1};
+use super::enclosure::{FUNCTIONS, REMAINDERS};
 use super::kind::Kind;
-use super::load::Load;
+use super::load::{Load, Tangent, Yielding};
 use super::moment::{MomentModel, MomentPart};
 use super::number::VARIABLES;
-use super::over_regions::{FUNCTIONS, REMAINDERS};
-use super::yielding::{Tangent, Yielding};
-use std::f64::consts::TAU;
 use stead_model::robot::PostureClass;
 
 /// An affine function about a node, below what a point costs in one posture class within a step of it.
@@ -25,29 +23,6 @@ pub(super) struct Affine {
 pub(super) const EMPTY: Affine = Affine { value: f32::INFINITY, slope: [0.0; VARIABLES] };
 /// Nothing is known.
 pub(super) const ZERO: Affine = Affine { value: 0.0, slope: [0.0; VARIABLES] };
-
-/// An affine function below several, each true within `half` of its own middle.
-pub(super) fn below_all(
-    once: impl Iterator<Item = ([f64; 3], Affine)>,
-    again: impl Iterator<Item = ([f64; 3], Affine)>,
-    half: [f64; 3],
-) -> Affine {
-    let lowest = once.filter(|(_, e)| e.value < f32::INFINITY).min_by(|a, b| a.1.value.total_cmp(&b.1.value));
-    let Some((_, lowest)) = lowest else { return EMPTY };
-    if lowest == ZERO {
-        return ZERO;
-    }
-    let slope = lowest.slope.map(f64::from);
-    let mut value = f64::INFINITY;
-    for (off, e) in again.filter(|(_, e)| e.value < f32::INFINITY) {
-        let mut v = f64::from(e.value);
-        for k in 0..3 {
-            v -= slope[k] * off[k] + (f64::from(e.slope[k]) - slope[k]).abs() * half[k];
-        }
-        value = value.min(v);
-    }
-    rounded(value, slope, half)
-}
 
 /// An affine function a little lower, in fewer digits.
 pub(super) fn rounded(value: f64, slope: [f64; 3], half: [f64; 3]) -> Affine {
@@ -85,10 +60,9 @@ impl Around<'_> {
             Node::Empty => return true,
             Node::Unknown if finest => return false,
             Node::Known(known) if finest || f64::from(coarseness(known)) <= COARSE * arm.typical_compliance() => {
-                let half = [table.length(level), table.length(level), 0.5 * TAU / table.headings(level) as f64];
                 let [r, z] = table.place(level, at);
                 let off = [r - node[0], z - node[1]];
-                out.push(ModelledRegion::new((known, moments), half, [r, arm.joint1], off));
+                out.push(ModelledRegion::new((known, moments), table.half(level), [r, arm.joint1], off));
                 return true;
             }
             _ => {}
@@ -239,7 +213,7 @@ impl ModelledRegion {
     /// The same below the score.
     #[inline(always)]
     fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64) -> (f64, [f64; 3]) {
-        let seen = load.with_part(direction.seen(self.values.map(|value| value[0]), self.r, self.first));
+        let seen = direction.seen(self.values.map(|value| value[0]), load, self.r, self.first);
         let by_moment = self.moments.map_or([0.0; 3], |known| {
             direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, self.first)
         });

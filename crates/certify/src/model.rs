@@ -51,6 +51,8 @@ pub(super) struct Model {
     pub table: ComplianceTable,
     pub points: Vec<Point>,
     pub segments: Vec<Range<usize>>,
+    /// Which limits on beta along the path are kept.
+    pub keeps: Keeps,
     /// Changes of the heading from the point before, less that of the direction of the feed, that the limits on beta
     /// allow. rad
     pub changes: Vec<BetaStep>,
@@ -64,9 +66,9 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Of a problem, with what is kept of the limits on beta along the path.
-    pub fn new(problem: &Problem, keeps: Keeps) -> Self {
-        let extent = extent(problem);
+    /// Of a problem.
+    pub fn new(problem: &Problem) -> Self {
+        let (extent, keeps) = (extent(problem), Keeps::of(problem));
         let arm = |robot: &Robot| Arm::new(problem, robot, extent.radius.0);
         let table = || ComplianceTable::new(extent, STEPS, LEVELS);
         let robots = problem.scored_robots();
@@ -86,6 +88,7 @@ impl Model {
         Self {
             arm: arm(&robots[0]),
             table: table(),
+            keeps,
             changes: (0..points.len()).map(change).collect(),
             points,
             segments: problem.task.segments().to_vec(),

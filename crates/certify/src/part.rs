@@ -4,8 +4,8 @@ use super::best::bound_of;
 use super::branch_and_bound::{Bound, Status};
 use super::cell::{NEAREST, too_near};
 use super::load::Objective;
-use super::low_value::low_value;
-use super::requirements::{Leaf, not_from_above, uncounted};
+use super::relaxed::low_value;
+use super::requirements::Leaf;
 use std::sync::Arc;
 use std::time::Instant;
 use stead_model::external_axis::AxisUse;
@@ -20,12 +20,12 @@ use stead_problem::symmetry::Unsupported;
 /// A problem, or a part of it, that can be certified.
 #[derive(Debug)]
 pub(super) enum Part {
-    /// What is bounded as a whole.
+    /// A problem that is bounded as a whole.
     Leaf(Box<Leaf>),
     /// The orientations of the part by name: the least of their bounds holds.
     Least(Vec<(String, Part)>),
-    /// The segments that count, by number from 0, where external axes stand at another place for each: seen from the
-    /// robot no two need have the same placement, and their bounds make up the figure.
+    /// The segments that count, by number from 0, where external axes have another position for each: seen from
+    /// the robot no two need have the same placement, and their bounds make up the figure.
     Sum(Objective, Vec<(usize, Leaf)>),
 }
 
@@ -52,17 +52,6 @@ pub fn certifiable(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
     Part::of(problem, memory).map(drop).map_err(together)
 }
 
-/// Whether the worst placement can be certified too: bounds from above are those of the mean of scores that are the
-/// absolute value of one part of the deflection.
-///
-/// # Errors
-/// All reasons why not, those of the best one among them.
-pub fn certifiable_from_above(problem: &Problem, memory: u64) -> Result<(), Unsupported> {
-    let reasons = Part::of(problem, memory).err().unwrap_or_default();
-    let reasons = once_each(reasons.into_iter().chain(not_from_above(problem)));
-    if reasons.is_empty() { Ok(()) } else { Err(together(reasons)) }
-}
-
 /// What a certificate of a problem costs more than others, to be said before a long search: in a sentence, where there
 /// is something to say.
 pub fn expected_cost(problem: &Problem) -> Option<String> {
@@ -74,22 +63,6 @@ pub fn expected_cost(problem: &Problem) -> Option<String> {
          the certificate: its gap closes slowly, or not to the one asked for; in a cell {missing} mm farther from \
          axis 1 none do"
     ))
-}
-
-/// What a lower bound leaves out of the objective of a problem, and of what is allowed, beside its constraints: in
-/// words.
-pub(super) fn left_out(problem: &Problem) -> Vec<String> {
-    let mut words = uncounted(problem);
-    if expected_cost(problem).is_some() {
-        words.push(format!("the deflection of path points nearer than {} mm to axis 1", NEAREST * 1e3));
-    }
-    if !problem.external_axes.is_empty() {
-        words.push("which position of the external axes goes with which x, y, z and yaw".to_owned());
-    }
-    if are_segments_apart(problem) {
-        words.push("that all segments have the same x, y, z and yaw".to_owned());
-    }
-    words
 }
 
 /// Bounds the objective of all placements of a problem from below, until no placement can be better than `value` (what
@@ -116,7 +89,7 @@ pub(super) fn together(mut reasons: Vec<Unsupported>) -> Unsupported {
 }
 
 /// Reasons without repetitions.
-fn once_each(all: impl Iterator<Item = Unsupported>) -> Vec<Unsupported> {
+pub(super) fn once_each(all: impl Iterator<Item = Unsupported>) -> Vec<Unsupported> {
     all.fold(Vec::new(), |mut said, reason| {
         if !said.contains(&reason) {
             said.push(reason);
@@ -204,8 +177,8 @@ fn in_orientation(problem: &Problem, number: usize) -> Result<Problem, Vec<Unsup
     changed.map_err(|_| vec![Unsupported::Orientations])
 }
 
-/// Whether segments are bounded one by one: external axes stand at another place for each.
-fn are_segments_apart(problem: &Problem) -> bool {
+/// Whether segments are bounded one by one: external axes have another position for each.
+pub(super) fn are_segments_apart(problem: &Problem) -> bool {
     problem.task.segments().len() > 1 && problem.external_axes.iter().any(|axis| axis.axis_use == AxisUse::Indexed)
 }
 
@@ -228,6 +201,16 @@ fn sharing(monitor: &Monitor, parts: usize) -> Monitor {
         now + deadline.saturating_duration_since(now) / parts as u32
     };
     monitor.clone().with_deadline(monitor.deadline().map(share))
+}
+
+impl Bound {
+    /// With the open boxes of another search and what it took; limits that one of them drops are not kept.
+    fn and(mut self, other: Self) -> Self {
+        self.open.extend(other.open);
+        self.nodes += other.nodes;
+        (self.with_rate, self.with_turn) = (self.with_rate && other.with_rate, self.with_turn && other.with_turn);
+        self
+    }
 }
 
 /// The bound that holds in all orientations.

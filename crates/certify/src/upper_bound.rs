@@ -11,12 +11,14 @@
 //! All these are convex functions of the placement, so the greatest value is at a corner of the box. Cells of heading
 //! are sought near those that were best in the box it was cut from; where that is not enough, among all.
 
+use super::branch_and_bound::Open;
 use super::compliance_table::Node;
 use super::cost::{CORNERS, PointCost};
 use super::model::Model;
 use super::region::Region;
 use super::sliding_min::plus;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 use stead_model::robot::PostureClass;
 use stead_numerics::monitor::Monitor;
 
@@ -55,6 +57,24 @@ impl Inherited {
     }
 }
 
+/// A box, and what its halves inherit: `None` where it was not bounded in detail yet.
+pub(super) type WorstBox = Open<Option<Arc<Inherited>>>;
+
+/// A part of a box with its bound; where the box was not bounded in detail yet, quickly if that is enough to get below
+/// `ceiling`. m
+pub(super) fn bounded(model: &Model, of: &WorstBox, region: Region, ceiling: f64, monitor: &Monitor) -> WorstBox {
+    let seen = of.known.clone().unwrap_or_else(|| Arc::new(Inherited::nothing(model)));
+    let Some(over) = BoxBounds::new(model, &region, monitor) else {
+        return Open { bound: of.bound, region, known: Some(seen) };
+    };
+    let quick = if of.known.is_none() { over.quick_bound(ceiling) } else { f64::INFINITY };
+    if quick <= ceiling {
+        return Open { bound: quick, region, known: None };
+    }
+    let (sum, seen) = over.upper_bound(&seen, ceiling);
+    Open { bound: sum.min(of.bound), region, known: Some(Arc::new(seen)) }
+}
+
 /// One class of one segment over a box.
 #[derive(Debug, Clone)]
 struct ClassBound {
@@ -91,12 +111,11 @@ impl<'a> BoxBounds<'a> {
         let mut bounds = CellBounds { best: None, max: NOTHING };
         let half_cell = 0.5 * TAU / table.headings(self.level) as f64;
         let placed = self.points[point].as_ref();
-        let found = placed.and_then(|p| Some((p, table.nearest(self.level, p.placed.r, p.placed.z)?)));
-        let Some((pointwise, (at, off))) = found else {
+        let found = placed.and_then(|p| Some((p, table.answer(arm, self.level, &p.placed)?)));
+        let Some((pointwise, (nodes, off))) = found else {
             bounds.max = ANYTHING;
             return bounds;
         };
-        let nodes = table.nodes_at(arm, self.level, at);
         let mut min_size = f64::INFINITY;
         for cell in cells {
             let (node, moments) = nodes.known(cell, class);

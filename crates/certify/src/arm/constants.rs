@@ -1,13 +1,16 @@
-//! What the closed form of an arm takes from the problem.
+//! Constants of the closed form of an arm, from the problem: geometry, compliances by joint angle, and joint limits.
 
 use super::super::cell::points_of;
 use super::super::continuation::{Bend, Links};
+use super::super::enclosure::Enclosure;
+use super::super::interval_simd::Mask;
+use super::super::number::Number;
 use super::beside::Beside;
-use super::law::Law;
 use super::singularity::{Limits, Needs, tool_lever};
+use super::{ArmCompliance, Margins};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::{PI, TAU};
-use stead_model::robot::{Geometry, Robot, angles::ANGLE_ROUNDING};
+use stead_model::robot::{Compensator, Compliance, Geometry, Joint, Robot, angles::ANGLE_ROUNDING};
 use stead_problem::problem::Problem;
 
 /// What does not change from state to state.
@@ -51,7 +54,7 @@ pub(in super::super) struct Arm {
 
 /// The limits of the sum of joints 2 and 3.
 #[derive(Debug, Clone, Copy)]
-pub(in super::super) struct SumLimits {
+pub(super) struct SumLimits {
     /// Rounding included. rad
     pub limits: (f64, f64),
     /// 1 or -1: how joint 3 counts.
@@ -73,7 +76,7 @@ impl SumLimits {
 
 /// How the limits of a joint cut its turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) enum LimitSpan {
+pub(super) enum LimitSpan {
     /// Narrower than half a turn: both limits must hold.
     Narrow,
     /// Wider than half a turn: one of the two limits must hold.
@@ -162,13 +165,96 @@ impl Arm {
         self.limits[joint]
     }
 
-    /// The limits of the sum of joints 2 and 3, where they say more than those of the joints.
-    pub fn sum_limits(&self) -> Option<&SumLimits> {
-        self.sum.as_ref()
+    /// How the limits of joint 2 (0) or 3 (1) cut its turn.
+    pub(super) fn limit_span(&self, joint: usize) -> LimitSpan {
+        LimitSpan::of(self.limits[joint])
     }
 
-    /// How the limits of joint 2 (0) or 3 (1) cut its turn.
-    pub fn limit_span(&self, joint: usize) -> LimitSpan {
-        LimitSpan::of(self.limits[joint])
+    /// Whether all states of a region are sure to be allowed.
+    pub fn is_sure<const V: usize, const P: usize>(&self, y: &ArmCompliance<Enclosure<V, P>>, lane: usize) -> bool {
+        y.conditioned.lane(lane) && self.sure_to_hold(&y.margins, lane).into_iter().all(|holds| holds)
+    }
+
+    /// Which constraints are sure to hold in all states of a region: the elbow's, the wrist's and the general share of
+    /// conditioning, and the limits of joints 2, 3 (with those of the sum of both) and 5.
+    pub fn sure_to_hold<const V: usize, const P: usize>(
+        &self,
+        margins: &Margins<Enclosure<V, P>>,
+        lane: usize,
+    ) -> [bool; 6] {
+        let holds = |margin: &Enclosure<V, P>| margin.value.low().0[lane] >= 0.0;
+        let is_within = |span: LimitSpan, limits: &[Enclosure<V, P>; 2]| match (span, limits) {
+            (LimitSpan::Full, _) => true,
+            (LimitSpan::Wide, [min, max]) => holds(min) || holds(max),
+            (LimitSpan::Narrow, [min, max]) => holds(min) && holds(max),
+        };
+        let within = |joint: usize| is_within(self.limit_span(joint), &margins.joints[joint]);
+        // A sum that is within its limits but for a whole turn is beyond them.
+        let of_sum = match (&self.sum, &margins.sum) {
+            (Some(limits), Some(sum)) => limits.is_exact && is_within(LimitSpan::of(limits.limits), sum),
+            _ => true,
+        };
+        let Margins { elbow, wrist, conditioning, joint5, .. } = margins;
+        [holds(elbow), holds(wrist), holds(conditioning), within(0), within(1) && of_sum, holds(joint5)]
+    }
+}
+
+/// Half the angle from the middle of the limits is told by its tangent, which needs one plus its cosine above this.
+const MIN_OPEN: f64 = 1e-2;
+/// Squared length of a spring and share of the stiffness left, below which too little is known.
+const MIN_SPRING2: f64 = 1e-6;
+const MIN_SHARE: f64 = 1e-3;
+
+/// How a joint yields.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Law {
+    /// The same at every angle. rad/(N m)
+    Constant(f64),
+    /// Linear in the angle: its value in the middle of the limits (rad/(N m)), slope, and sine and cosine of the
+    /// middle.
+    Range { middle: f64, slope: f64, at: (f64, f64) },
+    /// Beside a spring: [`Compliance::Compensated`], and sine and cosine of its alpha.
+    Compensated { alone: f64, compensator: Compensator, at: (f64, f64) },
+}
+
+impl Law {
+    pub fn of(joint: &Joint) -> Self {
+        match joint.compliance {
+            Compliance::Constant(value) => Self::Constant(value),
+            Compliance::Range { at_min, at_max } => Self::Range {
+                middle: 0.5 * (at_min + at_max),
+                slope: (at_max - at_min) / (joint.max - joint.min),
+                at: libm::sincos(0.5 * (joint.min + joint.max)),
+            },
+            Compliance::Compensated { alone, compensator } => {
+                Self::Compensated { alone, compensator, at: libm::sincos(compensator.alpha) }
+            }
+        }
+    }
+
+    /// A number times the compliance at the angle of this sine and cosine: true within the limits of the joint.
+    /// `regular` loses the lanes in which too little is known. rad/(N m)
+    #[inline(always)]
+    pub fn times<T: Number>(&self, number: T, angle: [T; 2], regular: &mut Mask) -> T {
+        let [sine, cosine] = angle;
+        match *self {
+            Self::Constant(value) => number.scale(value),
+            Self::Range { middle, slope, at: (s, c) } => {
+                // tan(x / 2) = sin x / (1 + cos x), with x the angle from the middle of the limits.
+                let off = sine.scale(c) - cosine.scale(s);
+                let open = (cosine.scale(c) + sine.scale(s)).plus(1.0).assume_above(MIN_OPEN, regular);
+                number * (off * open.reciprocal()).arctangent().scale(2.0 * slope).plus(middle)
+            }
+            Self::Compensated { alone, compensator, at: (s, c) } => {
+                let Compensator { spring_stiffness, a, l, free_length, .. } = compensator;
+                let straight = cosine.scale(c) - sine.scale(s);
+                let length2 = straight.scale(2.0 * a * l).plus(a * a + l * l).assume_above(MIN_SPRING2, regular);
+                let inverse = length2.inverse_sqrt();
+                let product = straight.scale(l).plus(a) * straight.scale(a).plus(l);
+                let pull = (product * inverse.square() * inverse).scale(free_length);
+                let share = (pull - straight).scale(spring_stiffness * a * l * alone).plus(1.0);
+                (number * share.assume_above(MIN_SHARE, regular).reciprocal()).scale(alone)
+            }
+        }
     }
 }

@@ -6,6 +6,7 @@
 //! good enough for the size of the cell: most pieces never are.
 
 use super::super::arm::Arm;
+use super::super::cell::Extent;
 use super::super::interval_simd::WIDTH;
 use super::super::kind::Kind;
 use super::super::minorant::{Affine, EMPTY, rounded};
@@ -82,13 +83,6 @@ impl Cells {
         let largest: Vec<Cell> = std::iter::repeat_with(Cell::default).take(counts.iter().product()).collect();
         let made = AtomicU64::new(size_of_val(largest.as_slice()) as u64);
         Self { arm, kinds, enough, corner, counts, largest, made }
-    }
-
-    /// What cells of that extent take while nothing is known of them. bytes
-    pub fn bytes(radius: f64, height: (f64, f64)) -> u64 {
-        // In f64: a cell may be so large that whole numbers overflow.
-        let along = |width: f64| (width / (2.0 * LARGEST)).floor() + 1.0;
-        (along(2.0 * radius).powi(2) * along(height.1 - height.0) * size_of::<Cell>() as f64) as u64
     }
 
     /// What was made so far takes. bytes
@@ -280,6 +274,15 @@ impl Cells {
         self.made.fetch_add(bytes as u64, Ordering::Relaxed);
         made
     }
+}
+
+/// What cells take for so many tool axes while nothing is known of them. bytes
+pub(in super::super) fn bytes(extent: Extent, axes: usize) -> u64 {
+    // In f64: a cell may be so large that whole numbers overflow.
+    let along = |width: f64| (width / (2.0 * LARGEST)).floor() + 1.0;
+    let height = extent.height.1 - extent.height.0;
+    let one = (along(2.0 * extent.radius.1).powi(2) * along(height) * size_of::<Cell>() as f64) as u64;
+    one.saturating_mul(axes as u64)
 }
 
 impl Candidates {

@@ -8,24 +8,25 @@
 //! box. Limits on beta along the path are dropped.
 
 mod cells;
-mod keeps_open;
 mod piece;
 mod states;
 
 use super::arm::Arm;
 use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts};
-use super::cell::{Yaws, extent, side, whole};
+use super::cell::{SAME, Yaws, axes_of, extent, seen, side, whole};
 use super::cost::{CORNERS, cost_at_corners};
-use super::keeps_open::counted_boxes;
+use super::keeps_open::KeepsOpen;
 use super::kind::kinds_of;
 use super::load::{Load, Objective};
 use super::minorant::Affine;
 use super::model::Keeps;
 use super::region::Region;
 use super::sliding_min::{INFINITE, joined, min_into, plus};
+pub(super) use cells::bytes;
 use cells::{Cells, LEVELS};
 use nalgebra::Vector3;
 use piece::half_of;
+use states::count;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
@@ -40,30 +41,6 @@ use stead_problem::settings::CertificateSettings;
 pub(super) const MOST_AXES: usize = 3;
 /// What a point costs where it is of no interest at first, in terms of what all of them cost in the mean.
 const ENOUGH: f64 = 1.5;
-/// Axes this near to each other (sine) are one: printed digits.
-const SAME: f64 = 1e-9;
-
-/// The tool axes of a path, in the frame of the workpiece about axis 1.
-pub(super) fn axes_of(problem: &Problem) -> Vec<Vector3<f64>> {
-    let mut axes: Vec<Vector3<f64>> = Vec::new();
-    for point in problem.task.points() {
-        let axis = seen(&point.axis, side(problem));
-        if axes.iter().all(|other| (other - axis).norm() > SAME) {
-            axes.push(axis);
-        }
-    }
-    axes
-}
-
-/// What the largest cells take for that many axes. bytes
-pub(super) fn bytes(problem: &Problem, axes: usize) -> u64 {
-    let extent = extent(problem);
-    Cells::bytes(extent.radius.1, extent.height).saturating_mul(axes as u64)
-}
-
-fn seen(v: &Vector3<f64>, side: f64) -> Vector3<f64> {
-    Vector3::new(v.x, v.y * side, v.z * side)
-}
 
 /// A path point: where it is in the workpiece (m), which axis its tool has, and its kind of load, with how many times
 /// as large its own is; `None` of one that costs nothing.
@@ -108,12 +85,12 @@ pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings
         of: |open: &Open<Classes>| model.parts(open, ceiling, monitor),
         used: || model.axes.iter().map(Cells::used).sum(),
         bytes: |known: &Classes| known.as_ref().map_or(0, |known| known.len() as u64),
+        points: model.points.len(),
+        count: |counted: &mut KeepsOpen, region: &Box3, known: &Classes, point: usize| {
+            model.count(counted, region, known, point);
+        },
     };
-    let (mut bound, known) = search.explore(all, monitor, |_| None);
-    if bound.falls_short() {
-        let counted = model.keeps_open(&counted_boxes(&bound.open, &known));
-        bound.keeps_open = Some(counted).filter(|counted| counted.states > 0);
-    }
+    let mut bound = search.explore(all, monitor, |_| None);
     // About axis 1 a box is part of a larger region, which neighbours share: what holds in all of them is the least.
     let least = bound.open.iter().map(|open| open.1).fold(f64::INFINITY, f64::min);
     bound.open.iter_mut().for_each(|(region, bound)| (*region, *bound) = (about_axis_1(region), least));
@@ -326,6 +303,25 @@ impl Leaning {
         let slope = all().min_by(|a, b| a.low().total_cmp(&b.low()))?.slope;
         let value = all().map(|part| part.left(slope)).fold(f64::INFINITY, f64::min);
         Some(cost_at_corners((size * value, slope.map(|s| size * s)), region, self.aggregate))
+    }
+}
+
+impl Leaning {
+    /// Counts what is known of the states of a path point that the bound of a box still counts, in the classes that are
+    /// of interest.
+    fn count(&self, counted: &mut KeepsOpen, region: &Box3, classes: &Classes, number: usize) {
+        let point = &self.points[number];
+        let segment = self.segments.iter().position(|span| span.contains(&number)).unwrap_or(0);
+        let active = classes.as_ref().map_or(15, |classes| classes[segment]);
+        let (cells, level) = (&self.axes[point.axis], level_of(region));
+        // One cell for all that the box is in: that of its middle.
+        let at = std::array::from_fn(|k| {
+            let middle = region.middle[k] + point.at[k];
+            cells.between(level, k, middle, middle).0
+        });
+        for class in PostureClass::ALL.into_iter().filter(|class| active >> class.index() & 1 == 1) {
+            cells.pieces(level, at, class).for_each(|(place, half)| count(counted, &cells.arm, place, half, class));
+        }
     }
 }
 

@@ -2,19 +2,19 @@
 //! spindle about its axis.
 
 use super::super::arm::{Arm, ArmCompliance};
-use super::super::enclosure::Enclosure;
+use super::super::enclosure::{Enclosure, FUNCTIONS, REMAINDERS, remainders};
 use super::super::interval_simd::{Lanes, WIDTH};
+use super::super::keeps_open::KeepsOpen;
 use super::super::kind::Kind;
+use super::super::load::{Tangent, Yielding};
 use super::super::minorant::{Affine, ZERO, rounded};
 use super::super::number::{LEANING, LEANING_PAIRS};
-use super::super::over_regions::{FUNCTIONS, REMAINDERS, heading_over, is_sure, remainders};
-use super::super::yielding::{Tangent, Yielding};
 use stead_model::robot::PostureClass;
 
 /// The number of the turn among the variables.
 pub(super) const TURN: usize = 3;
 
-pub(super) type Enclosed = Enclosure<LEANING, LEANING_PAIRS>;
+type Enclosed = Enclosure<LEANING, LEANING_PAIRS>;
 
 /// What is known of the states of a region.
 #[expect(clippy::large_enum_variant, reason = "four at a time, on the stack")]
@@ -69,18 +69,18 @@ pub(super) fn known_over(
     }
 }
 
-pub(super) fn enclosed(
+fn enclosed(
     arm: &Arm,
     place: &[[f64; LEANING]; WIDTH],
     half: [f64; LEANING],
     class: PostureClass,
 ) -> Option<ArmCompliance<Enclosed>> {
-    let (sine, cosine) = heading_over(place.map(|p| p[3]), half);
+    let (sine, cosine) = Enclosed::heading(place.map(|p| p[3]), half);
     let at = |k: usize| Enclosed::variable(Lanes(place.map(|p| p[k])), k, half);
     arm.evaluate_leaning([at(0), at(1), at(2)], sine, cosine, class)
 }
 
-pub(super) fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {
+fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: [f64; LEANING]) -> Known {
     if y.violated.lane(lane) {
         return Known::Empty;
     }
@@ -102,8 +102,25 @@ pub(super) fn judged(arm: &Arm, y: &ArmCompliance<Enclosed>, lane: usize, half: 
         let bend = second * half[i] * half[j];
         (bends[i], bends[j]) = (bends[i] + bend, bends[j] + bend);
     }
-    let sure = is_sure(arm, y, lane);
+    let sure = arm.is_sure(y, lane);
     Known::Yields(States { values, remainder, bends, sure })
+}
+
+/// Counts what is known of the states of a region.
+pub(super) fn count(
+    counted: &mut KeepsOpen,
+    arm: &Arm,
+    place: [f64; LEANING],
+    half: [f64; LEANING],
+    class: PostureClass,
+) {
+    let Some(y) = enclosed(arm, &[place; WIDTH], half, class) else { return };
+    match judged(arm, &y, 0, half) {
+        Known::Empty => {}
+        Known::Unknown => counted.add(None),
+        Known::Yields(States { sure: true, .. }) => counted.states += 1,
+        Known::Yields(_) => counted.add(Some(arm.sure_to_hold(&y.margins, 0))),
+    }
 }
 
 /// What a tangent says: its value in the middle less all but its slopes by the place, these, and of what was taken

@@ -1,9 +1,10 @@
 //! Tools that lean, layer by layer against the reference evaluator, and with parts broken on purpose.
 
 use super::super::kind::Kind;
-use super::super::part::{certifiable, certifiable_from_above};
+use super::super::part::certifiable;
 use super::super::relaxed_value;
 use super::super::tests::{Setting, hanging_arm, leaning, odd_arm, seeded, share};
+use super::super::worst::certifiable_from_above;
 use super::states::{Known, States, TURN, known_over};
 use super::*;
 use crate::interval_simd::WIDTH;

@@ -2,9 +2,9 @@
 
 use super::super::compliance_table::{AffineModel, Node, known_over};
 use super::super::cost::PointCost;
+use super::super::enclosure::REMAINDERS;
 use super::super::interval_simd::WIDTH;
 use super::super::moment::MomentModel;
-use super::super::over_regions::REMAINDERS;
 use super::super::region::PolarModel;
 use super::*;
 use stead_model::robot::NormalSprings;
@@ -213,12 +213,11 @@ fn broken_costs_are_seen() {
 #[test]
 fn what_yields_beside_the_joints_is_seen_where_it_is_missing_or_doubled() {
     let of = |name: &str| Setting::criteria().into_iter().find(|(other, _)| *other == name).unwrap().1;
-    let model = |problem: &Problem| Model::new(problem, Keeps::of(problem));
     // Parts of either sign add up to the deflection normal to the wall: a bound without some of them is none.
     let mut setting = of("whole arm");
     let mut plain = setting.problem.clone();
     plain.robot = plain.robot.clone().with_normal_springs(None).unwrap();
-    setting.model = model(&plain);
+    setting.model = Model::new(&plain);
     assert!(violations(&setting, &SOUND)[0] > 0, "normal springs left out are not seen");
     let mut setting = of("total, whole arm");
     setting.model.points.iter_mut().for_each(|point| point.load.part = point.load.part.map(|part| part.plus(&part)));
@@ -231,6 +230,6 @@ fn what_yields_beside_the_joints_is_seen_where_it_is_missing_or_doubled() {
         .unwrap()
         .map(|spring| NormalSprings { compliance: spring.compliance.map(|compliance| 1.2 * compliance), ..spring });
     soft.robot = soft.robot.clone().with_normal_springs(Some(springs)).unwrap();
-    setting.model = model(&soft);
+    setting.model = Model::new(&soft);
     assert!(violations(&setting, &SOUND)[0] > 0, "normal springs a fifth softer are not seen");
 }

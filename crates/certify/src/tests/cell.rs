@@ -3,10 +3,10 @@
 use super::super::arm::{Arm, Margins};
 use super::super::compliance_table::{AffineModel, Node, nodes_over};
 use super::super::cost::Direction;
+use super::super::enclosure::{REMAINDERS, Slope};
 use super::super::interval_simd::{Lanes, WIDTH};
 use super::super::moment::MOMENTS;
-use super::super::number::{Number, Slope};
-use super::super::over_regions::REMAINDERS;
+use super::super::number::Number;
 use super::*;
 
 /// The functions of the compliance, and those of [`super::super::moment::MomentModel`].
@@ -75,7 +75,7 @@ fn functions(setting: &Setting) -> usize {
 fn score(setting: &Setting, point: usize, [r, _, chi]: [f64; 3], (values, moments): &Values) -> f64 {
     let load = &setting.model.points[point].load;
     let (direction, first) = (Direction::new(chi + load.turn), setting.model.arm.joint1);
-    load.score(&load.with_part(direction.seen(*values, r, first)), direction.moved(*moments, load, r, first))
+    load.score(&direction.seen(*values, load, r, first), direction.moved(*moments, load, r, first))
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use super::super::branch_and_bound::{Bound, Status};
 use super::super::certificate::{Certificate, NoProof, Proof, certify};
 use super::*;
-use crate::at_rest::without_axes;
-use crate::part::certifiable_from_above;
+use crate::requirements::without_axes;
+use crate::worst::certifiable_from_above;
 use crate::{best, certifiable};
 use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis};
 use stead_numerics::monitor::Monitor;
@@ -85,6 +85,8 @@ fn why_there_is_no_bound_is_told() {
     still.constraints.min_inverse_condition = 1e-3;
     let reason = || NoProof::Unsupported(certifiable(&still, u64::MAX).unwrap_err());
     assert!(matches!(reason(), NoProof::Unsupported(Unsupported::Conditioning { .. })));
+    let Err(Unsupported::Several(reasons)) = certifiable(&still, 0) else { panic!("one reason") };
+    assert!(matches!(reasons[..], [Unsupported::Conditioning { .. }, Unsupported::TooLarge { .. }]), "{reasons:?}");
     assert_eq!(run(&still, 1e-4, settings, &Monitor::silent()), (reason(), reason(), vec!["no-certificate"]));
 }
 

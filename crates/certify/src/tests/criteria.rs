@@ -1,7 +1,7 @@
 //! The tangent bound against the criterion itself, with nothing of the arm in it.
 
 use super::super::load::Load;
-use super::super::yielding::{Tangent, Yielding};
+use super::super::load::{Tangent, Yielding};
 use super::seeded;
 use nalgebra::{Matrix3, Vector3};
 use rand::RngExt;

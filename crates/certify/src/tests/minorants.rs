@@ -1,12 +1,12 @@
 //! The coarse tables: minorants whatever the heading, and the coarser levels above them.
 
 use super::super::cell::Extent;
-use super::super::coarse_bounds::CoarseBounds;
+use super::super::coarse_bounds::{CoarseBounds, below_all};
 use super::super::compliance_table::{AffineModel, ComplianceTable, Node, Steps};
 use super::super::cost::Direction;
 use super::super::kind::{Kind, kinds};
 use super::super::load::Load;
-use super::super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, below_all, minorant};
+use super::super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, minorant};
 use super::*;
 use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::Planner;
@@ -20,6 +20,7 @@ pub fn local(setting: &Setting, radius: (f64, f64), height: (f64, f64), steps: S
         table: ComplianceTable::new(Extent { radius, height }, steps, levels),
         points: b.points.clone(),
         segments: b.segments.clone(),
+        keeps: b.keeps,
         changes: b.changes.clone(),
         others: Vec::new(),
         over: b.over,

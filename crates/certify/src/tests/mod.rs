@@ -18,7 +18,7 @@ mod planner;
 use super::arm::Arm;
 use super::cell::whole;
 use super::compliance_table::ComplianceTable;
-use super::model::{Keeps, Model};
+use super::model::Model;
 use super::region::{Point, Region};
 use nalgebra::{Matrix6, Vector3, Vector6};
 use rand::{RngExt, SeedableRng};
@@ -61,7 +61,7 @@ pub struct Truth {
 
 impl Setting {
     pub fn new(problem: Problem) -> Self {
-        let (model, whole) = (Model::new(&problem, Keeps::of(&problem)), whole(&problem));
+        let (model, whole) = (Model::new(&problem), whole(&problem));
         let turned = |beta: f64| problem.at(&Placement::from([0.0; 4])).base_from_flange(0, beta).rotation;
         let turn = turned(0.1) * turned(0.0).transpose();
         let side = problem.robot.geometry().base_from_root[(2, 2)].signum();

@@ -1,6 +1,7 @@
 //! Layer by layer: a cell of heading, a box, the whole search; the cell with mutations that must be noticed.
 
 use super::super::branch_and_bound::Status;
+use super::super::upper_bound::BoxBounds;
 use super::*;
 use crate::compliance_table::{AffineModel, Node};
 use crate::cost::CORNERS;
