@@ -1,6 +1,6 @@
 //! Joint compliances from measurements, and which measurements to take.
 
-use crate::monitor::{Stop, Warning};
+use crate::monitor::Stop;
 use crate::result::result;
 use crate::{Error, Monitor};
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use crate::monitor::Warning;
 use crate::result::result;
-use crate::{Error, Monitor};
+use crate::Monitor;
 use std::sync::Arc;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
