@@ -1,5 +1,5 @@
-//! What a command says: to standard output its result, to standard error notes and warnings, and the folder in which its
-//! results are.
+//! Words of a command: its result to standard output, notes and warnings to standard error, and the folder of its
+//! results.
 
 use super::Failure;
 use super::manual::Manual;

@@ -23,7 +23,6 @@ const MICRO: f64 = 1e-6;
 /// How what carries the robot yields: foundation, pedestal, rail, vehicle. It is added to what the joints do, so that
 /// their stiffness must not have it in it already (`stiffness_measured_from` of the robot file).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct BaseComplianceTable {
     /// The point at which the matrix holds, in the base frame of the robot file; its origin where left out.
     pub point_mm: Option<Vector<Mm>>,
@@ -34,7 +33,6 @@ pub struct BaseComplianceTable {
 
 /// How the part yields at the tool: the same at every point of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PartComplianceTable {
     /// Displacement of the part per force on it, in the directions of the workpiece frame, in um/N.
     pub um_per_n: Matrix,

@@ -168,7 +168,8 @@ impl Place<'_> {
         Ok((source, input))
     }
 
-    /// The mesh of the file named here, as [`Place::named_file`], and its entry among the files that a result came from.
+    /// The mesh of the file named here, as [`Place::named_file`], and its entry among the files that a result came
+    /// from.
     ///
     /// # Errors
     /// As [`Place::named_file`], and [`InputError`] for a file that is no mesh.

@@ -13,7 +13,6 @@ use stead_model::robot::Pose;
 /// The base frame of the robot's rows in the cell frame, whose z axis points up: on a pedestal, on a wall, under the
 /// ceiling. With this table all that is stated in the base frame (cell, placements, results) is in the cell frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct MountTable {
     /// Origin of the base frame in the cell frame.
     pub xyz_mm: Vector<Mm>,

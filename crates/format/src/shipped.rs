@@ -6,64 +6,25 @@ use stead_disk::input::InputError;
 /// What the name of a shipped arm begins with where a file is requested.
 pub const PREFIX: &str = "name:";
 
-/// A shipped arm by its name: the file of that name in `robots`, a link to `configs/robots`.
-macro_rules! arm {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../robots/", $name, ".toml")))
+/// The arms of these names with their files: those in `robots`, a link to `configs/robots`.
+macro_rules! arms {
+    ($($name:literal)+) => {
+        &[$(($name, include_str!(concat!("../robots/", $name, ".toml")))),+]
     };
 }
 
 /// The arms with their files, in the order of their names.
-pub(crate) const ARMS: &[(&str, &str)] = &[
-    arm!("abb-irb120"),
-    arm!("abb-irb140"),
-    arm!("abb-irb1600-10"),
-    arm!("abb-irb4400-60"),
-    arm!("abb-irb4600-40"),
-    arm!("abb-irb6600-225"),
-    arm!("abb-irb6620"),
-    arm!("abb-irb6640-185"),
-    arm!("abb-irb6640-235"),
-    arm!("abb-irb6700-235"),
-    arm!("abb-irb7600-150"),
-    arm!("fanuc-m10ia"),
-    arm!("fanuc-m20ia"),
-    arm!("fanuc-m710ic-50"),
-    arm!("fanuc-m900ia-260l"),
-    arm!("fanuc-m900ib-700"),
-    arm!("kuka-kr10-r1100"),
-    arm!("kuka-kr100-ha"),
-    arm!("kuka-kr120-r2700-2"),
-    arm!("kuka-kr120-r3900"),
-    arm!("kuka-kr210-2"),
-    arm!("kuka-kr210-2-full"),
-    arm!("kuka-kr210-r2700"),
-    arm!("kuka-kr210-r2700-2"),
-    arm!("kuka-kr210-r3100"),
-    arm!("kuka-kr210-r3100-2"),
-    arm!("kuka-kr240-2"),
-    arm!("kuka-kr240-r2900-2"),
-    arm!("kuka-kr270-2"),
-    arm!("kuka-kr270-2-k1-0.265"),
-    arm!("kuka-kr270-2-k1-0.8"),
-    arm!("kuka-kr270-2-k1-1.41"),
-    arm!("kuka-kr270-2-k1-5.6"),
-    arm!("kuka-kr270-r2700"),
-    arm!("kuka-kr300-r2700-2"),
-    arm!("kuka-kr300-r2800-2-mt"),
-    arm!("kuka-kr360-l240"),
-    arm!("kuka-kr360-r2830"),
-    arm!("kuka-kr500"),
-    arm!("kuka-kr500-r2800-2"),
-    arm!("kuka-kr6-r900"),
-    arm!("kuka-kr60-ha"),
-    arm!("motoman-ms210"),
-    arm!("staubli-rx160l"),
-    arm!("staubli-tx200"),
-    arm!("staubli-tx200-huynh"),
-    arm!("staubli-tx200l"),
-    arm!("staubli-tx90"),
-];
+pub(crate) const ARMS: &[(&str, &str)] = arms! {
+    "abb-irb120" "abb-irb140" "abb-irb1600-10" "abb-irb4400-60" "abb-irb4600-40" "abb-irb6600-225" "abb-irb6620"
+    "abb-irb6640-185" "abb-irb6640-235" "abb-irb6700-235" "abb-irb7600-150" "fanuc-m10ia" "fanuc-m20ia"
+    "fanuc-m710ic-50" "fanuc-m900ia-260l" "fanuc-m900ib-700" "kuka-kr10-r1100" "kuka-kr100-ha" "kuka-kr120-r2700-2"
+    "kuka-kr120-r3900" "kuka-kr210-2" "kuka-kr210-2-full" "kuka-kr210-r2700" "kuka-kr210-r2700-2" "kuka-kr210-r3100"
+    "kuka-kr210-r3100-2" "kuka-kr240-2" "kuka-kr240-r2900-2" "kuka-kr270-2" "kuka-kr270-2-k1-0.265"
+    "kuka-kr270-2-k1-0.8" "kuka-kr270-2-k1-1.41" "kuka-kr270-2-k1-5.6" "kuka-kr270-r2700" "kuka-kr300-r2700-2"
+    "kuka-kr300-r2800-2-mt" "kuka-kr360-l240" "kuka-kr360-r2830" "kuka-kr500" "kuka-kr500-r2800-2" "kuka-kr6-r900"
+    "kuka-kr60-ha" "motoman-ms210" "staubli-rx160l" "staubli-tx200" "staubli-tx200-huynh" "staubli-tx200l"
+    "staubli-tx90"
+};
 
 /// The file of the shipped arm that a path names by `name:`; nothing for another path.
 ///

@@ -17,7 +17,7 @@ pub fn filled(template: &str, values: &[(&str, Option<String>)]) -> String {
     template.split_inclusive('\n').filter_map(line).collect()
 }
 
-/// Nothing, for a hole that stands before the text of a line which is there or not.
+/// The empty value of a hole before the text of a line, where the line is to be there.
 pub fn shown_if(is_there: bool) -> Option<String> {
     is_there.then(String::new)
 }

@@ -59,7 +59,8 @@ fn joint_from(row: &JointRow, at: &Place<'_>) -> Result<JointDynamics, InputErro
     })
 }
 
-/// The robot read from `source`, if its rows say enough for its motion to be computed, as [`moving_robot_from`](super::moving_robot_from) has it.
+/// The robot read from `source`, if its rows say enough for its motion to be computed, as
+/// [`moving_robot_from`](super::moving_robot_from) has it.
 ///
 /// # Errors
 /// [`InputError`] at the first joint whose row says too little, naming what is missing.

@@ -21,7 +21,6 @@ use stead_model::task::ToolPath;
 /// Material before it is cut, in the workpiece frame: exactly one of `box_mm`, `cylinder_mm`, `mesh`, `allowance_mm`,
 /// or what the path itself passes over: `depth_mm`, `layer_mm` or both.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct StockTable {
     /// A box about the origin of the stock: its edges along x, y and z.
     pub box_mm: Option<Vector<Mm<Positive>>>,
@@ -62,7 +61,6 @@ pub struct StockTable {
 
 /// The part as it shall be: cuts into it are warned of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PartTable {
     /// A closed mesh (STL, OBJ, DAE), relative to the folder of this file.
     pub mesh: String,

@@ -22,7 +22,6 @@ words!(TrackedPoint: "tool" => TrackedPoint::Tool, "wrist" => TrackedPoint::Wris
 
 /// What stands around a robot, and on it: the file that `surroundings` of a run file names.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SurroundingsFile {
     /// Shapes that keep apart: fence, table, fixture, part, links, spindle.
     pub shape: Option<Vec<ShapeTable>>,
@@ -38,7 +37,6 @@ pub struct SurroundingsFile {
 
 /// A cylinder along z about the origin of the shape.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CylinderTable {
     /// Its radius. mm
     pub radius: Mm<Positive>,
@@ -48,7 +46,6 @@ pub struct CylinderTable {
 
 /// A cylinder along z about the origin of the shape, with half spheres on its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CapsuleTable {
     /// Its radius. mm
     pub radius: Mm<Positive>,
@@ -59,7 +56,6 @@ pub struct CapsuleTable {
 /// A shape: its form, its place, and what it moves with. Exactly one of `box_mm`, `cylinder_mm`, `capsule_mm`, `hull`,
 /// `mesh`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ShapeTable {
     /// Its name, which no other shape or zone has.
     pub name: String,
@@ -96,7 +92,6 @@ pub struct ShapeTable {
 
 /// A zone of the cell that points of the arm are kept out of: a box by `box_mm`, or a `half_space`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct KeepOutTable {
     /// Its name, which no other zone or shape has.
     pub name: String,
@@ -123,7 +118,6 @@ pub struct KeepOutTable {
 
 /// The surface of a part of the arm as it looks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct VisualTable {
     /// Its name.
     pub name: String,
@@ -152,7 +146,6 @@ pub struct VisualTable {
 
 /// All that is on one side of a plane, in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct HalfSpaceTable {
     /// A point of the plane.
     pub xyz_mm: Vector<Mm>,
@@ -162,7 +155,6 @@ pub struct HalfSpaceTable {
 
 /// How far shapes keep apart.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CollisionTable {
     /// The smallest distance between two shapes that may be; 10 where left out.
     pub clearance_mm: Option<Mm<NotNegative>>,

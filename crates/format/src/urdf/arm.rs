@@ -44,7 +44,7 @@ impl<'a> Arm<'a> {
         Ok(Self { urdf, chain, rows, limits, limits_deg, speeds_deg, robot, stand })
     }
 
-    /// What the sum of joints 2 and 3 may be by their ranges, where a parallelogram drives axis 3 and neither of them turns
+    /// The sum of joints 2 and 3 that their ranges allow, where a parallelogram drives axis 3 and neither of them turns
     /// by a whole turn. deg
     pub fn linkage_sums_deg(&self) -> Option<[f64; 2]> {
         let [min, max] = self.robot.sums();

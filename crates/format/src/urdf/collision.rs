@@ -2,7 +2,7 @@
 
 use super::arm::Arm;
 use super::bodies::{attached_to, row_from_links};
-use super::meshes::{found, is_read};
+use super::meshes::{found, free_name, is_read, unit_of};
 use super::read::{Geometry, Urdf};
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
@@ -116,9 +116,7 @@ impl Reading<'_> {
     fn name(&self, link: usize) -> String {
         let plain = one_line(&self.urdf.links[link].name).replace('"', "'");
         let plain = if attachment(&plain).is_some() { format!("{plain} shape") } else { plain };
-        let is_free = |name: &String| self.shapes.iter().all(|known| known.shape.name != *name);
-        let numbered = (2..).map(|number| format!("{plain} {number}"));
-        std::iter::once(plain.clone()).chain(numbered).find(is_free).unwrap_or_default()
+        free_name(plain, |name| self.shapes.iter().all(|known| known.shape.name != name))
     }
 
     /// The form that a mesh file makes; nothing for a file that is not read.
@@ -135,8 +133,7 @@ impl Reading<'_> {
         };
         let bytes = files::read(&path)
             .map_err(|e| InputError::new(&path, format!("cannot be read: {e}")).allowed("a readable mesh file"))?;
-        let unit = |unit: MeshUnit| (scale - Vector3::repeat(unit.metres())).amax() <= 1e-9 * unit.metres();
-        let Some(unit) = [MeshUnit::Metre, MeshUnit::Millimetre].into_iter().find(|known| unit(*known)) else {
+        let Some(unit) = unit_of(scale) else {
             let mesh = read_mesh(&path, &bytes, MeshUnit::Metre)?;
             let [low, high] = Solid::Mesh(Arc::new(mesh)).extent().map(|end| end.component_mul(scale));
             let middle = Pose { translation: (low + high) / 2.0, ..here };

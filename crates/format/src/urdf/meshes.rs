@@ -1,8 +1,21 @@
 //! Where the files of the shapes are.
 
 use super::read::Urdf;
-use crate::mesh::ENDINGS;
+use crate::mesh::{ENDINGS, MeshUnit};
+use nalgebra::Vector3;
 use std::path::{Path, PathBuf};
+
+/// The unit of a mesh file by its scale in the URDF, which is in metres; nothing of another scale.
+pub(super) fn unit_of(scale: &Vector3<f64>) -> Option<MeshUnit> {
+    let is_of = |unit: &MeshUnit| (scale - Vector3::repeat(unit.metres())).amax() <= 1e-9 * unit.metres();
+    [MeshUnit::Metre, MeshUnit::Millimetre].into_iter().find(is_of)
+}
+
+/// A name, with a number behind it where it is that of another thing.
+pub(super) fn free_name(plain: String, mut is_free: impl FnMut(&str) -> bool) -> String {
+    let numbered = (2..).map(|number| format!("{plain} {number}"));
+    std::iter::once(plain.clone()).chain(numbered).find(|name| is_free(name)).unwrap_or_default()
+}
 
 /// Whether a mesh file is of a format that is read.
 pub(super) fn is_read(file: &str) -> bool {

@@ -4,11 +4,10 @@
 use super::arm::Arm;
 use super::bodies::{attached_to, row_from_links};
 use super::collision::LinkShapes;
-use super::meshes::{found, is_read};
+use super::meshes::{found, free_name, is_read, unit_of};
 use super::read::{Geometry, Urdf};
 use super::xml::{one_line, quoted};
 use crate::mesh::{MeshUnit, read_mesh};
-use nalgebra::Vector3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid, Visual};
@@ -97,10 +96,8 @@ impl Reading<'_> {
         if scale.iter().any(|factor| *factor < 0.0) {
             return Err(format!("mesh {name} is mirrored by a scale of {:?}", scale.as_slice()));
         }
-        let is_of = |unit: &MeshUnit| (scale - Vector3::repeat(unit.metres())).amax() <= 1e-9 * unit.metres();
-        let unit = [MeshUnit::Metre, MeshUnit::Millimetre].into_iter().find(is_of);
-        let unit =
-            unit.ok_or_else(|| format!("mesh {name} has a scale of {:?}: 1 and 0.001 are drawn", scale.as_slice()))?;
+        let unit = unit_of(scale)
+            .ok_or_else(|| format!("mesh {name} has a scale of {:?}: 1 and 0.001 are drawn", scale.as_slice()))?;
         let path = found(self.urdf, file).ok_or_else(|| format!("mesh {name} is not found"))?;
         let bytes = files::read(&path).map_err(|error| format!("mesh {name} cannot be read: {error}"))?;
         let mesh = read_mesh(&path, &bytes, unit).map_err(|error| one_line(&error.to_string()))?;
@@ -110,8 +107,6 @@ impl Reading<'_> {
     /// A name for what a link looks like, that no other has.
     fn name(&self, link: usize) -> String {
         let plain = format!("{} visual", one_line(&self.urdf.links[link].name).replace('"', "'"));
-        let is_free = |name: &String| self.visuals.iter().all(|known| known.visual.name != *name);
-        let numbered = (2..).map(|number| format!("{plain} {number}"));
-        std::iter::once(plain.clone()).chain(numbered).find(is_free).unwrap_or_default()
+        free_name(plain, |name| self.visuals.iter().all(|known| known.visual.name != name))
     }
 }

@@ -26,7 +26,6 @@ words!(Machine);
 
 /// Cutting forces from a tool path and the stock that it cuts, for `stead forces`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ForcesFile {
     /// Keys of this file whose values are guesses (`stock.depth_mm`), or whole tables: every result says that it rests
     /// on them.
@@ -53,7 +52,6 @@ pub struct ForcesFile {
 
 /// How a path from CAM is read: the options of `stead import path`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ReadingTable {
     /// Unit of length, where the path does not state it.
     pub units: Option<Word<LengthUnit>>,
@@ -80,7 +78,6 @@ pub struct ReadingTable {
 
 /// An operation that is done before.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct BeforeTable {
     /// Its tool path, relative to the folder of this file.
     pub path: String,

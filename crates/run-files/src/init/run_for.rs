@@ -95,7 +95,6 @@ impl Known {
 
 /// What a file of a cutter declares.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct CutterFile {
     guesses: Option<Vec<String>>,
     tool: Option<ToolTable>,

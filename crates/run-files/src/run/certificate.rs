@@ -19,7 +19,6 @@ ranges! {
 
 /// A proof of how far the placement found is from the best possible.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CertificateTable {
     /// The proof is done when no placement can be better than the one found by more than this.
     pub gap_percent: Percent<Gap>,

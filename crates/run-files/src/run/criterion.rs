@@ -54,7 +54,6 @@ words!(Aggregate: "mean" => Aggregate::Mean, "rms" => Aggregate::Rms, "max" => A
 
 /// By what a placement is scored.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CriterionTable {
     /// Which part of the deflection is scored: normal to the `wall` (axis x feed; where left out), normal to the
     /// `surface` that the task states by its columns `normal_x`, `normal_y`, `normal_z`, along the tool `axis`, or the
@@ -86,7 +85,6 @@ pub struct CriterionTable {
 
 /// What the parts of a deflection count; 0 where left out.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct WeightsTable {
     /// Normal to the wall, axis x feed.
     pub wall: Option<Number<Weight>>,
@@ -100,7 +98,6 @@ pub struct WeightsTable {
 
 /// A segment of the task that counts more or less than the others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SegmentTable {
     /// Its number in the task, from 1.
     pub number: Whole<1, 4294967295>,
@@ -208,11 +205,7 @@ impl CriterionTable {
             weights,
             aggregate,
             joint_travel_weight,
-            segment_weights: segment_weights(
-                reading.run.segment.as_deref().unwrap_or_default(),
-                task.segments().len(),
-                &reading.at.key("segment"),
-            )?,
+            segment_weights: segment_weights(reading, task.segments().len())?,
             force_uncertainty,
             confidence,
             stiffness,
@@ -300,12 +293,14 @@ impl WeightsTable {
 }
 
 /// The weight of every segment; nothing where none is named.
-fn segment_weights(tables: &[SegmentTable], count: usize, at: &Place<'_>) -> Result<Vec<f64>, InputError> {
+fn segment_weights(reading: &Reading<'_>, count: usize) -> Result<Vec<f64>, InputError> {
+    let tables = reading.run.segment.as_deref().unwrap_or_default();
     if tables.is_empty() {
         return Ok(Vec::new());
     }
+    let at = reading.at.key("segment");
     let weights = tables.iter().map(|table| (table.number.count(), table.weight.si()));
-    let weights = by_segment(weights, count, at, || format!("whole numbers from 1 to {count}"))?;
+    let weights = by_segment(weights, count, &at, || format!("whole numbers from 1 to {count}"))?;
     Ok(weights.into_iter().map(|weight| weight.unwrap_or(1.0)).collect())
 }
 

@@ -20,7 +20,6 @@ words!(AxisUse: "fixed" => AxisUse::Fixed, "indexed" => AxisUse::Indexed, "conti
 
 /// A rail or a turntable. Directions and points are those in the cell with all axes at zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ExternalAxisTable {
     /// Its name, as results have it.
     pub name: String,

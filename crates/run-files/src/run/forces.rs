@@ -16,7 +16,6 @@ use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
 
 /// The force along the path, in the frame of each path point: what the workpiece does to the tool.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ForcesTable {
     /// Along the feed, taken normal to the tool axis.
     pub feed_n: N,
@@ -30,7 +29,6 @@ pub struct ForcesTable {
 
 /// The force along one segment, in place of that for the whole path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SegmentForces {
     /// Its number in the task, from 1.
     pub number: Whole<1, 4294967295>,

@@ -48,7 +48,6 @@ const MOST_MEMORY: f64 = 4e9;
 
 /// How far the tool may lean from the axis that the task states. Without lead and tilt it keeps to that axis.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct LeanTable {
     /// Range `[min, max]` of the lead, in the direction of travel: above 0 the spindle is ahead of the tip; `[0, 0]`
     /// where left out.
@@ -82,7 +81,6 @@ pub struct LeanTable {
 
 /// A segment of the task in which the tool may lean otherwise.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct LeanSegmentTable {
     /// Its number in the task, from 1.
     pub number: Whole<1, 4294967295>,

@@ -58,7 +58,6 @@ use stead_runs::{ReadError, Run};
 /// A run of `stead place`, `score`, `explain` and `certify`: a robot, its spindle, a tool path, and the cell in which
 /// its workpiece may stand.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct RunFile {
     /// The robot file, relative to the folder of this file.
     pub robot: String,

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// What is made beside the plans.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct OutputTable {
     /// Whether the deflection over path point and beta is mapped, as tables and pictures; `true` where left out.
     pub maps: Option<bool>,

@@ -88,7 +88,6 @@ impl JsonSchema for AllowedPosture {
 
 /// Which postures the segments of the path may be driven in, and how the moves between them count.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PosturesTable {
     /// The allowed postures, all eight where left out: `front` or `back`, `elbow up` or `elbow down`, `flip` or `no
     /// flip`, of which several restrict together; and numbers, which add those postures.

@@ -16,7 +16,6 @@ words!(BetaPlan: "free" => BetaPlan::Free, "constant_per_segment" => BetaPlan::C
 /// The free rotation of the spindle about the tool axis, beta, along the path. At least one of its three limits is
 /// needed where it may change.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct RedundancyTable {
     /// Step of the grid of beta; 360 over a whole number from 4 to 7200. Final plans are refined off the grid.
     pub beta_step_deg: Deg<Positive>,

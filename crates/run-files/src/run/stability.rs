@@ -19,7 +19,6 @@ const STEPS: usize = 3600;
 /// Asks for the critical depth at each path point of a plan. The cutter and its cut are those of `[tool]` and `[cut]`;
 /// robot and spindle need their masses.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct PathStabilityTable {
     /// How much of the arm is modelled: `springs` (where left out), and each of the others adds to the one before.
     pub variant: Option<Word<Variant>>,

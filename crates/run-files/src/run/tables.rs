@@ -42,7 +42,6 @@ ranges! {
 
 /// A way in which the part may lie: turned before it is placed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct OrientationTable {
     /// Its name, as results and `--orientation` have it.
     pub name: String,
@@ -61,7 +60,6 @@ pub struct OrientationTable {
 
 /// Where the origin of the workpiece may stand, in the base frame, and how it may be turned about the vertical.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct CellTable {
     /// Range `[min, max]` of the x coordinate.
     pub x_mm: Interval<Mm>,
@@ -102,7 +100,6 @@ impl CellTable {
 
 /// What a placement has to keep to.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ConstraintsTable {
     /// Smallest inverse condition number of the scaled Jacobian: how far the arm keeps from singularities.
     pub min_inverse_condition: Number<BelowOne>,
@@ -150,7 +147,6 @@ words!(LookupUse: "auto" => LookupUse::Auto, "always" => LookupUse::Always, "nev
 
 /// How hard to search.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct SearchTable {
     /// Seed of all random numbers: the same seed gives the same result.
     pub seed: Option<Whole<0, 9223372036854775807>>,
@@ -236,7 +232,6 @@ pub(super) fn check_tables(search: &SearchSettings, problem: &Problem, at: &Plac
 /// Moves between segments, for joints whose row of the robot file has no acceleration or jerk; and how the cut is
 /// blended.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TransferTable {
     /// Time from rest to full speed.
     pub acceleration_time_s: Option<S<Positive>>,
@@ -281,7 +276,6 @@ impl TransferTable {
 
 /// Published figures to print beside ours.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct ReferenceTable {
     /// Where they were published.
     pub source: String,

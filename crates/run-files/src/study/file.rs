@@ -44,7 +44,6 @@ words!(Spacing: "linear" => Spacing::Linear, "log" => Spacing::Log);
 
 /// A study of `stead study`: a run, what is varied of it, and how the cases are made up.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct StudyFile {
     /// The run file that is varied, relative to the folder of this file.
     pub base: String,
@@ -72,7 +71,6 @@ pub struct StudyFile {
 
 /// One thing that is varied: a field, or several together.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct AxisTable {
     /// Name of its column in the table of results; its fields where left out.
     pub name: Option<String>,
@@ -92,7 +90,6 @@ pub struct AxisTable {
 
 /// Numbers from one to another.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct RangeTable {
     /// The first.
     pub from: Number,
@@ -108,7 +105,6 @@ pub struct RangeTable {
 
 /// A task of a study.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
 pub struct TaskTable {
     /// The task file, relative to the folder of this file.
     pub file: String,
