@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_assessment::comparison::Assessment;
 use stead_numerics::message::Note;
-use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text, write_assessment};
+use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text};
 use stead_report::document::Timing;
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
@@ -104,7 +104,7 @@ impl RobotAssessment {
 
 impl Report for RobotAssessment {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_assessment(folder, &self.run.comparison, &self.assessment, &self.context)?)
+        Ok(folder.results("assess", &self.context.inputs).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {

@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, assess};
-use stead_report::circularity::{circularity_files, circularity_json, circularity_text, write_circularity};
+use stead_report::circularity::{circularity_files, circularity_json, circularity_text};
 use stead_report::{Files, Folder};
 use stead_runs::{PointFile, read_points};
 
@@ -56,7 +56,7 @@ impl Circularity {
 
 impl Report for Circularity {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_circularity(folder, &self.file, &self.roundness)?)
+        Ok(folder.results("circularity", std::slice::from_ref(&self.file.input)).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {

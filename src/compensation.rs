@@ -8,9 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
 use stead_numerics::message::Note;
-use stead_report::compensation::{
-    compensation_files, compensation_json, compensation_text, not_compensated_json, write_compensation,
-};
+use stead_report::compensation::{compensation_files, compensation_json, compensation_text, not_compensated_json};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 
@@ -102,7 +100,7 @@ impl CompensatedPath {
 
 impl Report for CompensatedPath {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_compensation(folder, &self.run, &self.outcome)?)
+        Ok(folder.results("compensate", &self.run.inputs).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {

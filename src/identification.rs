@@ -10,7 +10,7 @@ use stead_calibration::identification::design::{Design, DesignError, design_expe
 use stead_calibration::identification::{Identified, IdentifyError, identify};
 use stead_numerics::message::Note;
 use stead_report::identification::plan::{keep_readings, plan_files, plan_json, plan_text, write_plan};
-use stead_report::identification::{identified_files, identify_json, identify_text, write_identified};
+use stead_report::identification::{identified_files, identify_json, identify_text};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 
@@ -129,7 +129,7 @@ impl MeasurementPlan {
 
 impl Report for IdentifiedRobot {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_identified(folder, &self.run, &self.identified)?)
+        Ok(folder.results("identify fit", &self.run.inputs).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {

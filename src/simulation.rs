@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
 use stead_numerics::message::Note;
-use stead_report::simulation::{simulation_files, simulation_text, timed_json, write_simulation};
-use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
+use stead_report::simulation::{simulation_files, simulation_text, timed_json};
+use stead_report::stability::{stability_files, stability_json, stability_text};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 use stead_simulation::coupled::{Job, JobError};
@@ -161,7 +161,7 @@ impl StabilityAnalysis {
 
 impl Report for SimulatedPass {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_simulation(folder, &self.run, &self.simulation)?)
+        Ok(folder.results("simulate", &self.run.inputs).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {
@@ -187,7 +187,7 @@ impl Report for SimulatedPass {
 
 impl Report for StabilityAnalysis {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_stability(folder, &self.run, &self.analysis)?)
+        Ok(folder.results("stability", &self.run.inputs).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {

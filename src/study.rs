@@ -21,7 +21,7 @@ use stead_disk::manifest::{self, Unlisted};
 use stead_numerics::message::Note;
 use stead_report::certificate::write_certificate;
 use stead_report::placement::{CaseOfStudy, Context, placement_files, write_placement};
-use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
+use stead_report::study::{CasePages, status_json, study_files, study_json, study_text};
 use stead_report::{Files, Folder};
 use stead_run_files as run_files;
 use stead_study::Placed;
@@ -221,7 +221,7 @@ impl StudyReport {
 
 impl Report for StudyReport {
     fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(write_study(folder, &self.plan.name(), &self.analysis, &self.inputs, &self.pages)?)
+        Ok(folder.results("study report", &self.inputs).write(&self.files()?)?)
     }
 
     fn files(&self) -> Result<Files, Error> {
