@@ -95,9 +95,8 @@ impl Quantity {
         let name = self.name.to_lowercase();
         [
             Chart {
-                title: format!("{} over the engagement", self.name),
-                detail: "mean over a turn, from 0 to an angle; that of a cut is what components gain over its arcs"
-                    .to_owned(),
+                title: format!("{} of a cut to an angle", self.name),
+                detail: "mean over a turn, engaged from 0; that of arcs is what components gain over them".to_owned(),
                 x: Axis { label: format!("engagement angle {SENSE}"), ..entering.x },
                 ..entering
             },
