@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use stead_assessment::comparison::Assessment;
 use stead_numerics::message::Note;
-use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text, write_assessment};
+use stead_report::assessment::{AssessmentContext, assess_json, assessment_files, assessment_text};
 use stead_report::document::Timing;
 use stead_run_files as run_files;
 
@@ -100,7 +100,7 @@ impl RobotAssessment {
 }
 
 result! { RobotAssessment, self {
-    write(folder) = write_assessment(folder, &self.run.comparison, &self.assessment, &self.context);
+    write(folder) = folder.results("assess", &self.context.inputs).write(&self.files()?);
     files = assessment_files(&self.run.comparison, &self.assessment, &self.context);
     document = assess_json(&self.assessment, &self.context, &self.timing);
     table = assessment_text(&self.assessment, &self.context);

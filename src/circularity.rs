@@ -8,7 +8,7 @@ use crate::result::result;
 use std::path::Path;
 use std::sync::Arc;
 use stead_assessment::roundness::{Roundness, assess};
-use stead_report::circularity::{circularity_files, circularity_json, circularity_text, write_circularity};
+use stead_report::circularity::{circularity_files, circularity_json, circularity_text};
 use stead_runs::{PointFile, read_points};
 
 /// Measured points of a circular profile.
@@ -53,7 +53,7 @@ impl Circularity {
 }
 
 result! { Circularity, self {
-    write(folder) = write_circularity(folder, &self.file, &self.roundness);
+    write(folder) = folder.results("circularity", std::slice::from_ref(&self.file.input)).write(&self.files()?);
     files = circularity_files(&self.file, &self.roundness);
     document = circularity_json(&self.file, &self.roundness);
     table = circularity_text(&self.file, &self.roundness);

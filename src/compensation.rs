@@ -9,7 +9,7 @@ use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
 use stead_numerics::message::Note;
 use stead_report::compensation::{
-    compensation_files, compensation_json, compensation_text, not_compensated_json, write_compensation,
+    compensation_files, compensation_json, compensation_text, not_compensated_json,
 };
 use stead_run_files as run_files;
 
@@ -100,7 +100,7 @@ impl CompensatedPath {
 }
 
 result! { CompensatedPath, self {
-    write(folder) = write_compensation(folder, &self.run, &self.outcome);
+    write(folder) = folder.results("compensate", &self.run.inputs).write(&self.files()?);
     files = compensation_files(&self.run, &self.outcome);
     document = compensation_json(&self.run, &self.outcome);
     table = compensation_text(&self.run, &self.outcome);

@@ -9,7 +9,7 @@ use stead_calibration::identification::design::{Design, DesignError, design_expe
 use stead_calibration::identification::{Identified, IdentifyError, identify};
 use stead_numerics::message::Note;
 use stead_report::identification::plan::{keep_readings, plan_files, plan_json, plan_text, write_plan};
-use stead_report::identification::{identified_files, identify_json, identify_text, write_identified};
+use stead_report::identification::{identified_files, identify_json, identify_text};
 use stead_run_files as run_files;
 
 /// An identification file with the robot and the filled measurement sheet that it names, read and checked.
@@ -126,7 +126,7 @@ impl MeasurementPlan {
 }
 
 result! { IdentifiedRobot, self {
-    write(folder) = write_identified(folder, &self.run, &self.identified);
+    write(folder) = folder.results("identify fit", &self.run.inputs).write(&self.files()?);
     files = identified_files(&self.run, &self.identified);
     document = identify_json(&self.run, &self.identified);
     table = identify_text(&self.run, &self.identified);

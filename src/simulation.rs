@@ -10,8 +10,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use stead_format as format;
-use stead_report::simulation::{simulation_files, simulation_text, timed_json, write_simulation};
-use stead_report::stability::{stability_files, stability_json, stability_text, write_stability};
+use stead_report::simulation::{simulation_files, simulation_text, timed_json};
+use stead_report::stability::{stability_files, stability_json, stability_text};
 use stead_run_files as run_files;
 use stead_simulation::coupled::{Job, JobError};
 use stead_simulation::outcome::Simulation;
@@ -156,7 +156,7 @@ impl StabilityAnalysis {
 }
 
 result! { SimulatedPass, self {
-    write(folder) = write_simulation(folder, &self.run, &self.simulation);
+    write(folder) = folder.results("simulate", &self.run.inputs).write(&self.files()?);
     files = simulation_files(&self.run, &self.simulation);
     document = timed_json(&self.run, &self.simulation, self.wall);
     table = simulation_text(&self.run, &self.simulation, self.wall);
@@ -165,7 +165,7 @@ result! { SimulatedPass, self {
 } }
 
 result! { StabilityAnalysis, self {
-    write(folder) = write_stability(folder, &self.run, &self.analysis);
+    write(folder) = folder.results("stability", &self.run.inputs).write(&self.files()?);
     files = stability_files(&self.run, &self.analysis);
     document = stability_json(&self.run, &self.analysis);
     table = stability_text(&self.run, &self.analysis);

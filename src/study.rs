@@ -21,7 +21,7 @@ use stead_disk::manifest::{self, Unlisted};
 use stead_report::Folder;
 use stead_report::certificate::write_certificate;
 use stead_report::placement::{CaseOfStudy, Context, placement_files, write_placement};
-use stead_report::study::{CasePages, status_json, study_files, study_json, study_text, write_study};
+use stead_report::study::{CasePages, status_json, study_files, study_json, study_text};
 use stead_run_files as run_files;
 use stead_study::Placed;
 use stead_study::analysis::{Analysis, Question};
@@ -219,7 +219,7 @@ impl StudyReport {
 }
 
 result! { StudyReport, self {
-    write(folder) = write_study(folder, &self.plan.name(), &self.analysis, &self.inputs, &self.pages);
+    write(folder) = folder.results("study report", &self.inputs).write(&self.files()?);
     files = study_files(&self.plan.name(), &self.analysis, &self.inputs, &self.pages);
     document = study_json(&self.plan.name(), &self.analysis, &self.inputs);
     table = study_text(&self.plan.name(), &self.analysis);

@@ -3,5 +3,5 @@
 mod chart;
 mod table;
 
-pub use chart::{Axis, Chart, HeatMap, Mark, Outline, Polar, PolarChoice, Series, Style};
+pub use chart::{Axis, Chart, HeatMap, MapLine, MapPoint, Mark, Outline, Polar, PolarChoice, Series, Style};
 pub use table::{Cell, Column, Table};

@@ -11,7 +11,7 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 /// Where numbers begin in the buffer, and how they are to be read.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Default)]
 #[serde(rename_all = "camelCase")]
 pub struct Accessor {
     buffer_view: usize,
@@ -25,6 +25,13 @@ pub struct Accessor {
     min: Option<Vec<f32>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     max: Option<Vec<f32>>,
+}
+
+impl Accessor {
+    /// So many things of a shape, in numbers of a component type.
+    fn new(component_type: u32, count: usize, shape: &'static str) -> Self {
+        Self { component_type, count, shape, ..Self::default() }
+    }
 }
 
 /// A stretch of the buffer.
@@ -69,7 +76,8 @@ impl Buffer {
     pub fn colors(&mut self, colors: &[[f32; 3]]) -> usize {
         let part = |part: &f32| (part.clamp(0.0, 1.0) * 65535.0).round() as u16;
         let bytes = colors.iter().flat_map(|color| color.iter().map(part).chain([u16::MAX]).flat_map(u16::to_le_bytes));
-        self.put(bytes.collect(), UNSIGNED_SHORT, colors.len(), "VEC4", Some(VERTICES), None, true)
+        let accessor = Accessor { normalized: true, ..Accessor::new(UNSIGNED_SHORT, colors.len(), "VEC4") };
+        self.put(bytes.collect(), Some(VERTICES), accessor)
     }
 
     /// Corners of triangles.
@@ -80,10 +88,10 @@ impl Buffer {
         // The largest number of a type is reserved.
         if largest < u32::from(u16::MAX) {
             let bytes = corners.flat_map(|k| (*k as u16).to_le_bytes()).collect();
-            return self.put(bytes, UNSIGNED_SHORT, count, "SCALAR", Some(INDICES), None, false);
+            return self.put(bytes, Some(INDICES), Accessor::new(UNSIGNED_SHORT, count, "SCALAR"));
         }
         let bytes = corners.flat_map(|k| k.to_le_bytes()).collect();
-        self.put(bytes, UNSIGNED_INT, count, "SCALAR", Some(INDICES), None, false)
+        self.put(bytes, Some(INDICES), Accessor::new(UNSIGNED_INT, count, "SCALAR"))
     }
 
     /// Times of keys, rising. s
@@ -111,27 +119,16 @@ impl Buffer {
         bounds: Option<[Vec<f32>; 2]>,
     ) -> usize {
         let bytes = numbers.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
-        self.put(bytes, FLOAT, numbers.len(), shape, target, bounds, false)
+        let (min, max) = bounds.map_or((None, None), |[min, max]| (Some(min), Some(max)));
+        self.put(bytes, target, Accessor { min, max, ..Accessor::new(FLOAT, numbers.len(), shape) })
     }
 
-    #[expect(clippy::too_many_arguments, reason = "what an accessor has")]
-    fn put(
-        &mut self,
-        bytes: Vec<u8>,
-        component_type: u32,
-        count: usize,
-        shape: &'static str,
-        target: Option<u32>,
-        bounds: Option<[Vec<f32>; 2]>,
-        normalized: bool,
-    ) -> usize {
+    fn put(&mut self, bytes: Vec<u8>, target: Option<u32>, accessor: Accessor) -> usize {
         let view = BufferView { buffer: 0, byte_offset: self.bytes.len(), byte_length: bytes.len(), target };
         self.bytes.extend(bytes);
         pad(&mut self.bytes, 0);
         self.views.push(view);
-        let (min, max) = bounds.map_or((None, None), |[min, max]| (Some(min), Some(max)));
-        let buffer_view = self.views.len() - 1;
-        self.accessors.push(Accessor { buffer_view, component_type, count, shape, normalized, min, max });
+        self.accessors.push(Accessor { buffer_view: self.views.len() - 1, ..accessor });
         self.accessors.len() - 1
     }
 

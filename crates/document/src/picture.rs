@@ -8,5 +8,6 @@ pub mod contour;
 pub mod hatch;
 pub mod heat_map;
 pub mod labels;
-pub mod line_chart;
+pub mod maps;
 pub mod merged_cells;
+pub mod polar;

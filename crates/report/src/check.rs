@@ -36,15 +36,40 @@ pub struct CheckedRun<'a> {
 const MM: Unit = Unit { factor: 1e3, decimals: 1 };
 const DEG: Unit = Unit { factor: 180.0 / std::f64::consts::PI, decimals: 1 };
 
-fn interval(unit: Unit, [min, max]: [f64; 2]) -> String {
-    format!("{} to {}", unit.text(min), unit.text(max))
+fn interval(unit: Unit, ends: [f64; 2]) -> String {
+    ends.map(|end| unit.text(end)).join(" to ")
 }
 
 /// What `stead check` prints of a run.
 pub fn run_text(run: &CheckedRun<'_>) -> String {
     let CheckedRun { problem, overview, .. } = run;
+    let mut lines = path_lines(problem, overview);
+    let cut = run.cut.map(|cut| cut.lines());
+    lines.extend(cut.into_iter().flatten().zip(["cut", ""]).map(|(text, about)| format!("{about:<10}{text}")));
+    lines.push(match overview.feeds {
+        None => format!("feed      {} mm/s", MM.text(problem.redundancy.feed)),
+        Some(feeds) => format!(
+            "feed      {} mm/s, as the task states; the {} mm/s of redundancy.feed_mm_per_s apply to none of its moves",
+            interval(MM, feeds),
+            MM.text(problem.redundancy.feed)
+        ),
+    });
+    let [x, y, z] = problem.cell.position.map(|bounds| interval(MM, [bounds.min, bounds.max]));
+    let yaw = interval(DEG, [problem.cell.yaw.min, problem.cell.yaw.max]);
+    let frame = names::place_frame(problem);
+    lines.push(format!("cell      workpiece origin in the {frame} frame x {x}, y {y}, z {z} mm, yaw {yaw} deg"));
+    lines.extend(mount_line(problem));
+    lines.push(format!("          {} mm from axis 1", interval(MM, overview.cell_distances)));
+    lines.extend(middle_lines(problem, overview));
     let mut text = robot_lines(&problem.robot, None);
-    let mut say = |words: String| line(&mut text, &words);
+    lines.iter().for_each(|words| line(&mut text, words));
+    text
+}
+
+/// The tool, the path and its forces.
+fn path_lines(problem: &Problem, overview: &Overview) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut say = |words: String| lines.push(words);
     let tool = &problem.robot.on_flange(&problem.spindle.flange_from_tool);
     let [x, y, z] = [0, 1, 2].map(|axis| MM.text(tool.translation[axis]));
     let [ax, ay, az] = [0, 1, 2].map(|axis| fixed(tool.rotation.column(2)[axis], 4));
@@ -68,24 +93,13 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
     if overview.moment.max > 0.0 {
         say(format!("          moment about the tool centre point up to {} N m", fixed(overview.moment.max, 2)));
     }
-    let lines = run.cut.map(|cut| cut.lines());
-    lines.into_iter().flatten().zip(["cut", ""]).for_each(|(text, about)| say(format!("{about:<10}{text}")));
-    say(match overview.feeds {
-        None => format!("feed      {} mm/s", MM.text(problem.redundancy.feed)),
-        Some(feeds) => format!(
-            "feed      {} mm/s, as the task states; the {} mm/s of redundancy.feed_mm_per_s apply to none of its moves",
-            interval(MM, feeds),
-            MM.text(problem.redundancy.feed)
-        ),
-    });
-    let [x, y, z] = problem.cell.position.map(|bounds| interval(MM, [bounds.min, bounds.max]));
-    let yaw = interval(DEG, [problem.cell.yaw.min, problem.cell.yaw.max]);
-    let frame = names::place_frame(problem);
-    say(format!("cell      workpiece origin in the {frame} frame x {x}, y {y}, z {z} mm, yaw {yaw} deg"));
-    if let Some(mount) = mount_line(problem) {
-        say(mount);
-    }
-    say(format!("          {} mm from axis 1", interval(MM, overview.cell_distances)));
+    lines
+}
+
+/// What the arm reaches and what yields with the workpiece in the middle of the cell, and where shapes are then.
+fn middle_lines(problem: &Problem, overview: &Overview) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut say = |words: String| lines.push(words);
     let middle = &overview.middle;
     say(format!(
         "middle    {} of {} path points reached within the joint limits with the workpiece in the middle of the cell",
@@ -115,7 +129,7 @@ pub fn run_text(run: &CheckedRun<'_>) -> String {
         let [x, y, z] = stand.extents.map(|extent| interval(MM, extent));
         say(format!("          {} (moves with {}): x {x}, y {y}, z {z}", stand.name, stand.attached));
     }
-    text
+    lines
 }
 
 /// The frame in which shapes are stated: what stands in the cell does not move there.

@@ -3,9 +3,8 @@
 
 mod page;
 
-use super::output::{Folder, ReportError};
+use super::output::ReportError;
 use super::page::PAGE;
-use super::picture;
 use super::{Files, named};
 use crate::columns::aligned;
 use crate::csv_file::rows;
@@ -13,22 +12,11 @@ use crate::document::{Document, bytes};
 use crate::figure::{AngleDeg, MeasuredMm, MmDeflection, each, some};
 use crate::units::fixed;
 use serde_json::Value;
-use std::path::PathBuf;
 use stead_assessment::circle::{Fit, plane::FittedPlane};
 use stead_assessment::roundness::{Assessed, Measured, Roundness};
 use stead_runs::PointFile;
 
-/// Writes `circularity.json`, `deviations.csv`, `polar.svg` and `report.html` into a folder and returns their paths in
-/// that order.
-///
-/// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_circularity(folder: &Folder, file: &PointFile, found: &Roundness) -> Result<Vec<PathBuf>, ReportError> {
-    let files = circularity_files(file, found)?;
-    folder.results("circularity", std::slice::from_ref(&file.input)).write(&files)
-}
-
-/// The files that [`write_circularity`] writes.
+/// `circularity.json`, `deviations.csv`, `polar.svg` and `report.html`.
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.
@@ -36,20 +24,9 @@ pub fn circularity_files(file: &PointFile, found: &Roundness) -> Result<Files, R
     Ok(named([
         ("circularity.json", bytes(&circularity_json(file, found))),
         ("deviations.csv", deviations(file, found)?),
-        ("polar.svg", picture::polar(&file.input.name, found).into_bytes()),
+        ("polar.svg", page::polar_picture(&file.input.name, found).into_bytes()),
         (PAGE, page::page(file, found).html()),
     ]))
-}
-
-/// Names of the four circles in files, in words, and what they are.
-fn circles(found: &Roundness) -> [(&'static str, &'static str, &Fit); 4] {
-    let circles = &found.circles;
-    [
-        ("lsc", "least squares (LSC)", &circles.lsc),
-        ("mzc", "minimum zone (MZC)", &circles.mzc),
-        ("mic", "maximum inscribed (MIC)", &circles.mic),
-        ("mcc", "minimum circumscribed (MCC)", &circles.mcc),
-    ]
 }
 
 records! {
@@ -145,7 +122,7 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
         header.push("z mm".to_owned());
     }
     let mut rows = vec![header];
-    for (_, name, fit) in circles(found) {
+    for (_, name, fit) in page::circles(found) {
         let ([x, y], z) = found.center(fit);
         let mut row = vec![name.to_owned(), fixed(fit.circularity, 6), fixed(fit.circle.radius, 5)];
         row.extend([Some(x), Some(y), z].into_iter().flatten().map(|value| fixed(value, 5)));

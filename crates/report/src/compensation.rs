@@ -3,7 +3,7 @@
 
 mod page;
 
-use super::output::{Folder, ReportError};
+use super::output::ReportError;
 use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
@@ -16,27 +16,12 @@ use crate::units::{figures, fixed};
 use crate::word::Word;
 use nalgebra::Vector3;
 use serde_json::Value;
-use std::path::PathBuf;
 use stead_calibration::compensation::{
     CompensatedPath, CompensatedPoint, Deflection, DeflectionModel, MeanAndMax, NotCompensated, PointError, reduction,
 };
 use stead_runs::CompensateRun;
 
-/// Writes `corrected-path.csv`, `summary.json`, `compensation.svg` and `report.html`. Returns their paths in that
-/// order.
-///
-/// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_compensation(
-    folder: &Folder,
-    run: &CompensateRun,
-    outcome: &CompensatedPath,
-) -> Result<Vec<PathBuf>, ReportError> {
-    let files = compensation_files(run, outcome)?;
-    folder.results("compensate", &run.inputs).write(&files)
-}
-
-/// The files that [`write_compensation`] writes.
+/// `corrected-path.csv`, `summary.json`, `compensation.svg` and `report.html`.
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.

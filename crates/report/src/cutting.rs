@@ -3,7 +3,11 @@
 use super::output::ReportError;
 use crate::csv_file::rows_or;
 use crate::figure::{AngleDeg, ForceN, MomentNm, each};
+use crate::page::cards::{Axis, Chart, Mark, Series, Style};
+use crate::units::fixed;
+use nalgebra::Vector3;
 use stead_model::cutting::{ForceHistory, Sample};
+use stead_model::task::Wrench;
 
 records! {
     /// Mean force and moment over a turn as the tool moves into the work (Klimchik 2017, Fig. 4).
@@ -50,6 +54,93 @@ records! {
     }
 }
 
+/// Force or moment.
+struct Quantity {
+    name: &'static str,
+    unit: &'static str,
+    /// Where it acts.
+    about: &'static str,
+    decimals: usize,
+    of: fn(&Wrench) -> Vector3<f64>,
+}
+
+const QUANTITIES: [Quantity; 2] = [
+    Quantity { name: "Force", unit: "N", about: "on the tool", decimals: 1, of: |wrench| wrench.force },
+    Quantity {
+        name: "Moment",
+        unit: "N m",
+        about: "about the tool centre point",
+        decimals: 3,
+        of: |wrench| wrench.moment,
+    },
+];
+
+/// The charts of `cutting.svg`: what the work does to the tool (Klimchik 2017, Fig. 4), moments about the tool centre
+/// point. Of each the mean over a turn of cuts that go from 0 to an angle, then all teeth of this cut over one turn with
+/// their means. The angles at which a tooth of this cut enters and leaves the work are marked.
+pub fn charts(force_history: &ForceHistory) -> Vec<Chart> {
+    QUANTITIES.iter().flat_map(|quantity| quantity.charts(force_history)).collect()
+}
+
+impl Quantity {
+    fn charts(&self, force_history: &ForceHistory) -> [Chart; 2] {
+        let mean = (self.of)(&force_history.mean);
+        let [x, y, z] = [mean.x, mean.y, mean.z].map(|part| fixed(part, self.decimals));
+        let means = [0, 1, 2].map(|axis| {
+            let level = [0.0, 360.0].map(|angle| [angle, mean[axis]]);
+            Series::curve("", COLOURS[axis], level).styled(Style::Dashed)
+        });
+        let entering = self.chart(force_history, &force_history.entering, 180.0);
+        let turn = self.chart(force_history, &force_history.turn, 360.0);
+        let name = self.name.to_lowercase();
+        [
+            Chart {
+                title: format!("{} of a cut to an angle", self.name),
+                detail: "mean over a turn, engaged from 0; that of arcs is what components gain over them".to_owned(),
+                x: Axis { label: format!("engagement angle {SENSE}"), ..entering.x },
+                ..entering
+            },
+            Chart {
+                title: format!("{} of all teeth over one turn", self.name),
+                detail: format!(
+                    "mean {name}, dashed: ({x}, {y}, {z}) {unit}, magnitude {} {unit}",
+                    fixed(mean.norm(), self.decimals),
+                    unit = self.unit
+                ),
+                x: Axis { label: format!("angle of the first tooth {SENSE}"), ..turn.x },
+                series: means.into_iter().chain(turn.series).collect(),
+                ..turn
+            },
+        ]
+    }
+
+    /// Components and magnitude over the angle up to a last one (deg), zero, and the arcs of the cut.
+    fn chart(&self, force_history: &ForceHistory, samples: &[Sample], last: f64) -> Chart {
+        let curve = |name: &str, color: usize, value: &dyn Fn(&Vector3<f64>) -> f64| {
+            let points = samples.iter().map(|of| [of.phi.to_degrees(), value(&(self.of)(&of.wrench))]);
+            Series::curve(name, color, points)
+        };
+        let components = ["along the feed", "to the left of it", "along the tool axis"];
+        let components = (0..3).map(|axis| curve(components[axis], COLOURS[axis], &|vector| vector[axis]));
+        let arcs = force_history.engagement.arcs().iter().flat_map(|arc| [("enters", arc.entry), ("leaves", arc.exit)]);
+        let arcs = arcs.map(|(what, angle)| {
+            let at = angle.to_degrees();
+            Mark { is_level: false, at, label: format!("a tooth {what}, {} deg", fixed(at, 1)) }
+        });
+        Chart {
+            x: Axis { range: Some([0.0, last]), ..Axis::default() },
+            y: Axis::new(format!("{} ({}) {}", self.name.to_lowercase(), self.unit, self.about)),
+            series: components.chain([curve("magnitude", 3, &|vector| vector.norm())]).collect(),
+            marks: arcs.chain([Mark { is_level: true, at: 0.0, label: String::new() }]).collect(),
+            ..Chart::default()
+        }
+    }
+}
+
+/// Colours of the components along the feed, to the left and along the tool axis.
+const COLOURS: [usize; 3] = [0, 2, 1];
+const SENSE: &str = "in the sense of rotation, from the side where a tooth enters a full slot (deg)";
+
 /// An [`EngagementRow`] per degree, from 0 to 180.
 ///
 /// # Errors
@@ -73,8 +164,9 @@ pub fn turn(force_history: &ForceHistory) -> Result<Vec<u8>, ReportError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::force_history;
     use super::*;
+    use crate::picture;
+    use crate::testing::{assert_well_formed, force_history};
 
     fn lines(bytes: Vec<u8>) -> Vec<String> {
         String::from_utf8(bytes).unwrap().lines().map(str::to_owned).collect()
@@ -100,5 +192,18 @@ mod tests {
         let lines = lines(turn(&force_history()).unwrap());
         assert_eq!(lines.len(), 1 + 721);
         assert!(lines[0].starts_with("tooth_deg,") && lines[721].starts_with("360.0000,"), "{}", lines[721]);
+    }
+
+    #[test]
+    fn the_picture_is_well_formed_small_the_same_each_time_and_labelled() {
+        let draw = || picture::charts(&charts(&force_history()));
+        let svg = draw();
+        assert_eq!(svg, draw());
+        assert_well_formed(&svg);
+        assert!(svg.len() < 150_000, "{}", svg.len());
+        let arcs = ["enters, 0.0 deg", "leaves, 60.0 deg", "enters, 120.0 deg", "leaves, 180.0 deg"];
+        for label in ["force (N)", "moment (N m)", "along the feed"].into_iter().chain(arcs) {
+            assert!(svg.contains(label), "{label}");
+        }
     }
 }

@@ -13,7 +13,6 @@ use crate::figure::{
     AngleDeg, Direction, ForceN, HeightUm, MomentNm, Percent, PlaceMm, PowerKw, RateCm3PerMin, RemovalMm2, SpeedMmPerS,
     TaskMm, VolumeMm3, each, some,
 };
-use crate::page::cards::{Axis, Chart, Series, Style};
 use crate::units::fixed;
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -37,7 +36,7 @@ pub fn forces_files(run: &ForcesRun, forces: &RemovalForces) -> Result<Files, Re
     let files = [
         task(forces)?,
         engagement(forces)?,
-        picture::charts(&charts(forces)).into_bytes(),
+        picture::charts(&page::charts(forces)).into_bytes(),
         page::page(run, forces).html(),
         stl(&forces.stock[0]),
         stl(&forces.stock[1]),
@@ -272,74 +271,15 @@ fn task(forces: &RemovalForces) -> Result<Vec<u8>, ReportError> {
     rows("the task", (0..path.points().len()).map(row))
 }
 
-/// Length of path to each point. m
-fn along(forces: &RemovalForces) -> Vec<f64> {
-    let points = forces.path.points();
-    let mut along = vec![0.0];
-    for (index, pair) in points.windows(2).enumerate() {
-        let is_start = forces.path.segments().iter().any(|range| range.start == index + 1);
-        let step = if is_start { 0.0 } else { (pair[1].position - pair[0].position).norm() };
-        along.push(along[index] + step);
-    }
-    along
-}
-
 /// `engagement.csv`: an [`EngagementRow`] for each point.
 fn engagement(forces: &RemovalForces) -> Result<Vec<u8>, ReportError> {
     let path = &forces.path;
-    let along = along(forces);
+    let along = page::along(forces);
     let row = |index: usize| {
         let segment = path.segment_of(index) + 1;
         EngagementRow::of(index, segment, along[index], path.is_scored(index), &forces.points[index])
     };
     rows("the table of the engagement", (0..forces.points.len()).map(row))
-}
-
-/// Force, moment, height, angles and chip along the path.
-fn charts(forces: &RemovalForces) -> Vec<Chart> {
-    let along = along(forces);
-    let curve = |name: &str, color: usize, of: &dyn Fn(&PointForces) -> f64| {
-        let points = along.iter().zip(&forces.points).map(|(at, load)| [at * 1e3, of(load)]);
-        Series::curve(name, color, points)
-    };
-    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
-        title: title.to_owned(),
-        x: Axis::new("length of path (mm)"),
-        y: Axis::new(y),
-        series,
-        is_wide: true,
-        ..Chart::default()
-    };
-    let height = |k: usize| move |load: &PointForces| load.heights.map_or(f64::NAN, |heights| heights[k] * 1e3);
-    let angle = |k: usize| move |load: &PointForces| load.angles.map_or(f64::NAN, |angles| angles[k].to_degrees());
-    vec![
-        chart(
-            "Force on the tool",
-            "force (N)",
-            vec![
-                curve("mean over a turn", 0, &|load| load.at_feed(1.0).force.norm()),
-                curve("of it, chips", 1, &|load| load.chip.force.norm()),
-                curve("of it, edges", 2, &|load| load.edge.force.norm()),
-                curve("largest in a turn", 3, &|load| load.largest).styled(Style::Dashed),
-            ],
-        ),
-        chart(
-            "Moment about the tool centre point",
-            "moment (N m)",
-            vec![curve("mean over a turn", 0, &|load| load.at_feed(1.0).moment.norm())],
-        ),
-        chart(
-            "Height of the cut above the tool centre point",
-            "height (mm)",
-            vec![curve("lowest", 0, &height(0)), curve("highest", 1, &height(1))],
-        ),
-        chart(
-            "Angles of the cut",
-            "angle from where a tooth moves along the feed (deg)",
-            vec![curve("entry", 0, &angle(0)), curve("exit", 1, &angle(1))],
-        ),
-        chart("Thickest chip", "chip (um)", vec![curve("", 0, &|load| load.chip_thickness * 1e6)]),
-    ]
 }
 
 /// A surface as STL in text, in mm.

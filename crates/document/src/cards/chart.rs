@@ -41,6 +41,13 @@ impl Axis {
     }
 }
 
+impl<T: Into<String>> From<T> for Axis {
+    /// A linear axis with a label.
+    fn from(label: T) -> Self {
+        Self::new(label)
+    }
+}
+
 /// Curves and dots over two axes, with zoom and the values under the pointer.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct Chart {
@@ -61,6 +68,13 @@ pub struct Chart {
     pub is_even: bool,
     /// Whether it takes the whole width of the page.
     pub is_wide: bool,
+}
+
+impl Chart {
+    /// A chart under a heading.
+    pub fn new(title: impl Into<String>, x: impl Into<Axis>, y: impl Into<Axis>, series: Vec<Series>) -> Self {
+        Self { title: title.into(), x: x.into(), y: y.into(), series, ..Self::default() }
+    }
 }
 
 /// How a series is drawn.
@@ -107,6 +121,9 @@ pub struct Series {
     /// Where each point leads, from the folder of the page; empty where nowhere.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub links: Vec<String>,
+    /// What a picture writes beside each point, where there is space.
+    #[serde(skip)]
+    pub written: Vec<String>,
 }
 
 impl Series {
@@ -177,12 +194,46 @@ pub struct HeatMap {
     pub is_even: bool,
     /// Whether the value is written in each field.
     pub is_written: bool,
+    /// What the values are, with their unit: the title of the colours in a picture.
+    #[serde(skip)]
+    pub measure: String,
+    /// Points that a picture shows on it, over its values.
+    #[serde(skip)]
+    pub points: Vec<MapPoint>,
+    /// Lines that a picture shows on it.
+    #[serde(skip)]
+    pub lines: Vec<MapLine>,
+    /// What a picture states below it, line by line, in the colours of the list of the page.
+    #[serde(skip)]
+    pub notes: Vec<(String, usize)>,
+}
+
+/// A point on a heat map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapPoint {
+    /// What it is.
+    pub label: String,
+    /// Its place on both axes.
+    pub at: [f64; 2],
+    /// Whether it is a ring, or a dot.
+    pub is_ring: bool,
+}
+
+/// A straight line right across a heat map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapLine {
+    /// What it is.
+    pub label: String,
+    /// A point of it.
+    pub through: [f64; 2],
+    /// Its direction.
+    pub along: [f64; 2],
 }
 
 /// A rectangle over a heat map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outline {
-    /// Its name.
+    /// Its name: of what kind it is, and after a comma its size.
     pub label: String,
     /// Its colour, by the place in the list of colours of the page.
     pub color: usize,
@@ -222,6 +273,12 @@ pub struct PolarChoice {
     pub deviations: Vec<f64>,
     /// The smallest and the largest deviation that count.
     pub band: [f64; 2],
+    /// Radius of the circle.
+    #[serde(skip)]
+    pub radius: f64,
+    /// Figures of the circle that a picture states, by their names.
+    #[serde(skip)]
+    pub figures: Vec<(String, String)>,
 }
 
 /// A curve that looks the same at any width of a screen: its points, or of many the smallest and the largest of each

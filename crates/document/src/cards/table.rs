@@ -17,6 +17,13 @@ pub struct Table {
     pub can_filter: bool,
 }
 
+impl Table {
+    /// A table under a heading.
+    pub fn new(title: impl Into<String>, columns: Vec<Column>, rows: Vec<Vec<Cell>>) -> Self {
+        Self { title: title.into(), columns, rows, ..Self::default() }
+    }
+}
+
 /// A column.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Column {

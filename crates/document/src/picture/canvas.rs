@@ -293,8 +293,9 @@ pub fn paper(paint: impl FnOnce(&mut Canvas)) -> String {
     drawn((840, 1188), ["210mm".to_owned(), "297mm".to_owned()], true, paint)
 }
 
-fn drawn(size: Pixel, [wide, high]: [String; 2], is_brief: bool, paint: impl FnOnce(&mut Canvas)) -> String {
-    let (width, height) = raster(size);
+/// A picture of a size in pixels that is shown in another.
+fn drawn(size: Pixel, shown: [String; 2], is_brief: bool, paint: impl FnOnce(&mut Canvas)) -> String {
+    let ([wide, high], (width, height)) = (shown, raster(size));
     let family = if is_brief { " font-family=\"sans-serif\"" } else { "" };
     let document = format!(
         "<svg width=\"{wide}\" height=\"{high}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\"{family}>\n"

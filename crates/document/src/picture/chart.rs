@@ -1,11 +1,13 @@
 //! Charts as data, drawn: the same that pages show, one below the other.
 
 use super::axes::{Panel, Scale, Ticks, extent};
-use super::canvas::{Canvas, LineStyle, TextStyle, picture};
-use super::colour::{Colour, INK, PALE, SERIES};
-use super::line_chart::{LineChart, Mark, Sign, legend};
+use super::canvas::{Canvas, LineStyle, Pixel, Place, TextStyle, exact, nearest, picture};
+use super::colour::{BLACK, Colour, INK, PALE, SERIES, WHITE};
+use super::labels::{Label, Labeller, fitting};
 use crate::cards::{Axis, Chart, Series, Style};
 
+/// Width of a picture. Pixels
+const WIDTH: i32 = 1000;
 /// Left and right edge of every chart. Pixels
 const SIDES: [i32; 2] = [95, 970];
 /// Height of a panel, of one whose axes are to the same scale, and of what stands around it. Pixels
@@ -23,7 +25,7 @@ const MARGIN: f64 = 0.06;
 /// legend.
 pub fn charts(charts: &[Chart]) -> String {
     let panel = |chart: &Chart| if chart.is_even { EVEN } else { PANEL };
-    picture((1000, charts.iter().map(|chart| panel(chart) + AROUND).sum::<i32>() + 20), |canvas| {
+    picture((WIDTH, charts.iter().map(|chart| panel(chart) + AROUND).sum::<i32>() + 20), |canvas| {
         let mut top = 0;
         for chart in charts {
             draw(canvas, chart, top, panel(chart));
@@ -34,35 +36,99 @@ pub fn charts(charts: &[Chart]) -> String {
 
 fn draw(canvas: &mut Canvas, chart: &Chart, top: i32, panel: i32) {
     canvas.title(&chart.title, (SIDES[0], top + HEADING));
-    let style = TextStyle::new(12.0).coloured(INK);
+    let style = TextStyle::new(12.0);
     let beside = SIDES[0] + TextStyle::new(17.0).width(&chart.title) + 10;
-    canvas.text(&chart.detail, (beside, top + HEADING), style);
+    canvas.text(&chart.detail, (beside, top + HEADING), style.coloured(INK));
+    let named = chart.series.iter().filter(|series| !series.name.is_empty());
     let levels = chart.marks.iter().filter(|mark| mark.is_level && !mark.label.is_empty());
-    let signs = chart.series.iter().filter(|series| !series.name.is_empty()).map(sign);
-    let signs: Vec<_> = signs.chain(levels.map(|mark| (Sign::Dashed(INK), mark.label.as_str()))).collect();
-    let mut left = SIDES[0];
-    for (sign, label) in signs {
-        let width = 36 + style.width(label) + 24;
-        legend(canvas, top + LEGEND, &[(left, sign, label)]);
-        left += width;
+    let levels = levels.map(|mark| (None, &mark.label));
+    let (mut x, y) = (SIDES[0], top + LEGEND);
+    for (series, label) in named.map(|series| (Some(series), &series.name)).chain(levels) {
+        match series {
+            None => canvas.dashed((x, y), (x + 28, y), INK),
+            Some(curve) if is_curve(curve) => {
+                canvas.styled_curve(&[exact((x, y)), exact((x + 28, y))], line(curve), 2);
+            }
+            Some(dots) => canvas.dot(exact((x + 14, y)), 4, colour(dots)),
+        }
+        canvas.text(label, (x + 36, y), style);
+        x += 36 + style.width(label) + 24;
     }
-    line_chart(chart, [top + TOP + panel, top + TOP]).draw(canvas);
+    let panel = self::panel(chart, [top + TOP + panel, top + TOP]);
+    panel.draw_grid(canvas);
+    draw_marks(canvas, chart, &panel);
+    chart.series.iter().for_each(|series| draw_series(canvas, chart, series, &panel));
+    panel.draw_frame(canvas);
+    write(canvas, chart, &panel);
+}
+
+/// Levels, and lines from the bottom to the top; the label of one that would run into the label before is left out.
+fn draw_marks(canvas: &mut Canvas, chart: &Chart, panel: &Panel) {
+    let Panel { x, y, .. } = panel;
+    let mut free_from = 0;
+    for mark in &chart.marks {
+        if mark.is_level {
+            let at = y.pixel(along(&chart.y, mark.at));
+            canvas.dashed((x.start, at), (x.end, at), INK);
+        } else if (x.from..=x.to).contains(&along(&chart.x, mark.at)) {
+            let at = x.pixel(along(&chart.x, mark.at));
+            canvas.line(&[(at, y.start), (at, y.end)], PALE, 1);
+            let style = TextStyle::new(10.0).coloured(INK).centred();
+            let half = style.width(&mark.label) / 2;
+            let middle = at.min(WIDTH - half);
+            if !mark.label.is_empty() && middle - half > free_from {
+                canvas.text(&mark.label, (middle, y.end - 8), style);
+                free_from = middle + half;
+            }
+        }
+    }
+}
+
+/// A curve, broken where there is no value, or dots with their intervals.
+fn draw_series(canvas: &mut Canvas, chart: &Chart, series: &Series, panel: &Panel) {
+    let height = |value: f64| Some(along(&chart.y, value)).filter(|value| value.is_finite());
+    let place = |at: f64, value: f64| panel.place(at, value.clamp(panel.y.from, panel.y.to));
+    let points = series.x.iter().zip(&series.y).map(|(at, value)| Some(place(along(&chart.x, *at), height(*value)?)));
+    let points: Vec<Option<Place>> = points.collect();
+    if is_curve(series) {
+        for run in points.chunk_by(|a, b| a.is_some() == b.is_some()) {
+            canvas.curve_or_dot(&run.iter().flatten().copied().collect::<Vec<_>>(), line(series), 2);
+        }
+        return;
+    }
+    for ((low, high), at) in series.low.iter().zip(&series.high).zip(&series.x) {
+        let ends = [low, high].map(|end| panel.place(along(&chart.x, *at), along(&chart.y, *end)));
+        canvas.curve_or_dot(&ends, colour(series), 2);
+    }
+    let radius = if series.style == Style::Dots { 4 } else { 6 };
+    points.into_iter().flatten().for_each(|place| canvas.dot(place, radius, colour(series)));
+}
+
+/// What is written beside points, where it covers neither another one of them nor what is beside it.
+fn write(canvas: &mut Canvas, chart: &Chart, panel: &Panel) {
+    let mut labeller = Labeller::new(((panel.x.start, panel.y.end), (panel.x.end, panel.y.start)));
+    let places = chart.series.iter().flat_map(|series| series.x.iter().zip(&series.y).zip(&series.written));
+    let at = |x: f64, y: f64| nearest(panel.place(along(&chart.x, x), along(&chart.y, y)));
+    let places: Vec<(Pixel, &String)> = places.map(|((x, y), text)| (at(*x, *y), text)).collect();
+    places.iter().for_each(|((x, y), _)| labeller.take(((x - 7, y - 7), (x + 7, y + 7))));
+    for ((x, y), text) in places {
+        let beside = Labeller::half(text).0 + 10;
+        let centres = [(beside, -8), (beside, 9), (-beside, -8), (-beside, 9), (0, -16), (0, 17)];
+        let label = Label { text, colour: BLACK, ground: WHITE };
+        labeller.put(canvas, &label, centres.into_iter().map(|(across, down)| (x + across, y + down)));
+    }
 }
 
 fn colour(series: &Series) -> Colour {
     SERIES[series.color % SERIES.len()]
 }
 
-fn line(series: &Series) -> LineStyle {
-    LineStyle { colour: colour(series), is_dashed: series.style == Style::Dashed }
+fn is_curve(series: &Series) -> bool {
+    matches!(series.style, Style::Line | Style::Dashed)
 }
 
-fn sign(series: &Series) -> (Sign, &str) {
-    let sign = match series.style {
-        Style::Line | Style::Dashed => Sign::Line(line(series)),
-        Style::Dots | Style::Rings | Style::Intervals => Sign::Dot(colour(series)),
-    };
-    (sign, &series.name)
+fn line(series: &Series) -> LineStyle {
+    LineStyle { colour: colour(series), is_dashed: series.style == Style::Dashed }
 }
 
 /// The place of a value along an axis.
@@ -70,8 +136,12 @@ fn along(axis: &Axis, value: f64) -> f64 {
     if axis.is_log { libm::log10(value) } else { value }
 }
 
-/// A scale over values, or over the range of the axis.
-fn scale(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64, [start, end]: [i32; 2]) -> Scale {
+/// A scale over values, over the names of the axis, or over its range.
+fn scale(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64, ends: [i32; 2]) -> Scale {
+    let [start, end] = ends;
+    if !axis.names.is_empty() {
+        return Scale::new(-0.5, axis.names.len() as f64 - 0.5, start, end);
+    }
     let finite = values.map(|value| along(axis, value)).filter(|value| value.is_finite());
     let given = axis.range.map(|range| range.map(|end| along(axis, end)));
     let found = || {
@@ -84,18 +154,17 @@ fn scale(axis: &Axis, values: impl Iterator<Item = f64>, margin: f64, [start, en
 
 fn ticks(axis: &Axis, scale: &Scale, max: usize) -> Ticks {
     if !axis.names.is_empty() {
-        return Ticks::named(axis.names.clone());
+        return Ticks::named(fitting(&axis.names, (scale.end - scale.start).abs() / axis.names.len() as i32));
     }
     // A part of a decade has no power of ten on it.
     if axis.is_log && scale.to - scale.from >= 1.0 { Ticks::decades(scale) } else { Ticks::round(scale, max) }
 }
 
-/// The chart between the lower and the upper edge of its panel.
-fn line_chart(chart: &Chart, edges: [i32; 2]) -> LineChart {
+/// The axes of a chart between the lower and the upper edge of its panel.
+fn panel(chart: &Chart, edges: [i32; 2]) -> Panel {
     let levels = chart.marks.iter().filter(|mark| mark.is_level).map(|mark| mark.at);
     let heights = chart.series.iter().flat_map(|series| [&series.y, &series.low, &series.high]).flatten().copied();
     let places = chart.series.iter().flat_map(|series| &series.x).copied();
-    let is_curve = |series: &Series| matches!(series.style, Style::Line | Style::Dashed);
     let margin = if chart.series.iter().all(is_curve) { 0.0 } else { 0.05 };
     let mut x = scale(&chart.x, places, margin, SIDES);
     let mut y = scale(&chart.y, heights.chain(levels), MARGIN, edges);
@@ -111,34 +180,7 @@ fn line_chart(chart: &Chart, edges: [i32; 2]) -> LineChart {
     }
     let (x_ticks, y_ticks) = (ticks(&chart.x, &x, 12), ticks(&chart.y, &y, 8));
     let [x_label, y_label] = [&chart.x, &chart.y].map(|axis| axis.label.clone().into());
-    let mut drawn = LineChart::new(Panel { x, y, x_ticks, y_ticks, x_label, y_label });
-    for mark in &chart.marks {
-        if mark.is_level {
-            drawn.marks.push(Mark::Dashed(along(&chart.y, mark.at), INK));
-        } else if (x.from..=x.to).contains(&along(&chart.x, mark.at)) {
-            let label = (!mark.label.is_empty()).then(|| mark.label.clone());
-            drawn.marks.push(Mark::Vertical(along(&chart.x, mark.at), PALE, label));
-        }
-    }
-    for series in &chart.series {
-        let height = |value: f64| Some(along(&chart.y, value)).filter(|value| value.is_finite());
-        let points = series.x.iter().zip(&series.y).map(|(at, value)| (along(&chart.x, *at), height(*value)));
-        let points = points.map(|(at, value)| (at, value.map(|value| value.clamp(y.from, y.to))));
-        match series.style {
-            Style::Line | Style::Dashed => drawn.broken_curve(points, line(series)),
-            Style::Dots | Style::Rings | Style::Intervals => {
-                let ends = series.low.iter().zip(&series.high).zip(&series.x);
-                for ((low, high), at) in ends {
-                    let at = along(&chart.x, *at);
-                    drawn.curve([low, high].map(|end| [at, along(&chart.y, *end)]), colour(series));
-                }
-                let radius = if series.style == Style::Dots { 4 } else { 6 };
-                let dots = points.filter_map(|(at, value)| Some(Mark::Dot([at, value?], radius, colour(series))));
-                drawn.marks.extend(dots);
-            }
-        }
-    }
-    drawn
+    Panel { x, y, x_ticks, y_ticks, x_label, y_label }
 }
 
 #[cfg(test)]
@@ -169,10 +211,10 @@ mod tests {
 
     #[test]
     fn an_even_chart_has_the_same_scale_both_ways() {
-        let drawn = line_chart(&Chart { is_even: true, ..chart() }, [440, 84]);
-        let [x, y] = [drawn.panel.x, drawn.panel.y].map(|scale| scale.place(1.0) - scale.place(0.0));
+        let drawn = panel(&Chart { is_even: true, ..chart() }, [440, 84]);
+        let [x, y] = [drawn.x, drawn.y].map(|scale| scale.place(1.0) - scale.place(0.0));
         assert!((x + y).abs() < 1e-9 && x > 0.0, "{x} {y}");
-        assert!(drawn.panel.x.from <= 0.0 && drawn.panel.x.to >= 10.0);
+        assert!(drawn.x.from <= 0.0 && drawn.x.to >= 10.0);
     }
 
     #[test]
@@ -182,5 +224,33 @@ mod tests {
         let svg = charts(&[Chart { y: log, series: vec![curve], ..chart() }]);
         assert!(svg.contains("points=\"380,1760 3880,1048 \""), "{svg}");
         assert!(svg.contains("\n0.01\n") && svg.contains("\n0.1\n") && svg.contains("\n1\n"));
+    }
+
+    #[test]
+    fn a_known_series_is_drawn_at_its_pixels() {
+        // 875 by 356 pixels at (95, 84) over 0 to 10 and 0 to 1, in quarters of a pixel.
+        let known = Series::curve("", 2, [[0.0, 0.0], [1.0, 0.5], [10.0, 1.0]]);
+        let svg = charts(&[Chart { series: vec![known], ..chart() }]);
+        let lines: Vec<&str> = svg.lines().filter(|line| line.contains("#C26A00")).collect();
+        assert_eq!(
+            lines,
+            ["<polyline fill=\"none\" stroke=\"#C26A00\" stroke-width=\"8\" points=\"380,1760 730,1048 3880,336 \"/>"]
+        );
+    }
+
+    #[test]
+    fn a_broken_curve_has_a_gap_and_a_dot() {
+        let values = [[0.0, 0.25], [1.0, f64::NAN], [2.0, 0.5], [10.0, 0.75]];
+        let svg = charts(&[Chart { series: vec![Series::curve("", 2, values)], ..chart() }]);
+        let dot = "<circle cx=\"380\" cy=\"1404\" r=\"12\" fill=\"#C26A00\" stroke=\"none\" stroke-width=\"1\"/>";
+        let line = "<polyline fill=\"none\" stroke=\"#C26A00\" stroke-width=\"8\" points=\"1080,1048 3880,692 \"/>";
+        assert_eq!(svg.lines().filter(|line| line.contains("#C26A00")).collect::<Vec<_>>(), [dot, line]);
+    }
+
+    #[test]
+    fn labels_of_lines_that_would_run_into_each_other_are_left_out() {
+        let marks = [2.0, 2.2, 9.0].map(|at| ChartMark { is_level: false, at, label: format!("{at} Hz") });
+        let svg = charts(&[Chart { marks: marks.to_vec(), ..chart() }]);
+        assert!(svg.contains("2 Hz") && !svg.contains("2.2 Hz") && svg.contains("9 Hz"));
     }
 }

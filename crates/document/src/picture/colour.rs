@@ -36,8 +36,6 @@ pub const ORANGE: Colour = Colour(213, 94, 0);
 /// Means.
 pub const BLUE: Colour = Colour(110, 140, 190);
 
-/// Components along x, y and z, distinct for the colour-blind too (Okabe and Ito 2008).
-pub const COMPONENTS: [Colour; 3] = [Colour(0, 114, 178), Colour(213, 94, 0), Colour(0, 158, 115)];
 /// Series of a chart: those of the pages in daylight.
 pub const SERIES: [Colour; 6] = [
     Colour(59, 76, 192),
@@ -50,8 +48,6 @@ pub const SERIES: [Colour; 6] = [
 /// Indicators of a robot: accuracy, working radius, payload, price (Okabe and Ito 2008).
 pub const INDICATORS: [Colour; 4] =
     [Colour(0, 114, 178), Colour(0, 158, 115), Colour(230, 159, 0), Colour(204, 121, 167)];
-/// The ground of a part of an axis that is meant.
-pub const SHADE: Colour = Colour(248, 244, 230);
 
 /// Levels of the colour scale of deflections.
 pub const LEVELS: usize = 32;
@@ -97,7 +93,8 @@ pub fn of_deflection(deflection: f64) -> [f32; 3] {
 }
 
 /// Black or white, whichever stands out more from a ground.
-pub fn contrast(Colour(red, green, blue): Colour) -> Colour {
+pub fn contrast(ground: Colour) -> Colour {
+    let Colour(red, green, blue) = ground;
     let brightness = 0.2126 * f64::from(red) + 0.7152 * f64::from(green) + 0.0722 * f64::from(blue);
     if brightness > 130.0 { BLACK } else { WHITE }
 }

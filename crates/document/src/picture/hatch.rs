@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Pixel};
 use super::colour::Colour;
+use super::labels::Area;
 
 /// Which way the lines of a hatching run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,20 +16,15 @@ pub enum Slope {
 /// Distance of the lines across. Pixels
 const SPACING: usize = 9;
 
-/// Hatches those pixels between two corners for which `inside` holds.
-pub fn hatch(
-    canvas: &mut Canvas,
-    (from, to): (Pixel, Pixel),
-    slope: Slope,
-    colour: Colour,
-    inside: impl Fn(Pixel) -> bool,
-) {
-    for (start, end) in lines((from, to), slope, inside) {
+/// Hatches those pixels of an area for which `inside` holds.
+pub fn hatch(canvas: &mut Canvas, area: Area, slope: Slope, colour: Colour, inside: impl Fn(Pixel) -> bool) {
+    for (start, end) in lines(area, slope, inside) {
         canvas.line(&[start, end], colour, 1);
     }
 }
 
-fn lines((from, to): (Pixel, Pixel), slope: Slope, inside: impl Fn(Pixel) -> bool) -> Vec<(Pixel, Pixel)> {
+fn lines(area: Area, slope: Slope, inside: impl Fn(Pixel) -> bool) -> Vec<(Pixel, Pixel)> {
+    let (from, to) = area;
     let (width, height) = (to.0 - from.0, to.1 - from.1);
     let mut lines = Vec::new();
     for offset in (0..width + height).step_by(SPACING) {

@@ -8,7 +8,7 @@ use super::merged_cells::merged_cells;
 use std::borrow::Cow;
 
 /// A grid of cells, each with a content that has a colour, or with none.
-pub struct HeatMap<T> {
+pub struct ColouredCells<T> {
     /// Edges of the columns, from left to right. Pixels
     pub columns: Vec<i32>,
     /// Edges of the rows, from the bottom up. Pixels
@@ -17,14 +17,15 @@ pub struct HeatMap<T> {
     pub cells: Vec<Option<T>>,
 }
 
-impl<T: Copy + PartialEq> HeatMap<T> {
+impl<T: Copy + PartialEq> ColouredCells<T> {
     /// What is in a cell.
     fn cell(&self, column: usize, row: usize) -> Option<T> {
         self.cells[row * (self.columns.len() - 1) + column]
     }
 
     /// What is at a pixel.
-    pub fn at(&self, (x, y): Pixel) -> Option<T> {
+    pub fn at(&self, pixel: Pixel) -> Option<T> {
+        let (x, y) = pixel;
         let column = self.columns.partition_point(|edge| *edge <= x).saturating_sub(1);
         let row = self.rows.partition_point(|edge| *edge > y).saturating_sub(1);
         let inside = column + 1 < self.columns.len() && row + 1 < self.rows.len();
@@ -142,9 +143,9 @@ mod tests {
     use super::*;
 
     /// Two columns of three rows, the left one without a cell in the middle.
-    fn map() -> HeatMap<usize> {
+    fn map() -> ColouredCells<usize> {
         let cells = vec![Some(0), Some(31), None, Some(31), Some(0), Some(0)];
-        HeatMap { columns: vec![10, 20, 40], rows: vec![90, 70, 50, 30], cells }
+        ColouredCells { columns: vec![10, 20, 40], rows: vec![90, 70, 50, 30], cells }
     }
 
     #[test]

@@ -29,6 +29,36 @@ pub fn lines(phrases: &[String], max: usize) -> Vec<String> {
     lines
 }
 
+/// A text of at most so many letters.
+pub fn cut(text: &str, letters: usize) -> String {
+    if text.chars().count() <= letters {
+        return text.to_owned();
+    }
+    text.chars().take(letters.saturating_sub(1)).chain(['…']).collect()
+}
+
+/// The end of a text, of at most so many letters.
+fn ending(text: &str, letters: usize) -> String {
+    let backwards = |text: &str| text.chars().rev().collect::<String>();
+    backwards(&cut(&backwards(text), letters))
+}
+
+/// Names of ticks, each cut to fit into so many pixels. Where there are too many for that, some are left out.
+pub fn fitting(names: &[String], pixels: i32) -> Vec<String> {
+    let style = TextStyle::new(TICKS);
+    let widest = names.iter().map(|name| style.width(name)).max().unwrap_or(0).min(6 * 8);
+    let step = ((widest + 6) as usize).div_ceil(pixels.max(1) as usize).max(1);
+    let letters = f64::from(pixels * step as i32 - 6) / (TICKS * 0.6);
+    let letters = (letters.floor() as usize).max(1);
+    // Where the beginnings are the same, what tells names apart is at their ends.
+    let mut beginnings: Vec<String> = names.iter().map(|name| cut(name, letters)).collect();
+    beginnings.sort_unstable();
+    let is_same = beginnings.windows(2).any(|two| two[0] == two[1]);
+    let cut = if is_same { ending } else { cut };
+    let shown = |(k, name): (usize, &String)| if k % step == 0 { cut(name, letters) } else { String::new() };
+    names.iter().enumerate().map(shown).collect()
+}
+
 /// A rectangle of pixels: its upper left and its lower right corner.
 pub type Area = (Pixel, Pixel);
 
@@ -49,6 +79,8 @@ pub struct Labeller {
     taken: Vec<Area>,
 }
 
+/// Height of the letters of ticks. Pixels
+pub const TICKS: f64 = 12.0;
 /// Height of the letters of labels. Pixels
 const SIZE: f64 = 10.5;
 
@@ -64,7 +96,8 @@ impl Labeller {
     }
 
     /// Keeps labels off the outline of an area.
-    pub fn take_outline(&mut self, ((left, top), (right, bottom)): Area) {
+    pub fn take_outline(&mut self, area: Area) {
+        let ((left, top), (right, bottom)) = area;
         for (from, to) in [
             ((left, top), (right, top)),
             ((left, bottom), (right, bottom)),
@@ -92,8 +125,8 @@ impl Labeller {
         canvas.text(label.text, centre, TextStyle::new(SIZE).centred().coloured(label.colour))
     }
 
-    fn is_free(&self, ((left, top), (right, bottom)): Area) -> bool {
-        let (from, to) = self.within;
+    fn is_free(&self, area: Area) -> bool {
+        let (((left, top), (right, bottom)), (from, to)) = (area, self.within);
         let inside = left >= from.0 && top >= from.1 && right <= to.0 && bottom <= to.1;
         let apart = |(from, to): &Area| right < from.0 || left > to.0 || bottom < from.1 || top > to.1;
         inside && self.taken.iter().all(apart)
@@ -123,6 +156,16 @@ mod tests {
         assert_eq!(lines(&phrases, 9), ["one · two", "threefold", "a"]);
         assert_eq!(lines(&phrases, 100), ["one · two · threefold · a"]);
         assert!(lines(&[], 8).is_empty());
+    }
+
+    #[test]
+    fn names_of_ticks_fit() {
+        let names = |names: &[&str]| names.iter().map(ToString::to_string).collect::<Vec<_>>();
+        assert_eq!(fitting(&names(&["kuka-kr500", "high and dry"]), 70), ["kuka-kr…", "high an…"]);
+        assert_eq!(fitting(&names(&["kuka-kr270-r2700", "kuka-kr270-r3100"]), 70), ["…0-r2700", "…0-r3100"]);
+        let many: Vec<String> = (100..140).map(|k| k.to_string()).collect();
+        let shown = fitting(&many, 8);
+        assert_eq!((shown[0].as_str(), shown[1].as_str(), shown[4].as_str()), ("100", "", "104"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What `stead assess` reports.
 
 mod json;
+pub(crate) mod map;
 mod page;
 pub(crate) mod tables;
 mod text;
@@ -8,10 +9,9 @@ mod text;
 pub use json::{AssessmentFigures, assess_json, summary_json};
 pub use text::assessment_text;
 
-use super::output::{Folder, ReportError};
+use super::output::ReportError;
 use super::page::PAGE;
 use super::{Files, cutting, document as documents, picture};
-use std::path::PathBuf;
 use stead_assessment::comparison::{Assessment, Comparison};
 use stead_assessment::published::{Agreement, PublishedTables};
 use stead_disk::input::InputFile;
@@ -34,24 +34,10 @@ pub struct AssessmentContext {
     pub force_history: Option<ForceHistory>,
 }
 
-/// Writes everything that an assessment reports into a folder: for each robot `map-ROBOT.csv` and `map-ROBOT.svg`; then
+/// Everything that an assessment reports: for each robot `map-ROBOT.csv` and `map-ROBOT.svg`; then
 /// `circularity.csv`, `optimal-zones.csv`, `middle-zones.csv`, `accuracy.csv`, `selection.csv` (Klimchik 2017, Tables 5
 /// to 9), `indicators.svg` and `summary.json`; and, where forces were computed, `cutting.svg`, `cutting-engagement.csv`
-/// and `cutting-turn.csv`; last the page, `report.html`. Returns the paths in that order.
-///
-/// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_assessment(
-    folder: &Folder,
-    comparison: &Comparison,
-    assessment: &Assessment,
-    context: &AssessmentContext,
-) -> Result<Vec<PathBuf>, ReportError> {
-    let files = assessment_files(comparison, assessment, context)?;
-    folder.results("assess", &context.inputs).write(&files)
-}
-
-/// The files that [`write_assessment`] writes.
+/// and `cutting-turn.csv`; last the page, `report.html`.
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.
@@ -64,7 +50,7 @@ pub fn assessment_files(
     for (index, robot) in assessment.robots.iter().enumerate() {
         let name = format!("map-{}", file_name(assessment, index));
         files.push((format!("{name}.csv"), tables::map(robot)?));
-        files.push((format!("{name}.svg"), picture::circularity_map(comparison, robot).into_bytes()));
+        files.push((format!("{name}.svg"), map::picture(comparison, robot).into_bytes()));
     }
     let published = context.published.as_ref().map(|(published, _)| &published.figures);
     let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
@@ -76,7 +62,7 @@ pub fn assessment_files(
     add("indicators.svg", picture::indicators(assessment).into_bytes());
     add("summary.json", documents::bytes(&summary_json(comparison, assessment, context)));
     if let Some(force_history) = &context.force_history {
-        add("cutting.svg", picture::cutting(force_history).into_bytes());
+        add("cutting.svg", picture::charts(&cutting::charts(force_history)).into_bytes());
         add("cutting-engagement.csv", cutting::entering(force_history)?);
         add("cutting-turn.csv", cutting::turn(force_history)?);
     }

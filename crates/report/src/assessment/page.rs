@@ -1,11 +1,11 @@
 //! `report.html` of an assessment.
 
 use super::AssessmentContext;
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Outline, Page, Series, Table, Tile, Tiles};
+use super::map;
+use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series, Table, Tile, Tiles};
 use crate::picture::{ColourRange, PlaneView};
 use crate::units::{figures, fixed};
-use stead_assessment::comparison::{Assessment, Comparison, Configuration, Load, RobotResult, Zones};
-use stead_assessment::map::{Elbow, Map};
+use stead_assessment::comparison::{Assessment, Comparison, Configuration, RobotResult, Zones};
 use stead_assessment::zone::Zone;
 
 /// Values of all maps of a page at most: finer maps are thinned out evenly.
@@ -47,8 +47,9 @@ pub(super) fn page(comparison: &Comparison, assessment: &Assessment, context: &A
     }
     let view = PlaneView::new(&comparison.benchmark.plane);
     let drawn = maps().filter(|(.., map)| map.count() > 0);
-    let mut cards: Vec<HeatMap> = drawn.map(|(robot, elbow, map)| map_card(&view, robot, elbow, map, stride)).collect();
-    compared(&mut cards);
+    let mut cards: Vec<HeatMap> =
+        drawn.map(|(robot, elbow, map)| map::chart(&view, robot, elbow, map, stride)).collect();
+    map::compare(&mut cards, ColourRange::round);
     cards.into_iter().fold(page, |page, card| page.with(Card::HeatMap(card)))
 }
 
@@ -83,11 +84,13 @@ fn ranking(assessment: &Assessment) -> Card {
     };
     let numbers = ["smallest circularity mm", "working radius mm", "payload kg", "price EUR"].map(Column::number);
     Card::Table(Table {
-        title: "Ranking".to_owned(),
         detail: "most accurate first".to_owned(),
-        columns: [Column::number("rank"), Column::text("robot")].into_iter().chain(numbers).collect(),
-        rows: assessment.order.iter().enumerate().map(row).collect(),
         can_filter: assessment.order.len() > 8,
+        ..Table::new(
+            "Ranking",
+            [Column::number("rank"), Column::text("robot")].into_iter().chain(numbers).collect(),
+            assessment.order.iter().enumerate().map(row).collect(),
+        )
     })
 }
 
@@ -98,13 +101,14 @@ fn accuracies(assessment: &Assessment) -> Card {
         Series::curve(&robot.name, color, points)
     };
     Card::Chart(Chart {
-        title: "Accuracy at a force".to_owned(),
         detail: "at the best place, without compensation".to_owned(),
-        x: Axis::new("cutting force (N)"),
-        y: Axis::log("circularity (mm)"),
-        series: assessment.robots.iter().enumerate().map(curve).collect(),
         is_wide: true,
-        ..Chart::default()
+        ..Chart::new(
+            "Accuracy at a force",
+            "cutting force (N)",
+            Axis::log("circularity (mm)"),
+            assessment.robots.iter().enumerate().map(curve).collect(),
+        )
     })
 }
 
@@ -127,11 +131,9 @@ fn configurations(assessment: &Assessment) -> Card {
     };
     let rows = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |of| row(robot, of)));
     Card::Table(Table {
-        title: "Configurations and zones".to_owned(),
         detail: "circularity in mm; of a zone, its largest".to_owned(),
-        columns: columns.collect(),
-        rows: rows.collect(),
         can_filter: true,
+        ..Table::new("Configurations and zones", columns.collect(), rows.collect())
     })
 }
 
@@ -146,80 +148,12 @@ fn selection(assessment: &Assessment) -> Card {
     };
     let numbers = ["accuracy mm", "force N", "robots"].map(Column::number);
     Card::Table(Table {
-        title: "Which robots for which task".to_owned(),
         detail: "with errors compensated".to_owned(),
-        columns: numbers.into_iter().chain([Column::text("which")]).collect(),
-        rows: assessment.capable.iter().map(row).collect(),
         can_filter: true,
+        ..Table::new(
+            "Which robots for which task",
+            numbers.into_iter().chain([Column::text("which")]).collect(),
+            assessment.capable.iter().map(row).collect(),
+        )
     })
-}
-
-/// Gives all maps one scale of colours and the same axes, so that they are compared by eye.
-fn compared(maps: &mut [HeatMap]) {
-    let mut ascending: Vec<f64> = maps.iter().flat_map(|map| &map.values).copied().filter(|v| v.is_finite()).collect();
-    ascending.sort_by(f64::total_cmp);
-    let colours = ColourRange::round(&ascending);
-    let ends = |places: fn(&HeatMap) -> &[f64]| {
-        let halves = maps.iter().flat_map(|map| match places(map) {
-            [] => vec![],
-            of @ [first, .., last] => {
-                let half = (last - first) / (of.len() - 1) as f64 / 2.0;
-                vec![first - half, last + half]
-            }
-            [only] => vec![*only - 0.5, only + 0.5],
-        });
-        halves.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], end| [low.min(end), high.max(end)])
-    };
-    let (x, y) = (ends(|map| &map.columns), ends(|map| &map.rows));
-    for map in maps {
-        map.range = [colours.from, colours.to];
-        (map.x.range, map.y.range) = (Some(x), Some(y));
-    }
-}
-
-/// The map of an elbow under the test load, every so-manieth node of the part that has values.
-fn map_card(view: &PlaneView, robot: &RobotResult, elbow: Elbow, map: &Map<2>, stride: usize) -> HeatMap {
-    let [across, up] = map.grid.counts;
-    let values = map.values(0);
-    let at = |column: usize, row: usize| values[row * across + column];
-    let has_value = |line: &dyn Fn(usize) -> bool, count: usize| {
-        let found: Vec<usize> = (0..count).filter(|k| line(*k)).collect();
-        let (first, last) = (found.first().copied().unwrap_or(0), found.last().copied().unwrap_or(0));
-        (first..=last).step_by(stride).collect::<Vec<usize>>()
-    };
-    let columns = has_value(&|column| (0..up).any(|row| at(column, row).is_finite()), across);
-    let rows = has_value(&|row| (0..across).any(|column| at(column, row).is_finite()), up);
-    let shown: Vec<f64> = rows.iter().flat_map(|row| columns.iter().map(|column| at(*column, *row) * 1e3)).collect();
-    let place = |column: usize, row: usize| view.shown(map.grid.at([column as f64, row as f64]));
-    let found = robot.configurations.iter().find(|found| found.elbow == elbow && found.load == Load::Test);
-    let outline = |kind: &str, color: usize, zone: Option<Zone>| {
-        zone.map(|zone| {
-            let ([x, y], half) = (view.shown(zone.centre), zone.side / 2.0 * 1e3);
-            Outline {
-                label: format!("{kind} zone, {} mm", figures(zone.side * 1e3)),
-                color,
-                low: [x - half, y - half],
-                high: [x + half, y + half],
-            }
-        })
-    };
-    let zones = found.iter().flat_map(|found| &found.zones);
-    let outlines = zones.flat_map(|zones| [outline("optimal", 2, zones.optimal), outline("middle", 3, zones.middle)]);
-    let detail = found.and_then(|found| Some((found.min?, found.max?))).map_or_else(String::new, |(min, max)| {
-        format!("{} to {} mm", figures(min.circularity * 1e3), figures(max.circularity * 1e3))
-    });
-    HeatMap {
-        title: format!("{}, elbow {}", robot.name, elbow.word()),
-        detail: format!("{detail}; {}", view.words()),
-        x: Axis::new(view.labels[0]),
-        y: Axis::new(view.labels[1]),
-        columns: columns.iter().map(|column| place(*column, 0)[0]).collect(),
-        rows: rows.iter().map(|row| place(0, *row)[1]).collect(),
-        values: shown,
-        unit: "mm".to_owned(),
-        blank: "no circle fits".to_owned(),
-        outlines: outlines.flatten().collect(),
-        is_even: true,
-        ..HeatMap::default()
-    }
 }

@@ -38,12 +38,11 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
         return page;
     }
     let row = |(point, reason): &(usize, _)| vec![Cell::Number(point.to_string()), Cell::Text(format!("{reason}"))];
-    page.with(Card::Table(Table {
-        title: "Points that keep their target".to_owned(),
-        columns: vec![Column::number("point"), Column::text("reason")],
-        rows: kept.iter().map(row).collect(),
-        ..Table::default()
-    }))
+    page.with(Card::Table(Table::new(
+        "Points that keep their target",
+        vec![Column::number("point"), Column::text("reason")],
+        kept.iter().map(row).collect(),
+    )))
 }
 
 fn tiles(outcome: &CompensatedPath) -> Card {
@@ -99,17 +98,18 @@ fn along(title: &str, outcome: &CompensatedPath, pair: [MeanAndMax; 2], part: fn
         Series::curve(name, color, by_segment(outcome, |point| value(point).map_or(f64::NAN, |part| part * 1e3)))
     };
     Chart {
-        title: title.to_owned(),
         detail: format!("mean magnitude {before} mm before, {after} mm after{change}"),
-        x: Axis::new("path point"),
-        y: Axis::log("deflection (mm)"),
-        series: vec![
-            curve("target commanded", 1, |point| &point.before),
-            curve("corrected command", 0, |point| &point.after),
-        ],
         marks: starts(outcome),
         is_wide: true,
-        ..Chart::default()
+        ..Chart::new(
+            title.to_owned(),
+            "path point",
+            Axis::log("deflection (mm)"),
+            vec![
+                curve("target commanded", 1, |point| &point.before),
+                curve("corrected command", 0, |point| &point.after),
+            ],
+        )
     }
 }
 
@@ -118,17 +118,18 @@ fn correction(outcome: &CompensatedPath) -> Card {
     let shift = by_segment(outcome, |point| point.correction.linear.norm() * 1e3);
     let turn = by_segment(outcome, |point| point.correction.angular.norm().to_degrees());
     Card::Chart(Chart {
-        title: "Corrections".to_owned(),
         detail: "of the place in mm, of the orientation in deg".to_owned(),
-        x: Axis::new("path point"),
-        y: Axis::new("mm and deg"),
-        series: vec![
-            Series::curve("place (mm)", 0, shift),
-            Series::curve("orientation (deg)", 2, turn).styled(Style::Dashed),
-        ],
         marks: starts(outcome),
         is_wide: true,
-        ..Chart::default()
+        ..Chart::new(
+            "Corrections",
+            "path point",
+            "mm and deg",
+            vec![
+                Series::curve("place (mm)", 0, shift),
+                Series::curve("orientation (deg)", 2, turn).styled(Style::Dashed),
+            ],
+        )
     })
 }
 

@@ -1,9 +1,9 @@
 //! `NAME-forces.html`: the page of forces from a path.
 
-use super::{ForcesFigures, charts};
-use crate::page::cards::{Card, Page, Tile, Tiles};
+use super::ForcesFigures;
+use crate::page::cards::{Card, Chart, Page, Series, Style, Tile, Tiles};
 use crate::units::fixed;
-use stead_removal::outcome::RemovalForces;
+use stead_removal::outcome::{PointForces, RemovalForces};
 use stead_runs::ForcesRun;
 
 /// What was found, and the charts along the path.
@@ -46,4 +46,59 @@ fn tiles(forces: &RemovalForces, figures: &ForcesFigures) -> Card {
             ),
         ],
     })
+}
+
+/// Force, moment, height, angles and chip along the path.
+pub(super) fn charts(forces: &RemovalForces) -> Vec<Chart> {
+    let along = along(forces);
+    let curve = |name: &str, color: usize, of: &dyn Fn(&PointForces) -> f64| {
+        let points = along.iter().zip(&forces.points).map(|(at, load)| [at * 1e3, of(load)]);
+        Series::curve(name, color, points)
+    };
+    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
+        is_wide: true,
+        ..Chart::new(title.to_owned(), "length of path (mm)", y, series)
+    };
+    let height = |k: usize| move |load: &PointForces| load.heights.map_or(f64::NAN, |heights| heights[k] * 1e3);
+    let angle = |k: usize| move |load: &PointForces| load.angles.map_or(f64::NAN, |angles| angles[k].to_degrees());
+    vec![
+        chart(
+            "Force on the tool",
+            "force (N)",
+            vec![
+                curve("mean over a turn", 0, &|load| load.at_feed(1.0).force.norm()),
+                curve("of it, chips", 1, &|load| load.chip.force.norm()),
+                curve("of it, edges", 2, &|load| load.edge.force.norm()),
+                curve("largest in a turn", 3, &|load| load.largest).styled(Style::Dashed),
+            ],
+        ),
+        chart(
+            "Moment about the tool centre point",
+            "moment (N m)",
+            vec![curve("mean over a turn", 0, &|load| load.at_feed(1.0).moment.norm())],
+        ),
+        chart(
+            "Height of the cut above the tool centre point",
+            "height (mm)",
+            vec![curve("lowest", 0, &height(0)), curve("highest", 1, &height(1))],
+        ),
+        chart(
+            "Angles of the cut",
+            "angle from where a tooth moves along the feed (deg)",
+            vec![curve("entry", 0, &angle(0)), curve("exit", 1, &angle(1))],
+        ),
+        chart("Thickest chip", "chip (um)", vec![curve("", 0, &|load| load.chip_thickness * 1e6)]),
+    ]
+}
+
+/// Length of path to each point. m
+pub(super) fn along(forces: &RemovalForces) -> Vec<f64> {
+    let points = forces.path.points();
+    let mut along = vec![0.0];
+    for (index, pair) in points.windows(2).enumerate() {
+        let is_start = forces.path.segments().iter().any(|range| range.start == index + 1);
+        let step = if is_start { 0.0 } else { (pair[1].position - pair[0].position).norm() };
+        along.push(along[index] + step);
+    }
+    along
 }

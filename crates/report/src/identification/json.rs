@@ -1,6 +1,5 @@
 //! What `stead identify fit --json` prints, and `report.json`: the same document.
 
-use super::{URAD, key, rounded};
 use crate::document::Document;
 use crate::figure::{AngleDeg, PlaceMm, each, some};
 use schemars::JsonSchema;
@@ -329,4 +328,33 @@ fn compensator(found: &Identified) -> Option<CompensatorFigures> {
         }
         _ => None,
     }
+}
+
+/// The key of a robot file for a number of the arm, and what a number in SI is multiplied by to stand there.
+pub(super) fn key(parameter: &ArmParameter) -> (String, f64) {
+    let number = parameter.joint + 1;
+    match parameter.quantity {
+        Quantity::Compliance => (format!("joints[{number}].compliance_urad_per_nm"), 1e6),
+        Quantity::SpringStiffness => (format!("joints[{number}].compensator.spring_stiffness_n_per_mm"), 1e-3),
+        Quantity::FreeLength => (format!("joints[{number}].compensator.free_length_mm"), 1e3),
+        Quantity::AboutX => (format!("joints[{number}].orthogonal_compliance_urad_per_nm[1]"), 1e6),
+        Quantity::AboutY => (format!("joints[{number}].orthogonal_compliance_urad_per_nm[2]"), 1e6),
+    }
+}
+
+/// Its unit there.
+pub(super) fn unit(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Compliance | Quantity::AboutX | Quantity::AboutY => "urad/(N m)",
+        Quantity::SpringStiffness => "N/mm",
+        Quantity::FreeLength => "mm",
+    }
+}
+
+/// Compliances, from rad/(N m) to urad/(N m).
+pub(super) const URAD: f64 = 1e6;
+
+/// A number with so many significant digits, as a number.
+pub(super) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }

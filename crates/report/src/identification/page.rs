@@ -1,6 +1,6 @@
 //! `report.html` of an identification.
 
-use super::{URAD, key, unit};
+use super::json::{URAD, key, unit};
 use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
 use crate::units::{figures, fixed};
 use stead_calibration::identification::outcome::Estimate;
@@ -77,13 +77,12 @@ fn intervals(found: &Identified) -> Card {
         low,
         ..Series::default()
     };
-    Card::Chart(Chart {
-        title: "Compliances with their 95 % intervals".to_owned(),
-        x: Axis::named("", names),
-        y: Axis { is_log, ..Axis::new("compliance (urad/(N m))") },
-        series: vec![series],
-        ..Chart::default()
-    })
+    Card::Chart(Chart::new(
+        "Compliances with their 95 % intervals",
+        Axis::named("", names),
+        Axis { is_log, ..Axis::new("compliance (urad/(N m))") },
+        vec![series],
+    ))
 }
 
 /// Value, standard deviation, its share and the interval, each with two digits of the standard deviation.
@@ -100,12 +99,7 @@ fn columns(first: &str, value: &str) -> Vec<Column> {
 
 fn compliances(found: &Identified) -> Card {
     let row = |estimate| std::iter::once(Cell::Text(name(found, estimate))).chain(cells(estimate, URAD)).collect();
-    Card::Table(Table {
-        title: "Compliances".to_owned(),
-        columns: columns("joint", "urad/(N m)"),
-        rows: found.compliances.iter().map(row).collect(),
-        ..Table::default()
-    })
+    Card::Table(Table::new("Compliances", columns("joint", "urad/(N m)"), found.compliances.iter().map(row).collect()))
 }
 
 fn arm(found: &Identified) -> Card {
@@ -114,26 +108,15 @@ fn arm(found: &Identified) -> Card {
         let name = format!("{name} ({})", unit(estimate.parameter.quantity));
         std::iter::once(Cell::Text(name)).chain(cells(estimate, factor)).collect()
     };
-    Card::Table(Table {
-        title: "In the robot file".to_owned(),
-        columns: columns("parameter", "value"),
-        rows: found.arm.iter().map(row).collect(),
-        ..Table::default()
-    })
+    Card::Table(Table::new("In the robot file", columns("parameter", "value"), found.arm.iter().map(row).collect()))
 }
 
 /// The springs as the robot file has them.
 fn springs(found: &Identified) -> Card {
     let rows = super::text::spring_rows(found).into_iter().skip(1);
-    Card::Table(Table {
-        title: "Springs of the robot file".to_owned(),
-        detail: "urad/(N m); springs that cannot be told apart are split such that none is below zero and the sum of squares is \
+    Card::Table(Table { detail: "urad/(N m); springs that cannot be told apart are split such that none is below zero and the sum of squares is \
                  least"
-            .to_owned(),
-        columns: ["joint", "about z", "about x", "about y"].map(Column::number).to_vec(),
-        rows: rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect(),
-        ..Table::default()
-    })
+            .to_owned(), ..Table::new("Springs of the robot file", ["joint", "about z", "about x", "about y"].map(Column::number).to_vec(), rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect()) })
 }
 
 /// What a reading is.
@@ -170,25 +153,27 @@ pub(super) fn agreement(run: &IdentifyRun, found: &Identified) -> Chart {
     let mut series = dots(run, found, |measured, _| measured);
     series.push(Series::curve("read as predicted", 4, [[-reach, -reach], [reach, reach]]).styled(Style::Dashed));
     Chart {
-        title: "Deflection read and by the identified arm".to_owned(),
-        x: Axis::new("predicted component (mm)"),
-        y: Axis::new("component read (mm)"),
-        series,
         is_even: true,
-        ..Chart::default()
+        ..Chart::new(
+            "Deflection read and by the identified arm",
+            "predicted component (mm)",
+            "component read (mm)",
+            series,
+        )
     }
 }
 
 /// What is left of it, over the predicted one.
 pub(super) fn residuals_chart(run: &IdentifyRun, found: &Identified) -> Chart {
     Chart {
-        title: "Residuals".to_owned(),
         detail: format!("{} mm rms", figures(found.residual_rms * 1e3)),
-        x: Axis::new("predicted component (mm)"),
-        y: Axis::new("read less predicted (mm)"),
-        series: dots(run, found, |measured, predicted| measured - predicted),
         marks: vec![Mark { is_level: true, at: 0.0, label: String::new() }],
-        ..Chart::default()
+        ..Chart::new(
+            "Residuals",
+            "predicted component (mm)",
+            "read less predicted (mm)",
+            dots(run, found, |measured, predicted| measured - predicted),
+        )
     }
 }
 
@@ -207,14 +192,16 @@ fn residuals(run: &IdentifyRun, found: &Identified) -> Card {
     };
     let numbers = ["read mm", "residual mm", "x mm", "y mm", "z mm", "studentised"].map(Column::number);
     Card::Table(Table {
-        title: "Readings".to_owned(),
         detail: "sizes of deflection and residual; residual in the base frame".to_owned(),
-        columns: [Column::number("line"), Column::text("configuration"), Column::text("point")]
-            .into_iter()
-            .chain(numbers)
-            .chain([Column::text("outlier")])
-            .collect(),
-        rows: found.rows.iter().map(row).collect(),
         can_filter: true,
+        ..Table::new(
+            "Readings",
+            [Column::number("line"), Column::text("configuration"), Column::text("point")]
+                .into_iter()
+                .chain(numbers)
+                .chain([Column::text("outlier")])
+                .collect(),
+            found.rows.iter().map(row).collect(),
+        )
     })
 }

@@ -1,8 +1,7 @@
 //! The user's robot file with the identified numbers in it, everything else as it was.
 
 use super::super::output::ReportError;
-use super::json::is_full;
-use super::key;
+use super::json::{is_full, key};
 use std::fmt::Display;
 use stead_calibration::identification::Identified;
 use stead_calibration::identification::law::Quantity;

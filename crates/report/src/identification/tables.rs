@@ -2,7 +2,7 @@
 
 use super::super::output::ReportError;
 use super::json::numbers;
-use super::{URAD, key, rounded, unit};
+use super::json::{URAD, key, rounded, unit};
 use crate::csv_file::rows_or;
 use crate::figure::{AngleDeg, DeflectionMm, Studentised, each, some};
 use nalgebra::Vector3;

@@ -1,3 +1,4 @@
+use super::json::rounded;
 use super::*;
 use std::path::Path;
 use stead_calibration::identification::identify;

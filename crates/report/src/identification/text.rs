@@ -1,7 +1,6 @@
 //! The table for people.
 
-use super::json::is_full;
-use super::{URAD, key};
+use super::json::{URAD, is_full, key};
 use crate::columns::aligned;
 use crate::units::fixed;
 use stead_calibration::identification::outcome::Estimate;

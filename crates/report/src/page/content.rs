@@ -5,7 +5,6 @@ use super::table::Table;
 use super::{PageError, clearance, map_data, removal};
 use crate::Files;
 use crate::document::value;
-use crate::placement::{LEAN_MAP, SETUP_SHEET};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,6 +12,10 @@ use stead_problem::problem::Problem;
 
 /// `page-data.json`.
 pub(super) const DATA: &str = "page-data.json";
+/// The map over lead and tilt.
+pub(crate) const LEAN_MAP: &str = "lean-map.csv";
+/// The setup sheet of the best, or of the given, placement.
+pub(crate) const SETUP_SHEET: &str = "setup.svg";
 /// What a certificate proves.
 const CERTIFICATE: &str = "certificate.json";
 /// The boxes that it has not excluded.

@@ -1,6 +1,7 @@
 //! Page and scene of a results folder, written again from its files alone.
 
-use super::{DATA, PageError, content, made_of};
+use super::made::made_of;
+use super::{DATA, PageError, content};
 use crate::Files;
 use crate::output::{Folder, ReportError};
 use std::path::{Path, PathBuf};

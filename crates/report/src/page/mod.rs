@@ -10,14 +10,16 @@
 //! 7.8 s, needs Node to build), and own WebGL 2 and canvas (0.34 MB, 0.6 to 1.3 s, nothing added). The last looks as
 //! good, builds offline, and leaves no third-party text in what users pass on.
 
+mod body;
 pub mod cards;
 mod clearance;
-mod content;
+pub(crate) mod content;
 pub(crate) mod data;
 mod folder;
 pub mod gltf;
 mod html;
 pub mod live;
+mod made;
 mod map_data;
 mod moves;
 mod pose;
@@ -32,12 +34,11 @@ mod tests;
 mod thinned;
 
 pub use folder::{RewriteError, rewrite};
+pub use made::put_page;
 pub use shapes::{BodyFrame, BodyMesh, bodies};
-use stead_document::packed;
 
-use crate::Files;
 use crate::output::ReportError;
-use serde_json::Value;
+use stead_document::packed;
 
 /// `report.html`.
 pub(crate) const PAGE: &str = "report.html";
@@ -67,36 +68,4 @@ impl From<PageError> for ReportError {
     fn from(error: PageError) -> Self {
         Self::Format { what: PAGE, cause: error.to_string() }
     }
-}
-
-/// The page of the files of a run, which `page-data.json` is among.
-pub(crate) fn page(files: &Files) -> Result<Vec<u8>, PageError> {
-    let content = content::content(files)?;
-    Ok(html::html(&title(&content), html::RUN, &content.to_string()).into_bytes())
-}
-
-/// Page and scene of the files of a run, which `page-data.json` is among.
-pub(crate) fn made_of(files: &Files) -> Result<Files, PageError> {
-    Ok(vec![(PAGE.to_owned(), page(files)?), (gltf::SCENE.to_owned(), gltf::scene(files)?)])
-}
-
-/// Makes page and scene of files that hold `page-data.json`, in place of those among them; does nothing where they do
-/// not.
-///
-/// # Errors
-/// [`ReportError::Format`]: they make none.
-pub fn put_page(files: &mut Files) -> Result<(), ReportError> {
-    if files.iter().any(|(name, _)| name == DATA) {
-        files.retain(|(name, _)| name != PAGE && name != gltf::SCENE);
-        let made = made_of(files)?;
-        files.extend(made);
-    }
-    Ok(())
-}
-
-/// The name of the run file, without its ending.
-fn title(content: &Value) -> String {
-    let inputs = content["inputs"].as_array().map_or(&[][..], Vec::as_slice);
-    let config = inputs.iter().find(|input| input["role"] == "config").and_then(|input| input["name"].as_str());
-    config.map_or("run", |name| name.strip_suffix(".toml").unwrap_or(name)).to_owned()
 }

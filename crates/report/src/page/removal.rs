@@ -1,6 +1,6 @@
 //! What a path removes of its stock, for the page: forces and engagement at every point, the stock before and after.
 
-use super::data::BodyData;
+use super::body::BodyData;
 use super::packed::{chosen_singles, singles};
 use super::shapes::{BodyFrame, BodyMesh};
 use super::thinned::thinned;

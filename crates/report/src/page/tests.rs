@@ -1,4 +1,6 @@
+use super::made::page;
 use super::*;
+use crate::Files;
 use crate::output::Folder;
 use crate::placement::{placement_files, write_placement};
 use crate::testing::{context, outcome, problem};

@@ -49,8 +49,8 @@ impl Quadric {
 }
 
 /// Twice as long as a triangle is large, out of it.
-fn normal([a, b, c]: [Vector3<f64>; 3]) -> Vector3<f64> {
-    (b - a).cross(&(c - a))
+fn normal(corners: [Vector3<f64>; 3]) -> Vector3<f64> {
+    (corners[1] - corners[0]).cross(&(corners[2] - corners[0]))
 }
 
 /// An edge that may be drawn together.

@@ -1,6 +1,7 @@
 //! Tests of the pictures of an assessment.
 
-use super::{circularity_map, indicators};
+use super::indicators;
+use crate::assessment::map::picture as circularity_map;
 use crate::testing::assert_well_formed;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::OnceLock;

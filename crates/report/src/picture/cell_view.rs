@@ -26,9 +26,10 @@ impl CellView<'_> {
         self.panel.place(x, y)
     }
 
-    fn shows(&self, (x, y): Place) -> bool {
+    fn shows(&self, place: Place) -> bool {
+        let (x, y) = nearest(place);
         let (x_pixels, y_pixels) = (self.panel.x.start..=self.panel.x.end, self.panel.y.end..=self.panel.y.start);
-        x_pixels.contains(&(x.round() as i32)) && y_pixels.contains(&(y.round() as i32))
+        x_pixels.contains(&x) && y_pixels.contains(&y)
     }
 
     /// The circle that the wrist centre cannot leave, as far as it is inside the panel.

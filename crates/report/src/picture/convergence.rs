@@ -32,14 +32,15 @@ fn search(sense: Sense, generations: &[&Generation], refined: f64) -> Chart {
         Series::curve(name, color, generations.iter().map(at))
     };
     Chart {
-        title: title.to_owned(),
-        x: Axis::new("generation"),
-        y: Axis { range: Some([(low - margin).max(0.0), high + margin]), ..Axis::new("mean deflection (mm)") },
-        series: vec![
-            curve("average of the feasible", 0, |generation| generation.average),
-            curve("best so far", color, |generation| generation.best),
-        ],
         marks: vec![Mark { is_level: true, at: refined, label: format!("after refinement: {} mm", fixed(refined, 4)) }],
-        ..Chart::default()
+        ..Chart::new(
+            title.to_owned(),
+            "generation",
+            Axis { range: Some([(low - margin).max(0.0), high + margin]), ..Axis::new("mean deflection (mm)") },
+            vec![
+                curve("average of the feasible", 0, |generation| generation.average),
+                curve("best so far", color, |generation| generation.best),
+            ],
+        )
     }
 }

@@ -4,7 +4,7 @@ use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{BEST_LINE, Canvas, LineStyle, Pixel, Place, TextStyle, WORST_LINE, picture};
 use super::colour::{BEST, Colour, GREY, INK, WHITE, WORST, viridis};
 use super::hatch::{Slope, hatch};
-use super::heat_map::{ColourBar, ColourRange, HeatMap};
+use super::heat_map::{ColourBar, ColourRange, ColouredCells};
 use crate::names;
 use crate::units::fixed;
 use std::collections::BTreeSet;
@@ -41,7 +41,7 @@ struct Picture<'a> {
     panel: Panel,
     /// Scores of the colours. m
     colours: ColourRange,
-    cells: HeatMap<Cell>,
+    cells: ColouredCells<Cell>,
 }
 
 /// What a cell of the map shows: a level of the colours, or why no posture is allowed.
@@ -52,7 +52,8 @@ enum Cell {
 }
 
 impl<'a> Picture<'a> {
-    fn new(problem: &'a Problem, map: &'a DeflectionMap, [best, worst]: [&'a Case; 2], place: &'a str) -> Self {
+    fn new(problem: &'a Problem, map: &'a DeflectionMap, plans: [&'a Case; 2], place: &'a str) -> Self {
+        let [best, worst] = plans;
         let points = map.rows.len();
         let x = Scale::new(-0.5, points as f64 - 0.5, LEFT, RIGHT);
         let y = Scale::new(-180.0, 180.0, BOTTOM, TOP);
@@ -224,7 +225,7 @@ fn scores(map: &DeflectionMap) -> impl Iterator<Item = f64> + '_ {
 
 /// The cells of the map: of very many points every so many, and beta at -180 deg half at the bottom and half at the
 /// top.
-fn cells(map: &DeflectionMap, panel: &Panel, colours: ColourRange) -> HeatMap<Cell> {
+fn cells(map: &DeflectionMap, panel: &Panel, colours: ColourRange) -> ColouredCells<Cell> {
     let points = map.rows.len();
     let stride = points.div_ceil(COLUMNS).max(1);
     let starts = || (0..points).step_by(stride);
@@ -234,7 +235,7 @@ fn cells(map: &DeflectionMap, panel: &Panel, colours: ColourRange) -> HeatMap<Ce
         Ok(MapCell { score, .. }) => Cell::Level(colours.level(score)),
         Err(blocked) => Cell::Blocked(blocked.kind),
     };
-    HeatMap {
+    ColouredCells {
         columns: starts().chain([points]).map(|start| panel.x.pixel(start as f64 - 0.5)).collect(),
         rows: (0..=map.beta_count + 1).map(|k| panel.y.clamped(-180.0 + (k as f64 - 0.5) * step)).collect(),
         cells: (0..=map.beta_count)

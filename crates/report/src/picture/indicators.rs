@@ -1,7 +1,7 @@
 //! Robots side by side by four indicators (Klimchik 2017, Fig. 20).
 
 use super::axes::{Panel, Scale, Ticks};
-use super::canvas::{Canvas, Pixel, TextStyle, picture};
+use super::canvas::{Canvas, TextStyle, picture};
 use super::colour::{Colour, INDICATORS, INK};
 use crate::units::figures;
 use crate::units::fixed;
@@ -78,7 +78,7 @@ pub fn indicators(assessment: &Assessment) -> String {
         let room = (RIGHT - LEFT) / assessment.robots.len().clamp(1, ROBOTS_PER_ROW) as i32;
         head(canvas, assessment, &known);
         for (robots, row) in rows.zip(0..) {
-            draw_row(canvas, robots, (ROWS[0] + ROWS[2] * row, room), &known);
+            draw_row(canvas, robots, ROWS[0] + ROWS[2] * row, room, &known);
         }
     })
 }
@@ -131,7 +131,7 @@ fn head(canvas: &mut Canvas, assessment: &Assessment, known: &[Known<'_>]) {
 }
 
 /// A row of robots: its upper edge, and the width for each.
-fn draw_row(canvas: &mut Canvas, robots: &[RobotResult], (top, room): Pixel, known: &[Known<'_>]) {
+fn draw_row(canvas: &mut Canvas, robots: &[RobotResult], top: i32, room: i32, known: &[Known<'_>]) {
     let x = Scale::new(0.0, robots.len() as f64, LEFT, LEFT + room * robots.len() as i32);
     let y = Scale::new(0.0, FULL, top + ROWS[1], top);
     let (x_ticks, y_ticks) = (Ticks::none(), Ticks::every(&y, 0.2, 1));

@@ -4,7 +4,7 @@ use super::axes::{Panel, Scale};
 use super::canvas::{Canvas, TextStyle, picture};
 use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, ORANGE, viridis};
-use super::heat_map::HeatMap;
+use super::heat_map::ColouredCells;
 use crate::units::fixed;
 use stead_certify::{OpenBox, Proof};
 use stead_model::robot::angles::wrap;
@@ -169,7 +169,7 @@ impl Grid {
         };
         let columns = (0..=self.counts[0]).map(|k| panel.x.pixel(value(0, k))).collect();
         let rows = (0..=self.counts[1]).map(|k| panel.y.pixel(value(1, k))).collect();
-        HeatMap { columns, rows, cells: levels }.draw_merged(canvas, viridis);
+        ColouredCells { columns, rows, cells: levels }.draw_merged(canvas, viridis);
     }
 }
 

@@ -25,11 +25,12 @@ pub fn path_stability(stability: &PathStability, plans: &[&Plan], names: [&str; 
     let edges = starts.clone().map(|k| Mark { is_level: false, at: k as f64 - 0.5, label: String::new() });
     let level = Mark { is_level: true, at: cut * 1e3, label: format!("this cut, {} mm", fixed(cut * 1e3, 2)) };
     charts(&[Chart {
-        title: "How deep may be cut along the path".to_owned(),
-        x: Axis::new("path point"),
-        y: Axis { range: Some([0.0, highest * 1.05e3]), ..Axis::new("critical depth of cut (mm)") },
-        series: depths.zip(names).zip([(0, Style::Line), (2, Style::Dashed)]).map(curve).collect(),
         marks: edges.chain([level]).collect(),
-        ..Chart::default()
+        ..Chart::new(
+            "How deep may be cut along the path",
+            "path point",
+            Axis { range: Some([0.0, highest * 1.05e3]), ..Axis::new("critical depth of cut (mm)") },
+            depths.zip(names).zip([(0, Style::Line), (2, Style::Dashed)]).map(curve).collect(),
+        )
     }])
 }

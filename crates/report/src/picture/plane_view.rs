@@ -1,6 +1,5 @@
 //! How a plane of the cell is shown: what its axes are called, and what of the robot lies in it.
 
-use super::axes::Window;
 use crate::units::fixed;
 use nalgebra::Vector3;
 use stead_assessment::benchmark::Plane;
@@ -84,30 +83,6 @@ impl PlaneView {
     }
 }
 
-impl ArmInPlane {
-    /// Whether the shoulder is in view.
-    pub fn shoulder_within(&self, [low, high]: Window) -> bool {
-        (0..2).all(|k| low[k] <= self.shoulder[k] && self.shoulder[k] <= high[k])
-    }
-
-    /// The ends of axis 1 in view.
-    pub fn axis_within(&self, [low, high]: Window) -> Option<Window> {
-        let (mut from, mut to) = (f64::NEG_INFINITY, f64::INFINITY);
-        for k in 0..2 {
-            let step = self.along[k];
-            if step.abs() > SAME {
-                let ends = [(low[k] - self.foot[k]) / step, (high[k] - self.foot[k]) / step];
-                from = from.max(ends[0].min(ends[1]));
-                to = to.min(ends[0].max(ends[1]));
-            } else if self.foot[k] < low[k] || self.foot[k] > high[k] {
-                return None;
-            }
-        }
-        let at = |distance: f64| [0, 1].map(|k| self.foot[k] + self.along[k] * distance);
-        (from < to).then(|| [at(from), at(to)])
-    }
-}
-
 /// Which axis of the base frame a direction is.
 fn base_axis(direction: &Vector3<f64>) -> Option<usize> {
     (0..3).find(|axis| (direction - Vector3::ith(*axis, 1.0)).norm() < SAME)
@@ -135,20 +110,6 @@ mod tests {
             assert!((x - sign * geometry.shoulder_radius * 1e3).abs() < 1e-9 && (z - height).abs() < 1e-9);
             assert!(arm.foot[0].abs() < 1e-9 && arm.along[0].abs() < 1e-12 && arm.along[1].abs() == 1.0);
         }
-    }
-
-    #[test]
-    fn the_arm_is_clipped_to_the_window() {
-        let arm = |foot, along| ArmInPlane { shoulder: [30.0, 10.0], foot, along };
-        let window = [[0.0, 0.0], [100.0, 50.0]];
-        let ends =
-            |arm: ArmInPlane| arm.axis_within(window).map(|ends| ends.map(|end| end.map(|part| (part * 10.0).round())));
-        assert_eq!(ends(arm([10.0, 200.0], [0.0, -1.0])), Some([[100.0, 500.0], [100.0, 0.0]]));
-        assert_eq!(ends(arm([-12.0, -12.0], [0.6, 0.8])), Some([[0.0, 40.0], [345.0, 500.0]]));
-        assert_eq!(arm([-1.0, 20.0], [0.0, 1.0]).axis_within(window), None);
-        assert_eq!(arm([0.0, 60.0], [0.6, 0.8]).axis_within(window), None);
-        assert!(arm([0.0, 0.0], [0.0, 1.0]).shoulder_within(window));
-        assert!(!arm([0.0, 0.0], [0.0, 1.0]).shoulder_within([[0.0, 0.0], [100.0, 5.0]]));
     }
 
     #[test]

@@ -189,8 +189,8 @@ pub(super) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// A view to one scale around points. mm
-fn panel(points: impl Iterator<Item = [f64; 2]>, (left, top): Pixel, labels: [&'static str; 2]) -> Panel {
-    let [low, high] = around(points).unwrap_or_default();
+fn panel(points: impl Iterator<Item = [f64; 2]>, corner: Pixel, labels: [&'static str; 2]) -> Panel {
+    let ((left, top), [low, high]) = (corner, around(points).unwrap_or_default());
     let half = 0.53 * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
     let [x, y] = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
     let (x, y) = (Scale::new(x - half, x + half, left, left + SIDE), Scale::new(y - half, y + half, top + SIDE, top));

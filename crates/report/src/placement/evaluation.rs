@@ -82,13 +82,9 @@ pub fn score_json(problem: &Problem, score: &Score, context: &Context) -> Value 
 
 /// The same of a placement that is moved about, whose best plan alone is known, on the grid of the run and without the
 /// moves between segments.
-pub(crate) fn preview_json(
-    placement: &Placement,
-    problem: &Problem,
-    Preview { plan, cycle }: &Preview,
-    context: &Context,
-) -> Value {
+pub(crate) fn preview_json(placement: &Placement, problem: &Problem, preview: &Preview, context: &Context) -> Value {
     let orientation = problem.orientation().map(|orientation| orientation.name.clone());
+    let Preview { plan, cycle } = preview;
     let mut best = PlanFigures::of(plan, cycle);
     best.cycle_s = None;
     context.document().with(ScoreFigures {

@@ -21,10 +21,10 @@ pub use text::placement_text;
 use crate::document::{Document, bytes};
 use crate::output::{Folder, ReportError};
 use crate::page;
+use crate::page::content::{LEAN_MAP, SETUP_SHEET};
+pub use crate::page::data::CaseOfStudy;
 use crate::page::data::{MapOf, Placed, RunOf, page_data};
 use crate::{Files, named, picture};
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -68,19 +68,6 @@ pub struct Context {
     pub study_case: Option<CaseOfStudy>,
     /// Whether a page is left with the files.
     pub page: bool,
-}
-
-/// A case of a study whose files are kept.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct CaseOfStudy {
-    /// The name of the study.
-    pub study: String,
-    /// The number of the case, from 1.
-    pub number: usize,
-    /// For each axis of the study its name and the value of the case.
-    pub values: Vec<[String; 2]>,
-    /// Where the page of the study will be, from the folder of the case.
-    pub report: &'static str,
 }
 
 impl Context {
@@ -146,9 +133,6 @@ pub(crate) const SUMMARY: &str = "summary.json";
 const MAPS: [[&str; 2]; 2] =
     [["deflection-map-best.csv", "deflection-map-best.svg"], ["deflection-map-worst.csv", "deflection-map-worst.svg"]];
 
-/// The map over lead and tilt.
-pub(crate) const LEAN_MAP: &str = "lean-map.csv";
-
 /// What these placements are called.
 const PLACES: [&str; 2] = ["the best placement", "the worst placement"];
 
@@ -157,9 +141,6 @@ const SCORE_MAP: [&str; 2] = ["deflection-map.csv", "deflection-map.svg"];
 
 /// The files that are there where the worst placement was looked for.
 const OF_WORST: [&str; 3] = ["worst.csv", "worst-worst-plan.csv", "stability-worst.csv"];
-
-/// The setup sheet of the best, or of the given, placement.
-pub(crate) const SETUP_SHEET: &str = "setup.svg";
 
 /// The setup sheet of a case, where it was made.
 fn setup_sheet(

@@ -60,29 +60,27 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
         text.push_str(&crate::stability::path::text(stability, ["best placement", "worst placement"]));
     }
     text.push('\n');
-    line(&mut text, &format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states));
-    outcome.path_levels.iter().for_each(|levels| line(&mut text, &path_levels(levels)));
-    match &outcome.lookup_summary {
-        Some(Ok(lookup_summary)) => {
+    search_lines(outcome).iter().for_each(|row| line(&mut text, row));
+    text
+}
+
+/// The size of the search.
+fn search_lines(outcome: &Outcome) -> Vec<String> {
+    let mut lines = vec![format!("{} placements and {} states evaluated", outcome.evaluations, outcome.states)];
+    lines.extend(outcome.path_levels.iter().map(path_levels));
+    lines.extend(outcome.lookup_summary.as_ref().map(|summary| match summary {
+        Ok(lookup_summary) => {
             let (states, megabytes) = (lookup_summary.shape.states(), lookup_summary.shape.bytes() as f64 / 1e6);
             let error = figures(lookup_summary.accuracy.rms * 100.0);
-            line(
-                &mut text,
-                &format!(
-                    "most of them from a lookup table of {states} states ({megabytes:.1} MB), error {error} % (rms)"
-                ),
-            );
+            format!("most of them from a lookup table of {states} states ({megabytes:.1} MB), error {error} % (rms)")
         }
-        Some(Err(rejected @ Unsupported::Rejected)) => {
-            line(&mut text, &format!("searched again without a lookup table: {rejected}"));
-        }
-        Some(Err(unsuited)) => line(&mut text, &format!("none of them from a lookup table: {unsuited}")),
-        None => {}
-    }
+        Err(rejected @ Unsupported::Rejected) => format!("searched again without a lookup table: {rejected}"),
+        Err(unsuited) => format!("none of them from a lookup table: {unsuited}"),
+    }));
     if outcome.interrupted {
-        line(&mut text, "The search was stopped before its end: this is the best result so far.");
+        lines.push("The search was stopped before its end: this is the best result so far.".to_owned());
     }
-    text
+    lines
 }
 
 /// By how many points of a long path placements were compared, and how far that is off.

@@ -1,6 +1,5 @@
 //! The JSON documents of a simulated pass.
 
-use super::end_words;
 use crate::document::Document;
 use crate::figure::{
     ForceN, FrequencyHz, HeightUm, MomentS, PlaceMm, RatePerS, Share, SpeedRpm, StepS, TimeS, each, some,
@@ -9,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 use stead_runs::SimulationRun;
+use stead_simulation::coupled::End;
 use stead_simulation::modes::Mode;
 use stead_simulation::outcome::{Simulation, Statistics};
 use stead_simulation::roughness::Roughness;
@@ -172,4 +172,13 @@ pub fn timed_json(run: &SimulationRun, found: &Simulation, wall: f64) -> Value {
         ..SimulationFigures::of(run, found)
     };
     document(run, found, timing)
+}
+
+/// The word for how a run ended, and the reason if it ended early.
+pub(super) fn end_words(end: &End) -> (&'static str, Option<String>) {
+    match end {
+        End::Complete => ("complete", None),
+        End::Limit(limit) => ("limit", Some(limit.to_string())),
+        End::Step(error) => ("step", Some(error.to_string())),
+    }
 }

@@ -1,7 +1,7 @@
 //! `report.html` of a simulated pass.
 
-use super::end_words;
-use crate::page::cards::{Axis, Card, Chart, Mark, Page, Series, Tile, Tiles};
+use super::json::end_words;
+use crate::page::cards::{Card, Chart, Mark, Page, Series, Tile, Tiles};
 use crate::stability::page::modes;
 use crate::units::{figures, fixed};
 use std::f64::consts::TAU;
@@ -82,17 +82,13 @@ pub(super) fn forces(found: &Simulation) -> Chart {
     let window = ["forces are summed up from here", "to here"].into_iter().zip(found.window);
     let inside = 0.0..=found.run.step * found.run.samples.len() as f64;
     Chart {
-        title: "Forces on the tool over the pass".to_owned(),
         detail: "smallest and largest of each stretch".to_owned(),
-        x: Axis::new("time (s)"),
-        y: Axis::new("force (N)"),
-        series: vec![curve(0, 1.0), curve(1, -1.0)],
         marks: window
             .filter(|(_, at)| inside.contains(at))
             .map(|(label, at)| Mark { is_level: false, at, label: label.to_owned() })
             .collect(),
         is_wide: true,
-        ..Chart::default()
+        ..Chart::new("Forces on the tool over the pass", "time (s)", "force (N)", vec![curve(0, 1.0), curve(1, -1.0)])
     }
 }
 
@@ -113,12 +109,13 @@ pub(super) fn turns(found: &Simulation, spindle_speed: f64) -> Chart {
         )
     };
     Chart {
-        title: "Forces over three turns".to_owned(),
         detail: format!("from {} s", fixed(start as f64 * found.run.step, 4)),
-        x: Axis::new("angle of the spindle (deg)"),
-        y: Axis::new("force (N)"),
-        series: vec![curve(0, 1.0), curve(1, -1.0)],
-        ..Chart::default()
+        ..Chart::new(
+            "Forces over three turns",
+            "angle of the spindle (deg)",
+            "force (N)",
+            vec![curve(0, 1.0), curve(1, -1.0)],
+        )
     }
 }
 
@@ -130,13 +127,7 @@ fn deflections(found: &Simulation) -> Chart {
         };
         Series::curve(NAMES[axis], axis, samples.map(point))
     };
-    Chart {
-        title: "Tool centre off its path".to_owned(),
-        x: Axis::new("time (s)"),
-        y: Axis::new("deflection (um)"),
-        series: vec![curve(0, 1.0), curve(1, -1.0)],
-        ..Chart::default()
-    }
+    Chart::new("Tool centre off its path", "time (s)", "deflection (um)", vec![curve(0, 1.0), curve(1, -1.0)])
 }
 
 /// The wall along the feed, and what the filter leaves of it.
@@ -145,12 +136,8 @@ pub(super) fn walls(found: &Simulation) -> [Chart; 2] {
         let heights = profile.heights.iter().enumerate();
         let points = heights.map(|(k, height)| [(profile.start + k as f64 * profile.spacing) * 1e3, height * 1e6]);
         Chart {
-            title: title.to_owned(),
             detail: if profile.heights.is_empty() { "no wall was made".to_owned() } else { String::new() },
-            x: Axis::new("along the feed (mm)"),
-            y: Axis::new("height (um)"),
-            series: vec![Series::curve("", color, points)],
-            ..Chart::default()
+            ..Chart::new(title.to_owned(), "along the feed (mm)", "height (um)", vec![Series::curve("", color, points)])
         }
     };
     [

@@ -1,6 +1,6 @@
 //! The text for people.
 
-use super::end_words;
+use super::json::end_words;
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_runs::SimulationRun;

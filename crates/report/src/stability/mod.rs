@@ -13,33 +13,19 @@ pub use json::{LobeFigures, StabilityFigures, stability_json};
 pub use tables::{lobes, modes, responses};
 pub use text::stability_text;
 
-use super::output::{Folder, ReportError};
+use super::output::ReportError;
 use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
 use crate::units::Unit;
-use std::path::PathBuf;
 use stead_runs::SimulationRun;
 use stead_simulation::stability_analysis::StabilityAnalysis;
 
 /// Spindle speeds, from rad/s to turns a minute.
 pub(super) const RPM: Unit = Unit { factor: 30.0 / std::f64::consts::PI, decimals: 2 };
 
-/// Writes `modes.csv`, `frequency-response.csv`, `lobes.csv`, `summary.json`, `frequency-response.svg`, `lobes.svg` and
-/// `report.html`. Returns their paths in that order.
-///
-/// # Errors
-/// [`ReportError`]: nothing is written when a file cannot be made, and no file is ever left half written.
-pub fn write_stability(
-    folder: &Folder,
-    run: &SimulationRun,
-    analysis: &StabilityAnalysis,
-) -> Result<Vec<PathBuf>, ReportError> {
-    let files = stability_files(run, analysis)?;
-    folder.results("stability", &run.inputs).write(&files)
-}
-
-/// The files that [`write_stability`] writes.
+/// `modes.csv`, `frequency-response.csv`, `lobes.csv`, `summary.json`, `frequency-response.svg`, `lobes.svg` and
+/// `report.html`.
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.

@@ -62,18 +62,19 @@ pub(super) fn lobes(run: &SimulationRun, analysis: &StabilityAnalysis) -> Chart 
     let verdict = if analysis.cut_stability.verdict.is_stable() { "stable" } else { "chatters" };
     let cut = Series::dots(format!("this cut, {} mm: {verdict}", fixed(depth, 2)), 3, [[speed, depth]]);
     Chart {
-        title: "Stability lobes".to_owned(),
         detail: "cuts below the curve are stable; no value: all depths up to the largest asked for are".to_owned(),
-        x: Axis::new("spindle speed (rpm)"),
-        y: Axis::new("critical depth of cut (mm)"),
-        series: vec![
-            curve("semi-discretisation", 0, |lobe| lobe.semi_discretisation),
-            curve("zero-order solution", 1, |lobe| lobe.zero_order).styled(Style::Dashed),
-            cut,
-        ],
         marks: vec![Mark { is_level: true, at: depth, label: "depth of this cut".to_owned() }],
         is_wide: true,
-        ..Chart::default()
+        ..Chart::new(
+            "Stability lobes",
+            "spindle speed (rpm)",
+            "critical depth of cut (mm)",
+            vec![
+                curve("semi-discretisation", 0, |lobe| lobe.semi_discretisation),
+                curve("zero-order solution", 1, |lobe| lobe.zero_order).styled(Style::Dashed),
+                cut,
+            ],
+        )
     }
 }
 
@@ -90,15 +91,7 @@ pub(super) fn response(analysis: &StabilityAnalysis) -> Chart {
     let largest = all.map(|part| part.norm() * 1e6).fold(1e-12, f64::max);
     let highest = libm::pow(10.0, libm::log10(largest).ceil());
     Chart {
-        title: "Frequency response of the tip".to_owned(),
         detail: "with the frequencies of the modes".to_owned(),
-        x: Axis::new("frequency (Hz)"),
-        y: Axis { range: Some([highest / DECADES, highest]), ..Axis::log("answer (um/N)") },
-        series: vec![
-            curve("along the feed", 0, |at| at.feed.norm()),
-            curve("normal to the wall", 1, |at| at.normal.norm()),
-            curve("across", 2, |at| at.cross.norm()).styled(Style::Dashed),
-        ],
         marks: analysis
             .modes
             .iter()
@@ -106,7 +99,16 @@ pub(super) fn response(analysis: &StabilityAnalysis) -> Chart {
             .map(|at| Mark { is_level: false, at, label: fixed(at, 1) })
             .collect(),
         is_wide: true,
-        ..Chart::default()
+        ..Chart::new(
+            "Frequency response of the tip",
+            "frequency (Hz)",
+            Axis { range: Some([highest / DECADES, highest]), ..Axis::log("answer (um/N)") },
+            vec![
+                curve("along the feed", 0, |at| at.feed.norm()),
+                curve("normal to the wall", 1, |at| at.normal.norm()),
+                curve("across", 2, |at| at.cross.norm()).styled(Style::Dashed),
+            ],
+        )
     }
 }
 
@@ -116,10 +118,9 @@ pub(crate) fn modes(modes: &[Mode]) -> Card {
         let numbers = [fixed(mode.natural_frequency(), 3), fixed(mode.damping_ratio, 5)];
         std::iter::once(Cell::Number((number + 1).to_string())).chain(numbers.map(Cell::Number)).collect()
     };
-    Card::Table(Table {
-        title: "Modes of the arm".to_owned(),
-        columns: ["mode", "frequency Hz", "damping ratio"].map(Column::number).to_vec(),
-        rows: modes.iter().enumerate().map(row).collect(),
-        ..Table::default()
-    })
+    Card::Table(Table::new(
+        "Modes of the arm",
+        ["mode", "frequency Hz", "damping ratio"].map(Column::number).to_vec(),
+        modes.iter().enumerate().map(row).collect(),
+    ))
 }

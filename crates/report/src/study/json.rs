@@ -1,6 +1,6 @@
 //! The report of a study for programs.
 
-use super::{number, percent};
+use super::words::{number, percent};
 use crate::document::Document;
 use schemars::JsonSchema;
 use serde::Serialize;

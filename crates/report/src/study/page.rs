@@ -1,21 +1,16 @@
 //! `report.html` of a study.
 
-use super::words::{heading, value, words};
-use super::{cases, number, percent};
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series, Style, Table, Text, Tile, Tiles};
+use super::charts::{CasePages, effect_chart, front_chart, layout_words, map_chart, path, with_unit};
+use super::words::{cases, heading, percent, value, words};
+use crate::page::cards::{Card, Cell, Column, Page, Table, Text, Tile, Tiles};
 use crate::units::figures;
-use std::collections::BTreeMap;
 use stead_disk::input::InputFile;
 use stead_problem::criterion::SMALL_PART;
-use stead_problem::sense::Sense;
-use stead_study::analysis::{Analysis, AxisEffect, Front, Layout, Layouts, Map, Measure, Ranked};
+use stead_study::analysis::{Analysis, Layout, Layouts, Ranked};
 use stead_study::cases::TableCell;
 
 /// The column of the whole deflection.
 const WHOLE: &str = "best_mean_total_mm";
-
-/// The pages of the cases that are kept, by the numbers of the cases: paths from the folder of the study.
-pub type CasePages = BTreeMap<i64, String>;
 
 /// The ranking of all layouts, the front, the effects of the axes, the map, and what failed.
 pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages: &CasePages) -> Page {
@@ -40,14 +35,14 @@ pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages:
         .with(ranking(analysis, pages));
     if let Some(front) = &analysis.front {
         for other in 1..front.measures.len() {
-            page = page.with(front_card(front, &analysis.layouts, other, pages));
+            page = page.with(Card::Chart(front_chart(front, &analysis.layouts, other, pages)));
         }
     }
     if let Some(map) = &analysis.map {
-        page = page.with(map_card(map));
+        page = page.with(Card::HeatMap(map_chart(map)));
     }
     for axis in analysis.effects.axes.iter().filter(|axis| !axis.levels.is_empty()) {
-        page = page.with(effect(axis, &analysis.effects.measure));
+        page = page.with(Card::Chart(effect_chart(axis, &analysis.effects.measure)));
     }
     let reasons =
         failures.reasons.iter().map(|(reason, count, first)| format!("{count} cases, the first {first}: {reason}"));
@@ -57,19 +52,6 @@ pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages:
             page.with(Card::Text(Text { title: "Cases without a placement".to_owned(), sentences, is_warning: true }));
     }
     page
-}
-
-fn with_unit(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
-}
-
-/// What a layout is, in words: `robot a.toml, height 200 mm`.
-fn layout_words(layouts: &Layouts, layout: &Layout) -> String {
-    let word = |axis: usize| {
-        let (name, unit) = words(&layouts.columns[axis].name);
-        format!("{name} {}{}", value(&layout.row[axis].written()), with_unit(unit))
-    };
-    layouts.varied().into_iter().map(word).collect::<Vec<_>>().join(", ")
 }
 
 /// The mean of the whole deflection of a layout.
@@ -122,11 +104,6 @@ fn tiles(analysis: &Analysis) -> Card {
     Card::Tiles(Tiles { tiles })
 }
 
-/// The page of a layout: that of the first of its cases that has one.
-fn path<'a>(layout: &Layout, pages: &'a CasePages) -> Option<&'a String> {
-    layout.cases.iter().find_map(|case| pages.get(case))
-}
-
 /// The numbers of the cases of a layout, leading to their page.
 fn cases_cell(layout: &Layout, pages: &CasePages) -> Cell {
     let text = cases(layout);
@@ -168,93 +145,8 @@ fn ranking(analysis: &Analysis, pages: &CasePages) -> Card {
     });
     let without = ranking.without.iter().map(|layout| row(*layout, Cell::Empty, [Cell::Empty, Cell::Empty]));
     Card::Table(Table {
-        title: "Ranking".to_owned(),
         detail: if pages.is_empty() { String::new() } else { "a case leads to its own page".to_owned() },
-        columns,
-        rows: ranked.chain(without).collect(),
         can_filter: true,
-    })
-}
-
-fn front_card(front: &Front, layouts: &Layouts, other: usize, pages: &CasePages) -> Card {
-    let is_member =
-        |layout: usize| front.members.iter().find(|member| member.layout == layout).map(|member| member.is_tie);
-    let series = |name: &str, color: usize, style: Style, wanted: Option<bool>| {
-        let found: Vec<_> = front.compared.iter().filter(|(layout, _)| is_member(*layout) == wanted).collect();
-        let label = |layout: usize| {
-            let layout = &layouts.all[layout];
-            format!("case {} {}", cases(layout), layout_words(layouts, layout)).trim_end().to_owned()
-        };
-        let link = |layout: usize| path(&layouts.all[layout], pages).cloned().unwrap_or_default();
-        Series {
-            links: if pages.is_empty() { Vec::new() } else { found.iter().map(|(layout, _)| link(*layout)).collect() },
-            ..Series::dots(name, color, found.iter().map(|(_, values)| [values[0], values[other]]))
-                .styled(style)
-                .labelled(found.iter().map(|(layout, _)| label(*layout)).collect())
-        }
-    };
-    let series = [
-        series("other layouts", 0, Style::Dots, None),
-        series("behind it within the noise of the search", 2, Style::Dots, Some(true)),
-        series("on the front", 1, Style::Rings, Some(false)),
-    ];
-    Card::Chart(Chart {
-        title: format!("Front of {} and {}", words(&front.measures[0].name).0, words(&front.measures[other].name).0),
-        x: axis_of(&front.measures[0]),
-        y: axis_of(&front.measures[other]),
-        series: series.into_iter().filter(|series| !series.x.is_empty()).collect(),
-        ..Chart::default()
-    })
-}
-
-fn axis_of(measure: &Measure) -> Axis {
-    let better = if measure.sense == Sense::Min { "smaller" } else { "larger" };
-    Axis::new(format!("{}, {better} is better", heading(&measure.name)))
-}
-
-fn map_card(map: &Map) -> Card {
-    let values: Vec<f64> = map.cells.iter().map(|cell| cell.map_or(f64::NAN, number)).collect();
-    let finite = || values.iter().copied().filter(|value| value.is_finite());
-    let range = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
-    let [first, second] = &map.labels;
-    let (name, unit) = words(&map.measure.name);
-    let [across, up] = [&map.names[0], &map.names[1]].map(|name| heading(name));
-    let short = |labels: &[String]| labels.iter().map(|label| value(label)).collect();
-    let places = |labels: &[String]| (0..labels.len()).map(|k| k as f64).collect();
-    Card::HeatMap(HeatMap {
-        title: format!("Mean of {name}"),
-        detail: "over the other axes".to_owned(),
-        x: Axis::named(across, short(first)),
-        y: Axis::named(up, short(second)),
-        columns: places(first),
-        rows: places(second),
-        values,
-        range: if range[0] <= range[1] { range } else { [0.0, 1.0] },
-        unit: unit.to_owned(),
-        blank: "no layout with a value".to_owned(),
-        is_written: true,
-        ..HeatMap::default()
-    })
-}
-
-fn effect(axis: &AxisEffect, measure: &Measure) -> Card {
-    let share = axis.share.map(|share| format!("{} % of the variation", figures(percent(share))));
-    let slope = axis.slope.map(|slope| format!("{} per unit along a straight line", figures(slope)));
-    let detail = [share, slope].into_iter().flatten().collect::<Vec<_>>().join("; ");
-    let numbers: Option<Vec<f64>> = axis.levels.iter().map(|level| level.number).collect();
-    let labels = axis.levels.iter().map(|level| format!("{}: {} layouts", value(&level.label), level.count)).collect();
-    let names: Vec<String> = axis.levels.iter().map(|level| value(&level.label)).collect();
-    let (x, places) = match numbers {
-        Some(numbers) => (Axis::new(heading(&axis.name)), numbers),
-        None => (Axis::named(heading(&axis.name), names), (0..axis.levels.len()).map(|k| k as f64).collect()),
-    };
-    let points: Vec<[f64; 2]> = places.iter().zip(&axis.levels).map(|(place, level)| [*place, level.value]).collect();
-    Card::Chart(Chart {
-        title: format!("Effect of {}", words(&axis.name).0),
-        detail,
-        x,
-        y: Axis::new(format!("mean of {}", heading(&measure.name))),
-        series: vec![Series::dots("", 1, points).labelled(labels)],
-        ..Chart::default()
+        ..Table::new("Ranking", columns, ranked.chain(without).collect())
     })
 }

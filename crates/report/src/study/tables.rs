@@ -1,6 +1,6 @@
 //! The tables of a study's report.
 
-use super::{cases, number, percent};
+use super::words::{cases, number, percent};
 use crate::csv_file::{Columns, rows};
 use crate::output::ReportError;
 use stead_study::analysis::{Analysis, AxisEffect, Effects, Front, FrontMember, Layout, Layouts, Level, Ranked};

@@ -1,6 +1,6 @@
 //! What matters of a study, in words.
 
-use super::cases;
+use super::words::cases;
 use crate::columns::{aligned, line};
 use crate::units::{figures, fixed};
 use stead_problem::sense::Sense;

@@ -1,6 +1,7 @@
-//! Columns of `study.csv` in the words of its page.
+//! Columns of `study.csv` in the words of its page, and its numbers.
 
 use crate::units::figures;
+use stead_study::analysis::Layout;
 
 /// Columns of what is found, with their words and units.
 const COLUMNS: [(&str, &str, &str); 8] = [
@@ -64,6 +65,21 @@ pub(super) fn heading(name: &str) -> String {
 pub(super) fn value(written: &str) -> String {
     let number = written.parse::<f64>().ok().filter(|_| written.len() > 6);
     number.map_or_else(|| written.to_owned(), figures)
+}
+
+/// The numbers of the cases of a layout.
+pub(super) fn cases(layout: &Layout) -> String {
+    layout.cases.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+}
+
+/// A number with the nine digits that are more than rounding.
+pub(super) fn number(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(f64::NAN)
+}
+
+/// A share in per cent.
+pub(super) fn percent(share: f64) -> f64 {
+    number(100.0 * share)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
 use super::super::json::{SharedFigures, shared};
-use super::super::{URAD, key, rounded};
+use super::super::json::{URAD, key, rounded};
 use crate::document::Document;
 use crate::figure::{AngleDeg, ForceN, PlaceMm, each};
 use serde_json::Value;

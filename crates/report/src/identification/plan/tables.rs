@@ -1,8 +1,8 @@
 //! The CSV file of expected errors.
 
 use super::super::super::output::ReportError;
+use super::super::json::{URAD, key, rounded, unit};
 use super::super::tables::seen_name;
-use super::super::{URAD, key, rounded, unit};
 use crate::csv_file::rows_or;
 use crate::figure::AngleDeg;
 use schemars::JsonSchema;

@@ -1,6 +1,6 @@
 //! The table for people.
 
-use super::super::{URAD, key};
+use super::super::json::{URAD, key};
 use crate::columns::aligned;
 use crate::units::{figures, fixed};
 use stead_calibration::identification::FitModel;
@@ -25,34 +25,7 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         text += "\n";
         text += &aligned(&spring_rows(plan), &[0]);
     }
-    let errors = &plan.errors;
-    let millimetres = |value: f64| {
-        if value.is_finite() {
-            format!("{} mm", figures(value * 1e3))
-        } else {
-            "not every compliance is identifiable".to_owned()
-        }
-    };
-    let tests = match &request.tests {
-        TestCases::Given(tests) => format!("the {} tests", tests.len()),
-        TestCases::Drawn(_) => {
-            format!("{} random poses under {} N in any direction", plan.tests.len(), figures(request.load))
-        }
-    };
-    text += &format!(
-        "\nexpected error of the deflection at {tests}: {} rms, of {} rms\nbest of {} random sets: {}; their median: {}",
-        millimetres(errors.planned),
-        millimetres(plan.deflection),
-        errors.random_sets,
-        millimetres(errors.best_random),
-        millimetres(errors.median_random)
-    );
-    if errors.unidentifiable_sets > 0 {
-        text += &format!("; sets from which not every compliance is identifiable: {}", errors.unidentifiable_sets);
-    }
-    if !plan.unobservable.is_empty() {
-        text += "\nall errors leave out unobservable compliances (see below)";
-    }
+    text += &errors_text(run, plan);
     let rejected = &plan.rejected;
     text += &format!(
         "\nof {} configurations drawn {} would leave the volume, {} come too near to the base, {} deflect by more than {} mm\n",
@@ -71,6 +44,39 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
     }
     for warning in &plan.warnings {
         text += &format!("warning: {warning}\n");
+    }
+    text
+}
+
+/// The expected error of the deflection, beside that of random sets.
+fn errors_text(run: &PlanRun, plan: &Design) -> String {
+    let (request, errors) = (&run.request, &plan.errors);
+    let millimetres = |value: f64| {
+        if value.is_finite() {
+            format!("{} mm", figures(value * 1e3))
+        } else {
+            "not every compliance is identifiable".to_owned()
+        }
+    };
+    let tests = match &request.tests {
+        TestCases::Given(tests) => format!("the {} tests", tests.len()),
+        TestCases::Drawn(_) => {
+            format!("{} random poses under {} N in any direction", plan.tests.len(), figures(request.load))
+        }
+    };
+    let mut text = format!(
+        "\nexpected error of the deflection at {tests}: {} rms, of {} rms\nbest of {} random sets: {}; their median: {}",
+        millimetres(errors.planned),
+        millimetres(plan.deflection),
+        errors.random_sets,
+        millimetres(errors.best_random),
+        millimetres(errors.median_random)
+    );
+    if errors.unidentifiable_sets > 0 {
+        text += &format!("; sets from which not every compliance is identifiable: {}", errors.unidentifiable_sets);
+    }
+    if !plan.unobservable.is_empty() {
+        text += "\nall errors leave out unobservable compliances (see below)";
     }
     text
 }

@@ -5,7 +5,7 @@
 //! an input file is text in the data of the page and is put into it as text alone.
 
 pub use stead_document::cards::{
-    Axis, Cell, Chart, Column, HeatMap, Mark, Outline, Polar, PolarChoice, Series, Style, Table,
+    Axis, Cell, Chart, Column, HeatMap, MapLine, MapPoint, Mark, Outline, Polar, PolarChoice, Series, Style, Table,
 };
 
 use super::html::{CARDS, html};

@@ -1,9 +1,8 @@
 //! External axes as nodes of the scene: what they carry moves with them.
 
 use super::buffer::Buffer;
-use super::document::Node;
+use super::document::{Node, Writer, single};
 use super::motion::turn_about;
-use super::{Writer, single};
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis};
 
 /// The nodes of an axis.

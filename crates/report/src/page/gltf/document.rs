@@ -2,6 +2,7 @@
 
 use super::super::shapes::Shaded;
 use super::buffer::{Accessor, Buffer, BufferLength, BufferView, pad};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
@@ -177,4 +178,36 @@ pub(super) struct Channel {
 pub(super) struct Target {
     pub node: usize,
     pub path: &'static str,
+}
+
+/// A scene being written.
+#[derive(Default)]
+pub(super) struct Writer {
+    pub document: Document,
+    pub buffer: Buffer,
+}
+
+impl Writer {
+    pub fn add_node(&mut self, node: Node) -> usize {
+        self.document.nodes.push(node);
+        self.document.nodes.len() - 1
+    }
+
+    pub fn add_child(&mut self, node: Node, parent: usize) -> usize {
+        let child = self.add_node(node);
+        self.document.nodes[parent].children.push(child);
+        child
+    }
+}
+
+/// A vector in single precision.
+pub(super) fn single(vector: &Vector3<f64>) -> [f32; 3] {
+    [vector.x as f32, vector.y as f32, vector.z as f32]
+}
+
+/// A part of a colour from sRGB to linear (IEC 61966-2-1).
+pub(super) fn linear(part: f32) -> f32 {
+    let part = f64::from(part);
+    let linear = if part <= 0.04045 { part / 12.92 } else { libm::pow((part + 0.055) / 1.055, 2.4) };
+    linear as f32
 }

@@ -6,7 +6,7 @@ use super::super::packed::bytes_of;
 use super::super::shapes::{BodyFrame, BodyMesh, block_of};
 use super::super::table::Table;
 use super::motion::{Motion, SHORTEST_MOVE, Stop, UNKNOWN_MOVE};
-use super::{Cell, glb};
+use super::scene::{Cell, glb};
 use crate::Files;
 use crate::placement::setup::{column, unit, word};
 use nalgebra::{Matrix3, Vector3};

@@ -1,8 +1,8 @@
 //! The tool path as tubes, coloured by the score at each point.
 
 use super::super::shapes::Shaded;
+use super::document::{linear, single};
 use super::motion::{Motion, Stop};
-use super::{linear, single};
 use crate::picture::of_deflection;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;

@@ -1,13 +1,16 @@
 //! Scenes read back as a viewer reads them: nodes, tracks and meshes from the bytes alone.
 
+use super::super::shapes::{BodyFrame, BodyMesh};
 use super::*;
 use crate::Files;
 use crate::page::table::Table;
 use crate::placement::placement_files;
 use crate::testing::{context, outcome, problem};
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use serde_json::Value;
-use stead_model::external_axis::{AxisKind, AxisUse, carried};
+use std::f64::consts::FRAC_PI_2;
+use stead_model::external_axis::{AxisKind, AxisUse, Carried, ExternalAxis, carried};
+use stead_model::robot::Pose;
 use stead_planning::course::{MovePart, PlaceOnMove};
 
 /// A file taken apart.

@@ -1,8 +1,9 @@
 //! The links of an arm from its rows.
 
+use super::illustration::{Paint, illustration};
 use super::loft::{Section, Solid};
 use super::maker::body_color;
-use super::{BodyFrame, BodyMesh, Paint, illustration};
+use super::{BodyFrame, BodyMesh};
 use nalgebra::Vector3;
 use stead_model::robot::{Robot, Spindle};
 

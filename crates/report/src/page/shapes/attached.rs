@@ -1,8 +1,9 @@
 //! What the arm holds and what it works on: spindle with bracket and tool, and a block under the path.
 
 use super::arm::{flange_face, scale};
+use super::illustration::{Paint, illustration};
 use super::loft::{Section, Solid};
-use super::{BodyFrame, BodyMesh, Paint, illustration};
+use super::{BodyFrame, BodyMesh};
 use nalgebra::Vector3;
 use stead_model::robot::{Robot, Spindle};
 

@@ -46,25 +46,19 @@ impl Section {
 impl Solid {
     /// Adds a bar from one point to another: radii at its ends, how far it goes beyond them, and the width of the
     /// bevel.
-    pub fn bar(
-        &mut self,
-        [from, to]: [Vector3<f64>; 2],
-        radii: [f64; 2],
-        beyond: [f64; 2],
-        bevel: f64,
-        section: Section,
-    ) {
-        let length = (to - from).norm();
+    pub fn bar(&mut self, ends: [Vector3<f64>; 2], radii: [f64; 2], beyond: [f64; 2], bevel: f64, section: Section) {
+        let length = (ends[1] - ends[0]).norm();
         let bevel = bevel.min((length + beyond[0] + beyond[1]) / 3.0).min(radii[0].min(radii[1]) / 2.0);
         let (start, end) = (-beyond[0], length + beyond[1]);
         let profile =
             [(start, radii[0] - bevel), (start + bevel, radii[0]), (end - bevel, radii[1]), (end, radii[1] - bevel)];
-        self.loft([from, to], &profile, section);
+        self.loft(ends, &profile, section);
     }
 
-    /// Adds the body whose cross section at each distance from `from` has the radius beside it, closed by flat ends;
+    /// Adds the body whose cross section at each distance from the first point has the radius beside it, closed by flat ends;
     /// nothing where the two points are one.
-    pub fn loft(&mut self, [from, to]: [Vector3<f64>; 2], profile: &[(f64, f64)], section: Section) {
+    pub fn loft(&mut self, ends: [Vector3<f64>; 2], profile: &[(f64, f64)], section: Section) {
+        let [from, to] = ends;
         let Some(along) = (to - from).try_normalize(1e-9) else { return };
         let first = across(&along, &section.up);
         let second = along.cross(&first);

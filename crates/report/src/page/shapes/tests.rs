@@ -1,5 +1,7 @@
 //! Bodies of every arm of the catalogue: closed, outward, where the rows are.
 
+use super::illustration::{Paint, illustration};
+use super::loft::Solid;
 use super::*;
 use crate::page::shapes::arm::scale;
 use crate::testing::problem;

@@ -5,15 +5,17 @@
 
 mod rows;
 mod views;
+mod words;
 
 use super::canvas::{Canvas, Pixel, TextStyle, paper};
 use super::colour::{BLACK, PALE};
 use crate::placement::SummaryLine;
-use crate::units::{fixed, lines_of};
+use crate::units::lines_of;
 use stead_disk::input::InputFile;
 use stead_placement::outcome::Case;
 use stead_placement::setup_sheet::{SetupSheet, SheetFrame};
 use stead_problem::problem::Problem;
+use words::shortened;
 
 /// What stands in the title block beside the robot.
 #[derive(Debug, Clone, Copy)]
@@ -133,25 +135,6 @@ fn title_block(canvas: &mut Canvas, problem: &Problem, title: &SheetTitle<'_>, t
         canvas.text(&shortened(&input.name, 52), (left + 80, y), small);
         canvas.text(&input.sha256, (right - 8, y), TextStyle::new(8.5).ending());
     }
-}
-
-/// The end of a text that is too long.
-fn shortened(text: &str, most: usize) -> String {
-    let count = text.chars().count();
-    if count <= most {
-        return text.to_owned();
-    }
-    format!("..{}", text.chars().skip(count + 2 - most).collect::<String>())
-}
-
-/// A length in mm, to a tenth. From m
-fn mm(length: f64) -> String {
-    fixed(length * 1e3, 1)
-}
-
-/// An angle in deg, to a hundredth. From rad
-fn deg(angle: f64) -> String {
-    fixed(angle.to_degrees(), 2)
 }
 
 /// Lines of cells, from above.

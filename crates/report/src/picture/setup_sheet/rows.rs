@@ -1,6 +1,7 @@
 //! The tables of a setup sheet.
 
-use super::{Table, deg, mm, shortened};
+use super::Table;
+use super::words::{deg, mm, shortened};
 use crate::placement::setup::word;
 use crate::units::fixed;
 use stead_model::external_axis::{AxisKind, Carried};

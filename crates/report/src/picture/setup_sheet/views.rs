@@ -5,7 +5,8 @@ use super::super::canvas::{Canvas, Pixel, Place, TextStyle, exact, nearest};
 use super::super::colour::{BLACK, GREY, WHITE};
 use super::super::labels::{Label, Labeller};
 use super::super::surroundings::{arm, corners_at, hull};
-use super::{SIDES, SIZES, deg, mm};
+use super::words::{deg, mm};
+use super::{SIDES, SIZES};
 use nalgebra::Vector3;
 use stead_cell::{Attachment, Shape};
 use stead_model::external_axis::{AxisKind, Carried, carried};
@@ -227,8 +228,8 @@ impl View {
     }
 
     /// The part of a straight line inside the view (Liang and Barsky 1984).
-    fn cut(&self, [from, to]: [Place; 2]) -> Option<[Place; 2]> {
-        let (left, top) = exact(self.corner);
+    fn cut(&self, line: [Place; 2]) -> Option<[Place; 2]> {
+        let ([from, to], (left, top)) = (line, exact(self.corner));
         let (right, bottom) = (left + f64::from(self.size[0]), top + f64::from(self.size[1]));
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let (mut start, mut end) = (0.0_f64, 1.0_f64);
