@@ -122,6 +122,8 @@ struct Cutting<'t> {
     tile: &'t mut Tile,
     /// The finished part in the tile, made when something of it is cut for the first time.
     of_part: OnceCell<Tile>,
+    /// What is removed of a line, kept for the next. nm
+    removed: Vec<[u32; 2]>,
 }
 
 /// A removed piece of a line along an axis, by where it begins and ends from the start of the line. m
@@ -170,7 +172,7 @@ impl Job<'_> {
     fn cut(&self, key: TileKey, indices: &[u32], tile: &mut Tile) -> OfTile {
         let mut counted = Counted { of_tile: OfTile::default(), sums: Window::empty(), turns: Window::empty() };
         let lines = TileLines::new(key, self.cell, self.stock.extent[0][key.0]);
-        let mut cutting = Cutting { key, lines, tile, of_part: OnceCell::new() };
+        let mut cutting = Cutting { key, lines, tile, of_part: OnceCell::new(), removed: Vec::new() };
         for index in indices {
             let (one, reach) = (&self.moves[*index as usize], &self.reaches[*index as usize]);
             if !reach.is_empty() {
@@ -194,24 +196,23 @@ impl Job<'_> {
 
     /// Removes what a move sweeps of the lines of a tile, and counts it.
     fn remove(&self, one: &Move, reach: &Reach, cutting: &mut Cutting<'_>, counted: &mut Counted) {
-        let Cutting { key, lines, tile, of_part } = cutting;
+        let Cutting { key, lines, tile, of_part, removed } = cutting;
         let axis = key.0;
         let (d, along) = (Vector3::ith(axis, 1.0), self.along(reach, axis));
         let moving = Moving::new(self.tool, one, self.cell);
         let is_counted = self.requested != Requested::Removal && !self.tool.cuts_along(one, axis);
-        let mut removed = Vec::new();
         lines.within(&reach.0, &mut |number, start| {
             if !tile.meets(number, along) {
                 return;
             }
             let Some(swept) = one.extent(&self.tool.pieces, start, &d) else { return };
             removed.clear();
-            tile.remove(number, swept.map(nanometres), &mut removed);
+            tile.remove(number, swept.map(nanometres), removed);
             if !is_counted {
                 return;
             }
             let metres = |ends: [u32; 2]| Removed { axis, start, ends: ends.map(|end| f64::from(end) / NANO) };
-            for ends in &removed {
+            for ends in &*removed {
                 self.count(&moving, &metres(*ends), counted);
                 let Some(part) = self.part else { continue };
                 let of_part = of_part.get_or_init(|| tile_of(part, &self.stock.extent, self.cell, *key));

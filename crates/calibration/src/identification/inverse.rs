@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, SMatrix};
 
-/// A pivot of a matrix with a unit diagonal that is less is no good one.
+/// The least pivot of a matrix with a unit diagonal at which its inverse is good.
 pub(super) const MIN_PIVOT: f64 = 1e-7;
 
 /// The inverse of a symmetric matrix that is positive definite after scaling its diagonal to one, with no pivot below a
