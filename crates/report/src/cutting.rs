@@ -76,8 +76,8 @@ const QUANTITIES: [Quantity; 2] = [
 ];
 
 /// The charts of `cutting.svg`: what the work does to the tool (Klimchik 2017, Fig. 4), moments about the tool centre
-/// point. Of each the mean over a turn of cuts that go from 0 to an angle, then all teeth of this cut over one turn with
-/// their means. The angles at which a tooth of this cut enters and leaves the work are marked.
+/// point. Of each the mean over a turn of cuts that go from 0 to an angle, then all teeth of this cut over one turn
+/// with their means. The angles at which a tooth of this cut enters and leaves the work are marked.
 pub fn charts(force_history: &ForceHistory) -> Vec<Chart> {
     QUANTITIES.iter().flat_map(|quantity| quantity.charts(force_history)).collect()
 }

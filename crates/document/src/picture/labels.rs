@@ -55,7 +55,7 @@ pub fn fitting(names: &[String], pixels: i32) -> Vec<String> {
     beginnings.sort_unstable();
     let is_same = beginnings.windows(2).any(|two| two[0] == two[1]);
     let cut = if is_same { ending } else { cut };
-    let shown = |(k, name): (usize, &String)| if k % step == 0 { cut(name, letters) } else { String::new() };
+    let shown = |(k, name): (usize, &String)| if k.is_multiple_of(step) { cut(name, letters) } else { String::new() };
     names.iter().enumerate().map(shown).collect()
 }
 

@@ -377,7 +377,8 @@ fn panel(map: &HeatMap, steps: [f64; 2], from: i32) -> Panel {
     }
     if !map.y.names.is_empty() {
         let step = (18 / fields[1]).max(1) as usize;
-        let shown = |(k, name): (usize, &String)| if k % step == 0 { cut(name, LETTERS) } else { String::new() };
+        let shown =
+            |(k, name): (usize, &String)| if k.is_multiple_of(step) { cut(name, LETTERS) } else { String::new() };
         y_ticks = Ticks::named(map.y.names.iter().enumerate().map(shown).collect());
     }
     let widths = y_ticks.values.iter().map(|value| TextStyle::new(TICKS).width(&y_ticks.label(*value)));

@@ -50,7 +50,7 @@ pub(super) fn page(comparison: &Comparison, assessment: &Assessment, context: &A
     let mut cards: Vec<HeatMap> =
         drawn.map(|(robot, elbow, map)| map::chart(&view, robot, elbow, map, stride)).collect();
     map::compare(&mut cards, ColourRange::round);
-    cards.into_iter().fold(page, |page, card| page.with(Card::HeatMap(card)))
+    cards.into_iter().fold(page, |page, card| page.with(Card::HeatMap(card.into())))
 }
 
 fn millimetres(length: Option<f64>) -> Option<String> {

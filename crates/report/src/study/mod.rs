@@ -27,7 +27,8 @@ use crate::{Files, named};
 use stead_disk::input::InputFile;
 use stead_study::analysis::Analysis;
 
-/// The files of a report; the page leads to the pages of kept cases. A front of nothing, a map of a single axis and effects of no axis have no files.
+/// The files of a report; the page leads to the pages of kept cases. A front of nothing, a map of a
+/// single axis and effects of no axis have no files.
 ///
 /// # Errors
 /// [`ReportError::Format`]: a file cannot be made.

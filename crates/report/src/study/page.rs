@@ -39,7 +39,7 @@ pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages:
         }
     }
     if let Some(map) = &analysis.map {
-        page = page.with(Card::HeatMap(map_chart(map)));
+        page = page.with(Card::HeatMap(map_chart(map).into()));
     }
     for axis in analysis.effects.axes.iter().filter(|axis| !axis.levels.is_empty()) {
         page = page.with(Card::Chart(effect_chart(axis, &analysis.effects.measure)));

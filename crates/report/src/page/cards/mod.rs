@@ -40,7 +40,7 @@ pub enum Card {
     /// Curves and dots over two axes.
     Chart(Chart),
     /// Values over two axes as colours.
-    HeatMap(HeatMap),
+    HeatMap(Box<HeatMap>),
     /// Deviations about a circle.
     Polar(Polar),
 }

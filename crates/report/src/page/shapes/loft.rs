@@ -55,8 +55,8 @@ impl Solid {
         self.loft(ends, &profile, section);
     }
 
-    /// Adds the body whose cross section at each distance from the first point has the radius beside it, closed by flat ends;
-    /// nothing where the two points are one.
+    /// Adds the body whose cross section at each distance from the first point has the radius beside it, closed by flat
+    /// ends; nothing where the two points are one.
     pub fn loft(&mut self, ends: [Vector3<f64>; 2], profile: &[(f64, f64)], section: Section) {
         let [from, to] = ends;
         let Some(along) = (to - from).try_normalize(1e-9) else { return };
