@@ -1,8 +1,8 @@
 //! What a given placement comes to, and what the postures give at one state.
 
+use crate::Monitor;
 use crate::monitor::Warning;
 use crate::result::result;
-use crate::Monitor;
 use std::sync::Arc;
 use stead_placement::place::Score;
 use stead_planning::feasibility::{self, DeflectionMap, Explanation};
