@@ -8,9 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stead_calibration::compensation::{self, CompensatedPath as Outcome, NotCompensated};
 use stead_numerics::message::Note;
-use stead_report::compensation::{
-    compensation_files, compensation_json, compensation_text, not_compensated_json,
-};
+use stead_report::compensation::{compensation_files, compensation_json, compensation_text, not_compensated_json};
 use stead_run_files as run_files;
 
 /// A compensation file with the run and the plan that it names, read and checked.

@@ -39,8 +39,8 @@ mod variables;
 
 pub use agreement::found_again;
 pub(crate) use solution::neighbours;
-use solution::{NEAR, is_near};
 pub use solution::{LENGTH_UNIT, LOCAL, Solution, UNITS, planned};
+use solution::{NEAR, is_near};
 
 use super::evaluator::{self, Evaluator};
 use super::lookup::CollisionEffort;

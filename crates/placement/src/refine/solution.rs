@@ -93,4 +93,3 @@ pub(super) fn moved(problem: &Problem, solution: &Solution, placement: Placement
 
 /// The spacing in which betas settle after a step. rad
 const SETTLING: off_grid::Spacing = off_grid::Spacing { first: 4e-3, last: 1.2e-4 };
-

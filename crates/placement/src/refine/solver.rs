@@ -7,8 +7,8 @@ use super::super::outcome::RefinementStatus;
 use super::lean_slopes::moved_leans;
 use super::linearise::{Curvature, Local, linearise, linearise_leaning};
 use super::slacks::NEAR_STEPS;
-use super::subproblem::{StepRequest, solve};
 use super::solution::{Solution, moved};
+use super::subproblem::{StepRequest, solve};
 use argmin::core::{
     Error, Executor, IterState, KV, Problem as ArgminProblem, Solver, State, TerminationReason, TerminationStatus,
 };

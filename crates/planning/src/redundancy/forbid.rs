@@ -128,9 +128,9 @@ impl Forbidding<'_> {
         let mut known = Proximity::default();
         let mut hits = |point: usize, k: usize| {
             let beta = planner.grid().beta(k);
-            postures
-                .iter()
-                .all(|posture| planner.problem.at(placement).next_hit(point, beta, *posture, kinds, &mut known).is_some())
+            postures.iter().all(|posture| {
+                planner.problem.at(placement).next_hit(point, beta, *posture, kinds, &mut known).is_some()
+            })
         };
         while let Some((point, betas)) = open.pop() {
             for next in [point.wrapping_sub(1), point + 1].into_iter().filter(|next| plan.points.contains(next)) {

@@ -3,7 +3,8 @@
 use super::ForcesFigures;
 use crate::page::cards::{Card, Chart, Page, Series, Style, Tile, Tiles};
 use crate::units::fixed;
-use stead_removal::outcome::{PointForces, RemovalForces};
+use stead_removal::load::PointForces;
+use stead_removal::outcome::RemovalForces;
 use stead_runs::ForcesRun;
 
 /// What was found, and the charts along the path.
