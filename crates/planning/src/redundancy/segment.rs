@@ -37,7 +37,7 @@ impl Strategy {
 
 /// How a path of beta is found that can be driven, in the order in which it is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum Attempt {
     /// The cheapest path, flips and turns of the joints left aside.
     Relaxed,
     /// The cheapest with flips and turns, which keep every joint inside its limits at the knots.
@@ -52,7 +52,7 @@ enum Way {
     Follow,
 }
 
-impl Way {
+impl Attempt {
     const IN_ORDER: [Self; 6] =
         [Self::Relaxed, Self::Turns, Self::Corridor, Self::CorridorOfTurns, Self::FollowTurns, Self::Follow];
 
@@ -103,16 +103,16 @@ impl ClassDrive<'_> {
     }
 
     /// A path as it is driven, or one made of it in some way.
-    fn driven(&self, way: Way, path: &[f64], cost: f64) -> Option<SegmentChoice> {
+    fn driven(&self, attempt: Attempt, path: &[f64], cost: f64) -> Option<SegmentChoice> {
         let Pass { span, placement, sense, is_by_knots, .. } = self.pass;
         let posture = *self.postures.first()?;
-        let made = match way {
-            Way::Relaxed | Way::Turns => path.to_vec(),
-            Way::Corridor | Way::CorridorOfTurns => {
+        let made = match attempt {
+            Attempt::Relaxed | Attempt::Turns => path.to_vec(),
+            Attempt::Corridor | Attempt::CorridorOfTurns => {
                 let corridor = Corridor { span, placement, sense, posture, forbidden: self.forbidden };
                 self.planner.within_corridor(&corridor, path)?
             }
-            Way::FollowTurns | Way::Follow => self.planner.followed(span, placement, posture, path)?,
+            Attempt::FollowTurns | Attempt::Follow => self.planner.followed(span, placement, posture, path)?,
         };
         let choice = self.planner.unwind(span, placement, &made, &self.postures, cost * sense.sign())?;
         if is_by_knots { self.planner.recosted(placement, sense, choice) } else { Some(choice) }
@@ -121,13 +121,13 @@ impl ClassDrive<'_> {
     /// The plan by the first way that leads to one.
     fn choice(&self, relaxed: CostedPath, workspace: &mut Workspace) -> Option<SegmentChoice> {
         let mut turns = None;
-        let is_tried = |way: &Way| way.is_tried(self.pass.is_by_knots, self.planner.checks_moves());
-        Way::IN_ORDER.into_iter().filter(is_tried).find_map(|way| {
-            if way == Way::Turns {
+        let is_tried = |attempt: &Attempt| attempt.is_tried(self.pass.is_by_knots, self.planner.checks_moves());
+        Attempt::IN_ORDER.into_iter().filter(is_tried).find_map(|attempt| {
+            if attempt == Attempt::Turns {
                 turns = self.with_turns(relaxed.1, workspace);
             }
-            let (path, cost) = if way.is_of_turns() { turns.as_ref()? } else { &relaxed };
-            self.driven(way, path, *cost)
+            let (path, cost) = if attempt.is_of_turns() { turns.as_ref()? } else { &relaxed };
+            self.driven(attempt, path, *cost)
         })
     }
 }
