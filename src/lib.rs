@@ -54,6 +54,10 @@
 //! fixed order, and transcendental functions do not come from the C library of the machine.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
+#![cfg_attr(
+    test,
+    allow(clippy::too_many_lines, clippy::excessive_nesting, reason = "tests are as long as what they try")
+)]
 
 /// The most threads that a job is given: more are a slip, and a machine that starts them may stop responding.
 pub const MAX_THREADS: usize = 1024;
@@ -68,7 +72,7 @@ mod check;
 pub mod circularity;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
-#[allow(rustdoc::invalid_html_tags, reason = "comments of options are what the help prints")]
+#[expect(rustdoc::invalid_html_tags, reason = "comments of options are what the help prints")]
 pub mod cli;
 pub mod compensation;
 mod error;

@@ -73,7 +73,6 @@ fn task() -> Task {
 }
 
 /// Caro et al. 2013, equations 6, 9 and 22 to 27.
-#[allow(clippy::approx_constant, reason = "the digits of the run file")]
 fn problem(beta_count: usize) -> Problem {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let rotation = Matrix3::new(0.0, -half, half, 1.0, 0.0, 0.0, 0.0, half, half);

@@ -1,5 +1,5 @@
 //! A KR 270 in a cell, for the tests of this crate and of those above.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "for tests alone")]
 use crate::scene::Scene;
 use crate::shape::{Attachment, KeepOut, Shape, TrackedPoint, Zone};
 use crate::solid::Solid;

@@ -176,6 +176,7 @@ impl CoarseBounds {
 
     /// A lower bound of what all points cost together, the rate of beta dropped; infinite where nothing is feasible.
     /// `None` for a box too large for the tables. A point that may be near axis 1 costs nothing.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn lower_bound(&self, model: &Model, region: &Region) -> Option<f64> {
         let mut totals = [0.0; CORNERS];
         let aggregate = model.objective.aggregate;
@@ -273,6 +274,7 @@ fn add(aggregate: Aggregate, sum: &mut [f64; 4], below: (f64, [f64; 3]), region:
 }
 
 impl Level {
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn coarser(&self, half: [f64; 3], kinds: usize, monitor: &Monitor) -> Self {
         let [n0, n1, n2] = self.counts;
         let counts = [n0.div_ceil(2) + usize::from(n0 % 2 == 0), n1.div_ceil(2) + usize::from(n1 % 2 == 0), n2 / 2];

@@ -44,6 +44,7 @@ impl SlidingMin {
     ///
     /// The window moves up from target to target, over the sources and then over them again a turn later. It is two
     /// parts: of the one, the least from each source on is kept, of the other, the least of all.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn compute(
         &mut self,
         cells: &[u16],

@@ -106,6 +106,7 @@ impl<'a> BoxBounds<'a> {
 
     /// Bounds cells of one point and class: the best of those surely allowed, and the greatest costs of all that may
     /// be.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn bound_cells(&self, point: usize, class: PostureClass, cells: impl Iterator<Item = usize>) -> CellBounds {
         let Model { table, arm, .. } = self.model;
         let mut bounds = CellBounds { best: None, max: NOTHING };
@@ -176,6 +177,7 @@ impl<'a> BoxBounds<'a> {
 
     /// A sum that is enough for most boxes: of each point the first cell found that is cheap, in the first class that
     /// has one for each point; infinite where that is not enough. m
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn quick_bound(&self, ceiling: f64) -> f64 {
         let count = self.model.table.headings(self.level);
         let cheap = CHEAP * ceiling / self.points.len() as f64;

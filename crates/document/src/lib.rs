@@ -7,6 +7,10 @@
 //!   for scripts and scenes.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
+#![cfg_attr(
+    test,
+    allow(clippy::too_many_lines, clippy::excessive_nesting, reason = "tests are as long as what they try")
+)]
 
 mod record;
 

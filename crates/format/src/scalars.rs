@@ -89,8 +89,7 @@ pub trait Words<Vocabulary>: Copy + PartialEq + 'static {
 
 /// Implements [`Words`] by a table of words and meanings, the one given or the constant `WORDS` of the type, in the
 /// vocabulary of the crate that calls it.
-// The vocabulary is meant to be the one of the crate that calls the macro.
-#[allow(clippy::crate_in_macro_def)]
+#[expect(clippy::crate_in_macro_def, reason = "the vocabulary is that of the crate that calls the macro")]
 #[macro_export]
 macro_rules! words {
     ($kind:ty) => {

@@ -1,5 +1,5 @@
 //! Folders and assertions for the tests of this crate and of those above.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "for tests alone")]
 
 use std::path::{Path, PathBuf};
 

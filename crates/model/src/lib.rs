@@ -30,6 +30,10 @@
 //! ```
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
+#![cfg_attr(
+    test,
+    allow(clippy::too_many_lines, clippy::excessive_nesting, reason = "tests are as long as what they try")
+)]
 
 pub mod cutting;
 pub mod external_axis;

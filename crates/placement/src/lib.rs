@@ -25,6 +25,10 @@
 //! ```
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
+#![cfg_attr(
+    test,
+    allow(clippy::too_many_lines, clippy::excessive_nesting, reason = "tests are as long as what they try")
+)]
 
 mod case;
 pub mod coordinate_search;

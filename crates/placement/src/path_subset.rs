@@ -98,6 +98,7 @@ impl PathSubset {
     }
 
     /// The points with what they stand for.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     fn weighted(&self, task: &Task) -> Vec<KeptPoint> {
         let path = task.path();
         let mut kept: Vec<KeptPoint> =

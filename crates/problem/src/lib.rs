@@ -16,6 +16,10 @@
 //! that makes the published bound of 0.2 possible.
 
 #![cfg_attr(not(test), warn(unused_crate_dependencies))]
+#![cfg_attr(
+    test,
+    allow(clippy::too_many_lines, clippy::excessive_nesting, reason = "tests are as long as what they try")
+)]
 
 pub mod beta_step;
 pub mod candidate;

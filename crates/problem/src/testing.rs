@@ -1,5 +1,5 @@
 //! The problem of Caro 2013 for the tests of this crate and of those above.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "for tests alone")]
 
 use crate::criterion::Criterion;
 use crate::postures::PostureRules;

@@ -195,6 +195,7 @@ impl Job<'_> {
     }
 
     /// Removes what a move sweeps of the lines of a tile, and counts it.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn remove(&self, one: &Move, reach: &Reach, cutting: &mut Cutting<'_>, counted: &mut Counted) {
         let Cutting { key, lines, tile, of_part, removed } = cutting;
         let axis = key.0;
@@ -247,6 +248,7 @@ impl Job<'_> {
     }
 
     /// Counts a removed piece of a line.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn count(&self, moving: &Moving<'_>, removed: &Removed<'_>, counted: &mut Counted) {
         let Counted { of_tile, sums: of_nodes, turns: of_turns } = counted;
         let (cell, one, [low, high]) = (self.cell, moving.one, removed.ends);

@@ -179,6 +179,7 @@ impl Piece {
     }
 
     /// The part of a line `y + l d` inside, where there is one.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn chord(&self, axis: &Vector3<f64>, y: &Vector3<f64>, d: &Vector3<f64>) -> Option<Chord> {
         if let Some(corner) = self.grown() {
             let ends = corner.interval(&Line { axis, w: y, d, u: &Vector3::zeros() }, NOWHERE)?;

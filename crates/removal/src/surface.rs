@@ -26,6 +26,7 @@ struct Grid {
 }
 
 impl Grid {
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn new(workpiece: &Workpiece) -> Self {
         let [low, high] = *workpiece.extent();
         let size = high - low;
@@ -72,6 +73,7 @@ impl Grid {
 }
 
 /// The surface between nodes inside and outside: a vertex in every cell that it passes, at the mean of its crossings.
+#[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
 pub fn surface(workpiece: &Workpiece) -> Surface {
     let grid = Grid::new(workpiece);
     let [nx, ny, nz] = grid.counts;

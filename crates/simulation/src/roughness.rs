@@ -30,6 +30,7 @@ pub struct Roughness {
 impl Profile {
     /// The wall at a height above the tip of the cutter (m), from a place to another (m): the lowest that any tooth
     /// came by, exactly on its arc.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn of_wall(trail: &Trail, cutter: &Cutter, cut: &PassCut, height: f64, span: [f64; 2], spacing: f64) -> Self {
         let [start, end] = span;
         let count = ((end - start) / spacing + 1e-9).max(0.0) as usize + 1;

@@ -1,6 +1,7 @@
 //! `cargo run --release -p stead-experiments --bin pairwise -- --runs 2000 [--from SEED] [--only 7,12] [--keep
 //! FOLDER]`: runs over all options, pair by pair, held against the judge; with `--only`, those of these numbers alone.
 
+#![allow(clippy::too_many_lines, reason = "an experiment is read from top to bottom")]
 #![allow(clippy::print_stdout, reason = "an experiment prints what it finds")]
 
 #[path = "../../../tests/drive/mod.rs"]

@@ -4,6 +4,7 @@
 //! `cargo run --release -p stead-experiments --bin scan -- configs/caro-2013.toml [x y z yaw]` with the numbers of grid
 //! values (default 7 7 7 72).
 
+#![allow(clippy::too_many_lines, reason = "an experiment is read from top to bottom")]
 #![allow(clippy::print_stdout, reason = "an experiment prints")]
 
 use rayon::prelude::*;

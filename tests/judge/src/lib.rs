@@ -7,6 +7,8 @@
 //!
 //! It shares no code with stead: no crate of it is a dependency. Distances are the plain ones of parry3d.
 
+#![allow(clippy::excessive_nesting, clippy::too_many_arguments, reason = "plain loops, written beside the formulas")]
+
 mod arm;
 mod cell;
 pub mod cover;

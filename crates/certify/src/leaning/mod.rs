@@ -211,6 +211,7 @@ impl Leaning {
 
     /// What all points cost at least together, over a box, up to `ceiling`; and the classes that may still be of
     /// interest in it. Once the caller asks to stop, what is returned is no bound.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn lower_bound(&self, region: &Box3, classes: &[u8], ceiling: f64, monitor: &Monitor) -> (f64, Arc<[u8]>) {
         let mut totals = [0.0; CORNERS];
         let mut all: Vec<[[f64; CORNERS]; 4]> = Vec::with_capacity(self.segments.len());
@@ -264,6 +265,7 @@ impl Leaning {
     }
 
     /// What a point costs at least at the corners of a box; `None` where none of its states is allowed.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn cost(&self, point: &LeaningPoint, region: &Box3, class: PostureClass) -> Option<[f64; CORNERS]> {
         let middle: [f64; 3] = std::array::from_fn(|k| region.middle[k] + point.at[k]);
         let half = region.half;

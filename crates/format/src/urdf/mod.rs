@@ -247,7 +247,7 @@ mod tests;
 /// The last link of a URDF's arm at its joint values (rad) in the frame of the first, through the URDF's own joint
 /// origins and axes: an oracle of tests.
 #[cfg(feature = "testing")]
-#[allow(clippy::unwrap_used)]
+#[expect(clippy::unwrap_used, reason = "for tests alone")]
 pub fn tip_at(text: &str, joints: &[f64; 6]) -> Pose<f64> {
     let urdf = read::Urdf::parse(Path::new("arm.urdf"), text.to_owned()).unwrap();
     let chain = tree::Chain::new(&urdf, &tree::Tree::new(&urdf).unwrap(), None, None).unwrap();

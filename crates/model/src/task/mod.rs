@@ -342,7 +342,7 @@ impl Task {
 #[cfg(any(test, feature = "testing"))]
 pub mod testing {
     //! The shipped path for the tests of this crate and of those above.
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, reason = "tests")]
     use super::lean::{ContactRule, CutterEnd, LeanForce, LeanRule};
     use super::*;
 

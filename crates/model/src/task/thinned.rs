@@ -28,6 +28,7 @@ pub(super) struct Thinned {
 impl ToolPath {
     /// The path thinned to some of its points, ascending and at least one of every segment; the distances between them
     /// stay those along the whole path.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     pub(super) fn thinned(&self, kept: &[KeptPoint]) -> Self {
         let mut segments = Vec::with_capacity(self.segments.len());
         let mut steps = Vec::with_capacity(kept.len());

@@ -164,6 +164,7 @@ impl LookupTable<'_> {
 
     /// Why there is no way through the segments for which none was found: how many points, or else segments, are in the
     /// way.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn blocked(
         &self,
         path: BetaPath<'_>,

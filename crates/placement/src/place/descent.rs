@@ -81,6 +81,7 @@ impl Descent {
     }
 
     /// Improves a placement until nothing gains, or the caller asks to stop.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     pub fn run(&self, job: &Improver<'_>, known: Planned) -> Planned {
         let mut best = known;
         for done in 0..self.rounds {

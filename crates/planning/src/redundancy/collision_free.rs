@@ -341,6 +341,7 @@ impl Planner<'_> {
 
     /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others
     /// are left. Turns of the joints change nothing about collisions.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     pub(super) fn without_hitting_ways(
         &self,
         placement: &Placement,

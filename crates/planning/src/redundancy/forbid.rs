@@ -120,6 +120,7 @@ impl Forbidding<'_> {
 
     /// Forbids what hits around states of the plan, given by their points and numbers of beta, whichever way the wrist
     /// is flipped: that costs no plan that is free, and spares to find it state by state.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     pub fn around(&mut self, mut open: Vec<(usize, [usize; 3])>) {
         let Self { planner, placement, plan, .. } = *self;
         let (segments, class) = (&planner.segments, plan.posture.class());

@@ -103,6 +103,7 @@ impl PointBudget {
 
 impl Knots {
     /// For points whose joints may step by `joints` (rad); `direct` are the changes between neighbours.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn new(
         problem: &Problem,
         grid: &Redundancy,

@@ -260,6 +260,7 @@ impl<'a> Planner<'a> {
     ///
     /// # Errors
     /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     pub fn plan_fine(
         &self,
         placement: &Placement,

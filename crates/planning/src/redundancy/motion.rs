@@ -252,6 +252,7 @@ impl<'a> MotionPlanner<'a> {
     }
 
     /// Goes through a segment in all posture classes at once.
+    #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
     fn pass(&self, sweep: Sweep<'_>, span: &Span<usize>) -> MotionPass {
         let (number, beta_count) = (self.planners.len(), self.grid.problem.redundancy.beta_count);
         let mut links = vec![Link::default(); span.len() * 4 * number * beta_count];

@@ -180,6 +180,7 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
     type Output = bool;
 
     #[inline(always)]
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Self { before, now, class, step, between, way, .. } = self;
         let (count, pad) = (now.count(), now.pad());

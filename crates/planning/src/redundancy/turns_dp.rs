@@ -308,6 +308,7 @@ impl Search<'_> {
     }
 
     /// Gives each node its cheapest successor. Of equal ones the nearest in beta is taken.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn connect(&self, layer: &mut Layer, after: &Layer, number: usize, knot: Knot, workspace: &Workspace) {
         let (planner, sign) = (self.planner, self.pass.sense.sign());
         let count = planner.grid.beta_count;

@@ -1,5 +1,5 @@
 //! The Stäubli TX200 with its spindle, as in `configs/robots/staubli-tx200.toml`.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "for tests alone")]
 
 use nalgebra::{Matrix3, Rotation3, Vector3, matrix, vector};
 use stead_model::robot::{Inertial, Joint, JointDynamics, Orthogonal, Robot, Spindle, testing::robot_from};

@@ -31,6 +31,7 @@ pub(super) fn exit(cutter: &Cutter, cut: &PassCut) -> Result<f64, EngagementErro
 }
 
 impl Directional {
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub(super) fn new(cutter: &Cutter, cut: &PassCut, exit: f64, depth: f64, intervals: usize) -> Self {
         let width = TAU / intervals as f64;
         let slice = depth / cut.slices as f64;

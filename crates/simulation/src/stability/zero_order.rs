@@ -73,6 +73,7 @@ impl ZeroOrder {
     /// # Errors
     /// [`ZeroOrderError`] for a width of cut that is none, and for a spindle so slow beside the modes of the arm that
     /// the delays cannot be followed.
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     pub fn critical_depth(
         &self,
         cutter: &Cutter,

@@ -135,6 +135,7 @@ fn keep_best(plan: &Plan, settings: &RunSettings<'_>, monitor: &Monitor) -> Resu
 }
 
 /// Does cases, as many at a time as there are threads, and hands each to a function as it is finished.
+#[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
 fn side_by_side(
     plan: &Plan,
     cases: &[&PlannedCase],

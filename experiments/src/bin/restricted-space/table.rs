@@ -186,6 +186,7 @@ fn plan(run: &Run, placement: &Placement) -> String {
 type LeanStates = (Vec<Lean>, Vec<Vec<Allowed>>);
 
 /// See [`LeanStates`].
+#[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
 fn states(problem: &Problem, placement: &Placement) -> Result<LeanStates, Box<dyn Error>> {
     let space = problem.lean.as_deref().ok_or("the tool leans")?;
     let path = problem.task.upright().path();

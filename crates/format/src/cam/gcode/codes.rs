@@ -176,6 +176,14 @@ pub(super) static FOREIGN: [Foreign; 6] = [
 
 const POST: &str = "G-code with numbers alone, or CLDATA: let the CAM system post one of them";
 
+/// What a code does, where it is known.
+pub(super) fn code_of(value: f64) -> Option<Code> {
+    let tenths = (value * 10.0).round();
+    let is_code = (tenths - value * 10.0).abs() < 1e-6 && (0.0..1e4).contains(&tenths);
+    let row = CODES.binary_search_by_key(&(tenths as i64), |(code, _)| *code).ok();
+    row.filter(|_| is_code).map(|row| CODES[row].1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -184,12 +192,4 @@ mod tests {
     fn no_code_stands_twice() {
         assert!(CODES.windows(2).all(|pair| pair[0].0 < pair[1].0));
     }
-}
-
-/// What a code does, where it is known.
-pub(super) fn code_of(value: f64) -> Option<Code> {
-    let tenths = (value * 10.0).round();
-    let is_code = (tenths - value * 10.0).abs() < 1e-6 && (0.0..1e4).contains(&tenths);
-    let row = CODES.binary_search_by_key(&(tenths as i64), |(code, _)| *code).ok();
-    row.filter(|_| is_code).map(|row| CODES[row].1)
 }

@@ -320,6 +320,7 @@ impl<const PLAIN: bool, const WHOLE: bool, const N: usize> WithSimd for Variant<
 impl Evaluation<'_> {
     /// As [`Variant`].
     #[inline(always)]
+    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn batches<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
         let Self { evaluator, geometry, classes, betas, states } = self;
         let infinity = Lanes::splat(simd, f64::INFINITY);
