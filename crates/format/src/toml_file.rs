@@ -146,3 +146,18 @@ pub fn without_schema(text: &str) -> &str {
 fn line_after(text: &[u8]) -> usize {
     1 + text.iter().filter(|byte| **byte == b'\n').count()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(bytes: &[u8]) -> Result<TomlFile, InputError> {
+        TomlFile::new(Path::new("a.toml"), bytes.to_vec())
+    }
+
+    #[test]
+    fn bytes_that_are_no_text_are_located() {
+        let message = source(b"a = 1\nb = '\xff'\n").unwrap_err().to_string();
+        assert_eq!(message, "a.toml:2: is not UTF-8 text, found byte 0xff; allowed: UTF-8 text");
+    }
+}

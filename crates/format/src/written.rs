@@ -55,4 +55,12 @@ mod tests {
         let values = [("a", Some("1".to_owned())), ("b", Some("@c@".to_owned())), ("c", None), ("d", shown_if(true))];
         assert_eq!(filled(template, &values), "a = 1      # @c@\n# d\n");
     }
+
+    #[test]
+    fn files_are_named_from_the_folder_of_the_file() {
+        let named = |folder: &str, file: &str| relative(Path::new(folder), Path::new(file));
+        assert_eq!(named("my", "my/meshes/a.stl"), "meshes/a.stl");
+        assert_eq!(named("my/cells", "robots/a.stl"), "../../robots/a.stl");
+        assert_eq!(named("", "a.stl"), "a.stl");
+    }
 }
