@@ -198,9 +198,9 @@ impl LongPath {
     }
 
     /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct
-    /// basins, at most `basins`; returns whether the first has none, and the points that decided. Candidates for the best
-    /// placement that a subset judged better than the whole path does are improved on a subset that knows the points in
-    /// their way, and planned again.
+    /// basins, at most `basins`; returns whether the first has none, and the points that decided. Candidates for the
+    /// best placement that a subset judged better than the whole path does are improved on a subset that knows the
+    /// points in their way, and planned again.
     fn promote(
         &mut self,
         whole: &WholePath<'_, '_>,

@@ -36,7 +36,8 @@ impl<'a, T: Scalar> PointEvaluator<'a, T> {
         self.problem
     }
 
-    /// The flange frame in the base frame at a free angle (rad): [`PlacedTask::base_from_flange`](super::placed_task::PlacedTask::base_from_flange).
+    /// The flange frame in the base frame at a free angle (rad):
+    /// [`PlacedTask::base_from_flange`](super::placed_task::PlacedTask::base_from_flange).
     pub fn base_from_flange(&self, beta: T) -> Pose<T> {
         let PlacedPoint { tip, axes, .. } = self.placed;
         self.problem.flange_at(&Pose { rotation: axes, translation: tip }, beta)

@@ -114,7 +114,7 @@ struct PlacedArm<'a, T: Scalar> {
 }
 
 impl<'a, T: Scalar> PlacedArm<'a, T> {
-    /// At joint angles that [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found.
+    /// At joint angles that [`PlacedTask::state`](super::placed_task::PlacedTask::state) found.
     fn new(at: &'a PointEvaluator<'a, T>, joints: &'a [T; 6]) -> Self {
         Self { at, joints, frames: Frames::new(&at.problem.robot, joints) }
     }
@@ -222,7 +222,7 @@ impl<T: Scalar> DeflectedArm<'_, T> {
 }
 
 /// What is scored under every set of compliances ([`Problem::scored_robots`]), at joint angles that
-/// [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found for path point `point` and a workpiece at
+/// [`PlacedTask::state`](super::placed_task::PlacedTask::state) found for path point `point` and a workpiece at
 /// `placement`, with the derivatives of each scored part by the uncertain parameters of its set
 /// ([`scored_part_by_parameters`]).
 pub fn set_scores<T: Scalar>(
@@ -258,8 +258,8 @@ pub fn scored_parts<T: Scalar>(
 }
 
 /// Derivatives of the scored part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]),
-/// in their order, at joint angles that [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found for path point
-/// `point` and a workpiece at `placement`. m per SI unit of each parameter; empty where no uncertainty is known.
+/// in their order, at joint angles that [`PlacedTask::state`](super::placed_task::PlacedTask::state) found for
+/// path point `point` and a workpiece at `placement`. m per SI unit of each parameter; empty where no uncertainty is known.
 ///
 /// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
 pub fn scored_part_by_parameters<T: Scalar>(
@@ -309,7 +309,7 @@ impl ScoredByOrigin {
 }
 
 /// The scored part of the deflection under the robot's own compliances by what yields, at joint angles that
-/// [`PlacedTask::state`](crate::evaluate::placed_task::PlacedTask::state) found for path point `point` and a workpiece at
+/// [`PlacedTask::state`](super::placed_task::PlacedTask::state) found for path point `point` and a workpiece at
 /// `placement`.
 pub fn scored_by_origin(problem: &Problem, point: usize, placement: &Placement, joints: &[f64; 6]) -> ScoredByOrigin {
     let at = problem.at(placement).evaluator(point);
