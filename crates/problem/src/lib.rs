@@ -1,7 +1,8 @@
 //! What may vary at a placement, what must hold and what is scored, and the states of the arm under it.
 //!
 //! - [`problem`]: what may vary, what must hold; [`placement`], [`cell`]: where the part is and may be; [`setup`]: with
-//!   which side up it lies, where external axes stand; [`lean`]: how far the tool may lean; [`settings`]: how hard to search.
+//!   which side up it lies, where external axes stand; [`lean`]: how far the tool may lean; [`settings`]: how hard to
+//!   search.
 //! - [`evaluate`]: the score of a state of the arm, one at a time with derivatives, or a batch of states at once.
 //! - [`criterion`]: which part of the deflection is scored, and how points make up one figure; [`objective`]: that of a
 //!   problem; [`candidate`]: a placement with its objective value; [`sense`]: minimise or maximise.

@@ -259,7 +259,8 @@ pub fn scored_parts<T: Scalar>(
 
 /// Derivatives of the scored part of the deflection by the uncertain parameters of the robot ([`Robot::uncertainty`]),
 /// in their order, at joint angles that [`PlacedTask::state`](super::placed_task::PlacedTask::state) found for
-/// path point `point` and a workpiece at `placement`. m per SI unit of each parameter; empty where no uncertainty is known.
+/// path point `point` and a workpiece at `placement`. m per SI unit of each parameter; empty where no uncertainty is
+/// known.
 ///
 /// Summed over path points they tell the standard deviation of a mean with all correlations between the points.
 pub fn scored_part_by_parameters<T: Scalar>(
