@@ -5,6 +5,7 @@ use super::forward_pass::{ForwardPass, Pass};
 use super::joint_turns::{SegmentChoice, is_allowed};
 use super::segment_planner::Request;
 use super::{SegmentPlanner, StateSet, Workspace};
+use std::borrow::Cow;
 use stead_model::robot::{Posture, PostureClass};
 use stead_problem::joint_travel::joint_travel;
 use stead_problem::problem::Placement;
@@ -107,12 +108,14 @@ impl ClassDrive<'_> {
         let Pass { span, placement, sense, is_by_knots, .. } = self.pass;
         let posture = *self.postures.first()?;
         let made = match attempt {
-            Attempt::Relaxed | Attempt::Turns => path.to_vec(),
+            Attempt::Relaxed | Attempt::Turns => Cow::Borrowed(path),
             Attempt::Corridor | Attempt::CorridorOfTurns => {
                 let corridor = Corridor { span, placement, sense, posture, forbidden: self.forbidden };
-                self.planner.within_corridor(&corridor, path)?
+                Cow::Owned(self.planner.within_corridor(&corridor, path)?)
             }
-            Attempt::FollowTurns | Attempt::Follow => self.planner.followed(span, placement, posture, path)?,
+            Attempt::FollowTurns | Attempt::Follow => {
+                Cow::Owned(self.planner.followed(span, placement, posture, path)?)
+            }
         };
         let choice = self.planner.unwind(span, placement, &made, &self.postures, cost * sense.sign())?;
         if is_by_knots { self.planner.recosted(placement, sense, choice) } else { Some(choice) }

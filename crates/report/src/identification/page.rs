@@ -114,9 +114,12 @@ fn arm(found: &Identified) -> Card {
 /// The springs as the robot file has them.
 fn springs(found: &Identified) -> Card {
     let rows = super::text::spring_rows(found).into_iter().skip(1);
-    Card::Table(Table { detail: "urad/(N m); springs that cannot be told apart are split such that none is below zero and the sum of squares is \
-                 least"
-            .to_owned(), ..Table::new("Springs of the robot file", ["joint", "about z", "about x", "about y"].map(Column::number).to_vec(), rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect()) })
+    let rows = rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect();
+    let columns = ["joint", "about z", "about x", "about y"].map(Column::number);
+    let split =
+        "springs that cannot be told apart are split such that none is below zero and the sum of squares is least";
+    let detail = format!("urad/(N m); {split}");
+    Card::Table(Table { detail, ..Table::new("Springs of the robot file", columns.to_vec(), rows) })
 }
 
 /// What a reading is.

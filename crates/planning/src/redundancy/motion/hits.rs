@@ -74,8 +74,10 @@ impl FreeWays<'_> {
         }
         let points = self.points_to_check(span, way);
         let sweep = Sweep {
+            evaluator: way.evaluator,
+            placement: self.placement,
             classes: PostureClass::ALL.map(|other| other == class),
-            ..Sweep::new(planner, way.evaluator, self.placement, &self.forbidden)
+            forbidden: &self.forbidden,
         };
         let space = || StateGrid::new(planner.grid.problem.redundancy.beta_count, planner.pad);
         let hits_in = |states: &mut StateGrid, setting: usize| {
