@@ -7,6 +7,7 @@ use super::segment_planner::Request;
 use super::{SegmentPlanner, StateSet, Workspace};
 use std::borrow::Cow;
 use stead_model::robot::{Posture, PostureClass};
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::joint_travel::joint_travel;
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
@@ -182,7 +183,7 @@ impl SegmentPlanner<'_> {
 
     /// The postures of a class that yield like the given one, itself among them.
     pub(super) fn equivalent_postures(&self, posture: Posture) -> Vec<Posture> {
-        let evaluator = self.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture));
+        let evaluator = BatchEvaluator::of_posture(&self.evaluators, posture);
         let postures = posture.class().postures().into_iter();
         let is_like = |p: &Posture| evaluator.is_some_and(|evaluator| evaluator.flips().contains(*p));
         postures.filter(|p| is_like(p) && self.problem.postures.allows(*p)).collect()

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::monitor::StopHandle;
 use stead_numerics::simd::Instructions;
-use stead_problem::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_problem::evaluate::batch::{BatchEvaluator, StateGrid};
 use stead_problem::problem::{Placement, Problem, Redundancy};
 use stead_problem::sense::Sense;
 
@@ -124,7 +124,7 @@ impl<'a> SegmentPlanner<'a> {
         Self {
             problem,
             grid,
-            evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
+            evaluators: BatchEvaluator::all(problem, &grid),
             knots: Knots::new(problem, &grid, &steps, &changes, budget),
             resolution,
             changes,

@@ -6,6 +6,7 @@ use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_problem::criterion::{Aggregate, Weights};
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::testing::{
     assert_sound, compensated, five_segments, with_axes_2_3, with_beta_rate, with_laws, with_prototype_steps,
 };
@@ -193,7 +194,9 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
         for plan in &mut plans {
             let (full, unwatched) =
                 (off_grid::Spacing::full(&problem.redundancy), vec![off_grid::Watch::default(); plan.points.len()]);
-            off_grid::refine(&problem, &placement, sense, full, &unwatched, plan);
+            let evaluators = BatchEvaluator::all(&problem, &problem.redundancy);
+            let evaluator = BatchEvaluator::of_posture(&evaluators, plan.posture).unwrap();
+            off_grid::refine(evaluator, &placement, sense, full, &unwatched, plan);
             let replayed = off_grid::replay(&problem, &placement, sense, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
         }

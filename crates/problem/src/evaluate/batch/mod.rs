@@ -12,6 +12,7 @@
 //! with each.
 
 mod arm;
+mod at;
 mod deviation;
 mod laws;
 mod limit;
@@ -20,6 +21,7 @@ mod states;
 mod whole;
 mod wrist;
 
+pub use at::PlacedPoint;
 pub use states::StateGrid;
 
 use crate::constraints::{ConstraintKind, relaxed};
@@ -180,6 +182,16 @@ impl<'a> BatchEvaluator<'a> {
         }
     }
 
+    /// The evaluators that a problem needs ([`Flips::of`]).
+    pub fn all(problem: &'a Problem, grid: &Redundancy) -> Vec<Self> {
+        Flips::of(problem).iter().map(|flips| Self::new(problem, grid, *flips)).collect()
+    }
+
+    /// The one of a posture.
+    pub fn of_posture<'e>(all: &'e [Self], posture: Posture) -> Option<&'e Self> {
+        all.iter().find(|evaluator| evaluator.flips.contains(posture))
+    }
+
     /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint
     /// limits are seen joint by joint, in either flip of the wrist; that of the sum of joints 2 and 3 as it is.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
@@ -187,6 +199,11 @@ impl<'a> BatchEvaluator<'a> {
         let mut evaluated = vec![Reach, AxesSum, BaseDistance, Conditioning, MaxDeflection];
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
     }
 
     /// Which of the two postures of a class are evaluated.
@@ -219,18 +236,31 @@ impl<'a> BatchEvaluator<'a> {
         only_beta: Option<usize>,
         states: &mut StateGrid,
     ) {
-        let geometry = self.point_geometry(point, placement);
+        let placed = self.placed(point, placement);
+        let betas = only_beta.map_or(0..self.count, |only| only..only + 1);
+        self.run(&placed, classes, [&self.sine, &self.cosine], betas, states);
+        if let Some(only) = only_beta {
+            states.keep_beta(only);
+        }
+    }
+
+    /// Evaluates the values of beta with these sines and cosines, and their neighbours in the same lanes.
+    fn run(
+        &self,
+        placed: &PlacedPoint,
+        classes: [bool; 4],
+        [sine, cosine]: [&[f64]; 2],
+        betas: Span<usize>,
+        states: &mut StateGrid,
+    ) {
         for class in PostureClass::ALL {
             states.clear(class);
         }
-        let min_distance = self.problem.constraints.min_base_distance;
-        if min_distance > 0.0 && libm::hypot(geometry.tip.x, geometry.tip.y) < min_distance {
+        if placed.is_near {
             return;
         }
-        let betas = only_beta.map_or(0..self.count, |only| only..only + 1);
-        let evaluation = Evaluation { evaluator: self, geometry: &geometry, classes, betas, states };
-        let is_single = self.problem.criterion.weights.is_single();
-        match (self.fixed.is_some(), is_single, self.is_plain(point)) {
+        let evaluation = Evaluation { evaluator: self, geometry: &placed.geometry, classes, sine, cosine, betas, states };
+        match (self.fixed.is_some(), self.problem.criterion.weights.is_single(), placed.is_plain) {
             (false, true, true) => self.instructions.run(Variant::<true, false, 1>(evaluation)),
             (false, true, false) => self.instructions.run(Variant::<false, false, 1>(evaluation)),
             (false, false, true) => self.instructions.run(Variant::<true, false, 3>(evaluation)),
@@ -239,9 +269,6 @@ impl<'a> BatchEvaluator<'a> {
             (true, true, false) => self.instructions.run(Variant::<false, true, 1>(evaluation)),
             (true, false, true) => self.instructions.run(Variant::<true, true, 3>(evaluation)),
             (true, false, false) => self.instructions.run(Variant::<false, true, 3>(evaluation)),
-        }
-        if let Some(only) = only_beta {
-            states.keep_beta(only);
         }
     }
 
@@ -298,6 +325,9 @@ struct Evaluation<'k> {
     evaluator: &'k BatchEvaluator<'k>,
     geometry: &'k PointGeometry,
     classes: [bool; 4],
+    /// Of all values of beta.
+    sine: &'k [f64],
+    cosine: &'k [f64],
     /// Numbers of beta; their neighbours in the same lanes are evaluated too.
     betas: Span<usize>,
     states: &'k mut StateGrid,
@@ -322,13 +352,13 @@ impl Evaluation<'_> {
     #[inline(always)]
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn batches<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
-        let Self { evaluator, geometry, classes, betas, states } = self;
+        let Self { evaluator, geometry, classes, sine: sines, cosine: cosines, betas, states } = self;
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
         let first = betas.start - betas.start % Lanes::<S>::COUNT;
         for start in (first..betas.end).step_by(Lanes::<S>::COUNT) {
-            let cosine = Lanes::load(simd, &evaluator.cosine, start);
-            let sine = Lanes::load(simd, &evaluator.sine, start);
+            let cosine = Lanes::load(simd, cosines, start);
+            let sine = Lanes::load(simd, sines, start);
             let centre = evaluator.centre(simd, geometry, cosine, sine);
             for back in [false, true] {
                 let arm = evaluator.arm(simd, &centre, back);

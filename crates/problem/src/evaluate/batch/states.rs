@@ -124,6 +124,13 @@ impl StateGrid {
         self.data[class.index() * size + stride..][..size - stride].split_at((ROWS - 1) * stride).into()
     }
 
+    /// What the state of a beta number adds to the cost of a plan, with its joint angles (rad), where these are kept;
+    /// none where it is not allowed.
+    pub fn state(&self, class: PostureClass, beta: usize) -> Option<(f64, [f64; 6])> {
+        let (cost, [_, angles]) = (self.inner_scores(class)[beta], self.all_joints(class));
+        cost.is_finite().then(|| (cost, std::array::from_fn(|j| angles[j * self.stride + self.pad + beta])))
+    }
+
     /// Writes one state: beta number `beta`, its score (m) and joint angles (rad).
     pub fn set(&mut self, class: PostureClass, beta: usize, score: f64, joints: [f64; 6]) {
         let place = class.index() * self.rows * self.stride + self.pad + beta;

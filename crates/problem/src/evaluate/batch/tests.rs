@@ -16,9 +16,11 @@ pub(super) fn compare(problem: &Problem, placement: &Placement, points: impl Ite
 fn compare_flips(problem: &Problem, placement: &Placement, points: impl Iterator<Item = usize>, flips: Flips) -> usize {
     let evaluator = BatchEvaluator::new(problem, &problem.redundancy, flips);
     let mut states = StateGrid::new(problem.redundancy.beta_count, 3);
+    let mut states_at = BatchEvaluator::states_at();
     let mut allowed = 0;
     for point in points {
         evaluator.evaluate(point, placement, &mut states);
+        let placed = evaluator.placed(point, placement);
         for class in PostureClass::ALL {
             for k in 0..problem.redundancy.beta_count {
                 let found = states.scores(class)[3 + k];
@@ -31,6 +33,16 @@ fn compare_flips(problem: &Problem, placement: &Placement, points: impl Iterator
                 }
                 assert!(!found.is_nan(), "point {point} class {class:?} beta {k}");
                 assert_eq!(found.is_finite(), margin > 0.0, "point {point} class {class:?} beta {k} margin {margin}");
+                for (posture, expected) in class.postures().into_iter().zip(&expected).filter(|(p, _)| flips.contains(*p)) {
+                    let betas = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|by| problem.redundancy.beta(k) + 0.01 * by);
+                    let at = evaluator.evaluate_at(&placed, posture, &betas, &mut states_at)(2);
+                    assert_eq!(at.is_some(), found.is_finite());
+                    let Some((cost, joints)) = at else { continue };
+                    assert!((cost - found).abs() < 1e-12 * (1.0 + found), "{cost} {found}");
+                    for j in 0..6 {
+                        assert!(wrap(joints[j] - expected.joints[j]).abs() < 1e-10, "{posture} joint {}", j + 1);
+                    }
+                }
                 if found.is_finite() {
                     allowed += 1;
                     let score = expected.iter().zip(requested).find(|(_, requested)| *requested).unwrap().0.score;
