@@ -3,7 +3,7 @@
 use super::Failure;
 use super::manual::{Manual, STOPPED};
 use super::output::{out_folder, say_notes};
-use super::progress::{Terminal, on_threads};
+use super::progress::Terminal;
 use super::values::{positive, threads};
 use clap::Args;
 use std::path::PathBuf;
@@ -66,9 +66,7 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
         .map_err(|error| Failure::at("--accuracy-mm and --force-n", error))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let assessment = on_threads(options.threads, || run.assess(&shown.monitor))??;
-    drop(shown);
+    let assessment = Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.assess(monitor))??;
     let timing = assessment.timing();
     out.show(assessment.write_in(&out.folder), &assessment, options.json, |folder| {
         let folder = if folder.is_empty() { folder } else { format!("; results in {folder}") };

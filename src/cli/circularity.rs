@@ -48,8 +48,8 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     say_warnings(circularity.warnings());
     let mut folder = String::new();
     if let Some(out) = &options.out {
-        let out = Folder::create(out).map_err(Failure::Output)?;
-        out.has_no_other(MANUAL.file_names()).map_err(Failure::Output)?;
+        let out = Folder::create(out)?;
+        out.has_no_other(MANUAL.file_names())?;
         files_written(circularity.write_in(&out))?;
         folder = out.path().display().to_string();
     }

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::manual::{Manual, STOPPED};
-use super::output::{out_folder, print_json, say_notes, say_warnings};
+use super::output::{out_folder, print_json, say_all, say_notes, say_warnings};
 use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
@@ -47,17 +47,11 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
-    let shown = terminal.show(None);
-    let run = CompensationRun::read_with(&options.config, options.reality.as_deref(), &shown.monitor);
-    drop(shown);
-    let run = run?;
+    let run = terminal.during(|monitor| CompensationRun::read_with(&options.config, options.reality.as_deref(), monitor))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     terminal.holds(&out.folder);
-    say_notes(run.notes());
-    say_warnings(run.warnings());
-    let shown = terminal.show(None);
-    let path = if options.all_or_nothing { run.compensate_all(&shown.monitor) } else { run.compensate(&shown.monitor) };
-    drop(shown);
+    say_all(run.notes(), run.warnings());
+    let path = terminal.during(|monitor| if options.all_or_nothing { run.compensate_all(monitor) } else { run.compensate(monitor) });
     let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.

@@ -4,7 +4,7 @@ use super::Failure;
 use super::given::Force;
 use super::manual::{Manual, STOPPED};
 use super::output::{print, print_json, say_notes, say_warnings};
-use super::progress::{Terminal, on_threads};
+use super::progress::Terminal;
 use super::values::threads;
 use clap::Args;
 use std::path::PathBuf;
@@ -59,10 +59,7 @@ pub(super) fn run(options: &ForcesOptions) -> Result<(), Failure> {
     // What is there and to be kept is found out before the long work.
     run.check_files(&options.out, options.force.existing())?;
     say_notes(run.notes());
-    let shown = Terminal::start(None).show(None);
-    let forces = on_threads(options.threads, || run.compute(&shown.monitor))?;
-    drop(shown);
-    let forces = forces?;
+    let forces = Terminal::start(None).on_threads(options.threads, |monitor| run.compute(monitor))??;
     say_notes(forces.notes().get(run.notes().len()..).unwrap_or_default());
     say_warnings(forces.warnings());
     let files = forces.write(&options.out, options.force.existing())?;

@@ -71,9 +71,7 @@ pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
         values: options.run.values().to_vec(),
         placement_of: options.placement_of.clone().map(|results| (results, options.case.unwrap_or(1))),
     };
-    let shown = terminal.show(None);
-    let session = Session::new(run, requested, out.folder, &shown.monitor)?;
-    drop(shown);
+    let session = terminal.during(|monitor| Session::new(run, requested, out.folder, monitor))?;
     let run = session.run();
     say_notes(run.notes());
     say_notes(session.notes());
@@ -85,11 +83,11 @@ pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
     if !options.no_open && !open(&address) {
         say("note: no browser could be opened: open the address above");
     }
-    let waiting = terminal.show(None);
-    while !waiting.monitor.should_stop() {
-        std::thread::sleep(BETWEEN_LOOKS);
-    }
-    drop(waiting);
+    terminal.during(|monitor| {
+        while !monitor.should_stop() {
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
+    });
     server.close();
     Ok(())
 }

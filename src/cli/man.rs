@@ -27,7 +27,7 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &ManOptions, mut command: clap::Command) -> Result<(), Failure> {
     command.build();
-    let folder = Folder::create(&options.folder).map_err(Failure::Output)?;
+    let folder = Folder::create(&options.folder)?;
     let mut names = Vec::new();
     write_pages(&folder, command, &mut names)?;
     print(format!("{} pages in {}\n", names.len(), folder.path().display()).as_bytes())

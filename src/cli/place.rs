@@ -3,14 +3,14 @@
 use super::Failure;
 use super::given::GivenRun;
 use super::manual::Manual;
-use super::output::{files_written, left_in, more, out_folder, print, print_json, say, say_notes, say_warnings};
-use super::progress::{Terminal, on_threads};
+use super::output::{files_written, left_in, more, out_folder, print, print_json, say, say_all, say_notes, say_warnings};
+use super::progress::Terminal;
 use super::values::{gap, positive, seed, threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::program::ProgramFormat;
 use stead::report::{Folder, summary_line, summary_text};
-use stead::{Error, Placements, Run};
+use stead::{Error, Monitor, Placements, Run};
 
 #[derive(Debug, Args)]
 pub(super) struct PlaceOptions {
@@ -121,14 +121,11 @@ fn read(options: &PlaceOptions, terminal: &Terminal) -> Result<Run, Failure> {
 
 /// The placements that are found; where there are none, what was read is said with the error.
 fn search(options: &PlaceOptions, run: &Run, terminal: &Terminal) -> Result<Placements, Failure> {
-    let shown = terminal.show(None);
-    let found = on_threads(options.threads, || run.search(&shown.monitor))?;
-    let was_stopped = shown.monitor.should_stop();
-    drop(shown);
-    let placements = found.inspect_err(|error| {
+    let search = |monitor: &Monitor| (run.search(monitor), monitor.should_stop());
+    let (found, was_stopped) = terminal.on_threads(options.threads, search)?;
+    Ok(found.inspect_err(|error| {
         if is_short(options) {
-            say_notes(run.notes());
-            say_warnings(run.warnings());
+            say_all(run.notes(), run.warnings());
         }
         if let (true, Error::Infeasible(nothing)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.
@@ -137,8 +134,7 @@ fn search(options: &PlaceOptions, run: &Run, terminal: &Terminal) -> Result<Plac
         if was_stopped {
             say("interrupted: this is what was found so far, not the end of the search");
         }
-    })?;
-    Ok(placements)
+    })?)
 }
 
 /// Whether the result is printed in a few lines.
@@ -154,8 +150,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     terminal.holds(&out.folder);
     let is_short = is_short(options);
     if !is_short {
-        say_notes(run.notes());
-        say_warnings(run.warnings());
+        say_all(run.notes(), run.warnings());
     }
     say_warnings(run.certificate_warning().as_slice());
     say_notes(run.certificate_note().as_slice());
@@ -188,9 +183,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         say_warnings(placements.warnings().get(run.warnings().len()..).unwrap_or_default());
     }
 
-    let shown = terminal.show(None);
-    let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
-    drop(shown);
+    let is_certified = terminal.on_threads(options.threads, |monitor| placements.certify(monitor).is_some())?;
     if is_certified {
         written = written.and(show_certificate(options, &run, &placements, &out.folder, waits));
     }

@@ -3,8 +3,8 @@
 use super::Failure;
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
-use super::output::{files_written, left_in, more, print, print_json, say_notes, say_warnings, show};
-use super::progress::{Terminal, on_threads};
+use super::output::{files_written, left_in, more, print, print_json, say_all, say_notes, say_warnings, show};
+use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
 use stead::Error;
@@ -74,30 +74,27 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = options.run.read(&terminal, None)?;
     let (run, placement) = options.place.of(run)?;
     // Taken before the work is done.
-    let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
+    let out = options.out.as_deref().map(Folder::create).transpose()?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
-    out.iter().try_for_each(|out| out.has_no_other(MANUAL.file_names())).map_err(Failure::Output)?;
+    out.iter().try_for_each(|out| out.has_no_other(MANUAL.file_names()))?;
     out.iter().for_each(|out| terminal.holds(out));
     let is_short = !options.notes && !options.json;
     let outside_cell = run.outside_cell(&placement);
     let say_read = || {
-        say_notes(run.notes());
-        say_warnings(run.warnings());
+        say_all(run.notes(), run.warnings());
         say_notes(outside_cell.as_slice());
     };
     if !is_short {
         say_read();
     }
-    let shown = terminal.show(None);
-    let score = on_threads(None, || {
-        let mut score = run.score(&placement, &shown.monitor)?;
+    let score = terminal.on_threads(None, |monitor| {
+        let mut score = run.score(&placement, monitor)?;
         if options.out.is_some() {
-            score.map(&shown.monitor);
-            score.make_sheet(&shown.monitor);
+            score.map(monitor);
+            score.make_sheet(monitor);
         }
         Ok(score)
     })?;
-    drop(shown);
     let score = score.inspect_err(|error| {
         if is_short {
             say_read();

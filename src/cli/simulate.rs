@@ -3,7 +3,7 @@
 use super::Failure;
 use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
-use super::output::{out_folder, results_in, say_notes, say_warnings};
+use super::output::{out_folder, results_in, say_all};
 use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
@@ -48,11 +48,7 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let run = SimulationRun::read_with(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let pass = run.simulate(&shown.monitor);
-    drop(shown);
-    let pass = pass?;
-    say_notes(pass.notes());
-    say_warnings(pass.warnings());
+    let pass = Terminal::start(Some(&out.folder)).during(|monitor| run.simulate(monitor))?;
+    say_all(pass.notes(), pass.warnings());
     out.show(pass.write_in(&out.folder), &pass, options.json, results_in)
 }

@@ -3,8 +3,8 @@
 use super::Failure;
 use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
-use super::output::{out_folder_named, results_in, say_notes, say_warnings};
-use super::progress::{Terminal, on_threads};
+use super::output::{out_folder_named, results_in, say_all};
+use super::progress::Terminal;
 use super::values::threads;
 use clap::Args;
 use std::path::PathBuf;
@@ -54,11 +54,7 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
     let run = StabilityRun::read_with(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder_named(options.out.as_deref(), &options.config, "-stability", &MANUAL)?;
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let analysis = on_threads(options.threads, || run.analyse(&shown.monitor))?;
-    drop(shown);
-    let analysis = analysis?;
-    say_notes(analysis.notes());
-    say_warnings(analysis.warnings());
+    let analysis = Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.analyse(monitor))??;
+    say_all(analysis.notes(), analysis.warnings());
     out.show(analysis.write_in(&out.folder), &analysis, options.json, results_in)
 }

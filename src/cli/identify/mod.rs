@@ -63,9 +63,6 @@ fn fit(options: &IdentifyFitOptions) -> Result<(), Failure> {
     let run = FitRun::read(&options.config)?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let robot = run.fit(&shown.monitor);
-    drop(shown);
-    let robot = robot?;
+    let robot = Terminal::start(Some(&out.folder)).during(|monitor| run.fit(monitor))?;
     out.show(robot.write_in(&out.folder), &robot, options.json, results_in)
 }

@@ -2,7 +2,7 @@
 
 use super::super::Failure;
 use super::super::output::{out_folder, say_notes};
-use super::super::progress::{Terminal, on_threads};
+use super::super::progress::Terminal;
 use crate::cli::manual::{Manual, STOPPED};
 use crate::cli::values::{seed, threads};
 use clap::Args;
@@ -53,9 +53,7 @@ pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     run.check_folder(out.folder.path())?;
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let plan = on_threads(options.threads, || run.plan(&shown.monitor))??;
-    drop(shown);
+    let plan = Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.plan(monitor))??;
     out.show(plan.write_in(&out.folder), &plan, options.json, |folder| {
         if folder.is_empty() {
             folder

@@ -76,7 +76,7 @@ pub(super) fn run(options: &StudyReportOptions) -> Result<(), Failure> {
     let report = study.report(&folder, &question)?;
     // The last shards may have ended at the same time or elsewhere, or the study may have been edited since.
     study.merge(&folder)?;
-    let out = Folder::create(&folder).map_err(Failure::Output)?;
+    let out = Folder::create(&folder)?;
     files_written(report.write_in(&out))?;
     if options.json {
         return print_json(&report);

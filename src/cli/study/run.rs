@@ -4,7 +4,7 @@ use super::read::{counted_cases, folder, read, say_stale};
 use crate::cli::Failure;
 use crate::cli::manual::Manual;
 use crate::cli::output::{print, say};
-use crate::cli::progress::{Terminal, on_threads};
+use crate::cli::progress::Terminal;
 use crate::cli::values::{shard, threads};
 use clap::Args;
 use std::path::PathBuf;
@@ -64,10 +64,7 @@ pub(super) fn run(options: &StudyRunOptions) -> Result<(), Failure> {
         say(&format!("note: {} removed that the study has no longer", counted_cases(gone.len())));
     }
     say_stale(&study.status(&folder)?);
-    let shown = terminal.show(None);
-    let finished = on_threads(options.threads, || study.run(&folder, shard, &shown.monitor))?;
-    drop(shown);
-    let finished = finished?;
+    let finished = terminal.on_threads(options.threads, |monitor| study.run(&folder, shard, monitor))??;
     for problem in &finished.problems {
         say(&format!("warning: {problem}"));
     }
