@@ -66,7 +66,8 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
         .map_err(|error| Failure::at("--accuracy-mm and --force-n", error))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
-    let assessment = Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.assess(monitor))??;
+    let assessment =
+        Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.assess(monitor))??;
     let timing = assessment.timing();
     out.show(assessment.write_in(&out.folder), &assessment, options.json, |folder| {
         let folder = if folder.is_empty() { folder } else { format!("; results in {folder}") };

@@ -47,11 +47,13 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
-    let run = terminal.during(|monitor| CompensationRun::read_with(&options.config, options.reality.as_deref(), monitor))?;
+    let run =
+        terminal.during(|monitor| CompensationRun::read_with(&options.config, options.reality.as_deref(), monitor))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     terminal.holds(&out.folder);
     say_all(run.notes(), run.warnings());
-    let path = terminal.during(|monitor| if options.all_or_nothing { run.compensate_all(monitor) } else { run.compensate(monitor) });
+    let path = terminal
+        .during(|monitor| if options.all_or_nothing { run.compensate_all(monitor) } else { run.compensate(monitor) });
     let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.

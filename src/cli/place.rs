@@ -3,7 +3,9 @@
 use super::Failure;
 use super::given::GivenRun;
 use super::manual::Manual;
-use super::output::{files_written, left_in, more, out_folder, print, print_json, say, say_all, say_notes, say_warnings};
+use super::output::{
+    files_written, left_in, more, out_folder, print, print_json, say, say_all, say_notes, say_warnings,
+};
 use super::progress::Terminal;
 use super::values::{gap, positive, seed, threads};
 use clap::Args;

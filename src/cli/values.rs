@@ -105,7 +105,8 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
 
 /// Per cent in, a share out.
 pub(super) fn noise(text: &str) -> Result<f64, String> {
-    parsed(text, |percent| (0.0..100.0).contains(percent), "a number from 0 to below 100").map(|percent| percent / 100.0)
+    parsed(text, |percent| (0.0..100.0).contains(percent), "a number from 0 to below 100")
+        .map(|percent| percent / 100.0)
 }
 
 /// A part of a study.

@@ -90,32 +90,21 @@ impl Quantity {
             let level = [0.0, 360.0].map(|angle| [angle, mean[axis]]);
             Series::curve("", COLOURS[axis], level).styled(Style::Dashed)
         });
-        let entering = self.chart(force_history, &force_history.entering, 180.0);
-        let turn = self.chart(force_history, &force_history.turn, 360.0);
-        let name = self.name.to_lowercase();
+        let (name, unit, norm) = (self.name.to_lowercase(), self.unit, fixed(mean.norm(), self.decimals));
+        let entering = ["of a cut to an angle", "engagement angle"];
+        let entering = self.chart(entering, force_history, &force_history.entering, 180.0);
+        let turn = ["of all teeth over one turn", "angle of the first tooth"];
+        let turn = self.chart(turn, force_history, &force_history.turn, 360.0);
+        let turn = Chart { series: means.into_iter().chain(turn.series).collect(), ..turn };
         [
-            Chart {
-                title: format!("{} of a cut to an angle", self.name),
-                detail: "mean over a turn, engaged from 0; that of arcs is what components gain over them".to_owned(),
-                x: Axis { label: format!("engagement angle {SENSE}"), ..entering.x },
-                ..entering
-            },
-            Chart {
-                title: format!("{} of all teeth over one turn", self.name),
-                detail: format!(
-                    "mean {name}, dashed: ({x}, {y}, {z}) {unit}, magnitude {} {unit}",
-                    fixed(mean.norm(), self.decimals),
-                    unit = self.unit
-                ),
-                x: Axis { label: format!("angle of the first tooth {SENSE}"), ..turn.x },
-                series: means.into_iter().chain(turn.series).collect(),
-                ..turn
-            },
+            entering.detailed("mean over a turn, engaged from 0; that of arcs is what components gain over them"),
+            turn.detailed(format!("mean {name}, dashed: ({x}, {y}, {z}) {unit}, magnitude {norm} {unit}")),
         ]
     }
 
     /// Components and magnitude over the angle up to a last one (deg), zero, and the arcs of the cut.
-    fn chart(&self, force_history: &ForceHistory, samples: &[Sample], last: f64) -> Chart {
+    fn chart(&self, words: [&str; 2], force_history: &ForceHistory, samples: &[Sample], last: f64) -> Chart {
+        let [what, angle] = words;
         let curve = |name: &str, color: usize, value: &dyn Fn(&Vector3<f64>) -> f64| {
             let points = samples.iter().map(|of| [of.phi.to_degrees(), value(&(self.of)(&of.wrench))]);
             Series::curve(name, color, points)
@@ -125,15 +114,12 @@ impl Quantity {
         let arcs = force_history.engagement.arcs().iter().flat_map(|arc| [("enters", arc.entry), ("leaves", arc.exit)]);
         let arcs = arcs.map(|(what, angle)| {
             let at = angle.to_degrees();
-            Mark { is_level: false, at, label: format!("a tooth {what}, {} deg", fixed(at, 1)) }
+            Mark::across(at, format!("a tooth {what}, {} deg", fixed(at, 1)))
         });
-        Chart {
-            x: Axis { range: Some([0.0, last]), ..Axis::default() },
-            y: Axis::new(format!("{} ({}) {}", self.name.to_lowercase(), self.unit, self.about)),
-            series: components.chain([curve("magnitude", 3, &|vector| vector.norm())]).collect(),
-            marks: arcs.chain([Mark { is_level: true, at: 0.0, label: String::new() }]).collect(),
-            ..Chart::default()
-        }
+        let x = Axis { range: Some([0.0, last]), ..Axis::new(format!("{angle} {SENSE}")) };
+        let y = format!("{} ({}) {}", self.name.to_lowercase(), self.unit, self.about);
+        let curves = components.chain([curve("magnitude", 3, &|vector| vector.norm())]);
+        Chart::new(format!("{} {what}", self.name), x, y, curves).marked(arcs.chain([Mark::level(0.0, "")]))
     }
 }
 
