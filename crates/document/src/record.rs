@@ -18,75 +18,39 @@
 #[macro_export]
 macro_rules! records {
     () => {};
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident from $source:ident: $given:ty { $($shared:tt)* } with {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
+    (@from $name:ident ($source:ident: $given:ty) $body:block) => {
         impl From<$given> for $name {
-            fn from($source: $given) -> Self {
-                $($shared)*
-                Self { $($field: $value),* }
-            }
+            fn from($source: $given) -> Self $body
         }
-        $crate::records! { $($rest)* }
     };
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident of ($($source:ident: $given:ty),* $(,)?) { $($shared:tt)* } with {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
+    (@of $name:ident ($($source:ident: $given:ty),*) $body:block) => {
         impl $name {
             /// It, as its fields say.
-            pub(crate) fn of($($source: $given),*) -> Self {
-                $($shared)*
-                Self { $($field: $value),* }
-            }
+            pub(crate) fn of($($source: $given),*) -> Self $body
         }
-        $crate::records! { $($rest)* }
     };
     (
         $(#[$about:meta])*
-        $seen:vis struct $name:ident from $source:ident: $given:ty {
+        $seen:vis struct $name:ident $by:ident ($($source:ident: $given:ty),* $(,)?) { $($shared:tt)* } with {
             $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
         }
         $($rest:tt)*
-    ) => {
-        $crate::records! {
-            $(#[$about])* $seen struct $name from $source: $given {} with {
-                $($(#[$meaning])* $shown $field: $type = $value),*
-            }
-        }
-        $crate::records! { $($rest)* }
-    };
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident of ($($source:ident: $given:ty),* $(,)?) {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! {
-            $(#[$about])* $seen struct $name of ($($source: $given),*) {} with {
-                $($(#[$meaning])* $shown $field: $type = $value),*
-            }
-        }
-        $crate::records! { $($rest)* }
-    };
-    (
-        @declare $(#[$about:meta])* $seen:vis struct $name:ident {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty),*
-        }
     ) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, serde::Serialize, schemars::JsonSchema)]
         $seen struct $name { $($(#[$meaning])* $shown $field: $type),* }
+
+        $crate::records! { @$by $name ($($source: $given),*) { $($shared)* Self { $($field: $value),* } } }
+        $crate::records! { $($rest)* }
+    };
+    // Without what fields share.
+    ($(#[$about:meta])* $seen:vis struct $name:ident $by:ident $given:tt { $($fields:tt)* } $($rest:tt)*) => {
+        $crate::records! { $(#[$about])* $seen struct $name $by $given {} with { $($fields)* } }
+        $crate::records! { $($rest)* }
+    };
+    // From one thing, which needs no parentheses.
+    ($(#[$about:meta])* $seen:vis struct $name:ident from $source:ident: $given:ty { $($body:tt)* } $($rest:tt)*) => {
+        $crate::records! { $(#[$about])* $seen struct $name from ($source: $given) { $($body)* } $($rest)* }
     };
 }
 

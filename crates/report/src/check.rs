@@ -232,16 +232,14 @@ records! {
 
     /// What the arm reaches with the workpiece in the middle of the cell.
     pub struct MiddleFigures of (run: &CheckedRun<'_>) {
-        let middle = &run.overview.middle;
-    } with {
         /// The placement.
-        placement: PlacementFigures = (&middle.placement).into(),
+        placement: PlacementFigures = (&run.overview.middle.placement).into(),
         /// Path points tried.
-        points_tried: usize = middle.tried,
+        points_tried: usize = run.overview.middle.tried,
         /// Path points reached within the joint limits.
-        points_reached: usize = middle.reached,
+        points_reached: usize = run.overview.middle.reached,
         /// The first of them, from 0.
-        first_point_reached: Option<usize> = middle.first.map(|(point, _)| point),
+        first_point_reached: Option<usize> = run.overview.middle.first.map(|(point, _)| point),
     }
 
     /// A shape of the cell.

@@ -41,8 +41,6 @@ records! {
     pub struct CorrectedRow of (index: usize, point: &CompensatedPoint) {
         // The tool's z axis points out of the spindle.
         let axis: Vector3<f64> = -point.command.rotation.column(2);
-        let [axis_x, axis_y, axis_z] = each(axis.into());
-        let [rotation_x_deg, rotation_y_deg, rotation_z_deg] = each(point.correction.angular.into());
     } with {
         /// Path point, from 0.
         point: usize = index,
@@ -53,17 +51,17 @@ records! {
         /// The corrected command.
         corrected: Millimetres = point.command.translation.into(),
         /// x of the tool axis of the command, from the workpiece to the robot.
-        axis_x: Direction = axis_x,
+        axis_x: Direction = axis.x.into(),
         /// y of it.
-        axis_y: Direction = axis_y,
+        axis_y: Direction = axis.y.into(),
         /// z of it.
-        axis_z: Direction = axis_z,
+        axis_z: Direction = axis.z.into(),
         /// x of the rotation vector from the orientation of the target to that of the command.
-        rotation_x_deg: FinestAngleDeg = rotation_x_deg,
+        rotation_x_deg: FinestAngleDeg = point.correction.angular.x.into(),
         /// y of it.
-        rotation_y_deg: FinestAngleDeg = rotation_y_deg,
+        rotation_y_deg: FinestAngleDeg = point.correction.angular.y.into(),
         /// z of it.
-        rotation_z_deg: FinestAngleDeg = rotation_z_deg,
+        rotation_z_deg: FinestAngleDeg = point.correction.angular.z.into(),
         #[serde(flatten)] joints: JointColumns<FinestAngleDeg> = point.joints.into(),
         /// The deflection without correction; empty where the arm gives way.
         before: DeflectionColumns = (&point.before).into(),
@@ -78,14 +76,12 @@ records! {
     /// A place in a row.
     #[derive(Copy, Default)]
     struct Millimetres from place: Vector3<f64> {
-        let [x_mm, y_mm, z_mm] = each(place.into());
-    } with {
         /// x.
-        x_mm: DeflectionMm = x_mm,
+        x_mm: DeflectionMm = place.x.into(),
         /// y.
-        y_mm: DeflectionMm = y_mm,
+        y_mm: DeflectionMm = place.y.into(),
         /// z.
-        z_mm: DeflectionMm = z_mm,
+        z_mm: DeflectionMm = place.z.into(),
     }
 
     /// A deflection in a row.

@@ -25,30 +25,25 @@ records! {
         tooth_deg: AngleDeg = sample.phi.into(),
         #[serde(flatten)] load: LoadColumns = sample.into(),
     }
-}
 
-records! {
     /// Force on the tool, and moment about its centre point: along the feed, to the left of it, and along the tool axis
     /// from the work to the spindle.
     #[derive(Default)]
     struct LoadColumns from sample: &Sample {
-        let [force_feed_n, force_left_n, force_axis_n] = each(sample.wrench.force.into());
-        let [moment_feed_nm, moment_left_nm, moment_axis_nm] = each(sample.wrench.moment.into());
-    } with {
         /// Force along the feed.
-        force_feed_n: ForceN = force_feed_n,
+        force_feed_n: ForceN = sample.wrench.force.x.into(),
         /// Force to the left of it.
-        force_left_n: ForceN = force_left_n,
+        force_left_n: ForceN = sample.wrench.force.y.into(),
         /// Force along the tool axis.
-        force_axis_n: ForceN = force_axis_n,
+        force_axis_n: ForceN = sample.wrench.force.z.into(),
         /// Size of the force.
         force_n: ForceN = sample.wrench.force.norm().into(),
         /// Moment about the feed.
-        moment_feed_nm: MomentNm = moment_feed_nm,
+        moment_feed_nm: MomentNm = sample.wrench.moment.x.into(),
         /// Moment about the left.
-        moment_left_nm: MomentNm = moment_left_nm,
+        moment_left_nm: MomentNm = sample.wrench.moment.y.into(),
         /// Moment about the tool axis.
-        moment_axis_nm: MomentNm = moment_axis_nm,
+        moment_axis_nm: MomentNm = sample.wrench.moment.z.into(),
         /// Size of the moment.
         moment_nm: MomentNm = sample.wrench.moment.norm().into(),
     }

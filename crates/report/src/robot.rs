@@ -174,9 +174,7 @@ records! {
         /// Every posture that has the flange here.
         postures: Vec<PostureFigures> = pose.postures().into_iter().map(posture).collect(),
     }
-}
 
-records! {
     /// A frame.
     pub struct FrameFigures of (frame: &'static str, within: &'static str, pose: &Pose<f64>) {
         /// `flange` or `tool`.
@@ -192,9 +190,7 @@ records! {
         /// Its rotation as a matrix, by rows.
         rotation: Vec<Vec<f64>> = pose.rotation.row_iter().map(|row| row.iter().copied().collect()).collect(),
     }
-}
 
-records! {
     /// Joint angles of a posture; null where it does not reach the pose.
     pub struct PostureFigures of (pose: &ArmPose, posture: Posture, found: Option<Reached>) {
         /// The posture, 1 to 8.

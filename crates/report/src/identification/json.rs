@@ -20,17 +20,15 @@ const DIGITS: usize = 12;
 records! {
     /// An identified arm. Estimates have twelve significant digits.
     pub struct IdentificationFigures of (run: &IdentifyRun, found: &Identified) {
-        let sheet = &run.problem.sheet;
-    } with {
         /// Name of the robot.
         robot: String = found.robot.name().to_owned(),
         /// Which springs were sought, where those normal to the axes were too: `full`.
         #[serde(skip_serializing_if = "Option::is_none")]
         model: Option<&'static str> = is_full(found).then(|| found.model.word()),
         /// Configurations measured.
-        configurations: usize = sheet.configurations.len(),
+        configurations: usize = run.problem.sheet.configurations.len(),
         /// Readings.
-        readings: usize = sheet.readings.len(),
+        readings: usize = run.problem.sheet.readings.len(),
         /// Every compliance, one for each distinct angle of the joint beside a compensator; of springs that cannot be
         /// told apart their sum.
         compliances: Vec<ComplianceFigures> =
@@ -135,9 +133,7 @@ records! {
         /// Compliance about y of the frame of its row. urad/(N m)
         about_y_urad_per_nm: f64 = rounded(about_y * URAD, DIGITS),
     }
-}
 
-records! {
     /// A joint beside a compensator.
     pub struct CompensatorFigures of (found: &Identified, joint: usize, alone: f64, spring: &Compensator) {
         let deviation = |quantity: Quantity, factor: f64| {
@@ -168,9 +164,7 @@ records! {
         /// Angle between the lines from the joint axis to both ends of the spring, at joint angle 0. deg
         alpha_deg: f64 = rounded(spring.alpha.to_degrees(), DIGITS),
     }
-}
 
-records! {
     /// A parameter of the robot file, in the unit of its key.
     pub struct ParameterFigures from estimate: &Estimate<ArmParameter> {
         let (parameter, factor) = key(&estimate.parameter);
@@ -190,14 +184,12 @@ records! {
 
     /// A reading left out.
     pub struct OutlierFigures of (run: &IdentifyRun, row: &RowResult) {
-        let sheet = &run.problem.sheet;
-    } with {
         /// Line of the reading in the sheet, from 1.
         line: usize = row.line,
         /// Name of the configuration.
-        configuration: String = sheet.configurations[row.configuration].name.clone(),
+        configuration: String = run.problem.sheet.configurations[row.configuration].name.clone(),
         /// Name of the reference point.
-        point: String = sheet.points[row.point].clone(),
+        point: String = run.problem.sheet.points[row.point].clone(),
         /// Magnitude of the residual: read less predicted deflection. mm
         residual_mm: f64 = millimetres((row.measured - row.predicted).norm()),
         /// The residual divided by its own standard deviation.

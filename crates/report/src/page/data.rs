@@ -111,9 +111,7 @@ records! {
         #[serde(skip_serializing_if = "Option::is_none")]
         removal: Option<RemovalData> = run.removal.map(|removal| RemovalData::of(problem, removal)),
     }
-}
 
-records! {
     /// An arm by its Denavit-Hartenberg rows.
     pub struct RobotData of (problem: &Problem) {
         let robot = &problem.robot;

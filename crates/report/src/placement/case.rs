@@ -48,7 +48,6 @@ records! {
 
     /// A plan with its feeds and times.
     pub struct PlanFigures of (plan: &Plan, cycle: &Cycle) {
-        let [p50_mm, p95_mm] = each(plan.percentiles);
         let unfollowed =
             |(point, end): &(usize, _)| UnfollowedMove { to_point: *point, since: ToString::to_string(end) };
     } with {
@@ -59,9 +58,9 @@ records! {
         /// Largest score.
         max_mm: DeflectionMm = plan.max.into(),
         /// The score that half of the points are below.
-        p50_mm: DeflectionMm = p50_mm,
+        p50_mm: DeflectionMm = plan.percentiles[0].into(),
         /// The score that 95 % of the points are below.
-        p95_mm: DeflectionMm = p95_mm,
+        p95_mm: DeflectionMm = plan.percentiles[1].into(),
         /// What each thing that yields adds to the scored part, in the mean of the points, where more does than the
         /// joints about their axes.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -96,12 +95,9 @@ records! {
         #[serde(skip_serializing_if = "Option::is_none")]
         clearance: Option<ClearanceFigures> = plan.clearance.as_ref().map(ClearanceFigures::of),
     }
-}
 
-records! {
     /// A plan at the feed that the arm holds.
     pub struct HeldFeedFigures from held: &AtHeldFeed {
-    } with {
         /// Segments that are cut slower than programmed.
         slowed_segments: usize = held.slowed,
         /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
@@ -135,8 +131,6 @@ records! {
 
     /// What one per cent more stiffness of a joint, or of one of its springs, does to the objective.
     pub struct StiffnessSlope of (found: &SpringSlope, case: &Case) {
-        let objective = case.plan.objective;
-        let slope = found.slope;
         let is_full = case.objective_by_stiffness.as_ref().is_some_and(|all| all.len() > 6);
     } with {
         /// The joint, from 1.
@@ -146,22 +140,20 @@ records! {
         #[serde(skip_serializing_if = "Option::is_none")]
         spring: Option<String> = is_full.then(|| spring_name(found)),
         /// Change of the objective.
-        mm_per_percent: MmPerPercent = MmPerPercent(slope / 100.0),
+        mm_per_percent: MmPerPercent = MmPerPercent(found.slope / 100.0),
         /// The same in per cent of it; null where the objective is nothing.
-        percent_per_percent: Option<Plain> = (objective > CANCELLATION).then(|| Plain(slope / objective)),
+        percent_per_percent: Option<Plain> = (case.plan.objective > CANCELLATION).then(|| Plain(found.slope / case.plan.objective)),
     }
 
     /// How far the weight moves the tool.
     pub struct SagFigures from sag: &Sag {
-        let SagRange { least, largest, spread } = sag.path;
-    } with {
         /// The smallest displacement along the path.
-        least_mm: DeflectionMm = least.into(),
+        least_mm: DeflectionMm = sag.path.least.into(),
         /// The largest.
-        largest_mm: DeflectionMm = largest.into(),
+        largest_mm: DeflectionMm = sag.path.largest.into(),
         /// The largest difference between the displacements of two points: what remains at most where the program is
         /// touched up at one of them.
-        spread_mm: DeflectionMm = spread.into(),
+        spread_mm: DeflectionMm = sag.path.spread.into(),
         /// The same of each segment.
         segments: Vec<SegmentSag> = sag.segments.iter().map(|(segment, range)| SegmentSag::of(*segment, range)).collect(),
     }
@@ -235,8 +227,6 @@ records! {
 
     /// How a move between segments goes round the shapes of a cell.
     pub struct TransferPath from way: &transfer_path::TransferPath {
-        let [retracts, approaches] = way.along_axis;
-    } with {
         /// The pair that hits where no free path was found.
         blocked_by: Option<String> = way.blocked_by.as_deref().map(|[a, b]| format!("{a} and {b}")),
         /// Lines out of the cut and into it that are shorter than they should be.
@@ -244,9 +234,9 @@ records! {
         /// Joint angles at its corners.
         joints_deg: Vec<[AngleDeg; 6]> = way.joints.iter().map(|joints| each(*joints)).collect(),
         /// Whether it begins with a line along the tool axis.
-        retracts: bool = retracts,
+        retracts: bool = way.along_axis[0],
         /// Whether it ends with one.
-        approaches: bool = approaches,
+        approaches: bool = way.along_axis[1],
     }
 
     /// A line along the tool axis that is not as long as it should be.

@@ -96,9 +96,7 @@ records! {
         /// Rotation about z.
         yaw_deg: [AngleDeg; 2] = each(ends(problem.cell.yaw)),
     }
-}
 
-records! {
     /// Where the robot is mounted in the cell.
     pub struct MountFigures of (mount: &Pose<f64>) {
         let [yaw, pitch, roll] = zyx_from_rotation(&mount.rotation);
@@ -108,9 +106,7 @@ records! {
         /// Roll, pitch and yaw of the base frame in the cell frame.
         rpy_deg: [AngleDeg; 3] = each([roll, pitch, yaw]),
     }
-}
 
-records! {
     /// What every state must keep.
     pub struct ConstraintFigures of (problem: &Problem) {
         /// Least inverse condition number of the Jacobian.
@@ -166,28 +162,22 @@ records! {
         /// Along the normal of the surface.
         surface: f64 = weights.surface,
     }
-}
 
-records! {
     /// Rules for postures.
     pub struct PostureFigures of (problem: &Problem) {
-        let rules = &problem.postures;
-    } with {
         /// The postures allowed, 1 to 8.
-        allowed: Vec<u8> = rules.allowed().map(|posture| posture.number()).collect(),
+        allowed: Vec<u8> = problem.postures.allowed().map(|posture| posture.number()).collect(),
         /// The same in words.
         allowed_words: Vec<String> =
-            rules.allowed().map(|posture| problem.robot.posture_words(posture).to_string()).collect(),
+            problem.postures.allowed().map(|posture| problem.robot.posture_words(posture).to_string()).collect(),
         /// Whether it may change between segments: `free` or `never`.
-        changes: &'static str = if rules.may_change { "free" } else { "never" },
+        changes: &'static str = if problem.postures.may_change { "free" } else { "never" },
         /// What a second of the moves between segments counts in the choice of postures.
-        move_weight_mm_per_s: WeightMmPerS = rules.move_weight.into(),
+        move_weight_mm_per_s: WeightMmPerS = problem.postures.move_weight.into(),
         /// How much worse than its best plan that of a segment may be to make the moves shorter. %
-        tie_percent: Plain = Plain(rules.tie * 100.0),
+        tie_percent: Plain = Plain(problem.postures.tie * 100.0),
     }
-}
 
-records! {
     /// What is chosen along the path.
     pub struct RedundancyFigures of (redundancy: &Redundancy) {
         let beta = redundancy.beta;

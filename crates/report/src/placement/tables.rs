@@ -224,9 +224,7 @@ records! {
         travel_deg: AngleDeg = transfer.travel.into(),
         #[serde(flatten)] path: Option<TransferPathColumns> = scene.map(|_| TransferPathColumns::of(transfer)),
     }
-}
 
-records! {
     /// How a move goes round the shapes of a cell.
     #[derive(Default)]
     struct TransferPathColumns of (transfer: &Transfer) {

@@ -98,16 +98,14 @@ records! {
 
     /// A force over time.
     pub struct ForceFigures from statistics: &Statistics {
-        let Statistics { min, max, mean, root_mean_square } = *statistics;
-    } with {
         /// Least.
-        min_n: ForceN = min.into(),
+        min_n: ForceN = statistics.min.into(),
         /// Largest.
-        max_n: ForceN = max.into(),
+        max_n: ForceN = statistics.max.into(),
         /// Mean.
-        mean_n: ForceN = mean.into(),
+        mean_n: ForceN = statistics.mean.into(),
         /// Root mean square.
-        rms_n: ForceN = root_mean_square.into(),
+        rms_n: ForceN = statistics.root_mean_square.into(),
     }
 
     /// Roughness of a profile.

@@ -132,18 +132,16 @@ records! {
 
     /// Where the candidates come from.
     pub struct CandidateFigures of (plan: &Design) {
-        let rejected = &plan.rejected;
-    } with {
         /// Candidate configurations that the limits allow.
         allowed: usize = plan.candidates,
         /// Random configurations drawn.
         drawn: usize = plan.draws,
         /// Rejected: a part would be outside the volume.
-        outside_volume: usize = rejected.volume,
+        outside_volume: usize = plan.rejected.volume,
         /// Rejected: a part would be too near to the z axis of the base.
-        too_near_base: usize = rejected.radius,
+        too_near_base: usize = plan.rejected.radius,
         /// Rejected: a reference point would deflect too far.
-        deflected_too_far: usize = rejected.deflection,
+        deflected_too_far: usize = plan.rejected.deflection,
     }
 
     /// Compliances that a plan does not show.
