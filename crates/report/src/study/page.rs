@@ -7,7 +7,6 @@ use crate::units::figures;
 use stead_disk::input::InputFile;
 use stead_problem::criterion::SMALL_PART;
 use stead_study::analysis::{Analysis, Layout, Layouts, Ranked};
-use stead_study::cases::TableCell;
 
 /// The column of the whole deflection.
 const WHOLE: &str = "best_mean_total_mm";
@@ -48,7 +47,7 @@ pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages:
 /// The mean of the whole deflection of a layout.
 fn whole(layouts: &Layouts, layout: usize) -> Option<f64> {
     let column = layouts.columns.iter().position(|column| column.name == WHOLE)?;
-    if let TableCell::Number(whole) = layouts.all[layout].row[column] { Some(whole) } else { None }
+    layouts.all[layout].row[column].as_number()
 }
 
 /// A note on scores that are small beside the whole deflection.
