@@ -9,11 +9,12 @@ use serde::Serialize;
 use stead_cell::Scene;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::turns;
-use stead_placement::outcome::{Plan, PlanPoint};
+use stead_placement::outcome::PlanPoint;
+use stead_problem::setup::AxisPath;
 
 records! {
     /// A path point of a plan. Places are those of the tool centre point, and all vectors are in the robot base frame.
-    pub struct PlanRow of (point: &PlanPoint, plan: &Plan, scene: Option<&Scene>) {
+    pub struct PlanRow of (point: &PlanPoint, axes: &[AxisPath], scene: Option<&Scene>) {
         /// Path point, from 0.
         point: usize = point.point,
         /// Segment, from 1.
@@ -70,7 +71,7 @@ records! {
         #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
         /// Its tilt, above 0 with the spindle to the left of the feed.
         #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
-        #[serde(flatten)] axes: AxisColumns = at_point(&plan.axes, point.point),
+        #[serde(flatten)] axes: AxisColumns = at_point(axes, point.point),
         #[serde(flatten)] clearance: Option<ClearanceColumns> =
             scene.map(|scene: &Scene| ClearanceColumns::of(scene, point)),
     }

@@ -13,10 +13,11 @@ use stead_model::published::Published;
 use stead_model::robot::{Posture, PostureWords};
 use stead_model::task::lean::Lean;
 use stead_placement::lean_map::{LeanMap, LeanReason, LeanState};
-use stead_placement::outcome::{Case, Cases, Generation, Plan, Refinement};
+use stead_placement::outcome::{Case, Cases, Generation, Plan, PlanPoint, Refinement};
 use stead_planning::feasibility::{DeflectionMap, MapReason};
 use stead_planning::transfer::Transfer;
 use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::AxisPath;
 
 /// `best.csv`, `worst.csv` and the like: one plan, a `PlanRow` per path point; behind it the positions of external
 /// axes, `e1_mm` or `e1_deg` and so on.
@@ -24,7 +25,16 @@ use stead_problem::problem::{Placement, Problem};
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn plan(plan: &Plan, scene: Option<&Scene>) -> Result<Vec<u8>, ReportError> {
-    rows("the table of a plan", plan.points.iter().map(|point| PlanRow::of(point, plan, scene)))
+    plan_points(&plan.points, &plan.axes, scene)
+}
+
+/// The same by its points and the positions of the external axes.
+pub(crate) fn plan_points(
+    points: &[PlanPoint],
+    axes: &[AxisPath],
+    scene: Option<&Scene>,
+) -> Result<Vec<u8>, ReportError> {
+    rows("the table of a plan", points.iter().map(|point| PlanRow::of(point, axes, scene)))
 }
 
 records! {
