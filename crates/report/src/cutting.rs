@@ -2,7 +2,7 @@
 
 use super::output::ReportError;
 use crate::csv_file::rows_or;
-use crate::figure::{AngleDeg, ForceN, MomentNm, each};
+use crate::figure::{AngleDeg, ForceN, MomentNm};
 use crate::page::cards::{Axis, Chart, Mark, Series, Style};
 use crate::units::fixed;
 use nalgebra::Vector3;

@@ -11,7 +11,7 @@ use crate::csv_file::rows;
 use crate::document::{Document, bytes};
 use crate::figure::{
     AngleDeg, Direction, ForceN, HeightUm, MomentNm, Percent, PlaceMm, PowerKw, RateCm3PerMin, RemovalMm2, SpeedMmPerS,
-    TaskMm, VolumeMm3, each, some,
+    TaskMm, VolumeMm3, some,
 };
 use crate::units::fixed;
 use nalgebra::Vector3;

@@ -2,8 +2,7 @@
 
 use crate::document::Document;
 use crate::figure::{AngleDeg, PlaceMm, each, some};
-use schemars::JsonSchema;
-use serde::Serialize;
+use nalgebra::Vector3;
 use serde_json::Value;
 use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
@@ -96,22 +95,20 @@ records! {
         /// Upper end of the 95 % confidence interval. urad/(N m)
         high_urad_per_nm: f64 = high_urad_per_nm,
     }
-}
 
-/// A spring whose compliance is in the estimate of another.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct SharedFigures {
-    /// The spring, as identification files name it.
-    spring: String,
-    /// How much of its compliance is in the sum.
-    share: f64,
+    /// A spring whose compliance is in the estimate of another.
+    pub struct SharedFigures of (spring: Spring, share: f64) {
+        /// The spring, as identification files name it.
+        spring: String = key_name(spring),
+        /// How much of its compliance is in the sum.
+        share: f64 = share,
+    }
 }
 
 /// The springs that are told only together with one.
 pub(super) fn shared(gauge: &Gauge, spring: Spring) -> Option<Vec<SharedFigures>> {
     let others = gauge.others(spring);
-    let figures = |(other, share): (Spring, f64)| SharedFigures { spring: key_name(other), share };
-    (!others.is_empty()).then(|| others.into_iter().map(figures).collect())
+    (!others.is_empty()).then(|| others.into_iter().map(|(other, share)| SharedFigures::of(other, share)).collect())
 }
 
 records! {
@@ -201,27 +198,23 @@ records! {
         let sheet = &run.problem.sheet;
         let name = |index: usize| sheet.configurations[index].name.clone();
         let prediction = &found.prediction;
-        let worst = |(index, rms)| WorstConfiguration { configuration: name(index), rms_mm: millimetres(rms) };
     } with {
         /// Root mean square of the prediction errors over all configurations. mm
         rms_mm: f64 = millimetres(prediction.rms),
         /// The configuration with the largest prediction error.
-        worst: Option<WorstConfiguration> = prediction.worst.map(worst),
+        worst: Option<WorstConfiguration> = prediction.worst.map(|(index, rms)| WorstConfiguration::of(name(index), rms)),
         /// Names of configurations that cannot be predicted, since without them a compliance is not identifiable.
         unpredicted: Vec<String> = prediction.unpredicted.iter().map(|index| name(*index)).collect(),
     }
-}
 
-/// The configuration that is predicted worst.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct WorstConfiguration {
-    /// Name of the configuration.
-    configuration: String,
-    /// Root mean square of its prediction errors. mm
-    rms_mm: f64,
-}
+    /// The configuration that is predicted worst.
+    pub struct WorstConfiguration of (name: String, rms: f64) {
+        /// Name of the configuration.
+        configuration: String = name,
+        /// Root mean square of its prediction errors. mm
+        rms_mm: f64 = millimetres(rms),
+    }
 
-records! {
     /// Where tracker and reference points are.
     pub struct SetupFigures of (run: &IdentifyRun, found: &Identified) {
         /// Pose of the robot base in the frame of the tracker.
@@ -229,12 +222,7 @@ records! {
         /// The reference points.
         points: Vec<ReferencePoint> =
             run.problem.sheet.points.iter().zip(&found.setup.points).zip(&found.setup_fit.point_deviations)
-            .map(|((name, place), std)| ReferencePoint {
-                point: name.clone(),
-                flange_mm: each((*place).into()),
-                std_mm: millimetres(*std),
-            })
-            .collect(),
+            .map(|((name, place), std)| ReferencePoint::of(name, *place, *std)).collect(),
         /// Root mean square of the residuals of the readings without a load. mm
         residual_rms_mm: f64 = millimetres(found.setup.residual_rms),
         /// The reading without a load that has the largest residual.
@@ -251,20 +239,17 @@ records! {
         rotation: [[f64; 3]; 3] =
             [0, 1, 2].map(|row| [0, 1, 2].map(|column| rounded(base.rotation[(row, column)], DIGITS))),
     }
-}
 
-/// A reference point.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ReferencePoint {
-    /// Name of the point.
-    point: String,
-    /// Place of the point in the flange frame.
-    flange_mm: [PlaceMm; 3],
-    /// Standard deviation of that place in the direction in which it is largest. mm
-    std_mm: f64,
-}
+    /// A reference point.
+    pub struct ReferencePoint of (name: &str, place: Vector3<f64>, deviation: f64) {
+        /// Name of the point.
+        point: String = name.to_owned(),
+        /// Place of the point in the flange frame.
+        flange_mm: [PlaceMm; 3] = each(place.into()),
+        /// Standard deviation of that place in the direction in which it is largest. mm
+        std_mm: f64 = millimetres(deviation),
+    }
 
-records! {
     /// A reading with its residual.
     pub struct WorstReading of (found: &Identified) {
         let (line, distance) = found.setup_fit.worst;

@@ -1,10 +1,9 @@
 //! The CSV files of an identification.
 
 use super::super::output::ReportError;
-use super::json::numbers;
-use super::json::{URAD, key, rounded, unit};
+use super::json::{URAD, key, numbers, rounded, unit};
 use crate::csv_file::rows_or;
-use crate::figure::{AngleDeg, DeflectionMm, Studentised, each, some};
+use crate::figure::{AngleDeg, DeflectionMm, Studentised, some};
 use nalgebra::Vector3;
 use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::outcome::RowResult;

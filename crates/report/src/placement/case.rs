@@ -6,14 +6,12 @@ use super::text::spring_name;
 use crate::document::{DeflectionByDirection, FeedFigures, JointTravelFigures, PlacementExact, PlacementFigures};
 use crate::figure::{AngleDeg, DeflectionMm, Gain, MmPerPercent, PlaceMm, Plain, TimeS, each, some};
 use crate::names;
-use schemars::JsonSchema;
-use serde::Serialize;
 use stead_model::robot::Posture;
 use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
 use stead_placement::sag::{Sag, SagRange};
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::transfer::Transfer;
-use stead_planning::transfer_path;
+use stead_planning::transfer_path::{self, LineEnd};
 use stead_problem::collision;
 use stead_problem::criterion::CANCELLATION;
 use stead_problem::limit::ActiveBound;
@@ -48,9 +46,6 @@ records! {
 
     /// A plan with its feeds and times.
     pub struct PlanFigures of (plan: &Plan, cycle: &Cycle) {
-        let unfollowed =
-            |(point, end): &(usize, _)| UnfollowedMove { to_point: *point, since: ToString::to_string(end) };
-    } with {
         /// What was minimised or maximised.
         objective_mm: DeflectionMm = plan.objective.into(),
         /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
@@ -90,7 +85,7 @@ records! {
         /// Time with the moves between segments; null where a joint speed is not known.
         pub(super) cycle_s: Option<TimeS> = some(cycle.total()),
         /// Path points to which the arm cannot follow the straight move of the tool, or not within its joint limits.
-        unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(unfollowed).collect(),
+        unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(Into::into).collect(),
         /// The least clearance at the points, among shapes of a cell.
         #[serde(skip_serializing_if = "Option::is_none")]
         clearance: Option<ClearanceFigures> = plan.clearance.as_ref().map(ClearanceFigures::of),
@@ -107,18 +102,15 @@ records! {
         /// Deflections by direction.
         deflection_mm: DeflectionByDirection = (&held.deflection).into(),
     }
-}
 
-/// A straight move of the tool that the arm cannot follow.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct UnfollowedMove {
-    /// The path point that it leads to, from 0.
-    to_point: usize,
-    /// Why not.
-    since: String,
-}
+    /// A straight move of the tool that the arm cannot follow.
+    pub struct UnfollowedMove from unfollowed: &(usize, LineEnd) {
+        /// The path point that it leads to, from 0.
+        to_point: usize = unfollowed.0,
+        /// Why not.
+        since: String = unfollowed.1.to_string(),
+    }
 
-records! {
     /// The least clearance at the points of a plan.
     pub struct ClearanceFigures of (of: &collision::PlanClearance) {
         /// The path point, from 0.

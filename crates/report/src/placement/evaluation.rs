@@ -22,6 +22,7 @@ use stead_problem::sense::BySense;
 
 records! {
     /// A placement that was evaluated.
+    #[derive(Default)]
     pub struct ScoreFigures of (problem: &Problem, score: &Score, context: &Context) {
         let BySense { best, worst } = &score.cycles;
     } with {
@@ -88,36 +89,24 @@ pub(crate) fn preview_json(placement: &Placement, problem: &Problem, preview: &P
     let mut best = PlanFigures::of(plan, cycle);
     best.cycle_s = None;
     context.document().with(ScoreFigures {
-        summary: Vec::new(),
         placement: placement.into(),
         placement_exact: placement.into(),
         feasible: true,
-        interrupted: false,
         best: Some(best),
-        worst: None,
         setup: Some(SetupFigures::of(orientation.as_ref(), &problem.setup, &plan.axes)),
-        setup_sheet: None,
-        stability: None,
-        findings: None,
-        collisions: Vec::new(),
+        ..ScoreFigures::default()
     })
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
 pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
     context.document().with(ScoreFigures {
-        summary: Vec::new(),
         placement: (&nothing.placement).into(),
         placement_exact: (&nothing.placement).into(),
-        feasible: false,
         interrupted: nothing.interrupted,
-        best: None,
-        worst: None,
-        setup: None,
-        setup_sheet: None,
-        stability: None,
         findings: Some(nothing.findings.iter().map(FindingFigures::of).collect()),
         collisions: nothing.collisions.iter().map(CollisionFigures::of).collect(),
+        ..ScoreFigures::default()
     })
 }
 

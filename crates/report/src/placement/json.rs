@@ -17,7 +17,7 @@ use serde::Serialize;
 use serde_json::Value;
 use stead_disk::input::InputFile;
 use stead_placement::outcome::{
-    ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome,
+    ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome, SubsetAccuracy,
 };
 use stead_problem::problem::Problem;
 use stead_problem::symmetry::Unsupported;
@@ -100,35 +100,28 @@ records! {
 
     /// How a long path was searched.
     pub struct PathLevelFigures from levels: &PathLevels {
-        let [search, refinement] = [&levels.search, &levels.refinement].map(|subset| SubsetFigures {
-            points: subset.points,
-            compared_placements: subset.pairs,
-            largest_error: some(subset.error),
-        });
-    } with {
         /// Points of the path.
         points: usize = levels.points,
         /// The points of the search.
-        search: SubsetFigures = search,
+        search: SubsetFigures = (&levels.search).into(),
         /// The points of the refinement.
-        refinement: SubsetFigures = refinement,
+        refinement: SubsetFigures = (&levels.refinement).into(),
         /// Points that joined the subsets because they decide whether a placement has a plan, or as the largest what it
         /// is worth.
         deciding_points: usize = levels.deciding,
         /// Placements evaluated on all points.
         placements_on_all_points: usize = levels.whole,
     }
-}
 
-/// A subset of the points of a path.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct SubsetFigures {
-    /// How many points.
-    points: usize,
-    /// Placements compared with those on all points.
-    compared_placements: usize,
-    /// Largest relative error of an objective.
-    largest_error: Option<TableError>,
+    /// A subset of the points of a path.
+    pub struct SubsetFigures from subset: &SubsetAccuracy {
+        /// How many points.
+        points: usize = subset.points,
+        /// Placements compared with those on all points.
+        compared_placements: usize = subset.pairs,
+        /// Largest relative error of an objective.
+        largest_error: Option<TableError> = some(subset.error),
+    }
 }
 
 /// The lookup table that a search used, or why there is none.

@@ -6,8 +6,7 @@ use crate::figure::{
     WeightMmPerS, each, some,
 };
 use serde_json::Value;
-use stead_model::robot::Pose;
-use stead_model::robot::Posture;
+use stead_model::robot::{Pose, Posture};
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_problem::criterion::{Criterion, Direction};
 use stead_problem::postures::PostureRules;

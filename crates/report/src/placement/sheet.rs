@@ -167,21 +167,28 @@ records! {
     /// How far the part may be off in a direction.
     pub struct DirectionFigures from found: &Tolerance {
         let is_turn = found.direction.is_turn();
-        let offset = |of: f64| Offset::of(of, is_turn);
-        let allowed = |of: &Allowed| AllowedFigures { offset: offset(of.offset), is_more: of.is_more };
     } with {
         /// `+x`, `-x` and so on, `+rz`, `-rz`.
         direction: String = found.direction.to_string(),
         /// `mm` or `deg`.
         unit: &'static str = if is_turn { unit_name(AxisKind::Turntable) } else { unit_name(AxisKind::Rail) },
         /// Until the objective has grown by each of the rises.
-        rises: [AllowedFigures; 2] = [allowed(&found.rises[0]), allowed(&found.rises[1])],
+        rises: [AllowedFigures; 2] =
+            [0, 1].map(|rise| AllowedFigures::of(&found.rises[rise], is_turn)),
         /// The nearest trial at which the program cannot run, where one was met.
         #[serde(skip_serializing_if = "Option::is_none")]
-        blocked_at: Option<Offset> = found.blocked.as_ref().map(|of| offset(of.offset)),
+        blocked_at: Option<Offset> = found.blocked.as_ref().map(|of| Offset::of(of.offset, is_turn)),
         /// The limit that is broken there, or the two shapes that come too near.
         #[serde(skip_serializing_if = "Option::is_none")]
         blocked_by: Option<String> = found.blocked.as_ref().map(|of| of.by.clone()),
+    }
+
+    /// How far the part may be off until the objective has grown by a share.
+    pub struct AllowedFigures of (allowed: &Allowed, is_turn: bool) {
+        /// How far, to a fifth of it on the safe side.
+        offset: Offset = Offset::of(allowed.offset, is_turn),
+        /// Whether it is the farthest tried, so that the part may be off by more.
+        is_more: bool = allowed.is_more,
     }
 }
 
@@ -199,13 +206,4 @@ impl Offset {
     fn of(offset: f64, is_turn: bool) -> Self {
         if is_turn { Self::About(offset.into()) } else { Self::Along(offset.into()) }
     }
-}
-
-/// How far the part may be off until the objective has grown by a share.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub struct AllowedFigures {
-    /// How far, to a fifth of it on the safe side.
-    offset: Offset,
-    /// Whether it is the farthest tried, so that the part may be off by more.
-    is_more: bool,
 }

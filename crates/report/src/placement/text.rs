@@ -9,8 +9,7 @@ use stead_placement::outcome::{Case, DeflectionFigures, ForceSensitivity, Outcom
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::feed::{CutFeed, FeedLimit};
 use stead_problem::collision::PlanClearance;
-use stead_problem::criterion::CANCELLATION;
-use stead_problem::criterion::Over;
+use stead_problem::criterion::{CANCELLATION, Over};
 use stead_problem::joint_travel::Swing;
 use stead_problem::problem::Problem;
 use stead_problem::symmetry::Unsupported;

@@ -4,21 +4,19 @@ use crate::document::Document;
 use crate::figure::{
     ForceN, FrequencyHz, HeightUm, MomentS, PlaceMm, RatePerS, Share, SpeedRpm, StepS, TimeS, each, some,
 };
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
+use stead_model::published::Published;
+
 use stead_runs::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::modes::Mode;
-use stead_simulation::outcome::{Simulation, Statistics};
+use stead_simulation::outcome::{PassFigures, Simulation, Statistics};
 use stead_simulation::roughness::Roughness;
 
 records! {
     /// A simulated pass.
     pub struct SimulationFigures of (run: &SimulationRun, found: &Simulation) {
         let (end, reason) = end_words(&found.run.end);
-        let forces =
-            |forces: &Option<[Statistics; 2]>, axis: usize| forces.as_ref().map(|forces| (&forces[axis]).into());
     } with {
         /// Name of the robot.
         robot: String = run.setup.robot.name().to_owned(),
@@ -64,12 +62,7 @@ records! {
         /// The modes of the arm.
         modes: Vec<PassMode> = found.modes.iter().map(PassMode::of).collect(),
         /// Published figures.
-        published: Option<PublishedFigures> = run.published.as_ref().map(|published| PublishedFigures {
-            source: published.source.clone(),
-            force_x: forces(&published.figures.forces, 0),
-            force_y: forces(&published.figures.forces, 1),
-            profile: published.figures.roughness.as_ref().map(Into::into),
-        }),
+        published: Option<PublishedFigures> = run.published.as_ref().map(Into::into),
         /// Time on the clock.
         #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = None,
         /// Time of the pass for each second on the clock.
@@ -136,19 +129,22 @@ records! {
         /// Share of the critical damping.
         damping_ratio: Share = mode.damping_ratio.into(),
     }
+
+    /// Published figures of a pass.
+    pub struct PublishedFigures from published: &Published<PassFigures> {
+        /// Where they are from.
+        source: String = published.source.clone(),
+        /// The force along the feed.
+        force_x: Option<ForceFigures> = forces(&published.figures.forces, 0),
+        /// The force towards the wall.
+        force_y: Option<ForceFigures> = forces(&published.figures.forces, 1),
+        /// The profile of the wall.
+        profile: Option<RoughnessFigures> = published.figures.roughness.as_ref().map(Into::into),
+    }
 }
 
-/// Published figures of a pass.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct PublishedFigures {
-    /// Where they are from.
-    source: String,
-    /// The force along the feed.
-    force_x: Option<ForceFigures>,
-    /// The force towards the wall.
-    force_y: Option<ForceFigures>,
-    /// The profile of the wall.
-    profile: Option<RoughnessFigures>,
+fn forces(forces: &Option<[Statistics; 2]>, axis: usize) -> Option<ForceFigures> {
+    forces.as_ref().map(|forces| (&forces[axis]).into())
 }
 
 fn document(run: &SimulationRun, found: &Simulation, figures: SimulationFigures) -> Value {

@@ -3,7 +3,7 @@
 use super::super::output::ReportError;
 use super::json::LobeFigures;
 use crate::csv_file::{Columns, rows_or};
-use crate::figure::{FrequencyHz, ResponseUmPerN, Share, TipMm, each};
+use crate::figure::{FrequencyHz, ResponseUmPerN, Share, TipMm};
 use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
 
 records! {

@@ -1,7 +1,6 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
-use super::super::json::{SharedFigures, shared};
-use super::super::json::{URAD, key, rounded};
+use super::super::json::{SharedFigures, URAD, key, rounded, shared};
 use crate::document::Document;
 use crate::figure::{AngleDeg, ForceN, PlaceMm, each};
 use serde_json::Value;
