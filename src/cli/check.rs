@@ -29,7 +29,7 @@ pub(super) const MANUAL: Manual = Manual {
         "stead check my/kr210.toml --json",
     ],
     written: "with --out",
-    files: &[("check.svg", "the arm from its rows, from the side and from above, with cell and tool path")],
+    files: "check.svg: the arm from its rows, from the side and from above, with cell and tool path",
     done: "done; what looks wrong is noted",
     failed: "the picture could not be written",
     refused: "wrong usage, bad input, or a folder that cannot be written to",

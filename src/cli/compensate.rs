@@ -32,12 +32,11 @@ pub(super) const MANUAL: Manual = Manual {
         "stead compensate configs/compensate-caro-2013.toml",
         "stead compensate configs/compensate-caro-2013.toml --reality configs/robots/kuka-kr270-2-k1-0.8.toml --out results/check",
     ],
-    files: &[
-        ("corrected-path.csv", "target and commanded pose, joint angles, deflection before and after, status"),
-        ("compensation.svg", "deflection before and after along the path"),
-        ("summary.json", "all of it for programs"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+corrected-path.csv: target and commanded pose, joint angles, deflection before and after, status
+compensation.svg: deflection before and after along the path
+summary.json: all of it for programs
+report.html: a page whose charts answer to the pointer",
     done: "done; points that cannot be compensated keep their target, and a warning says so",
     failed: "no point can be compensated, or with --all-or-nothing some cannot; nothing is written, the message names them with the reason",
     refused: "wrong usage, bad input, a plan that does not fit its run, or a results folder that cannot be written to",

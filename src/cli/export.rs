@@ -84,15 +84,11 @@ pub(super) const MANUAL: Manual = Manual {
         "stead export my/run.toml results/run/best.csv --check my/program/PART.src",
     ],
     written: "with --out, none of which may be there yet without --force",
-    files: &[
-        ("NAME.src, NAME_01.src, ..", "krl (KUKA): a main program that calls the parts"),
-        ("NAME.mod, NAME_01.mod, ..", "rapid (ABB, IRC5 and OmniCore), likewise"),
-        (
-            "NAME.ls, NAME_01.ls, ..",
-            "fanuc, likewise: TP programs as text, which the controller or its maker's tools translate",
-        ),
-        ("NAME.csv", "csv, for a post of your own: one row for each move"),
-    ],
+    files: "\
+NAME.src, NAME_01.src, ..: krl (KUKA): a main program that calls the parts
+NAME.mod, NAME_01.mod, ..: rapid (ABB, IRC5 and OmniCore), likewise
+NAME.ls, NAME_01.ls, ..: fanuc, likewise: TP programs as text, which the controller or its maker's tools translate
+NAME.csv: csv, for a post of your own: one row for each move",
     remarks: "The frames to enter at the controller are printed. A part on a turntable needs --mechanism (krl) or \
               --unit (rapid). Programs need [controller] and [root] in the robot file; csv does not. With \
               surroundings, moves between segments are the free ways of `stead place`; a plan with a move that has \

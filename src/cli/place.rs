@@ -62,39 +62,28 @@ pub(super) const MANUAL: Manual = Manual {
         "stead place configs/caro-2013.toml --certify 0.5 --time-limit 60 --no-worst",
         "stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8",
     ],
-    files: &[
-        ("placements.csv", "the four cases: pose, postures, mean and largest deflection, times, highest feed"),
-        ("best.csv, worst.csv", "plan of the best and of the worst placement, point by point"),
-        ("best-worst-plan.csv, worst-worst-plan.csv", "the same placements with the worst plan of the spindle angle"),
-        (
-            "deflection-map-{best,worst}.{csv,svg}",
-            "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
-        ),
-        (
-            "lean-map.csv",
-            "with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
-        ),
-        ("convergence.{csv,svg}", "the genetic searches, generation by generation"),
-        ("refinements.csv", "the gradient refinement of each basin: start, end, optimality residual, status"),
-        ("transfers.csv", "joint moves between segments: duration and largest travel"),
-        ("cell.svg", "the cell from above: reach, limits, placements"),
-        (
-            "setup.svg",
-            "setup sheet of the best placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false or --no-page",
-        ),
-        ("notes.txt", "the summary, the tables of all cases, every warning and every note"),
-        ("summary.json", "all of it for programs, with the keys of the run file and their values"),
-        (
-            "report.html, cell.glb, page-data.json",
-            "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false or --no-page",
-        ),
-        ("stability-{best,worst}.csv, stability.svg", "with a table [stability]: critical depth along the path"),
-        ("certificate.json", "with --certify or a table [certificate]: bounds and gaps, and why where there are none"),
-        (
-            "open-region.{csv,svg}, open-region-worst.svg",
-            "with --certify or a table [certificate]: where a placement may be better, or worse, by more than the gap",
-        ),
-    ],
+    files: "\
+placements.csv: the four cases: pose, postures, mean and largest deflection, times, highest feed
+best.csv, worst.csv: plan of the best and of the worst placement, point by point
+best-worst-plan.csv, worst-worst-plan.csv: the same placements with the worst plan of the spindle angle
+deflection-map-{best,worst}.{csv,svg}: smallest deflection, or what forbids it, over path point and spindle angle; \
+    unless [output] maps = false
+lean-map.csv: with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless \
+    [output] maps = false
+convergence.{csv,svg}: the genetic searches, generation by generation
+refinements.csv: the gradient refinement of each basin: start, end, optimality residual, status
+transfers.csv: joint moves between segments: duration and largest travel
+cell.svg: the cell from above: reach, limits, placements
+setup.svg: setup sheet of the best placement, an A4 page to print: where all stands, check points, tolerances; unless \
+    [output] page = false or --no-page
+notes.txt: the summary, the tables of all cases, every warning and every note
+summary.json: all of it for programs, with the keys of the run file and their values
+report.html, cell.glb, page-data.json: page for the browser, moving 3-D scene, what `stead page` makes both of; \
+    unless [output] page = false or --no-page
+stability-{best,worst}.csv, stability.svg: with a table [stability]: critical depth along the path
+certificate.json: with --certify or a table [certificate]: bounds and gaps, and why where there are none
+open-region.{csv,svg}, open-region-worst.svg: with --certify or a table [certificate]: where a placement may be \
+    better, or worse, by more than the gap",
     remarks: "With --no-worst no file of the worst placement is written.",
     done: "done; also when a certificate did not reach its gap or was ended by Ctrl-C",
     failed: "no feasible placement was found, or a file could not be written after the search",

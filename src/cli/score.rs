@@ -40,29 +40,20 @@ pub(super) const MANUAL: Manual = Manual {
         "stead score configs/tilting-table.toml --x-mm 1700 --y-mm 0 --z-mm 700 --yaw-deg 0 --orientation flat",
     ],
     written: "with --out",
-    files: &[
-        ("best-plan.csv, worst-plan.csv", "the two plans, point by point"),
-        (
-            "deflection-map.{csv,svg}",
-            "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
-        ),
-        (
-            "lean-map.csv",
-            "with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
-        ),
-        ("placement.svg", "the cell from above with the placement"),
-        (
-            "report.html, cell.glb, page-data.json",
-            "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false",
-        ),
-        (
-            "setup.svg",
-            "setup sheet of the placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false",
-        ),
-        ("notes.txt", "the summary, the table, every warning and every note"),
-        ("score.json", "what --json prints, and with a setup sheet its numbers"),
-        ("stability-{best,worst}-plan.csv, stability.svg", "with a table [stability]: critical depth along the path"),
-    ],
+    files: "\
+best-plan.csv, worst-plan.csv: the two plans, point by point
+deflection-map.{csv,svg}: smallest deflection, or what forbids it, over path point and spindle angle; unless [output] \
+    maps = false
+lean-map.csv: with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless \
+    [output] maps = false
+placement.svg: the cell from above with the placement
+report.html, cell.glb, page-data.json: page for the browser, moving 3-D scene, what `stead page` makes both of; \
+    unless [output] page = false
+setup.svg: setup sheet of the placement, an A4 page to print: where all stands, check points, tolerances; unless \
+    [output] page = false
+notes.txt: the summary, the table, every warning and every note
+score.json: what --json prints, and with a setup sheet its numbers
+stability-{best,worst}-plan.csv, stability.svg: with a table [stability]: critical depth along the path",
     failed: "the placement is infeasible, with the violated constraints and the path points, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",
     interrupted: "ended early by Ctrl-C: both plans are there, critical depths, the map of a long path and that over lead and tilt may be left out",

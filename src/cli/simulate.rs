@@ -31,13 +31,12 @@ pub(super) const MANUAL: Manual = Manual {
         "stead simulate configs/umons-aluminium.toml --variant gravity",
         "stead simulate configs/umons-steel.toml --damping-scale 10 --out results/steel-damped",
     ],
-    files: &[
-        ("series.csv", "forces and tool positions over time"),
-        ("wall.csv, wall.svg", "profile of the wall that is left, and its roughness"),
-        ("forces.svg, turns.svg", "forces over the pass, and over three turns of the spindle"),
-        ("summary.json", "all of it for programs"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+series.csv: forces and tool positions over time
+wall.csv, wall.svg: profile of the wall that is left, and its roughness
+forces.svg, turns.svg: forces over the pass, and over three turns of the spindle
+summary.json: all of it for programs
+report.html: a page whose charts answer to the pointer",
     done: "done; an unstable cut is a result, too",
     failed: "the pass cannot be simulated, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",

@@ -34,16 +34,13 @@ pub(super) const MANUAL: Manual = Manual {
         "stead stability configs/umons-steel.toml",
         "stead stability configs/umons-steel.toml --damping-scale 10 --spindle-rpm 5000 --out results/steel-5000",
     ],
-    files: &[
-        ("lobes.{csv,svg}", "critical depth over spindle speed, by semi-discretisation and by the zero-order solution"),
-        (
-            "frequency-response.{csv,svg}",
-            "frequency response function of the tool tip: along the feed, along the wall normal, and cross",
-        ),
-        ("modes.csv", "natural frequencies, damping ratios and mode shapes"),
-        ("summary.json", "all of it for programs, with the verdict on the given cut"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+lobes.{csv,svg}: critical depth over spindle speed, by semi-discretisation and by the zero-order solution
+frequency-response.{csv,svg}: frequency response function of the tool tip: along the feed, along the wall normal, and \
+    cross
+modes.csv: natural frequencies, damping ratios and mode shapes
+summary.json: all of it for programs, with the verdict on the given cut
+report.html: a page whose charts answer to the pointer",
     done: "done, whether the cut is stable or not",
     failed: "the small motions of the arm cannot be computed there, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",

@@ -34,14 +34,10 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead identify plan configs/identify-plan-example.toml",
         "stead identify plan configs/identify-plan-example.toml --seed 2 --out results/plan-2",
     ],
-    files: &[
-        ("sheet.csv", "the measurement sheet to be filled in; never overwritten once it holds a reading"),
-        (
-            "expected.csv, plan.svg",
-            "the standard deviations that `identify fit` will report, and the same for random sets",
-        ),
-        ("plan.json", "all of it for programs"),
-    ],
+    files: "\
+sheet.csv: the measurement sheet to be filled in; never overwritten once it holds a reading
+expected.csv, plan.svg: the standard deviations that `identify fit` will report, and the same for random sets
+plan.json: all of it for programs",
     failed: "too few configurations or test poses are within the limits, or no compliance is identifiable",
     refused: "wrong usage, bad input, or a sheet with readings in the results folder",
     interrupted: STOPPED,

@@ -62,10 +62,9 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead import path part.nc --machine table-ac --step-mm 5 --out my/part.csv",
     ],
     written: "as --out names them",
-    files: &[
-        ("NAME.csv", "the task: path points without forces"),
-        ("NAME-tool.toml", "the cutter, where the program describes one"),
-    ],
+    files: "\
+NAME.csv: the task: path points without forces
+NAME-tool.toml: the cutter, where the program describes one",
     remarks: "The task has no forces: a run takes them from [tool] and [cut], or from [forces]. `stead init place \
               --robot .. --task ..` takes both files.",
     refused: "wrong usage, a program that is refused, with line and word, or a file that is there already (--force replaces it): nothing is written",
