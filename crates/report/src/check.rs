@@ -210,8 +210,7 @@ records! {
         /// Size of the moment about the tool centre point. N m
         moment_nm: MeanFigures = (&overview.moment).into(),
         /// What the path cuts of a stock, where the run has one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        cut: Option<CutRecord> = run.cut.as_ref().map(Into::into),
+        cut?: CutRecord = run.cut.as_ref().map(Into::into),
         /// Least and largest distance of the cell from axis 1.
         cell_distances_mm: [PlaceMm; 2] = each(overview.cell_distances),
         /// What the arm reaches with the workpiece in the middle of the cell.

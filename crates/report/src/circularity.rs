@@ -80,7 +80,7 @@ records! {
         /// y of its centre.
         center_y_mm: MeasuredMm = y.into(),
         /// z of its centre, of points in space.
-        #[serde(skip_serializing_if = "Option::is_none")] center_z_mm: Option<MeasuredMm> = some(z),
+        center_z_mm?: MeasuredMm = some(z),
         /// Its radius.
         radius_mm: MeasuredMm = fit.circle.radius.into(),
         /// Largest less smallest distance of a point from its centre.
@@ -151,14 +151,13 @@ records! {
         /// y as it was read. mm
         y_mm: f64 = y_mm,
         /// z as it was read, of points in space. mm
-        #[serde(skip_serializing_if = "Option::is_none")] z_mm: Option<f64> = z_mm,
+        z_mm?: f64 = z_mm,
         /// Polar angle, by which `--exclude-deg` goes.
         angle_deg: AngleDeg = point.angle.into(),
         /// Whether it was left out.
         excluded: bool = point.is_excluded,
         /// Height over the plane, of points in space.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        height_mm: Option<MmDeflection> = is_spatial.then(|| point.height.into()),
+        height_mm?: MmDeflection = is_spatial.then(|| point.height.into()),
         /// About the least squares circle.
         lsc: AboutCircle = AboutCircle::of(point, &found.circles.lsc),
         /// About the minimum zone circle.

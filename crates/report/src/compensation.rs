@@ -124,7 +124,7 @@ records! {
         /// The model of the deflection.
         model: Word<DeflectionModel> = Word::from(settings.model),
         /// True where the weight of links and spindle is corrected too; left out where it is not.
-        #[serde(skip_serializing_if = "Option::is_none")] gravity: Option<bool> = settings.gravity.then_some(true),
+        gravity?: bool = settings.gravity.then_some(true),
         /// Share of the deflection that each iteration corrects.
         alpha: f64 = settings.alpha,
         /// The iteration ends below this. mm

@@ -180,7 +180,7 @@ records! {
         /// The joint, from 1; null where it is an external axis.
         joint: Option<usize> = external_axis.is_none().then_some(joint),
         /// The external axis.
-        #[serde(skip_serializing_if = "Option::is_none")] external_axis: Option<String> = external_axis,
+        external_axis?: String = external_axis,
         /// The segment, from 1.
         segment: usize = segment,
         /// The path point, from 0.

@@ -69,14 +69,11 @@ records! {
         /// z of it.
         axis_z: Direction = point.axis.z.into(),
         /// x of the normal of the surface, where the path states it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        normal_x: Option<Direction> = normal.map(|normal| normal.x.into()),
+        normal_x?: Direction = normal.map(|normal| normal.x.into()),
         /// y of it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        normal_y: Option<Direction> = normal.map(|normal| normal.y.into()),
+        normal_y?: Direction = normal.map(|normal| normal.y.into()),
         /// z of it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        normal_z: Option<Direction> = normal.map(|normal| normal.z.into()),
+        normal_z?: Direction = normal.map(|normal| normal.z.into()),
         /// x of what the workpiece does to the tool: the mean force over a turn.
         force_x_n: ForceN = wrench.force.x.into(),
         /// y of it.

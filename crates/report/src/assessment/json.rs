@@ -29,11 +29,11 @@ records! {
         reference: Option<AgreementFigures> =
             agreement.map(|(published, agreement)| AgreementFigures::of(&published.source, agreement)),
         /// What was compared.
-        #[serde(skip_serializing_if = "Option::is_none")] benchmark: Option<BenchmarkFigures> = None,
+        benchmark?: BenchmarkFigures = None,
         /// Threads used.
-        #[serde(skip_serializing_if = "Option::is_none")] threads: Option<usize> = None,
+        threads?: usize = None,
         /// Time on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = None,
+        wall_s?: TimeS = None,
     }
 
     /// The circularity of a robot under a force.

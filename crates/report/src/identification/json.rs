@@ -22,8 +22,7 @@ records! {
         /// Name of the robot.
         robot: String = found.robot.name().to_owned(),
         /// Which springs were sought, where those normal to the axes were too: `full`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        model: Option<&'static str> = is_full(found).then(|| found.model.word()),
+        model?: &'static str = is_full(found).then(|| found.model.word()),
         /// Configurations measured.
         configurations: usize = run.problem.sheet.configurations.len(),
         /// Readings.
@@ -37,14 +36,12 @@ records! {
         /// The parameters of the robot file.
         arm: Vec<ParameterFigures> = found.arm.iter().map(Into::into).collect(),
         /// The springs of the robot file, where those normal to the axes were sought too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        springs: Option<Vec<SpringsFigures>> =
+        springs?: Vec<SpringsFigures> =
             is_full(found).then(|| (0..6).map(|joint| SpringsFigures::of(found, joint)).collect()),
         /// Joints that keep the compliance of the robot file, from 1: that about their axis.
         held: Vec<usize> = held(found),
         /// All springs that do, by name, where those normal to the axes were sought too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        held_springs: Option<Vec<String>> = is_full(found).then(|| held_springs(found)),
+        held_springs?: Vec<String> = is_full(found).then(|| held_springs(found)),
         /// Standard deviation of a reading. mm
         noise_mm: f64 = millimetres(found.noise),
         /// Whether it was estimated from the readings.
@@ -76,16 +73,13 @@ records! {
         joint: usize = joint + 1,
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes were sought
         /// too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        about: Option<&'static str> = is_full(found).then(|| found.spring(estimate.parameter).about.name()),
+        about?: &'static str = is_full(found).then(|| found.spring(estimate.parameter).about.name()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        with: Option<Vec<SharedFigures>> = shared(&found.gauge, found.spring(estimate.parameter)),
+        with?: Vec<SharedFigures> = shared(&found.gauge, found.spring(estimate.parameter)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
-        #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = some(estimate.angle),
+        angle_deg?: AngleDeg = some(estimate.angle),
         /// The same angle under the name of joint 2; only where that joint is beside the compensator.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        q2_deg: Option<AngleDeg> = some(estimate.angle.filter(|_| joint == 1)),
+        q2_deg?: AngleDeg = some(estimate.angle.filter(|_| joint == 1)),
         /// Estimated compliance. urad/(N m)
         urad_per_nm: f64 = urad_per_nm,
         /// Standard deviation of the estimate. urad/(N m)

@@ -18,8 +18,7 @@ records! {
         let name = |number: usize| scene.pair(number).map_or_else(String::new, ToString::to_string);
     } with {
         /// The pairs left out.
-        still: Vec<StillPair> =
-            changing.still.iter().map(|of| StillPair::of(name(of.pair), of.distance)).collect(),
+        still: Vec<StillPair> = changing.still.iter().map(|of| StillPair::of(name(of.pair), of.distance)).collect(),
         /// The pairs of the points.
         pairs: Vec<String> = numbers.iter().map(|number| name(*number)).collect(),
         /// For each point the number of its pair, from 0; NaN where nothing is nearer than 1 m.

@@ -41,11 +41,9 @@ records! {
         /// The command that left it.
         command: String = command.to_owned(),
         /// Which case of a study it is, where it is one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        study_case: Option<CaseOfStudy> = run.study_case.clone(),
+        study_case?: CaseOfStudy = run.study_case.clone(),
         /// Those of the notes that are on how it was computed, where there are any: paper leaves these to `notes.txt`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        computed_notes: Option<Vec<String>> = (!computed.is_empty()).then_some(computed),
+        computed_notes?: Vec<String> = (!computed.is_empty()).then_some(computed),
         /// The arm.
         robot: RobotData = RobotData::of(problem),
         /// The tool frame in the frame of the flange.
@@ -71,15 +69,12 @@ records! {
         part_turns: Option<Vec<[[f64; 3]; 3]>> = part_turns(problem, plans),
         /// For each plan its moves between segments, null where a move is straight in joint space; left out where no
         /// plan has a path round shapes.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        moves: Option<Vec<Vec<Option<MoveData>>>> = moves(problem, &run.transfer, plans),
+        moves?: Vec<Vec<Option<MoveData>>> = moves(problem, &run.transfer, plans),
         /// For each plan its least room without the pairs whose distance does not change along it, null where no such
         /// pair has the least room; left out where that is so of all plans.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        clearances: Option<Vec<Option<ClearanceData>>> = changing(problem, plans),
+        clearances?: Vec<Option<ClearanceData>> = changing(problem, plans),
         /// What the path removes of its stock, where the run has one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        removal: Option<RemovalData> = run.removal.as_ref().map(|removal| RemovalData::of(problem, removal)),
+        removal?: RemovalData = run.removal.as_ref().map(|removal| RemovalData::of(problem, removal)),
     }
 
     /// An arm by its Denavit-Hartenberg rows.
@@ -91,11 +86,9 @@ records! {
         /// The rows.
         rows: Vec<RowData> = robot.joints().iter().map(RowData::of).collect(),
         /// What joins axes 2 and 3, where anything does.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        axes_2_3: Option<AxesData> = robot.axes_2_3().map(AxesData::of),
+        axes_2_3?: AxesData = robot.axes_2_3().map(AxesData::of),
         /// How its controller counts the joints, where it is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        controller: Option<ControllerData> = robot.controller().map(|controller| ControllerData::of(robot, controller)),
+        controller?: ControllerData = robot.controller().map(|controller| ControllerData::of(robot, controller)),
         /// Its base in the cell, where it is mounted.
         mount: Option<PoseData> = robot.is_mounted().then(|| (&robot.cell_from_base()).into()),
     }
@@ -198,8 +191,7 @@ records! {
         /// have fewer.
         scored: Vec<String> = (0..most).map(scored).collect(),
         /// Moments on the tool about the tool centre point, where there are any. N m
-        #[serde(skip_serializing_if = "Option::is_none")]
-        moment_nm: Option<String> = moments()
+        moment_nm?: String = moments()
             .any(|moment| moment != Vector3::zeros())
             .then(|| singles(moments().flat_map(<[f64; 3]>::from))),
         /// Time from each point to the next at the programmed feed.

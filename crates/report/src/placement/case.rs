@@ -58,20 +58,17 @@ records! {
         p95_mm: DeflectionMm = plan.percentiles[1].into(),
         /// What each thing that yields adds to the scored part, in the mean of the points, where more does than the
         /// joints about their axes.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        by_origin_mm: Option<OriginFigures> = plan.by_origin.as_ref().map(Into::into),
+        by_origin_mm?: OriginFigures = plan.by_origin.as_ref().map(Into::into),
         /// How far the weight of links and spindle moves the tool, which no score counts; where the mass of what the
         /// flange carries is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        sag_mm: Option<SagFigures> = plan.sag.as_ref().map(Into::into),
+        sag_mm?: SagFigures = plan.sag.as_ref().map(Into::into),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
+        mean_std_mm?: DeflectionMm = some(plan.mean_deviation),
         /// Deflections by direction.
         deflection_mm: DeflectionByDirection = (&plan.deflection).into(),
         /// The same at the feed that the arm holds, with forces of a table `[stock]`, of which a part grows with the
         /// feed: what stands above is at the programmed feed.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        at_held_feed: Option<HeldFeedFigures> = plan.held.as_ref().map(Into::into),
+        at_held_feed?: HeldFeedFigures = plan.held.as_ref().map(Into::into),
         /// The posture of each segment, 1 to 8.
         #[schemars(with = "Vec<u8>")] postures: Vec<Posture> = plan.postures.clone(),
         /// The same in words.
@@ -87,8 +84,7 @@ records! {
         /// Path points to which the arm cannot follow the straight move of the tool, or not within its joint limits.
         unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(Into::into).collect(),
         /// The least clearance at the points, among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        clearance: Option<ClearanceFigures> = plan.clearance.as_ref().map(ClearanceFigures::of),
+        clearance?: ClearanceFigures = plan.clearance.as_ref().map(ClearanceFigures::of),
     }
 
     /// A plan at the feed that the arm holds.
@@ -129,8 +125,7 @@ records! {
         joint: usize = found.springs.first().map_or(0, |spring| spring.joint + 1),
         /// Of a full set of springs: the spring, with those that no deflection tells from it, as in `joint 5 about z
         /// with joint 4 about y`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        spring: Option<String> = is_full.then(|| spring_name(found)),
+        spring?: String = is_full.then(|| spring_name(found)),
         /// Change of the objective.
         mm_per_percent: MmPerPercent = MmPerPercent(found.slope / 100.0),
         /// The same in per cent of it; null where the objective is nothing.
@@ -199,11 +194,11 @@ records! {
         /// The scored part of the deflection.
         score_mm: DeflectionMm = point.score.into(),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+        std_mm?: DeflectionMm = some(point.deviation),
         /// Lead of the tool from the axis of the path, where it leans.
-        #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
+        lead_deg?: AngleDeg = some(point.lean.map(|lean| lean.lead)),
         /// Its tilt.
-        #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
+        tilt_deg?: AngleDeg = some(point.lean.map(|lean| lean.tilt)),
     }
 
     /// A move between two segments.

@@ -44,13 +44,12 @@ records! {
         #[serde(flatten)] setup: Option<SetupFigures> =
             Some(SetupFigures::of(score.orientation.as_ref(), &score.setup, &score.plans.best.axes)),
         /// What a fitter needs to set it up: the numbers of `setup.svg`, where that is written.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        setup_sheet: Option<SheetFigures> = score.sheet.as_ref().map(Into::into),
+        setup_sheet?: SheetFigures = score.sheet.as_ref().map(Into::into),
         /// Critical depths along both plans, where they were requested.
-        #[serde(skip_serializing_if = "Option::is_none")] stability: Option<PathStabilityFigures> =
+        stability?: PathStabilityFigures =
             context.stability.as_ref().map(|found| PathStabilityFigures::of(found, true)),
         /// Why nothing is feasible.
-        #[serde(skip_serializing_if = "Option::is_none")] findings: Option<Vec<FindingFigures>> = None,
+        findings?: Vec<FindingFigures> = None,
         /// Pairs of shapes that hit in all plans.
         #[serde(skip_serializing_if = "Vec::is_empty")] collisions: Vec<CollisionFigures> = Vec::new(),
     }
@@ -187,11 +186,9 @@ records! {
         /// The scored part of the deflection.
         score_mm: Option<FineDeflectionMm> = state.map(|s| s.score().into()),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        std_mm: Option<FineDeflectionMm> = some(state.and_then(|s| s.own.deviation)),
+        std_mm?: FineDeflectionMm = some(state.and_then(|s| s.own.deviation)),
         /// What each thing that yields adds to the scored part, where more does than the joints about their axes.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        by_origin_mm: Option<OriginFigures> = explanation.by_origin.as_ref().map(Into::into),
+        by_origin_mm?: OriginFigures = explanation.by_origin.as_ref().map(Into::into),
         /// Whether the state is allowed.
         feasible: bool = explanation.is_allowed(),
         /// The constraints that it breaks.

@@ -62,8 +62,7 @@ records! {
         cases: Vec<CaseFigures> =
             outcome.cases.all().into_iter().map(|case| CaseFigures::of(case, with_points)).collect(),
         /// What a fitter needs to set the best placement up: the numbers of `setup.svg`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        setup_sheet: Option<SheetFigures> = outcome.sheet.as_ref().map(Into::into),
+        setup_sheet?: SheetFigures = outcome.sheet.as_ref().map(Into::into),
         /// Placements evaluated.
         evaluations: usize = outcome.evaluations,
         /// States of the arm evaluated.
@@ -77,16 +76,14 @@ records! {
         /// Figures to compare with.
         reference: Option<ReferenceFigures> = context.reference.as_ref().map(ReferenceFigures::of),
         /// How a long path was searched.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        path_levels: Option<PathLevelFigures> = outcome.path_levels.as_ref().map(Into::into),
+        path_levels?: PathLevelFigures = outcome.path_levels.as_ref().map(Into::into),
         /// What each stiffness set makes of the best placement.
-        #[serde(skip_serializing_if = "Option::is_none")] stiffness_sets: Option<StiffnessSetFigures> =
+        stiffness_sets?: StiffnessSetFigures =
             (!outcome.sets.is_empty()).then(|| StiffnessSetFigures::of(outcome, context)),
         /// How far the best placement moves where scores have to cover errors of the force.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        sensitivity: Option<SensitivityFigures> = outcome.sensitivity.as_ref().map(Into::into),
+        sensitivity?: SensitivityFigures = outcome.sensitivity.as_ref().map(Into::into),
         /// Critical depths along the plans, where they were requested.
-        #[serde(skip_serializing_if = "Option::is_none")] stability: Option<PathStabilityFigures> =
+        stability?: PathStabilityFigures =
             context.stability.as_ref().map(|found| PathStabilityFigures::of(found, with_points)),
     }
 

@@ -63,14 +63,14 @@ records! {
         /// Size of the deflection.
         total_mm: DeflectionMm = point.deflection.norm().into(),
         /// Deflection along the normal of the surface, where the task states it.
-        #[serde(skip_serializing_if = "Option::is_none")] surface_mm: Option<DeflectionMm> = some(point.surface_part),
+        surface_mm?: DeflectionMm = some(point.surface_part),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+        std_mm?: DeflectionMm = some(point.deviation),
         #[serde(flatten)] origins: Option<OriginColumns> = point.by_origin.as_ref().map(|origins| OriginColumns::of(Some(origins))),
         /// Lead of the tool from the axis of the path, above 0 with the spindle ahead of the tip; where it leans.
-        #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
+        lead_deg?: AngleDeg = some(point.lean.map(|lean| lean.lead)),
         /// Its tilt, above 0 with the spindle to the left of the feed.
-        #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
+        tilt_deg?: AngleDeg = some(point.lean.map(|lean| lean.tilt)),
         #[serde(flatten)] axes: AxisColumns = at_point(axes, point.point),
         #[serde(flatten)] clearance: Option<ClearanceColumns> =
             scene.map(|scene: &Scene| ClearanceColumns::of(scene, point)),

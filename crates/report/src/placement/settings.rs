@@ -35,17 +35,13 @@ records! {
         /// What is chosen along the path.
         redundancy: RedundancyFigures = RedundancyFigures::of(&problem.redundancy),
         /// The path.
-        task: TaskFigures =
-            TaskFigures::of(problem),
+        task: TaskFigures = TaskFigures::of(problem),
         /// What the run file states, key by key.
         run_file: Value = context.stated.clone(),
         /// Where the robot is mounted in the cell, where that is not its origin.
-        #[serde(skip_serializing_if = "Option::is_none")] mount: Option<MountFigures> =
-            problem.robot.is_mounted().then(|| MountFigures::of(&problem.robot.cell_from_base())),
+        mount?: MountFigures = problem.robot.is_mounted().then(|| MountFigures::of(&problem.robot.cell_from_base())),
         /// Rules for postures, where there are some.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        postures: Option<PostureFigures> =
-            (problem.postures != PostureRules::NONE).then(|| PostureFigures::of(problem)),
+        postures?: PostureFigures = (problem.postures != PostureRules::NONE).then(|| PostureFigures::of(problem)),
     }
 
     /// How hard a search is.
@@ -137,14 +133,11 @@ records! {
         /// Relative size of the force error that a score covers.
         force_uncertainty: f64 = *force_uncertainty,
         /// What a radian of joint travel in every 10 mm of the cut adds to the objective.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        joint_travel_weight_mm_per_rad: Option<WeightMmPerRad> = (travel > 0.0).then(|| travel.into()),
+        joint_travel_weight_mm_per_rad?: WeightMmPerRad = (travel > 0.0).then(|| travel.into()),
         /// How stiffness sets make one objective.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        over: Option<&'static str> = criterion.stiffness.as_ref().map(|sets| sets.over.name()),
+        over?: &'static str = criterion.stiffness.as_ref().map(|sets| sets.over.name()),
         /// How many standard deviations a score covers, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        confidence: Option<f64> = problem.robot.uncertainty().map(|_| criterion.confidence),
+        confidence?: f64 = problem.robot.uncertainty().map(|_| criterion.confidence),
     }
 
     /// Weights of the directions of a deflection.
@@ -187,16 +180,13 @@ records! {
         /// Feed where the task states none.
         feed_mm_per_s: SpeedMmPerS = redundancy.feed.into(),
         /// Largest rate of beta.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_beta_rate_deg_per_mm: Option<RateDegPerMm> = some(redundancy.max_beta_rate),
+        max_beta_rate_deg_per_mm?: RateDegPerMm = some(redundancy.max_beta_rate),
         /// Largest rate of turning of the spindle.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_spindle_turn_deg_per_mm: Option<RateDegPerMm> = some(redundancy.max_spindle_turn),
+        max_spindle_turn_deg_per_mm?: RateDegPerMm = some(redundancy.max_spindle_turn),
         /// Largest speed of turning of the spindle.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_spindle_turn_deg_per_s: Option<SpeedDegPerS> = some(redundancy.max_spindle_speed),
+        max_spindle_turn_deg_per_s?: SpeedDegPerS = some(redundancy.max_spindle_speed),
         /// Where beta is constant: along each segment, or along the path.
-        #[serde(skip_serializing_if = "Option::is_none")] beta: Option<&'static str> = is_constant.then(|| beta.name()),
+        beta?: &'static str = is_constant.then(|| beta.name()),
     }
 
     /// The path of a task.

@@ -108,14 +108,11 @@ records! {
         let leans = || setup.leans.iter().map(|lean| [lean.lead, lean.tilt].map(f64::to_degrees)).collect();
     } with {
         /// Name of the orientation of the part.
-        #[serde(skip_serializing_if = "Option::is_none")] orientation: Option<String> = orientation.cloned(),
+        orientation?: String = orientation.cloned(),
         /// External axes and their positions.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        external_axes: Option<ExternalAxisFigures> =
-            (!axes.is_empty()).then(|| ExternalAxisFigures::of(setup, axes)),
+        external_axes?: ExternalAxisFigures = (!axes.is_empty()).then(|| ExternalAxisFigures::of(setup, axes)),
         /// Lead and tilt of the tool from the axis of the path at every point with every digit, where it leans.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        leans_deg: Option<Vec<[f64; 2]>> = (!setup.leans.is_empty()).then(leans),
+        leans_deg?: Vec<[f64; 2]> = (!setup.leans.is_empty()).then(leans),
     }
 
     /// Positions of external axes.

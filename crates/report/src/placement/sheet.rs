@@ -49,10 +49,9 @@ records! {
         /// The tool frame on the flange.
         tool_on_flange: PlacedFrame = (&sheet.flange_from_tool).into(),
         /// Diameter of the cutter, where the run states it among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        cutter_diameter_mm: Option<PlaceMm> = some(sheet.cutter_diameter),
+        cutter_diameter_mm?: PlaceMm = some(sheet.cutter_diameter),
         /// Height of the top of the shape named `floor`, where there is one.
-        #[serde(skip_serializing_if = "Option::is_none")] floor_mm: Option<PlaceMm> = some(sheet.floor),
+        floor_mm?: PlaceMm = some(sheet.floor),
         /// The external axes.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         axes: Vec<AxisSetupFigures> = sheet.axes.iter().map(Into::into).collect(),
@@ -64,15 +63,13 @@ records! {
         /// Whether there are shapes, by which collisions were looked for.
         collisions_checked: bool = sheet.has_shapes,
         /// The least room on the joint moves between segments, at poses 0.02 rad apart.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        room_on_moves: Option<RoomFigures> = sheet.room_on_moves.as_ref().map(Into::into),
+        room_on_moves?: RoomFigures = sheet.room_on_moves.as_ref().map(Into::into),
         /// How near the plan comes to a limit of a joint.
         nearest_limit: Option<NearestLimitFigures> = sheet.nearest_limit.as_ref().map(Into::into),
         /// By how much the part may be off; null where that is not known.
         tolerances: Option<ToleranceFigures> = tolerances.ok().map(Into::into),
         /// Why it is not known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        no_tolerances: Option<String> = tolerances.err().cloned(),
+        no_tolerances?: String = tolerances.err().cloned(),
     }
 
     /// A frame in another.
@@ -123,10 +120,9 @@ records! {
         /// The rotation Rz(A) Ry(B) Rx(C) of the tool frame: A, B, C.
         abc_deg: [AngleDeg; 3] = each(zyx_from_rotation(&check.tool.rotation)),
         /// Both in the root of the controller as the robot stands, where that is known and another frame.
-        #[serde(skip_serializing_if = "Option::is_none")] in_root: Option<PlacedFrame> =
-            check.in_root.as_ref().map(Into::into),
+        in_root?: PlacedFrame = check.in_root.as_ref().map(Into::into),
         /// Status and turn of a KUKA controller, S and T.
-        #[serde(skip_serializing_if = "Option::is_none")] status_and_turn: Option<[u8; 2]> = check.status_and_turn,
+        status_and_turn?: [u8; 2] = check.status_and_turn,
         /// Joint angles of the rows.
         joints_deg: [AngleDeg; 6] = each(check.joints),
         /// Joint angles as the controller counts them; null without `[controller]`.
@@ -173,14 +169,11 @@ records! {
         /// `mm` or `deg`.
         unit: &'static str = if is_turn { unit_name(AxisKind::Turntable) } else { unit_name(AxisKind::Rail) },
         /// Until the objective has grown by each of the rises.
-        rises: [AllowedFigures; 2] =
-            [0, 1].map(|rise| AllowedFigures::of(&found.rises[rise], is_turn)),
+        rises: [AllowedFigures; 2] = [0, 1].map(|rise| AllowedFigures::of(&found.rises[rise], is_turn)),
         /// The nearest trial at which the program cannot run, where one was met.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        blocked_at: Option<Offset> = found.blocked.as_ref().map(|of| Offset::of(of.offset, is_turn)),
+        blocked_at?: Offset = found.blocked.as_ref().map(|of| Offset::of(of.offset, is_turn)),
         /// The limit that is broken there, or the two shapes that come too near.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        blocked_by: Option<String> = found.blocked.as_ref().map(|of| of.by.clone()),
+        blocked_by?: String = found.blocked.as_ref().map(|of| of.by.clone()),
     }
 
     /// How far the part may be off until the objective has grown by a share.

@@ -88,15 +88,13 @@ records! {
         /// The largest turn of a joint from a point to the next.
         max_joint_step_deg: AngleDeg = plan.travel.largest_step.into(),
         /// Mean deflection along the normal of the surface, where the task states it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        mean_surface_mm: Option<DeflectionMm> = some(figures.surface.map(|surface| surface.mean)),
+        mean_surface_mm?: DeflectionMm = some(figures.surface.map(|surface| surface.mean)),
         /// The largest.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_surface_mm: Option<DeflectionMm> = some(figures.surface.map(|surface| surface.max)),
+        max_surface_mm?: DeflectionMm = some(figures.surface.map(|surface| surface.max)),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
+        mean_std_mm?: DeflectionMm = some(plan.mean_deviation),
         /// Orientation of the part, where a run has several.
-        #[serde(skip_serializing_if = "Option::is_none")] orientation: Option<String> = case.orientation.clone(),
+        orientation?: String = case.orientation.clone(),
         #[serde(flatten)] axes: setup::AxisColumns = setup::fixed_positions(&plan.axes),
     }
 }
@@ -164,8 +162,7 @@ records! {
         /// Why none is allowed.
         reason: Option<String> = blocked.map(|blocked| blocked.kind.code()),
         /// The pair of shapes that hits, among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pair: Option<String> = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
+        pair?: String = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
         #[serde(flatten)] origins: Option<OriginColumns> =
             origins::of_state(at, point, problem.redundancy.beta(k), posture),
     }
@@ -206,8 +203,7 @@ records! {
         /// Why none is allowed: `lean` for `max_lean_deg`, `scallop_mm` or `step_over_mm`, or what most angles break.
         reason: Option<String> = reason.map(LeanReason::code),
         /// The pair of shapes that hits, among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pair: Option<String> = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
+        pair?: String = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
     }
 }
 

@@ -64,9 +64,9 @@ records! {
         /// Published figures.
         published: Option<PublishedFigures> = run.published.as_ref().map(Into::into),
         /// Time on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = None,
+        wall_s?: TimeS = None,
         /// Time of the pass for each second on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] real_time_factor: Option<Option<TimeS>> = None,
+        real_time_factor?: Option<TimeS> = None,
     }
 
     /// What small motions do in the middle of the pass and where `stead stability` analyses it.

@@ -67,13 +67,11 @@ records! {
         joint: usize = spring.joint + 1,
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought
         /// too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        about: Option<&'static str> = is_full.then(|| spring.about.name()),
+        about?: &'static str = is_full.then(|| spring.about.name()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        with: Option<Vec<SharedFigures>> = gauge.and_then(|gauge| shared(gauge, spring)),
+        with?: Vec<SharedFigures> = gauge.and_then(|gauge| shared(gauge, spring)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
-        #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = angle.map(Into::into),
+        angle_deg?: AngleDeg = angle.map(Into::into),
     }
 
     /// The expected error of a compliance, beside those of random sets of configurations.
