@@ -6,7 +6,7 @@ mod page;
 use super::output::ReportError;
 use super::page::PAGE;
 use super::{Files, named};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::rows;
 use crate::document::{Document, bytes};
 use crate::figure::{AngleDeg, MeasuredMm, MmDeflection, each, some};
@@ -116,20 +116,16 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
             fixed(flatness, 5),
         ));
     }
-    let mut header =
-        ["reference circle", "circularity mm", "radius mm", "center x mm", "y mm"].map(str::to_owned).to_vec();
-    if found.plane.is_some() {
-        header.push("z mm".to_owned());
-    }
-    let mut rows = vec![header];
-    for (_, name, fit) in page::circles(found) {
+    let header = ["reference circle", "circularity mm", "radius mm", "center x mm", "y mm"];
+    let header = header.into_iter().chain(found.plane.as_ref().map(|_| "z mm"));
+    let rows = page::circles(found).into_iter().map(|(_, name, fit)| {
         let ([x, y], z) = found.center(fit);
         let mut row = vec![name.to_owned(), fixed(fit.circularity, 6), fixed(fit.circle.radius, 5)];
         row.extend([Some(x), Some(y), z].into_iter().flatten().map(|value| fixed(value, 5)));
-        rows.push(row);
-    }
+        row
+    });
     text.push('\n');
-    text.push_str(&aligned(&rows, &[0]));
+    text.push_str(&table(header, rows, &[0]));
     text
 }
 

@@ -7,7 +7,7 @@ use super::output::ReportError;
 use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::rows_or;
 use crate::document::{Document, PlacementFigures, bytes};
 use crate::figure::{DeflectionMm, Direction, FinestAngleDeg, Percent, each, some};
@@ -234,20 +234,20 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
     };
     text.push_str(&format!("{executed}\n\n"));
     let header = ["", "before: mean mm", "max mm", "after: mean mm", "max mm", "reduction %"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
     // Less than the tolerance says where the iteration ended, and nothing of the path.
     let tolerance = run.job.settings.tolerance;
     let remaining = |value: f64| match value {
         value if value < tolerance => format!("< {}", figures(tolerance * 1e3)),
         value => figures(value * 1e3),
     };
-    for (name, pair) in [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())] {
+    let parts = [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())];
+    let rows = parts.map(|(name, pair)| {
         let mut row = vec![name.to_owned()];
         row.extend(pair.iter().flat_map(|figures| [figures.mean, figures.max]).map(&remaining));
         row.push(reduction(pair).map_or_else(|| "-".to_owned(), |share| fixed(share * 100.0, 1)));
-        rows.push(row);
-    }
-    text.push_str(&aligned(&rows, &[0]));
+        row
+    });
+    text.push_str(&table(header, rows, &[0]));
     text.push_str(&format!(
         "\nlargest correction {} mm and {} deg, in at most {} iterations\n",
         fixed(outcome.figures(|point| Some(point.correction.linear.norm())).max * 1e3, 4),

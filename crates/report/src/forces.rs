@@ -6,7 +6,7 @@ mod page;
 use super::output::ReportError;
 use super::picture;
 use super::{Files, named};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::rows;
 use crate::document::{Document, bytes};
 use crate::figure::{
@@ -298,7 +298,7 @@ pub fn forces_text(run: &ForcesRun, forces: &RemovalForces) -> String {
     let mut text =
         format!("{name}: {} points, {} of them added, {} scored\n\n", figures.points, figures.added, figures.scored);
     let header = ["", "force N", "moment N m", "in a turn N", "removed mm3/mm", "height mm", "chip um"];
-    let mut table = vec![header.map(str::to_owned).to_vec()];
+    let mut rows = Vec::new();
     let scored: Vec<&PointForces> = (0..forces.points.len())
         .filter(|point| forces.path.is_scored(*point) && forces.points[*point].heights.is_some())
         .map(|point| &forces.points[point])
@@ -316,10 +316,10 @@ pub fn forces_text(run: &ForcesRun, forces: &RemovalForces) -> String {
     if !scored.is_empty() {
         for (name, value) in [("mean", &mean as &dyn Fn(fn(&PointForces) -> f64) -> f64), ("largest", &most)] {
             let cells = of.iter().map(|(of, decimals)| fixed(value(*of), *decimals));
-            table.push(std::iter::once(name.to_owned()).chain(cells).collect());
+            rows.push(std::iter::once(name.to_owned()).chain(cells).collect());
         }
     }
-    text.push_str(&aligned(&table, &[0]));
+    text.push_str(&table(header, rows, &[0]));
     let _ = writeln!(
         text,
         "\nof scored points that cut; {} % of the scored length cuts nothing; {} mm3 removed",

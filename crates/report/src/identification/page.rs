@@ -99,7 +99,7 @@ fn arm(found: &Identified) -> Table {
 
 /// The springs as the robot file has them.
 fn springs(found: &Identified) -> Table {
-    let rows = super::text::spring_rows(found).into_iter().skip(1);
+    let rows = super::text::spring_rows(found);
     let rows = rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect();
     let columns = ["joint", "about z", "about x", "about y"].map(Column::number);
     let split =

@@ -6,7 +6,7 @@ use super::setup::{SetupFigures, lines};
 use super::sheet::SheetFigures;
 use super::text::least_room;
 use super::{Context, SummaryLine, score_summary};
-use crate::columns::{aligned, line};
+use crate::columns::{line, table};
 use crate::document::{PlacementExact, PlacementFigures};
 use crate::figure::{FineAngleDeg, FineDeflectionMm, Plain, each, some};
 use crate::names;
@@ -124,8 +124,7 @@ pub fn score_text(problem: &Problem, score: &Score, context: &Context) -> String
     header.extend(score.plans.best.mean_deviation.map(|_| "std mm"));
     header.push("postures");
     let last = header.len() - 1;
-    let header = header.into_iter().map(str::to_owned).collect();
-    let rows = [header, row("best", &score.plans.best), row("worst", &score.plans.worst)];
+    let rows = [row("best", &score.plans.best), row("worst", &score.plans.worst)];
     let stability = context
         .stability
         .as_ref()
@@ -151,7 +150,7 @@ pub fn score_text(problem: &Problem, score: &Score, context: &Context) -> String
         .collect();
     let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
     let (place, legend) = (place_text(&score.placement), super::text::legend(problem));
-    format!("{place}\n{setup}\n{}{legend}{postures}{feed}{stability}", aligned(&rows, &[0, last]))
+    format!("{place}\n{setup}\n{}{legend}{postures}{feed}{stability}", table(header, rows, &[0, last]))
 }
 
 records! {
@@ -214,7 +213,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
     header.extend(states().find_map(|s| s.own.deviation).map(|_| "std mm"));
     header.extend(["in words", ""]);
     let last = header.len() - 1;
-    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    let mut rows = Vec::new();
     let mut broken = String::new();
     for e in postures {
         let mut row = vec![e.posture.to_string()];
@@ -237,7 +236,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
         "{}, point {point}, beta {} deg\n\n{}",
         place_text(placement),
         fixed(beta.to_degrees(), 3),
-        aligned(&rows, &[last - 1, last])
+        table(header, rows, &[last - 1, last])
     );
     if let Some(origins) = origins::of_postures(postures) {
         text.push('\n');

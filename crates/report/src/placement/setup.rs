@@ -2,7 +2,7 @@
 //! nor axes.
 
 use super::PLACES;
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::Columns;
 use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, some};
 use crate::units::{Unit, fixed};
@@ -188,19 +188,18 @@ pub(super) fn text(problem: &Problem, outcome: &Outcome) -> String {
         header.extend((!problem.orientations.is_empty()).then(|| "orientation".to_owned()));
         header.extend(problem.external_axes.iter().map(|axis| format!("{} {}", axis.name, unit_name(axis.kind))));
         header.extend(["best mm", "worst mm"].map(str::to_owned));
-        let mut rows = vec![header];
-        for (TriedSetup { setup, objectives }, number) in outcome.tried_setups.iter().zip(1..) {
+        let rows = outcome.tried_setups.iter().zip(1..).map(|(TriedSetup { setup, objectives }, number)| {
             let problem = problem.in_setup(setup);
             let mut row = vec![number.to_string()];
             row.extend(problem.orientation().map(|orientation| orientation.name.clone()));
             row.extend(standing(&problem.axis_paths()));
             let figure = |objective: Option<f64>| objective.map_or_else(|| "-".to_owned(), |of| fixed(of * 1e3, 4));
             row.extend([objectives.map(|(best, _)| best), objectives.and_then(|(_, worst)| worst)].map(figure));
-            rows.push(row);
-        }
+            row
+        });
         let names = if problem.orientations.is_empty() { vec![] } else { vec![1] };
         text.push('\n');
-        text.push_str(&aligned(&rows, &names));
+        text.push_str(&table(header, rows, &names));
     }
     text
 }
