@@ -1,6 +1,6 @@
 //! What a certificate leaves open, over the cell.
 
-use super::axes::{Panel, Scale};
+use super::axes::Panel;
 use super::canvas::{Canvas, TextStyle, picture};
 use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, ORANGE, viridis};
@@ -121,8 +121,7 @@ fn widened(from: f64, to: f64) -> [f64; 2] {
 }
 
 fn panel(left: i32, x: [f64; 2], y: [f64; 2], labels: [&'static str; 2]) -> Panel {
-    let (x, y) = (Scale::new(x[0], x[1], left, left + SIDE), Scale::new(y[0], y[1], TOP + SIDE, TOP));
-    Panel::new(x, y, [8, 8], labels)
+    Panel::square([[x[0], y[0]], [x[1], y[1]]], (left, TOP), SIDE, labels)
 }
 
 fn more_promising(sense: Sense, a: f64, b: f64) -> f64 {
