@@ -51,18 +51,11 @@ records! {
         /// Generations.
         generations: usize = context.search.generations,
         /// How postures are chosen: `exact` or `genetic`.
-        postures: &'static str = match context.search.postures {
-            PostureSearch::Exact => "exact",
-            PostureSearch::Genetic => "genetic",
-        },
+        #[schemars(with = "String")] postures: PostureSearch = context.search.postures,
         /// Basins that are refined.
         basins: usize = context.search.basins,
         /// When a lookup table is used: `auto`, `always` or `never`.
-        tables: &'static str = match context.search.tables {
-            LookupUse::Auto => "auto",
-            LookupUse::Always => "always",
-            LookupUse::Never => "never",
-        },
+        #[schemars(with = "String")] tables: LookupUse = context.search.tables,
         /// False where the worst placement is not searched.
         #[serde(skip_serializing_if = "std::clone::Clone::clone")] worst: bool = context.search.worst,
     }

@@ -11,25 +11,6 @@ use stead_placement::setup_sheet::{
     Allowed, AxisSetup, CheckPoint, NearestLimit, RISES, Room, SetupSheet, SheetFrame, Tolerance, Tolerances, Ways,
 };
 
-/// The word for a frame in documents.
-fn frame_word(frame: SheetFrame) -> &'static str {
-    match frame {
-        SheetFrame::Root => "root",
-        SheetFrame::Base => "base",
-        SheetFrame::Cell => "cell",
-    }
-}
-
-/// The word for what is known of ways in documents.
-fn ways_word(ways: Ways) -> Option<&'static str> {
-    match ways {
-        Ways::None => None,
-        Ways::NotChecked => Some("not-checked"),
-        Ways::Free => Some("free"),
-        Ways::Blocked => Some("blocked"),
-    }
-}
-
 records! {
     /// What a fitter needs to set the best placement up and to check it. All places are in one frame.
     pub struct SheetFigures from sheet: &SetupSheet {
@@ -37,7 +18,7 @@ records! {
     } with {
         /// The frame of all places: `root`, that of the controller, which the pendant shows; `base`, that of the rows,
         /// where the robot file has no `[root]`; or `cell`, of a mounted robot, or one that external axes carry.
-        frame: &'static str = frame_word(sheet.frame),
+        #[schemars(with = "String")] frame: SheetFrame = sheet.frame,
         /// The part as its task file has it, all external axes at zero: its origin is the datum.
         part: PlacedFrame = (&sheet.part).into(),
         /// The same in the frame of placements, as page and terminal have it.
@@ -59,7 +40,8 @@ records! {
         check_points: Vec<CheckFigures> = sheet.check_points.iter().map(|point| CheckFigures::of(point, sheet)).collect(),
         /// What is known of the ways from one check point to the next, out along the tool axis, by a joint move and in
         /// again: `free`, `blocked` in every order of the points, or `not-checked` without shapes; null for one point.
-        ways: Option<&'static str> = ways_word(sheet.ways),
+        #[schemars(with = "Option<String>")]
+        ways: Option<Ways> = (sheet.ways != Ways::None).then_some(sheet.ways),
         /// Whether there are shapes, by which collisions were looked for.
         collisions_checked: bool = sheet.has_shapes,
         /// The least room on the joint moves between segments, at poses 0.02 rad apart.
