@@ -79,12 +79,8 @@ fn path_lines(problem: &Problem, overview: &Overview) -> Vec<String> {
         DEG.text(overview.tool_tilt)
     ));
     let lengths = &overview.segment_lengths;
-    say(format!(
-        "path      {} points in {} segments, {} mm in all",
-        problem.task.points().len(),
-        lengths.len(),
-        MM.text(lengths.iter().sum())
-    ));
+    let (points, length) = (problem.task.points().len(), MM.text(lengths.iter().sum()));
+    say(format!("path      {points} points in {} segments, {length} mm in all", lengths.len()));
     let [x, y, z] = overview.extents.map(|extent| interval(MM, extent));
     say(format!("          in the workpiece frame x {x}, y {y}, z {z} mm"));
     say(format!("          tool axis tilted {} deg against z of the workpiece", interval(DEG, overview.tilts)));

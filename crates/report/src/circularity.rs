@@ -105,16 +105,10 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
     let mut text = format!("{}: {all} points, {} left out\n", file.input.name, all - kept);
     if let (Some(plane), Some(flatness)) = (&found.plane, found.flatness()) {
         let (c, n) = (plane.center, plane.normal);
-        text.push_str(&format!(
-            "plane through ({}, {}, {}) mm, normal ({}, {}, {}), flatness {} mm\n",
-            fixed(c.x, 4),
-            fixed(c.y, 4),
-            fixed(c.z, 4),
-            fixed(n.x, 6),
-            fixed(n.y, 6),
-            fixed(n.z, 6),
-            fixed(flatness, 5),
-        ));
+        let center = [c.x, c.y, c.z].map(|value| fixed(value, 4)).join(", ");
+        let normal = [n.x, n.y, n.z].map(|value| fixed(value, 6)).join(", ");
+        let flatness = fixed(flatness, 5);
+        text.push_str(&format!("plane through ({center}) mm, normal ({normal}), flatness {flatness} mm\n"));
     }
     let header = ["reference circle", "circularity mm", "radius mm", "center x mm", "y mm"];
     let header = header.into_iter().chain(found.plane.as_ref().map(|_| "z mm"));

@@ -88,10 +88,8 @@ pub fn program_text(program: &Program) -> String {
         plural(program.parts, "part"),
     );
     if program.uncorrected > 0 {
-        text.push_str(&format!(
-            "{} as planned, for they could not be corrected\n",
-            plural(program.uncorrected, "point")
-        ));
+        let points = plural(program.uncorrected, "point");
+        text.push_str(&format!("{points} as planned, for they could not be corrected\n"));
     }
     if !program.frames.is_empty() {
         text.push_str("\nframes at the controller:\n");

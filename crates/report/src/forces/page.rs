@@ -31,11 +31,8 @@ pub(super) fn page(run: &ForcesRun, forces: &RemovalForces) -> Page {
 
 fn tiles(forces: &RemovalForces, figures: &ForcesFigures) -> Vec<Tile> {
     let air = format!("{} % of the scored length cuts nothing", fixed(forces.air * 100.0, 1));
-    let error = format!(
-        "cells of {} mm; twice as large ones are off by {} % rms",
-        fixed(forces.cell * 1e3, 3),
-        fixed(forces.difference.rms[0] * 100.0, 2)
-    );
+    let (cell, off) = (fixed(forces.cell * 1e3, 3), fixed(forces.difference.rms[0] * 100.0, 2));
+    let error = format!("cells of {cell} mm; twice as large ones are off by {off} % rms");
     vec![
         Tile::new("largest mean force", fixed(figures.max_force_n.0, 1), "N", error),
         Tile::new("largest in a turn", fixed(figures.max_in_turn_n.0, 1), "N", "within 15 %"),

@@ -12,13 +12,9 @@ use stead_runs::IdentifyRun;
 /// readings, outliers, and warnings.
 pub fn identify_text(run: &IdentifyRun, found: &Identified) -> String {
     let sheet = &run.problem.sheet;
-    let mut text = format!(
-        "{}: {} readings of {} points in {} configurations\n\n",
-        found.robot.name(),
-        sheet.readings.len(),
-        sheet.points.len(),
-        sheet.configurations.len()
-    );
+    let (name, readings) = (found.robot.name(), sheet.readings.len());
+    let (points, configurations) = (sheet.points.len(), sheet.configurations.len());
+    let mut text = format!("{name}: {readings} readings of {points} points in {configurations} configurations\n\n");
     text += &compliances(found);
     if is_full(found) {
         text += "\nin the robot file, urad/(N m)\n";

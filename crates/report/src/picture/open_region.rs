@@ -40,13 +40,11 @@ fn heading(canvas: &mut Canvas, proof: &Proof, count: usize) {
         Sense::Max => ("What the certificate of the worst placement leaves open, rate of beta dropped", "worse"),
     };
     canvas.title(title, (LEFT[0], 24));
+    let gap = fixed(proof.gap_percent(), 4);
     let words = if count == 0 {
-        format!("Nothing: no placement in the cell is {past} by more than {} %", fixed(proof.gap_percent(), 4))
+        format!("Nothing: no placement in the cell is {past} by more than {gap} %")
     } else {
-        format!(
-            "{count} boxes of placements, in any of them one may be {past}; by {} % at most",
-            fixed(proof.gap_percent(), 4)
-        )
+        format!("{count} boxes of placements, in any of them one may be {past}; by {gap} % at most")
     };
     canvas.text(&words, (LEFT[0], 52), TextStyle::new(13.0).coloured(INK))
 }

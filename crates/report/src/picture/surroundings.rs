@@ -110,12 +110,8 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
     let words = case.plan.clearance.as_ref().map_or_else(
         || "no two shapes come nearer than 1 m to each other".to_owned(),
         |near| {
-            let [a, b] = near.names.as_ref();
-            format!(
-                "least clearance {} mm, between {a} and {b}, at point {}",
-                fixed(near.distance * 1e3, 1),
-                near.point
-            )
+            let ([a, b], distance) = (near.names.as_ref(), fixed(near.distance * 1e3, 1));
+            format!("least clearance {distance} mm, between {a} and {b}, at point {}", near.point)
         },
     );
     canvas.text(&words, (COLUMNS[0], top - 40), TextStyle::new(12.0).coloured(INK));

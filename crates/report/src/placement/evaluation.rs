@@ -232,12 +232,9 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
             broken.push_str(&format!("  posture {}: {violation}\n", e.posture));
         }
     }
-    let mut text = format!(
-        "{}, point {point}, beta {} deg\n\n{}",
-        place_text(placement),
-        fixed(beta.to_degrees(), 3),
-        table(header, rows, &[last - 1, last])
-    );
+    let (place, beta) = (place_text(placement), fixed(beta.to_degrees(), 3));
+    let states = table(header, rows, &[last - 1, last]);
+    let mut text = format!("{place}, point {point}, beta {beta} deg\n\n{states}");
     if let Some(origins) = origins::of_postures(postures) {
         text.push('\n');
         text.push_str(&origins);
@@ -250,12 +247,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
 }
 
 fn place_text(placement: &Placement) -> String {
-    format!(
-        "x {} mm, y {} mm, z {} mm, yaw {} deg (Q4 {})",
-        fixed(placement.x * 1e3, 1),
-        fixed(placement.y * 1e3, 1),
-        fixed(placement.z * 1e3, 1),
-        fixed(placement.yaw.to_degrees(), 2),
-        fixed(placement.q4(), 4)
-    )
+    let [x, y, z] = [placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1));
+    let (yaw, q4) = (fixed(placement.yaw.to_degrees(), 2), fixed(placement.q4(), 4));
+    format!("x {x} mm, y {y} mm, z {z} mm, yaw {yaw} deg (Q4 {q4})")
 }

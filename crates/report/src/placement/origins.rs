@@ -69,11 +69,8 @@ pub(super) fn of_plan(plan: &Plan) -> Option<String> {
     let origins = plan.by_origin?;
     let parts = named(&origins).into_iter().filter(|(_, part)| *part != 0.0);
     let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {}", fixed(part * 1e3, 4))).collect();
-    Some(format!(
-        "of the scored deflection of {} mm in the mean: {}",
-        fixed(origins.total() * 1e3, 4),
-        parts.join(", ")
-    ))
+    let total = fixed(origins.total() * 1e3, 4);
+    Some(format!("of the scored deflection of {total} mm in the mean: {}", parts.join(", ")))
 }
 
 /// A table of what adds to the scored deflection of each posture, joint by joint; columns of what adds nothing are left

@@ -86,11 +86,8 @@ fn search_lines(outcome: &Outcome) -> Vec<String> {
 fn path_levels(levels: &PathLevels) -> String {
     let (search, refinement) = (levels.search, levels.refinement);
     let error = search.error.map_or(String::new(), |error| {
-        format!(
-            ": means are off by up to {} % there ({} placements planned both ways)",
-            figures(error * 100.0),
-            search.pairs
-        )
+        let (percent, pairs) = (figures(error * 100.0), search.pairs);
+        format!(": means are off by up to {percent} % there ({pairs} placements planned both ways)")
     });
     format!(
         "searched on {} and refined on {} of {} points{error}; {} placements were planned on all points",
@@ -162,10 +159,8 @@ fn stiffest(case: &Case) -> Option<String> {
 pub(super) fn least_room(plan: &Plan, name: &str) -> Option<String> {
     let PlanClearance { point, distance, names } = plan.clearance.as_ref()?;
     let [a, b] = names.as_ref();
-    Some(format!(
-        "least clearance of the {name}: {} mm between {a} and {b}, at point {point}",
-        fixed(distance * 1e3, 1)
-    ))
+    let distance = fixed(distance * 1e3, 1);
+    Some(format!("least clearance of the {name}: {distance} mm between {a} and {b}, at point {point}"))
 }
 
 /// The highest feed of a best plan and what decides it, a line each, where a limit of the joints is known.

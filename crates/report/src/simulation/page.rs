@@ -16,11 +16,8 @@ pub(super) fn page(run: &SimulationRun, found: &Simulation) -> Page {
     let subtitle = format!("{} · pass of {} s", run.setup.variant.word(), figures(seconds));
     let mut lead = format!("The cut is judged {}", found.judgement.word());
     if let Some([_, filtered]) = &found.roughness {
-        lead.push_str(&format!(
-            "; it leaves a wall of Ra {} um, Rt {} um",
-            figures(filtered.mean * 1e6),
-            figures(filtered.total * 1e6)
-        ));
+        let [ra, rt] = [filtered.mean, filtered.total].map(|height| figures(height * 1e6));
+        lead.push_str(&format!("; it leaves a wall of Ra {ra} um, Rt {rt} um"));
     }
     lead.push('.');
     if let (_, Some(reason)) = end_words(&found.run.end) {

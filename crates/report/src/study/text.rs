@@ -22,12 +22,8 @@ pub fn study_text(name: &str, analysis: &Analysis) -> String {
     line(&mut text, "");
     if !analysis.layouts.tasks().is_empty() {
         let (layouts, tasks) = (analysis.layouts.all.len(), analysis.layouts.tasks().len());
-        line(
-            &mut text,
-            &format!(
-                "{layouts} layouts with {tasks} tasks each: means over the tasks by their weights, margins the smallest"
-            ),
-        );
+        let joined = "means over the tasks by their weights, margins the smallest";
+        line(&mut text, &format!("{layouts} layouts with {tasks} tasks each: {joined}"));
     }
     best(&mut text, analysis);
     analysis.notes.iter().for_each(|note| line(&mut text, &format!("  note: {note}")));
@@ -101,13 +97,8 @@ fn best(text: &mut String, analysis: &Analysis) {
         return line(text, &format!("No case has a value of {name}."));
     };
     let noise = percent(analysis.noise);
-    line(
-        text,
-        &format!(
-            "\nBy {name} ({}; within {noise} % layouts tie, for a search is no more exact):",
-            better(&ranking.measure)
-        ),
-    );
+    let better = better(&ranking.measure);
+    line(text, &format!("\nBy {name} ({better}; within {noise} % layouts tie, for a search is no more exact):"));
     line(text, &format!("  best      {}  {}", digits(first.value), layout(layouts, first.layout)));
     let beside = beside(layouts, first.layout);
     if !beside.is_empty() {
@@ -199,10 +190,8 @@ fn against_the_best(analysis: &Analysis) -> String {
         let own = row[axis.axis].written();
         let other = axis.levels.iter().find(|other| other.label == own && !measure.is_tie(level.value, other.value));
         if other.is_some() {
-            line(
-                &mut text,
-                &format!("{}: {} is best on average, but the best layout has {own}", axis.name, level.label),
-            );
+            let (axis, average) = (&axis.name, &level.label);
+            line(&mut text, &format!("{axis}: {average} is best on average, but the best layout has {own}"));
         }
     }
     text
