@@ -196,7 +196,8 @@ records! {
         /// Root mean square of the prediction errors over all configurations. mm
         rms_mm: f64 = millimetres(prediction.rms),
         /// The configuration with the largest prediction error.
-        worst: Option<WorstConfiguration> = prediction.worst.map(|(index, rms)| WorstConfiguration::of(name(index), rms)),
+        worst: Option<WorstConfiguration> =
+            prediction.worst.map(|(index, rms)| WorstConfiguration::of(name(index), rms)),
         /// Names of configurations that cannot be predicted, since without them a compliance is not identifiable.
         unpredicted: Vec<String> = prediction.unpredicted.iter().map(|index| name(*index)).collect(),
     }

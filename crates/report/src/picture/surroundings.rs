@@ -1,7 +1,7 @@
 //! The shapes of a cell with the arm among them, from above and from the side.
 
 use super::axes::{Panel, square_around};
-use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
+use super::canvas::{Canvas, Place, TextStyle, picture};
 use super::cell_view::middles;
 use super::colour::{BLUE, Colour, GREY, INK, ORANGE, PALE, TEAL};
 use crate::units::fixed;

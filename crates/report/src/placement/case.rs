@@ -129,7 +129,8 @@ records! {
         /// Change of the objective.
         mm_per_percent: MmPerPercent = MmPerPercent(found.slope / 100.0),
         /// The same in per cent of it; null where the objective is nothing.
-        percent_per_percent: Option<Plain> = (case.plan.objective > CANCELLATION).then(|| Plain(found.slope / case.plan.objective)),
+        percent_per_percent: Option<Plain> =
+            (case.plan.objective > CANCELLATION).then(|| Plain(found.slope / case.plan.objective)),
     }
 
     /// How far the weight moves the tool.
