@@ -5,8 +5,7 @@ use stead_assessment::circle::CircleError;
 use stead_assessment::roundness::{Measured, RoundnessError};
 use stead_disk::files;
 use stead_disk::input::csv_table::CsvTable;
-use stead_disk::input::input_file;
-use stead_disk::input::{InputError, InputFile};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
 use stead_disk::quote::shorten;
 
