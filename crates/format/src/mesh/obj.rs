@@ -9,30 +9,8 @@ use stead_disk::input::InputError;
 
 /// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface
 /// (points, lines).
-const WITHOUT_SURFACE: [&str; 22] = [
-    "vt",
-    "vn",
-    "vp",
-    "g",
-    "o",
-    "s",
-    "mg",
-    "usemtl",
-    "mtllib",
-    "usemap",
-    "maplib",
-    "p",
-    "l",
-    "bevel",
-    "c_interp",
-    "d_interp",
-    "lod",
-    "shadow_obj",
-    "trace_obj",
-    "ctech",
-    "stech",
-    "end",
-];
+const WITHOUT_SURFACE: &str = "vt vn vp g o s mg usemtl mtllib usemap maplib p l bevel c_interp d_interp lod \
+                               shadow_obj trace_obj ctech stech end";
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
     let text = String::from_utf8_lossy(bytes);
@@ -70,7 +48,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
                     return fail("makes too many triangles", THINNER);
                 }
             }
-            kind if WITHOUT_SURFACE.contains(&kind) => {}
+            kind if WITHOUT_SURFACE.split(' ').any(|known| known == kind) => {}
             _ => {
                 return fail(
                     "is a statement that is not read",
