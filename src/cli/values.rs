@@ -11,8 +11,14 @@ use stead_simulation::arm::Variant;
 use stead_study::cases::Shard;
 
 pub(super) fn variant(text: &str) -> Result<Variant, String> {
-    let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
-    found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
+    by_word(Variant::WORDS, text)
+}
+
+/// The value of a word.
+fn by_word<T: Copy>(words: &[(&str, T)], text: &str) -> Result<T, String> {
+    let found = words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value);
+    let allowed = || words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
+    found.ok_or_else(|| format!("allowed: {}", allowed()))
 }
 
 /// A value for a field, by its path.
@@ -64,8 +70,7 @@ pub(super) fn home(text: &str) -> Result<Home, String> {
 }
 
 pub(super) fn controller(text: &str) -> Result<ControllerKind, String> {
-    let found = ControllerKind::ALL.into_iter().find(|kind| kind.word() == text);
-    found.ok_or_else(|| format!("allowed: {}", ControllerKind::ALL.map(ControllerKind::word).join(", ")))
+    by_word(ControllerKind::WORDS, text)
 }
 
 /// Per cent in, a share out.

@@ -7,33 +7,22 @@ use stead_model::robot::chain::{Axis, Chain, Link, Posed};
 use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spindle};
 use stead_numerics::message::Warning;
 
-/// How much of the arm is modelled; each adds to the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub enum Variant {
-    /// A spring and a damper about each joint axis, no gravity.
-    Springs,
-    /// Gravity and its compensators too.
-    Gravity,
-    /// Springs and dampers normal to the joint axes too.
-    Orthogonal,
-    /// Backlash of the gears too.
-    Backlash,
+stead_numerics::worded! {
+    /// How much of the arm is modelled; each adds to the one before.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    pub enum Variant {
+        /// A spring and a damper about each joint axis, no gravity.
+        Springs = "springs",
+        /// Gravity and its compensators too.
+        Gravity = "gravity",
+        /// Springs and dampers normal to the joint axes too.
+        Orthogonal = "orthogonal",
+        /// Backlash of the gears too.
+        Backlash = "backlash",
+    }
 }
 
 impl Variant {
-    /// All four, the simplest first.
-    pub const ALL: [Self; 4] = [Self::Springs, Self::Gravity, Self::Orthogonal, Self::Backlash];
-
-    /// The word for it in files and on the command line.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Springs => "springs",
-            Self::Gravity => "gravity",
-            Self::Orthogonal => "orthogonal",
-            Self::Backlash => "backlash",
-        }
-    }
-
     /// That this variant leaves out springs of a full set, of which those about the axes are but a part.
     pub fn left_out(self, robot: &Robot) -> Option<Warning> {
         (self < Self::Orthogonal && robot.normal_springs().is_some()).then(|| {

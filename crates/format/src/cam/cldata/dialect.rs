@@ -9,43 +9,30 @@ use Effect::{
     Refused, Section, Spindle, Tangent, Text, Tool, Unit,
 };
 
-/// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CamFormat {
-    /// CLDATA, its dialect told from the file.
-    #[default]
-    Cldata,
-    /// That of Siemens NX.
-    Nx,
-    /// That of SolidWorks CAM and CAMWorks.
-    Solidworks,
-    /// That of PTC Creo and Pro/NC.
-    Creo,
-    /// That of Dassault CATIA.
-    Catia,
-    /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
-    Autodesk,
-    /// That of the CAMplete post of Autodesk.
-    Camplete,
-    /// Plain APT words of no system that can be told.
-    Apt,
-    /// G-code of ISO 6983.
-    Gcode,
-}
-
-impl CamFormat {
-    /// All of them with their names as options and keys have them.
-    pub const WORDS: [(&'static str, Self); 9] = [
-        ("cldata", Self::Cldata),
-        ("nx", Self::Nx),
-        ("solidworks", Self::Solidworks),
-        ("creo", Self::Creo),
-        ("catia", Self::Catia),
-        ("autodesk", Self::Autodesk),
-        ("camplete", Self::Camplete),
-        ("apt", Self::Apt),
-        ("gcode", Self::Gcode),
-    ];
+stead_numerics::worded! {
+    /// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum CamFormat {
+        /// CLDATA, its dialect told from the file.
+        #[default]
+        Cldata = "cldata",
+        /// That of Siemens NX.
+        Nx = "nx",
+        /// That of SolidWorks CAM and CAMWorks.
+        Solidworks = "solidworks",
+        /// That of PTC Creo and Pro/NC.
+        Creo = "creo",
+        /// That of Dassault CATIA.
+        Catia = "catia",
+        /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
+        Autodesk = "autodesk",
+        /// That of the CAMplete post of Autodesk.
+        Camplete = "camplete",
+        /// Plain APT words of no system that can be told.
+        Apt = "apt",
+        /// G-code of ISO 6983.
+        Gcode = "gcode",
+    }
 }
 
 /// What a word does: a method of the reader each.
@@ -473,7 +460,7 @@ mod tests {
             assert!(!dialect.words.iter().any(is_common), "a row of COMMON in {:?}", dialect.format);
         }
         let named: Vec<CamFormat> = DIALECTS.iter().map(|dialect| dialect.format).collect();
-        for (word, format) in CamFormat::WORDS {
+        for &(word, format) in CamFormat::WORDS {
             let expected = usize::from(![CamFormat::Gcode, CamFormat::Cldata].contains(&format));
             assert_eq!(named.iter().filter(|own| **own == format).count(), expected, "{word}");
         }

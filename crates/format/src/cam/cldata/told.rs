@@ -1,14 +1,6 @@
 //! The dialect of a CLDATA file, and the rows of its words.
 
-use super::super::units::word_of;
 use super::dialect::{COMMON, CamFormat, DIALECTS, Dialect, Effect, Sign};
-
-impl CamFormat {
-    /// Its name as an option has it.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
-    }
-}
 
 impl Dialect {
     /// What a word does, if it is known.

@@ -69,7 +69,7 @@ records! {
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought
         /// too.
         #[serde(skip_serializing_if = "Option::is_none")]
-        about: Option<&'static str> = is_full.then(|| spring.about.name()),
+        about: Option<&'static str> = is_full.then(|| spring.about.word()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
         #[serde(skip_serializing_if = "Option::is_none")]
         with: Option<Vec<SharedFigures>> = gauge.and_then(|gauge| shared(gauge, spring)),
