@@ -9,9 +9,10 @@ use stead_disk::files::{
     read,
 };
 use stead_disk::input::InputError;
+use stead_disk::template::{filled, shown_if};
 use stead_format::cam::{LengthUnit, TOOL_GUESSES, guessed_keys};
 use stead_format::sources::Sources;
-use stead_format::written::{commented, filled, relative, shown_if};
+use stead_format::written::{commented, relative};
 
 /// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The
 /// cutter is that of the program, or that beside a task (`NAME-tool.toml`). What is not known is filled in by a guess,
