@@ -128,6 +128,7 @@ impl Cutter {
     }
 
     /// Helix angle. rad
+    #[cfg(any(test, feature = "testing"))]
     pub fn helix(&self) -> f64 {
         self.helix
     }

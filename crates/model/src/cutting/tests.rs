@@ -112,7 +112,7 @@ fn engagements() -> impl Strategy<Value = Engagement> {
         (0.01..=1.0_f64).prop_map(|width| Engagement::down(width, 1.0).unwrap()),
         (0.01..=1.0_f64).prop_map(|width| Engagement::centred(width, 1.0).unwrap()),
         (0.01..0.99_f64).prop_map(|width| Engagement::open_slot(width, 1.0).unwrap()),
-        (0.0..0.5_f64, 0.51..1.0_f64).prop_map(|(from, to)| Engagement::strip(from, to, 1.0).unwrap()),
+        (0.0..0.5_f64, 0.51..1.0_f64).prop_map(|(entry, exit)| Engagement::between(entry * PI, exit * PI)),
     ]
 }
 

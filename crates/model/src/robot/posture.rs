@@ -71,7 +71,7 @@ impl Posture {
 }
 
 stead_numerics::worded! {
-    /// One side of a pair by which postures are told apart.
+    /// One side of a pair by which postures are told apart; the sides of a pair stand after each other.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum PostureWord {
         /// The wrist is in front of axis 1.
@@ -92,14 +92,7 @@ stead_numerics::worded! {
 impl PostureWord {
     /// The other side of its pair.
     pub fn other(self) -> Self {
-        match self {
-            Self::Front => Self::Back,
-            Self::Back => Self::Front,
-            Self::ElbowUp => Self::ElbowDown,
-            Self::ElbowDown => Self::ElbowUp,
-            Self::Flip => Self::NoFlip,
-            Self::NoFlip => Self::Flip,
-        }
+        Self::WORDS[self as usize ^ 1].1
     }
 }
 

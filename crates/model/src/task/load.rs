@@ -12,7 +12,7 @@ use crate::stiffness::matrix::checked;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-/// What the workpiece does to the tool at the tool centre point, in the workpiece frame.
+/// What the workpiece does to the tool at the tool centre point, in the workpiece frame where no other is named.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Wrench {
     /// Force. N
