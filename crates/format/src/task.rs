@@ -225,7 +225,7 @@ fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
             Some(format!("{angle_deg:.2} deg")),
             format!("at least {} deg from the tool axis", stead_model::task::MIN_FEED_TO_AXIS_DEG),
         ),
-        TaskError::Repeated { point } => (*point, "x_mm,y_mm,z_mm", None, "each point at a new place".to_owned()),
+        TaskError::Repeated(point) => (*point, "x_mm,y_mm,z_mm", None, "each point at a new place".to_owned()),
         TaskError::SegmentOrder { point, before, found } => {
             let allowed = match before {
                 0 => "1 at the start".to_owned(),

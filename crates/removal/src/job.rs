@@ -2,11 +2,12 @@
 
 use crate::cutting::{Moving, Tool};
 use crate::lattice::{TileKey, TileLines, tiles_within};
+use crate::load::Sums;
 use crate::moves::{Move, MoveKind};
 use crate::quadrature::Quadrature;
 use crate::reach::Reach;
 use crate::solid_lines::{Body, tile_of};
-use crate::sums::{Event, Found, GOUGE, Requested, Sums};
+use crate::sums::{Event, Found, GOUGE, Requested};
 use crate::tile::{NANO, Tile, nanometres};
 use crate::turn::{Arcs, TurnGrid};
 use nalgebra::Vector3;
@@ -257,7 +258,7 @@ impl Job<'_> {
             let point = removed.at(low + (high - low) * share);
             let volume = cell * cell * (high - low) * weight;
             let Some(bit) = moving.bit(&point, removed.axis, volume) else { continue };
-            let mut event = |event: Event| of_tile.add_event(event, one, bit.volume);
+            let mut event = |event: Event| of_tile.add_event(event, one, bit.sums.volume);
             match one.kind {
                 MoveKind::Rapid => event(Event::Rapid),
                 MoveKind::InPlace => event(Event::InPlace),
@@ -270,13 +271,11 @@ impl Job<'_> {
                     if bit.is_below && bit.radius < self.tool.dead_centre {
                         event(Event::DeadCentre);
                     }
-                    let teeth = self.tool.cutter.teeth().len() as f64;
-                    let of_bit = Sums::of(&bit, one.feed_per_turn / teeth * bit.speed);
                     for (node, part) in shares(one.nodes, bit.when) {
                         if part > 0.0
                             && let Some(sums) = of_nodes.entry(node, Sums::default)
                         {
-                            sums.add(&of_bit, part);
+                            sums.add(&bit.sums, part);
                         }
                     }
                     if self.requested == Requested::Turns {
@@ -305,7 +304,7 @@ impl Job<'_> {
                 continue;
             }
             if let Some(bit) = moving.bit(&point, removed.axis, piece * self.cell * self.cell) {
-                of_tile.add_event(Event::Gouge, moving.one, bit.volume);
+                of_tile.add_event(Event::Gouge, moving.one, bit.sums.volume);
             }
         }
     }

@@ -52,7 +52,7 @@ impl Body {
     pub fn of_stock(problem: &ForcesProblem, cell: f64) -> Result<Self, ForcesError> {
         let small = |extent: [Vector3<f64>; 2]| {
             let length = (extent[1] - extent[0]).max();
-            if length > LARGEST { Err(ForcesError::Large { length }) } else { Ok(extent) }
+            if length > LARGEST { Err(ForcesError::Large(length)) } else { Ok(extent) }
         };
         match &problem.stock {
             Stock::Solid { solid, pose } => {

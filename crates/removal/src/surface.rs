@@ -28,9 +28,9 @@ struct Grid {
 impl Grid {
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn new(workpiece: &Workpiece) -> Self {
-        let [low, high] = *workpiece.extent();
+        let [low, high] = workpiece.body.extent;
         let size = high - low;
-        let step = (size.max() / FINE).max(workpiece.cell());
+        let step = (size.max() / FINE).max(workpiece.cell);
         let counts = [0, 1, 2].map(|k| (size[k] / step).ceil() as usize + 3);
         // Even on both sides, so that no node is on a side.
         let low = Vector3::from_fn(|k, _| low[k] - ((counts[k] - 1) as f64 * step - size[k]) / 2.0);

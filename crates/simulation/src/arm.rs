@@ -43,12 +43,9 @@ pub enum Missing {
     /// The robot has no masses.
     #[error("the robot has no masses and inertias")]
     Dynamics,
-    /// A joint has no stiffness normal to its axis, which the variant takes into account.
-    #[error("joint {joint} has no stiffness and damping normal to its axis")]
-    Orthogonal {
-        /// Number of the joint, from 1.
-        joint: usize,
-    },
+    /// A joint, by its number from 1, has no stiffness normal to its axis, which the variant takes into account.
+    #[error("joint {0} has no stiffness and damping normal to its axis")]
+    Orthogonal(usize),
 }
 
 /// A chain of `N` joints, six of them with motors, and the drives about all.
@@ -140,7 +137,7 @@ impl Arm<18> {
         let parts = Parts::new(robot, spindle, theta)?;
         let mut normal = [Orthogonal { stiffness: [0.0; 2], damping: [0.0; 2] }; 6];
         for (j, slot) in normal.iter_mut().enumerate() {
-            *slot = parts.dynamics[j].orthogonal.ok_or(Missing::Orthogonal { joint: j + 1 })?;
+            *slot = parts.dynamics[j].orthogonal.ok_or(Missing::Orthogonal(j + 1))?;
         }
         // The frame of a row, seen from the same axes in the joint's bearing.
         let bearing = |j: usize| Vector3::new(0.0, 0.0, parts.dynamics[j].bearing);

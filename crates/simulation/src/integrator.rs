@@ -75,12 +75,9 @@ pub enum StepError {
         /// The shortest step tried. s
         step: f64,
     },
-    /// The mass matrix with damping and stiffness is not positive definite.
-    #[error("at {time} s the matrix of the step is not positive definite")]
-    Singular {
-        /// Start of the step. s
-        time: f64,
-    },
+    /// The mass matrix with damping and stiffness is not positive definite: the start of the step. s
+    #[error("at {0} s the matrix of the step is not positive definite")]
+    Singular(f64),
 }
 
 /// The method with its matrix.
@@ -114,7 +111,7 @@ impl<const N: usize> Newmark<N> {
         state: &MotionState<N>,
     ) -> Result<MotionState<N>, StepError> {
         let mut state = *state;
-        let mass = system.tangent(time, &state).mass.cholesky().ok_or(StepError::Singular { time })?;
+        let mass = system.tangent(time, &state).mass.cholesky().ok_or(StepError::Singular(time))?;
         for _ in 0..20 {
             let change = mass.solve(&system.unbalanced(time, &state));
             state.acceleration -= change;
@@ -185,7 +182,7 @@ impl<const N: usize> Newmark<N> {
         let Tangent { mass, damping, stiffness } = system.tangent(time, state);
         let Settings { beta, gamma, .. } = self.settings;
         let matrix = mass + damping * (gamma * step) + stiffness * (beta * step * step);
-        let factor = matrix.cholesky().ok_or(StepError::Singular { time })?;
+        let factor = matrix.cholesky().ok_or(StepError::Singular(time))?;
         self.inverse = Some((step, factor.inverse()));
         self.contraction = MIN_CONTRACTION;
         Ok(())

@@ -89,7 +89,7 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
     let report = if options.report {
         format!("{path}\n")
     } else {
-        say_notes(path.notes());
+        say_notes(&path.notes);
         String::new()
     };
     let [points, scored] = path.point_counts();

@@ -31,12 +31,9 @@ pub struct Engagement {
 /// Why numbers make no engagement.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum EngagementError {
-    /// The diameter is no length.
-    #[error("the cutter diameter must be a finite number above 0, but is {diameter} m")]
-    Diameter {
-        /// Cutter diameter. m
-        diameter: f64,
-    },
+    /// The diameter is no length. m
+    #[error("the cutter diameter must be a finite number above 0, but is {0} m")]
+    Diameter(f64),
     /// The width of cut is wider than the cutter, or nothing.
     #[error("the width of cut must be above 0 and not above the cutter diameter of {diameter} m, but is {width} m")]
     Width {
@@ -135,7 +132,7 @@ impl Engagement {
 }
 
 fn check_diameter(diameter: f64) -> Result<(), EngagementError> {
-    if diameter.is_finite() && diameter > 0.0 { Ok(()) } else { Err(EngagementError::Diameter { diameter }) }
+    if diameter.is_finite() && diameter > 0.0 { Ok(()) } else { Err(EngagementError::Diameter(diameter)) }
 }
 
 fn check_width(width: f64, diameter: f64) -> Result<(), EngagementError> {
@@ -247,8 +244,8 @@ mod tests {
     #[test]
     fn what_is_no_engagement_is_refused() {
         for diameter in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(Engagement::up(0.1, diameter), Err(EngagementError::Diameter { .. })), "{diameter}");
-            assert!(matches!(Engagement::open_slot(0.1, diameter), Err(EngagementError::Diameter { .. })));
+            assert!(matches!(Engagement::up(0.1, diameter), Err(EngagementError::Diameter(_))), "{diameter}");
+            assert!(matches!(Engagement::open_slot(0.1, diameter), Err(EngagementError::Diameter(_))));
         }
         for width in [0.0, -0.1, 1.1, f64::NAN, f64::INFINITY] {
             for make in [Engagement::up, Engagement::down, Engagement::centred] {

@@ -59,7 +59,7 @@ impl CuttingForce<'_> {
     /// Wrench of all teeth while the first is at angle phi (rad), any angle, in the frame of [this
     /// room](crate::cutting).
     pub fn instantaneous_wrench(&self, engagement: &Engagement, phi: f64) -> Wrench {
-        let mut sum = Wrench::zero();
+        let mut sum = Wrench::default();
         for offset in self.cutter.offsets() {
             let phi = (phi + offset).rem_euclid(TAU);
             if engagement.cuts_at(phi) {

@@ -216,7 +216,7 @@ proptest! {
     #[test]
     fn the_closed_form_agrees_with_summing_over_tooth_positions(tool in tools(), engagement in engagements()) {
         let mean = tool.mean_wrench(&engagement);
-        let mut sum = Wrench::zero();
+        let mut sum = Wrench::default();
         let steps = 500;
         for arc in engagement.arcs() {
             let step = (arc.exit - arc.entry) / f64::from(steps);
@@ -229,7 +229,7 @@ proptest! {
         }
         prop_assert!(apart(&tool, &mean, &sum) < 3e-6, "{mean:?} {sum:?}");
 
-        let mut turned = Wrench::zero();
+        let mut turned = Wrench::default();
         let steps = 5000;
         for k in 0..steps {
             // From any start: the teeth follow each other.

@@ -109,7 +109,7 @@ impl<'a> ElasticArm<'a> {
     pub fn sag(&self, theta: &[f64; 6]) -> Displacement<f64> {
         let scale = self.scale_at(&self.robot.compliances_at(theta));
         let posed = self.posed(theta, &Coordinates::zeros());
-        let torques = posed.torques(&self.applied(&posed, &Wrench::zero(), 1.0)) + self.taken(theta);
+        let torques = posed.torques(&self.applied(&posed, &Wrench::default(), 1.0)) + self.taken(theta);
         posed.moved(&(scale * scale.tr_mul(&torques)))
     }
 
@@ -162,7 +162,7 @@ impl<'a> ElasticArm<'a> {
         }
         let planar = [theta[0], theta[1], theta[2], 0.0, theta[4], 0.0];
         let posed = self.posed(&planar, &Coordinates::zeros());
-        let torques = posed.torques(&self.applied(&posed, &Wrench::zero(), 1.0));
+        let torques = posed.torques(&self.applied(&posed, &Wrench::default(), 1.0));
         for (j, _) in dynamics.iter().enumerate().filter(|(_, joint)| joint.gravity_compensated) {
             let k = JOINTS + 3 * j;
             taken[k] = -torques[k];

@@ -285,9 +285,9 @@ pub(crate) fn path_of(
         file: file.to_owned(),
         path: imported.path(file)?,
         rapids: imported.rapids().iter().map(air).collect(),
-        spindle_speed: imported.tool().and_then(|tool| tool.spindle_speed),
-        tool: imported.tool().cloned(),
-        notes: imported.notes().iter().map(|note| format!("{name}: {}", keyed(note)).into()).collect(),
+        spindle_speed: imported.tool.as_ref().and_then(|tool| tool.spindle_speed),
+        tool: imported.tool.clone(),
+        notes: imported.notes.iter().map(|note| format!("{name}: {}", keyed(note)).into()).collect(),
         input,
     })
 }

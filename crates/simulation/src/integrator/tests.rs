@@ -251,7 +251,7 @@ fn weight_and_compensators_bend_the_arm_as_the_static_chain_has_it() {
     let tip = |q: &SVector<f64, 18>| arm.chain.at(q).tip();
     let found = tip(&arm.at_rest(&reference)) - tip(&reference);
     let elastic = ElasticArm::new(&robot, &spindle).in_gravity(*arm.chain.free_fall());
-    let load = Wrench::zero();
+    let load = Wrench::default();
     let exact = elastic.at_rest(&theta, &load).unwrap().translation - tip(&reference);
     // Compensators are taken at the commanded angles there and at the deflected ones here.
     assert!((found - exact).norm() < 2e-3 * exact.norm() && exact.norm() > 1e-4, "{found} {exact}");

@@ -155,7 +155,7 @@ proptest! {
         let (robot, spindle) = heavy(robot, spindle);
         let at = |share: f64| {
             let elastic = ElasticArm::new(&robot, &spindle).in_gravity(FREE_FALL * share);
-            elastic.at_rest(&theta, &Wrench::zero()).unwrap()
+            elastic.at_rest(&theta, &Wrench::default()).unwrap()
         };
         let expected = slope(&at(0.01), &at(-0.01), 0.01);
         let found = ElasticArm::new(&robot, &spindle).in_gravity(FREE_FALL).sag(&theta);
