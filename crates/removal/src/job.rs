@@ -1,7 +1,7 @@
 //! Moves through the lines of a tile: what each sweeps, and what that adds to the sums.
 
 use crate::cutting::{Moving, Tool};
-use crate::lattice::{TileKey, TileLines, tiles_within};
+use crate::lattice::{TileKey, TileLines, by_tile};
 use crate::load::Sums;
 use crate::moves::{Move, MoveKind};
 use crate::quadrature::Quadrature;
@@ -145,15 +145,12 @@ impl Removed<'_> {
 impl Job<'_> {
     /// The tiles that the moves reach, with the holder too where there is one, each with the numbers of its moves.
     pub fn tiles_met(&self) -> Vec<(TileKey, Vec<u32>)> {
-        let mut met: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-        for (index, reach) in self.reaches.iter().enumerate() {
+        let whole = |(index, reach): (usize, &Reach)| {
             let held = self.held.get(index).filter(|held| !held.is_empty());
             let whole = held.map_or(*reach, |held| reach.with(held));
-            if !whole.is_empty() {
-                tiles_within(&whole.0, self.cell).for_each(|key| met.entry(key).or_default().push(index as u32));
-            }
-        }
-        met.into_iter().collect()
+            (!whole.is_empty()).then_some((index as u32, whole.0))
+        };
+        by_tile(self.reaches.iter().enumerate().filter_map(whole), self.cell).into_iter().collect()
     }
 
     /// Takes moves through tiles, each by itself; those not met before are made.
