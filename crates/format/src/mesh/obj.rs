@@ -1,11 +1,12 @@
 //! OBJ: vertices, and faces that name them. Of a face only its vertices are read; one with more than three corners
 //! becomes a fan of triangles, which covers it.
 
-use super::stl::{number_of, shortened};
+use super::stl::number_of;
 use super::{MAX_TRIANGLES, THINNER, Triangles};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_disk::input::InputError;
+use stead_disk::quote::shorten;
 
 /// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface
 /// (points, lines).
@@ -21,10 +22,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
         let mut words = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
         let Some(kind) = words.next() else { continue };
         let fail = |problem: &str, allowed: &str| {
-            Err(InputError::new(file, problem)
-                .at_line(number)
-                .found(format!("'{}'", shortened(&line)))
-                .allowed(allowed))
+            Err(InputError::new(file, problem).at_line(number).found(format!("'{}'", shorten(&line))).allowed(allowed))
         };
         match kind {
             "v" => match words.by_ref().take(3).map(number_of).collect::<Vec<_>>()[..] {
