@@ -21,14 +21,15 @@ pub(super) fn parsed<T: FromStr>(
     text.parse().ok().filter(is_allowed).ok_or_else(|| format!("allowed: {allowed}"))
 }
 
-/// Which of all kinds has a word.
-fn named<T: Copy, const N: usize>(text: &str, all: [T; N], word: fn(T) -> &'static str) -> Result<T, String> {
-    let found = all.into_iter().find(|kind| word(*kind) == text);
-    found.ok_or_else(|| format!("allowed: {}", all.map(word).join(", ")))
+pub(super) fn variant(text: &str) -> Result<Variant, String> {
+    by_word(Variant::WORDS, text)
 }
 
-pub(super) fn variant(text: &str) -> Result<Variant, String> {
-    named(text, Variant::ALL, Variant::word)
+/// The value of a word.
+fn by_word<T: Copy>(words: &[(&str, T)], text: &str) -> Result<T, String> {
+    let found = words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value);
+    let allowed = || words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
+    found.ok_or_else(|| format!("allowed: {}", allowed()))
 }
 
 /// A value for a field, by its path.
@@ -77,7 +78,7 @@ pub(super) fn home(text: &str) -> Result<Home, String> {
 }
 
 pub(super) fn controller(text: &str) -> Result<ControllerKind, String> {
-    named(text, ControllerKind::ALL, ControllerKind::word)
+    by_word(ControllerKind::WORDS, text)
 }
 
 /// Per cent in, a share out.

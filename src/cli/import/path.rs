@@ -24,13 +24,13 @@ pub(in super::super) struct PathOptions {
     #[arg(long, value_name = "C", default_value = "0.01", value_parser = chord, allow_hyphen_values = true)]
     pub chord_mm: f64,
     /// Unit of length, where the file does not state it
-    #[arg(long, value_parser = one_of(&LengthUnit::WORDS))]
+    #[arg(long, value_parser = one_of(LengthUnit::WORDS))]
     pub units: Option<LengthUnit>,
     /// What the file is written in; cldata: a dialect told from the file [default: told from the file]
-    #[arg(long, value_parser = one_of(&CamFormat::WORDS))]
+    #[arg(long, value_parser = one_of(CamFormat::WORDS))]
     pub format: Option<CamFormat>,
     /// Machine that G-code with rotary axes is for
-    #[arg(long, value_parser = one_of(&Machine::WORDS))]
+    #[arg(long, value_parser = one_of(Machine::WORDS))]
     pub machine: Option<Machine>,
     /// Take tool centre point control as on though the G-code has no G43.4
     #[arg(long)]
@@ -88,7 +88,7 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
     let report = if options.report {
         format!("{path}\n")
     } else {
-        say_notes(path.notes());
+        say_notes(&path.notes);
         String::new()
     };
     let [points, scored] = path.point_counts();

@@ -73,7 +73,7 @@ records! {
         joint: usize = joint + 1,
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes were sought
         /// too.
-        about?: &'static str = is_full(found).then(|| found.spring(estimate.parameter).about.name()),
+        about?: &'static str = is_full(found).then(|| found.spring(estimate.parameter).about.word()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
         with?: Vec<SharedFigures> = shared(&found.gauge, found.spring(estimate.parameter)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.

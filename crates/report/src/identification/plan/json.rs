@@ -67,7 +67,7 @@ records! {
         joint: usize = spring.joint + 1,
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought
         /// too.
-        about?: &'static str = is_full.then(|| spring.about.name()),
+        about?: &'static str = is_full.then(|| spring.about.word()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
         with?: Vec<SharedFigures> = gauge.and_then(|gauge| shared(gauge, spring)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
