@@ -17,7 +17,7 @@ use stead_simulation::milling::MaterialRemoval;
 use stead_simulation::surface::Node;
 
 fn main() {
-    for variant in Variant::ALL {
+    for &(_, variant) in Variant::WORDS {
         let run = shipped(variant);
         let times = (0..7).map(|_| {
             let start = Instant::now();
@@ -52,7 +52,7 @@ fn milling_of_a_thousand_turns(bencher: Bencher) {
     let radius = run.cutter.radius();
     let step = 0.05e-3 / 90.0;
     bencher.bench_local(|| {
-        let mut milling = MaterialRemoval::new(&run.cutter, &run.cut).expect("the shipped cut can be done");
+        let mut milling = MaterialRemoval::with_room(&run.cutter, &run.cut, 0).expect("the shipped cut can be done");
         for index in 0..90_000 {
             let place = [step * f64::from(index), radius];
             black_box(milling.force(f64::from(index), place));

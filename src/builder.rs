@@ -8,9 +8,7 @@ use std::ops::Bound::{Excluded, Included};
 use std::ops::RangeBounds;
 use stead_model::published::Published;
 use stead_problem::problem::Problem;
-use stead_problem::settings::CertificateSettings;
-use stead_problem::settings::TransferSettings;
-use stead_problem::settings::{LookupUse, PostureSearch, SearchSettings};
+use stead_problem::settings::{CertificateSettings, LookupUse, PostureSearch, SearchSettings, TransferSettings};
 use stead_problem::table_shape::Shape;
 
 /// What [`Run::place`] does with a problem, and how hard it tries.

@@ -1,17 +1,16 @@
 //! What was understood of a run or a robot file.
 
 use crate::monitor::Warning;
-use crate::result::{Report, result};
+use crate::result::result;
 use crate::robot::Arm;
 use crate::{Error, Monitor, Run};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stead_format::robot::{robot_radians, says_stiffness};
 use stead_numerics::message::Note;
 use stead_placement::overview::Overview;
 use stead_report::check::{CheckedRun, robot_json, robot_lines, run_json, run_text};
 use stead_report::picture::{arm_alone, arm_of_run};
-use stead_report::{Files, Folder};
 
 /// What was understood of a file: figures to compare with what was meant, and the arm as a picture.
 #[derive(Debug, Clone)]
@@ -95,30 +94,11 @@ impl Checked {
     }
 }
 
-impl Report for Checked {
-    fn write_files(&self, folder: &Folder) -> Result<Vec<PathBuf>, Error> {
-        Ok(folder.results("check", &[]).write(&self.files()?)?)
-    }
-
-    fn files(&self) -> Result<Files, Error> {
-        Ok(vec![("check.svg".to_owned(), self.picture.clone().into_bytes())])
-    }
-
-    fn document(&self) -> Value {
-        self.document.clone()
-    }
-
-    fn table(&self) -> String {
-        self.text.clone()
-    }
-
-    fn notes(&self) -> &[Note] {
-        &self.notes
-    }
-
-    fn warnings(&self) -> &[Warning] {
-        &self.warnings
-    }
-}
-
-result!(Checked);
+result! { Checked, self {
+    write(folder) = folder.results("check", &[]).write(&self.files()?);
+    files = Ok::<_, Error>(vec![("check.svg".to_owned(), self.picture.clone().into_bytes())]);
+    document = self.document.clone();
+    table = self.text.clone();
+    notes = self.notes;
+    warnings = self.warnings;
+} }

@@ -9,8 +9,8 @@ pub use stead_removal::surface::Surface;
 pub use stead_run_files::forces::material::Material;
 
 use crate::monitor::Warning;
+use crate::result::printed;
 use crate::{Error, Monitor};
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_disk::Existing;
@@ -112,19 +112,11 @@ impl PathForces {
         let task = task.as_ref();
         check_files(&self.run, task, existing)?;
         let made = forces_files(&self.run, &self.forces)?;
-        let files: Vec<(PathBuf, String)> = Self::files(task)
-            .into_iter()
-            .zip(made)
-            .map(|(file, (_, bytes))| (file, String::from_utf8_lossy(&bytes).into_owned()))
-            .collect();
-        let texts: Vec<(PathBuf, &str)> = files.iter().map(|(file, text)| (file.clone(), text.as_str())).collect();
-        write_all_new(&texts, existing, &self.run.inputs)?;
-        Ok(files.into_iter().map(|(file, _)| file).collect())
-    }
-
-    /// The JSON document that the command prints with `--json`. Units are in the names of the fields.
-    pub fn to_json(&self) -> Value {
-        forces_json(&self.run, &self.forces)
+        let texts: Vec<_> = made.iter().map(|(_, bytes)| String::from_utf8_lossy(bytes)).collect();
+        let files = Self::files(task);
+        let named: Vec<(PathBuf, &str)> = files.iter().cloned().zip(texts.iter().map(|text| &**text)).collect();
+        write_all_new(&named, existing, &self.run.inputs)?;
+        Ok(files)
     }
 
     /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values left at
@@ -139,9 +131,7 @@ impl PathForces {
     }
 }
 
-impl std::fmt::Display for PathForces {
-    /// The text that the command prints.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&forces_text(&self.run, &self.forces))
-    }
-}
+printed! { PathForces, self {
+    document = forces_json(&self.run, &self.forces);
+    table = forces_text(&self.run, &self.forces);
+} }

@@ -7,9 +7,8 @@ pub use stead_programs::{
 
 use crate::files::Existing;
 use crate::monitor::Warning;
+use crate::result::printed;
 use crate::{Error, Monitor, Run};
-use serde_json::Value;
-use std::fmt;
 use std::path::Path;
 use stead_programs::check::{self, ANGLE_DEG, POSITION_MM};
 use stead_programs::{ExportError, ProgramError};
@@ -120,24 +119,12 @@ impl ExportedProgram {
     pub fn warnings(&self) -> &[Warning] {
         &self.program.warnings
     }
-
-    /// The JSON document that the command prints with `--json`.
-    pub fn to_json(&self) -> Value {
-        program_json(&self.program)
-    }
 }
 
-impl fmt::Display for ExportedProgram {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&program_text(&self.program))
-    }
-}
-
-impl serde::Serialize for ExportedProgram {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.to_json().serialize(serializer)
-    }
-}
+printed! { ExportedProgram, self {
+    document = program_json(&self.program);
+    table = program_text(&self.program);
+} }
 
 /// A program compared with its plan.
 #[derive(Debug, Clone)]
@@ -160,49 +147,33 @@ impl CheckedProgram {
         let file = self.check.file.display();
         let counted = |count: usize| if count == 1 { "1 move".to_owned() } else { format!("{count} moves") };
         let (hits, unfollowed) = (self.check.hits.len(), self.check.unfollowed.len());
-        if self.check.is_sound() && hits > 0 {
-            let hit = if hits == 1 { "hits" } else { "hit" };
-            return Err(Error::Failed(format!(
-                "{file}: {} {hit} what stands around; allowed: programs of plans with a free way between all segments",
-                counted(hits)
-            )));
-        }
-        if self.check.is_sound() && unfollowed > 0 {
-            return Err(Error::Failed(format!(
-                "{file}: {} between path points cannot be followed by the arm; allowed: programs of plans without the warning unfollowed-move",
-                counted(unfollowed)
-            )));
-        }
-        if self.check.is_sound() {
-            return Ok(());
-        }
-        if let Some(off) = self.check.contact.as_ref().filter(|off| off.value > self.check.contact_allowed) {
-            return Err(Error::Failed(format!(
-                "{file}: the leaning tool touches {:.4} mm beside the contact of the task at point {}; allowed: {} mm, \
+        let (is_sound, most) = (self.check.is_sound(), self.check.contact_allowed);
+        let wrong = match &self.check.contact {
+            _ if is_sound && hits > 0 => {
+                let hit = if hits == 1 { "hits" } else { "hit" };
+                let allowed = "programs of plans with a free way between all segments";
+                format!("{} {hit} what stands around; allowed: {allowed}", counted(hits))
+            }
+            _ if is_sound && unfollowed > 0 => {
+                let allowed = "programs of plans without the warning unfollowed-move";
+                format!("{} between path points cannot be followed by the arm; allowed: {allowed}", counted(unfollowed))
+            }
+            _ if is_sound => return Ok(()),
+            Some(off) if off.value > most => format!(
+                "the leaning tool touches {:.4} mm beside the contact of the task at point {}; allowed: {most} mm, \
                  lean.contact_tolerance_mm",
-                off.value, off.at.point, self.check.contact_allowed
-            )));
-        }
-        Err(Error::Failed(format!(
-            "{file}: is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \
-             plan, checked with the --corrected, --approach-mm and --blend-mm that it was exported with"
-        )))
-    }
-
-    /// The JSON document that the command prints with `--json`.
-    pub fn to_json(&self) -> Value {
-        program_check_json(&self.check)
+                off.value, off.at.point
+            ),
+            _ => format!(
+                "is not the program of this plan within {POSITION_MM} mm and {ANGLE_DEG} deg; allowed: the main file of a program of this \
+                 plan, checked with the --corrected, --approach-mm and --blend-mm that it was exported with"
+            ),
+        };
+        Err(Error::Failed(format!("{file}: {wrong}")))
     }
 }
 
-impl fmt::Display for CheckedProgram {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&program_check_text(&self.check))
-    }
-}
-
-impl serde::Serialize for CheckedProgram {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.to_json().serialize(serializer)
-    }
-}
+printed! { CheckedProgram, self {
+    document = program_check_json(&self.check);
+    table = program_check_text(&self.check);
+} }

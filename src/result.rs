@@ -107,11 +107,6 @@ macro_rules! result {
                 crate::result::Report::files(self)
             }
 
-            /// The JSON document that the command prints with `--json`. Units are in the names of the fields.
-            pub fn to_json(&self) -> serde_json::Value {
-                crate::result::Report::document(self)
-            }
-
             /// What the user should know about the input though it is not wrong, in sentences: assumptions, and values
             /// left at their defaults.
             pub fn notes(&self) -> &[crate::monitor::Note] {
@@ -124,6 +119,24 @@ macro_rules! result {
             }
         }
 
+        crate::result::printed! { $name, self {
+            document = crate::result::Report::document(self);
+            table = crate::result::Report::table(self);
+        } }
+    };
+}
+pub(crate) use result;
+
+/// What a command prints of a result: its JSON document, and its text.
+macro_rules! printed {
+    ($name:ident, $self:ident { document = $document:expr; table = $table:expr; }) => {
+        impl $name {
+            /// The JSON document that the command prints with `--json`. Units are in the names of the fields.
+            pub fn to_json(&$self) -> serde_json::Value {
+                $document
+            }
+        }
+
         impl serde::Serialize for $name {
             /// As [`to_json`](Self::to_json).
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -133,10 +146,10 @@ macro_rules! result {
 
         impl std::fmt::Display for $name {
             /// The text that the command prints.
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str(&crate::result::Report::table(self))
+            fn fmt(&$self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(&$table)
             }
         }
     };
 }
-pub(crate) use result;
+pub(crate) use printed;

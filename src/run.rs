@@ -250,7 +250,7 @@ impl Run {
         }
         outcome.interrupted |= monitor.should_stop();
         let timing = Timing { wall: started.elapsed().as_secs_f64(), threads: rayon::current_num_threads() };
-        let mut context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        let mut context = Context { stability, ..Context::new(&self.run) };
         context.warnings.extend(outcome.warnings.iter().cloned());
         context.notes.extend(outcome.notes.iter().cloned());
         Ok(Placements { run: Arc::clone(&self.run), outcome, context, timing, certificate: None })
@@ -278,7 +278,7 @@ impl Run {
     /// The JSON document in place of a result where no placement satisfies the constraints: which constraint fails at
     /// which points.
     pub fn infeasible_json(&self, nothing: &Infeasible) -> Value {
-        evaluation::infeasible_json(nothing, &Context::new(&self.run, self.run.search))
+        evaluation::infeasible_json(nothing, &Context::new(&self.run))
     }
 
     /// The exact placement of case 1 (the best) or 3 (the worst) in a results folder that `stead place` has written
@@ -300,7 +300,7 @@ impl Run {
         finite(placement)?;
         let run = self.set_up_at(placement, monitor);
         let Scored { score, stability, notes } = study::score(&run, placement, monitor)?;
-        let mut context = Context { stability, ..Context::new(&self.run, self.run.search) };
+        let mut context = Context { stability, ..Context::new(&self.run) };
         context.warnings.extend(score.warnings.iter().cloned());
         context.notes.extend(notes);
         context.notes.extend(score.notes.iter().cloned());
@@ -318,7 +318,7 @@ impl Run {
             return Err(Error::Argument(format!("no such path point, found {point}; allowed: 0 to {last}")));
         }
         let postures = feasibility::explain(self.problem(), placement, point, beta);
-        let mut context = Context::new(&self.run, self.run.search);
+        let mut context = Context::new(&self.run);
         let computed = [
             study::outside_cell(&self.run, placement),
             feasibility::standing_axes(self.problem(), point, self.is_set_up),

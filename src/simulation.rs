@@ -42,8 +42,8 @@ pub fn overrides(
     let wrong = |what: &str, found: String, allowed: String| {
         Error::Argument(format!("no such {what}, found {found}; allowed: {allowed}"))
     };
-    let named = |name: &str| Variant::ALL.into_iter().find(|variant| variant.word() == name);
-    let known = || Variant::ALL.map(Variant::word).join(", ");
+    let named = |name: &str| Variant::WORDS.iter().find(|(word, _)| *word == name).map(|(_, variant)| *variant);
+    let known = || Variant::WORDS.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
     let variant = variant.map(|name| named(name).ok_or_else(|| wrong("variant", name.to_owned(), known())));
     if let Some(scale) = damping_scale.filter(|scale| !(0.0..=run_files::MAX_DAMPING_SCALE).contains(scale)) {
         let allowed = format!("a number from 0 to {}", run_files::MAX_DAMPING_SCALE);

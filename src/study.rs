@@ -305,7 +305,7 @@ impl Keeping for StudyFolder<'_> {
             outcome.make_sheet(&run.problem, &Monitor::silent());
         }
         let study_case = Some(self.case_of_page(case));
-        let mut context = Context { stability, study_case, ..Context::new(run, run.search) };
+        let mut context = Context { stability, study_case, ..Context::new(run) };
         context.warnings.extend(outcome.warnings.iter().cloned());
         context.notes.extend(outcome.notes.iter().cloned());
         let folder = Folder::create(&self.of_case(case)).map_err(|error| error.to_string())?;

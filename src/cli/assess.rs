@@ -3,7 +3,7 @@
 use super::Failure;
 use super::manual::{Manual, STOPPED};
 use super::output::{out_folder, say_notes};
-use super::progress::{Terminal, on_threads};
+use super::progress::Terminal;
 use super::values::{positive, threads};
 use clap::Args;
 use std::path::PathBuf;
@@ -36,23 +36,16 @@ pub(super) const MANUAL: Manual = Manual {
         "stead assess configs/klimchik-2017.toml",
         "stead assess configs/horizontal-slot.toml --accuracy-mm 0.2 --force-n 500",
     ],
-    files: &[
-        (
-            "map-<robot>.{csv,svg}",
-            "circularity over the plane under the test load; the table has every circle under both loads",
-        ),
-        (
-            "circularity.csv",
-            "smallest, largest and middle circularity of each robot and where, beside published values",
-        ),
-        ("optimal-zones.csv, middle-zones.csv", "largest circularity in square zones"),
-        ("accuracy.csv", "with forces: circularity at the best place without compensation"),
-        ("selection.csv", "with forces and accuracies: which robots reach which accuracy"),
-        ("indicators.svg", "accuracy, reach, payload and price side by side, as far as given"),
-        ("cutting.svg, cutting-*.csv", "with a cutter and a cut: force and torque over a turn"),
-        ("summary.json", "all of it for programs"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+map-<robot>.{csv,svg}: circularity over the plane under the test load; the table has every circle under both loads
+circularity.csv: smallest, largest and middle circularity of each robot and where, beside published values
+optimal-zones.csv, middle-zones.csv: largest circularity in square zones
+accuracy.csv: with forces: circularity at the best place without compensation
+selection.csv: with forces and accuracies: which robots reach which accuracy
+indicators.svg: accuracy, reach, payload and price side by side, as far as given
+cutting.svg, cutting-*.csv: with a cutter and a cut: force and torque over a turn
+summary.json: all of it for programs
+report.html: a page whose charts answer to the pointer",
     failed: "no robot can mill the circle anywhere on the map",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",
     interrupted: STOPPED,
@@ -66,9 +59,8 @@ pub(super) fn run(options: &AssessOptions) -> Result<(), Failure> {
         .map_err(|error| Failure::at("--accuracy-mm and --force-n", error))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let assessment = on_threads(options.threads, || run.assess(&shown.monitor))??;
-    drop(shown);
+    let assessment =
+        Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.assess(monitor))??;
     let timing = assessment.timing();
     out.show(assessment.write_in(&out.folder), &assessment, options.json, |folder| {
         let folder = if folder.is_empty() { folder } else { format!("; results in {folder}") };

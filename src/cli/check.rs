@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::manual::Manual;
-use super::output::{files_written, say_notes, say_warnings, show};
+use super::output::{files_written, say_all, show};
 use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ pub(super) const MANUAL: Manual = Manual {
         "stead check my/kr210.toml --json",
     ],
     written: "with --out",
-    files: &[("check.svg", "the arm from its rows, from the side and from above, with cell and tool path")],
+    files: "check.svg: the arm from its rows, from the side and from above, with cell and tool path",
     done: "done; what looks wrong is noted",
     failed: "the picture could not be written",
     refused: "wrong usage, bad input, or a folder that cannot be written to",
@@ -37,15 +37,11 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), Failure> {
-    let shown = Terminal::start(None).show(None);
-    let checked = Checked::read_with(&options.file, &shown.monitor);
-    drop(shown);
-    let checked = checked?;
-    say_notes(checked.notes());
-    say_warnings(checked.warnings());
+    let checked = Terminal::start(None).during(|monitor| Checked::read_with(&options.file, monitor))?;
+    say_all(checked.notes(), checked.warnings());
     if let Some(out) = &options.out {
-        let folder = Folder::create(out).map_err(Failure::Output)?;
-        folder.has_no_other(MANUAL.file_names()).map_err(Failure::Output)?;
+        let folder = Folder::create(out)?;
+        folder.has_no_other(MANUAL.file_names())?;
         files_written(checked.write_in(&folder))?;
     }
     show(&checked, options.json)

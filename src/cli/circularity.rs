@@ -32,12 +32,11 @@ pub(super) const MANUAL: Manual = Manual {
         "stead circularity tasks/measured-groove.csv --exclude-deg 354:7 --out results/measured-groove",
     ],
     written: "with --out",
-    files: &[
-        ("circularity.json", "the four reference circles with their circularity"),
-        ("deviations.csv", "angle, radii and deviations from each circle of every point"),
-        ("polar.svg", "the profile between its zone circles, the deviation magnified as stated"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+circularity.json: the four reference circles with their circularity
+deviations.csv: angle, radii and deviations from each circle of every point
+polar.svg: the profile between its zone circles, the deviation magnified as stated
+report.html: a page whose charts answer to the pointer",
     failed: "a file could not be written",
     refused: "wrong usage, bad input, points that lie on no circle, or a folder that cannot be written to",
     ..Manual::NEW
@@ -48,8 +47,8 @@ pub(super) fn run(options: &CircularityOptions) -> Result<(), Failure> {
     say_warnings(circularity.warnings());
     let mut folder = String::new();
     if let Some(out) = &options.out {
-        let out = Folder::create(out).map_err(Failure::Output)?;
-        out.has_no_other(MANUAL.file_names()).map_err(Failure::Output)?;
+        let out = Folder::create(out)?;
+        out.has_no_other(MANUAL.file_names())?;
         files_written(circularity.write_in(&out))?;
         folder = out.path().display().to_string();
     }

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::manual::{Manual, STOPPED};
-use super::output::{out_folder, print_json, say_notes, say_warnings};
+use super::output::{out_folder, print_json, say_all, say_notes, say_warnings};
 use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
@@ -32,12 +32,11 @@ pub(super) const MANUAL: Manual = Manual {
         "stead compensate configs/compensate-caro-2013.toml",
         "stead compensate configs/compensate-caro-2013.toml --reality configs/robots/kuka-kr270-2-k1-0.8.toml --out results/check",
     ],
-    files: &[
-        ("corrected-path.csv", "target and commanded pose, joint angles, deflection before and after, status"),
-        ("compensation.svg", "deflection before and after along the path"),
-        ("summary.json", "all of it for programs"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+corrected-path.csv: target and commanded pose, joint angles, deflection before and after, status
+compensation.svg: deflection before and after along the path
+summary.json: all of it for programs
+report.html: a page whose charts answer to the pointer",
     done: "done; points that cannot be compensated keep their target, and a warning says so",
     failed: "no point can be compensated, or with --all-or-nothing some cannot; nothing is written, the message names them with the reason",
     refused: "wrong usage, bad input, a plan that does not fit its run, or a results folder that cannot be written to",
@@ -47,17 +46,13 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &CompensateOptions) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
-    let shown = terminal.show(None);
-    let run = CompensationRun::read_with(&options.config, options.reality.as_deref(), &shown.monitor);
-    drop(shown);
-    let run = run?;
+    let run =
+        terminal.during(|monitor| CompensationRun::read_with(&options.config, options.reality.as_deref(), monitor))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     terminal.holds(&out.folder);
-    say_notes(run.notes());
-    say_warnings(run.warnings());
-    let shown = terminal.show(None);
-    let path = if options.all_or_nothing { run.compensate_all(&shown.monitor) } else { run.compensate(&shown.monitor) };
-    drop(shown);
+    say_all(run.notes(), run.warnings());
+    let path = terminal
+        .during(|monitor| if options.all_or_nothing { run.compensate_all(monitor) } else { run.compensate(monitor) });
     let path = path.inspect_err(|error| {
         if let (true, Error::NotCompensated(failure)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
-use super::output::{say_notes, say_warnings, show};
+use super::output::{say_all, show};
 use super::progress::Terminal;
 use super::values::{finite, point};
 use clap::Args;
@@ -41,7 +41,6 @@ pub(super) fn run(options: &ExplainOptions) -> Result<(), Failure> {
     let (run, placement) = options.place.of(run)?;
     let beta = options.beta_deg.to_radians();
     let explanations = run.explain(&placement, options.point, beta).map_err(|error| Failure::at("--point", error))?;
-    say_notes(explanations.notes());
-    say_warnings(explanations.warnings());
+    say_all(explanations.notes(), explanations.warnings());
     show(&explanations, options.json)
 }

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::given::Force;
 use super::manual::{Manual, STOPPED};
-use super::output::{print, print_json, say_notes, say_warnings, show};
+use super::output::{print, print_json, say_all, say_notes, say_warnings, show};
 use super::progress::Terminal;
 use super::values::finite;
 use clap::Args;
@@ -84,15 +84,11 @@ pub(super) const MANUAL: Manual = Manual {
         "stead export my/run.toml results/run/best.csv --check my/program/PART.src",
     ],
     written: "with --out, none of which may be there yet without --force",
-    files: &[
-        ("NAME.src, NAME_01.src, ..", "krl (KUKA): a main program that calls the parts"),
-        ("NAME.mod, NAME_01.mod, ..", "rapid (ABB, IRC5 and OmniCore), likewise"),
-        (
-            "NAME.ls, NAME_01.ls, ..",
-            "fanuc, likewise: TP programs as text, which the controller or its maker's tools translate",
-        ),
-        ("NAME.csv", "csv, for a post of your own: one row for each move"),
-    ],
+    files: "\
+NAME.src, NAME_01.src, ..: krl (KUKA): a main program that calls the parts
+NAME.mod, NAME_01.mod, ..: rapid (ABB, IRC5 and OmniCore), likewise
+NAME.ls, NAME_01.ls, ..: fanuc, likewise: TP programs as text, which the controller or its maker's tools translate
+NAME.csv: csv, for a post of your own: one row for each move",
     remarks: "The frames to enter at the controller are printed. A part on a turntable needs --mechanism (krl) or \
               --unit (rapid). Programs need [controller] and [root] in the robot file; csv does not. With \
               surroundings, moves between segments are the free ways of `stead place`; a plan with a move that has \
@@ -106,12 +102,8 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &ExportCommand) -> Result<(), Failure> {
     let terminal = Terminal::start(None);
-    let shown = terminal.show(None);
-    let run = Run::read_with(&options.config, Vec::new(), &shown.monitor);
-    drop(shown);
-    let run = run?;
-    say_notes(run.notes());
-    say_warnings(run.warnings());
+    let run = terminal.during(|monitor| Run::read_with(&options.config, Vec::new(), monitor))?;
+    say_all(run.notes(), run.warnings());
     match &options.check {
         Some(program) => check(options, &run, program, &terminal),
         None => export(options, &run, &terminal),
@@ -145,10 +137,7 @@ fn export(options: &ExportCommand, run: &Run, terminal: &Terminal) -> Result<(),
         spindle_off: options.spindle_off.as_deref(),
         ..ExportOptions::new(format, &name)
     };
-    let shown = terminal.show(None);
-    let program = run.export(&options.plan, &requested, &shown.monitor);
-    drop(shown);
-    let program = program?;
+    let program = terminal.during(|monitor| run.export(&options.plan, &requested, monitor))?;
     let written = program.write(out.parent().unwrap_or(Path::new("")), options.force.existing())?;
     say_notes(program.notes());
     say_notes(&written.notes);
@@ -174,10 +163,7 @@ fn check(options: &ExportCommand, run: &Run, program: &Path, terminal: &Terminal
         approach: approach(options, run),
         blend: options.blend_mm / 1e3,
     };
-    let shown = terminal.show(None);
-    let checked = run.check_program(&options.plan, program, &exported, &shown.monitor);
-    drop(shown);
-    let checked = checked?;
+    let checked = terminal.during(|monitor| run.check_program(&options.plan, program, &exported, monitor))?;
     show(&checked, options.json)?;
     Ok(checked.sound()?)
 }

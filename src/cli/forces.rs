@@ -4,7 +4,7 @@ use super::Failure;
 use super::given::Force;
 use super::manual::{Manual, STOPPED};
 use super::output::{print, print_json, say_notes, say_warnings};
-use super::progress::{Terminal, on_threads};
+use super::progress::Terminal;
 use super::values::threads;
 use clap::Args;
 use std::path::PathBuf;
@@ -34,20 +34,13 @@ pub(super) const MANUAL: Manual = Manual {
         "stead forces my/forces.toml --out my/part.csv --json",
     ],
     written: "as --out names them",
-    files: &[
-        (
-            "NAME.csv",
-            "the task: path points with force and moment, points added where the force is not straight between two",
-        ),
-        (
-            "NAME-engagement.csv",
-            "chip and edge part, removed volume, heights and angles of the cut, largest force in a turn",
-        ),
-        ("NAME-forces.svg", "force, moment, height, angles and chip along the path"),
-        ("NAME-forces.html", "a page whose charts answer to the pointer"),
-        ("NAME-stock-before.stl, NAME-stock-after.stl", "the stock before the path and what is left, thinned, in mm"),
-        ("NAME-forces.json", "what --json prints"),
-    ],
+    files: "\
+NAME.csv: the task: path points with force and moment, points added where the force is not straight between two
+NAME-engagement.csv: chip and edge part, removed volume, heights and angles of the cut, largest force in a turn
+NAME-forces.svg: force, moment, height, angles and chip along the path
+NAME-forces.html: a page whose charts answer to the pointer
+NAME-stock-before.stl, NAME-stock-after.stl: the stock before the path and what is left, thinned, in mm
+NAME-forces.json: what --json prints",
     remarks: "A run file that names the task takes its forces from it. Forces are means over a turn at the programmed feed.",
     refused: "wrong usage, bad input, stock that the path does not touch, or a file that is there already (--force replaces it): nothing is written",
     interrupted: STOPPED,
@@ -59,10 +52,7 @@ pub(super) fn run(options: &ForcesOptions) -> Result<(), Failure> {
     // What is there and to be kept is found out before the long work.
     run.check_files(&options.out, options.force.existing())?;
     say_notes(run.notes());
-    let shown = Terminal::start(None).show(None);
-    let forces = on_threads(options.threads, || run.compute(&shown.monitor))?;
-    drop(shown);
-    let forces = forces?;
+    let forces = Terminal::start(None).on_threads(options.threads, |monitor| run.compute(monitor))??;
     say_notes(forces.notes().get(run.notes().len()..).unwrap_or_default());
     say_warnings(forces.warnings());
     let files = forces.write(&options.out, options.force.existing())?;

@@ -2,7 +2,7 @@
 //! model.
 
 use super::Failure;
-use super::progress::{Terminal, on_threads};
+use super::progress::Terminal;
 use super::values::{case, damping_scale, field, finite, quaternion, rpm, variant};
 use clap::Args;
 use std::path::PathBuf;
@@ -38,14 +38,13 @@ impl GivenRun {
 
     /// The same with a certificate of a gap (relative), where one is requested, whatever the file says of one.
     pub fn read_with(&self, gap: Option<f64>, terminal: &Terminal, threads: Option<usize>) -> Result<Run, Failure> {
-        let shown = terminal.show(None);
         let is_set = |key: &str| self.set.iter().any(|value| value.to_string().starts_with(key));
         let mut values = self.set.clone();
         if let (Some(gap), true, false) = (gap, is_set("certificate."), is_set("certificate.gap_percent=")) {
             // The table that the values make needs one.
             values.push(field(&format!("certificate.gap_percent={}", gap * 100.0)).map_err(Error::Argument)?);
         }
-        let run = on_threads(threads, || Run::read_with(&self.config, values, &shown.monitor))??;
+        let run = terminal.on_threads(threads, |monitor| Run::read_with(&self.config, values, monitor))??;
         Ok(match gap {
             Some(gap) => run.with_certificate(gap),
             None => run,

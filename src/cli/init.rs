@@ -55,15 +55,14 @@ pub(super) const MANUAL: Manual = Manual {
         "stead init forces --path my/part.nc --out my/forces.toml",
     ],
     written: "to the folder",
-    files: &[
-        ("place", "run.toml, robot.toml, task.csv, cell.toml"),
-        ("assess", "assess.toml, robot.toml"),
-        ("identify", "identify.toml, robot.toml, sheet.csv"),
-        ("simulate", "simulate.toml, robot.toml (for stead stability too)"),
-        ("study", "study.toml and the files of place; beside a run.toml that is there, study.toml alone"),
-        ("compensate", "compensate.toml, likewise"),
-        ("forces", "forces.toml, part.nc"),
-    ],
+    files: "\
+place: run.toml, robot.toml, task.csv, cell.toml
+assess: assess.toml, robot.toml
+identify: identify.toml, robot.toml, sheet.csv
+simulate: simulate.toml, robot.toml (for stead stability too)
+study: study.toml and the files of place; beside a run.toml that is there, study.toml alone
+compensate: compensate.toml, likewise
+forces: forces.toml, part.nc",
     remarks: "With --robot, --task and --out: one run file for files that are there, with the shapes (ROBOT-cell.toml) \
               and the cutter (TASK-tool.toml) that stead import has left beside them. With --path and --out: one \
               forces file for that path. What they do not say is a guess, named in `guesses`.",

@@ -41,15 +41,11 @@ pub(super) const MANUAL: Manual = Manual {
         "stead live configs/caro-2013.toml --placement-of results/caro-2013",
         "stead live my/run.toml --no-open --port 8017",
     ],
-    files: &[
-        ("placement-1/, placement-2/, ..", "the placements that are kept, each as `stead score --out` writes it"),
-        ("live.json", "where the part stood last and which values were changed, for the next session in the folder"),
-        (
-            "certificate-1.json, ..",
-            "bounds and gaps of placements that were certified, with placement and changed values",
-        ),
-        ("programs/placement-1/, ..", "robot programs of placements that are kept"),
-    ],
+    files: "\
+placement-1/, placement-2/, ..: the placements that are kept, each as `stead score --out` writes it
+live.json: where the part stood last and which values were changed, for the next session in the folder
+certificate-1.json, ..: bounds and gaps of placements that were certified, with placement and changed values
+programs/placement-1/, ..: robot programs of placements that are kept",
     remarks: "The server answers on 127.0.0.1 alone, and only the page that is opened with the address printed. Nothing \
               leaves the machine. Ctrl-C ends it; a job that runs then ends with what it has, which is kept.",
     done: "done: ended by Ctrl-C",
@@ -71,9 +67,7 @@ pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
         values: options.run.values().to_vec(),
         placement_of: options.placement_of.clone().map(|results| (results, options.case.unwrap_or(1))),
     };
-    let shown = terminal.show(None);
-    let session = Session::new(run, requested, out.folder, &shown.monitor)?;
-    drop(shown);
+    let session = terminal.during(|monitor| Session::new(run, requested, out.folder, monitor))?;
     let run = session.run();
     say_notes(run.notes());
     say_notes(session.notes());
@@ -85,11 +79,11 @@ pub(super) fn run(options: &LiveCommand) -> Result<(), Failure> {
     if !options.no_open && !open(&address) {
         say("note: no browser could be opened: open the address above");
     }
-    let waiting = terminal.show(None);
-    while !waiting.monitor.should_stop() {
-        std::thread::sleep(BETWEEN_LOOKS);
-    }
-    drop(waiting);
+    terminal.during(|monitor| {
+        while !monitor.should_stop() {
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
+    });
     server.close();
     Ok(())
 }

@@ -19,7 +19,9 @@ pub(super) struct ManOptions {
 pub(super) const MANUAL: Manual = Manual {
     examples: &["stead man ~/.local/share/man/man1", "man stead-place"],
     written: "to the folder",
-    files: &[("stead.1", "the overview"), ("stead-COMMAND.1", "one page for every command")],
+    files: "\
+stead.1: the overview
+stead-COMMAND.1: one page for every command",
     failed: "a page could not be written",
     refused: "wrong usage, or a folder that cannot be written to",
     ..Manual::NEW
@@ -27,7 +29,7 @@ pub(super) const MANUAL: Manual = Manual {
 
 pub(super) fn run(options: &ManOptions, mut command: clap::Command) -> Result<(), Failure> {
     command.build();
-    let folder = Folder::create(&options.folder).map_err(Failure::Output)?;
+    let folder = Folder::create(&options.folder)?;
     let mut names = Vec::new();
     write_pages(&folder, command, &mut names)?;
     print(format!("{} pages in {}\n", names.len(), folder.path().display()).as_bytes())

@@ -7,8 +7,8 @@ pub(super) struct Manual {
     pub examples: &'static [&'static str],
     /// Where the files go, or why there are none: what follows "Files written".
     pub written: &'static str,
-    /// Names of files, as `wall.csv, map-{best,worst}.{csv,svg}`, and what they hold.
-    pub files: &'static [(&'static str, &'static str)],
+    /// Names of files, as `wall.csv, map-{best,worst}.{csv,svg}`, and behind a colon what they hold: a line each.
+    pub files: &'static str,
     /// What else one has to know.
     pub remarks: &'static str,
     /// When it ends with exit code 0.
@@ -32,7 +32,7 @@ impl Manual {
     pub const NEW: Self = Self {
         examples: &[],
         written: "to the results folder",
-        files: &[],
+        files: "",
         remarks: "",
         done: "done",
         failed: "",
@@ -40,9 +40,14 @@ impl Manual {
         interrupted: "",
     };
 
+    /// Names of files with what they hold, line by line.
+    pub fn files(&self) -> impl Iterator<Item = (&'static str, &'static str)> + use<> {
+        self.files.lines().filter_map(|line| line.split_once(": "))
+    }
+
     /// The names of the files that it writes, those alone that are known before it has run.
     pub fn file_names(&self) -> Vec<String> {
-        let names = self.files.iter().flat_map(|(names, _)| names.split(", "));
+        let names = self.files().flat_map(|(names, _)| names.split(", "));
         names.flat_map(expanded).filter(|name| name.contains('.') && !name.contains(['/', '<'])).collect()
     }
 
@@ -54,10 +59,10 @@ impl Manual {
         if self.files.is_empty() {
             text += &format!(": {}.", self.written);
         } else {
-            let widths = self.files.iter().map(|(names, _)| names.len());
+            let widths = self.files().map(|(names, _)| names.len());
             let width = widths.max().unwrap_or(0).min(38);
             text += &format!(" {}:", self.written);
-            for (names, content) in self.files {
+            for (names, content) in self.files() {
                 // Names that leave no room stand on a line of their own.
                 let gap = if names.len() > width {
                     "\n".to_owned() + &" ".repeat(width + 4)

@@ -55,7 +55,7 @@ enum Failure {
     Usage(String),
     /// A place to write to is wrong.
     #[error("{0}")]
-    Output(ReportError),
+    Output(#[from] ReportError),
     /// Ctrl-C ended the job early; what it had by then is shown, and that it was interrupted is said.
     #[error("interrupted")]
     Interrupted,

@@ -39,6 +39,12 @@ pub(super) fn say_warnings(warnings: &[Warning]) {
     warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
 }
 
+/// Says both.
+pub(super) fn say_all(notes: &[impl Display], warnings: &[Warning]) {
+    say_notes(notes);
+    say_warnings(warnings);
+}
+
 /// The line of a summary on what else is said, and where.
 pub(super) fn more(count: usize, folder: &str) -> Option<SummaryLine> {
     let text = match (count, folder) {
@@ -144,7 +150,7 @@ pub(super) fn out_folder_named(
     name.push(ending);
     let path = requested.map_or_else(|| Path::new("results").join(name), Path::to_owned);
     let is_new = !path.exists();
-    let folder = Folder::create(&path).map_err(Failure::Output)?;
-    folder.has_no_other(manual.file_names()).map_err(Failure::Output)?;
+    let folder = Folder::create(&path)?;
+    folder.has_no_other(manual.file_names())?;
     Ok(OutFolder { folder, _made: is_new.then_some(MadeFolder(path)) })
 }

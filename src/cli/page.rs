@@ -16,7 +16,7 @@ pub(super) struct PageOptions {
 /// What the help and the guide say of it.
 pub(super) const MANUAL: Manual = Manual {
     examples: &["stead page results/caro-2013"],
-    files: &[("report.html, cell.glb", "the page and the scene, the same as the run has left them")],
+    files: "report.html, cell.glb: the page and the scene, the same as the run has left them",
     failed: "a file could not be written",
     refused: "wrong usage, or a folder that lacks a file, mixes two runs, is of another format or was changed since",
     ..Manual::NEW

@@ -3,14 +3,16 @@
 use super::Failure;
 use super::given::GivenRun;
 use super::manual::Manual;
-use super::output::{files_written, left_in, more, out_folder, print, print_json, say, say_notes, say_warnings};
-use super::progress::{Terminal, on_threads};
+use super::output::{
+    files_written, left_in, more, out_folder, print, print_json, say, say_all, say_notes, say_warnings,
+};
+use super::progress::Terminal;
 use super::values::{gap, positive, seed, threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::program::ProgramFormat;
 use stead::report::{Folder, summary_line, summary_text};
-use stead::{Error, Placements, Run};
+use stead::{Error, Monitor, Placements, Run};
 
 #[derive(Debug, Args)]
 pub(super) struct PlaceOptions {
@@ -60,39 +62,28 @@ pub(super) const MANUAL: Manual = Manual {
         "stead place configs/caro-2013.toml --certify 0.5 --time-limit 60 --no-worst",
         "stead place configs/caro-2013.toml --set 'cell.z_mm=[-602, -402]' --set robot.joints[1].stiffness_mnm_per_rad=0.8",
     ],
-    files: &[
-        ("placements.csv", "the four cases: pose, postures, mean and largest deflection, times, highest feed"),
-        ("best.csv, worst.csv", "plan of the best and of the worst placement, point by point"),
-        ("best-worst-plan.csv, worst-worst-plan.csv", "the same placements with the worst plan of the spindle angle"),
-        (
-            "deflection-map-{best,worst}.{csv,svg}",
-            "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
-        ),
-        (
-            "lean-map.csv",
-            "with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
-        ),
-        ("convergence.{csv,svg}", "the genetic searches, generation by generation"),
-        ("refinements.csv", "the gradient refinement of each basin: start, end, optimality residual, status"),
-        ("transfers.csv", "joint moves between segments: duration and largest travel"),
-        ("cell.svg", "the cell from above: reach, limits, placements"),
-        (
-            "setup.svg",
-            "setup sheet of the best placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false or --no-page",
-        ),
-        ("notes.txt", "the summary, the tables of all cases, every warning and every note"),
-        ("summary.json", "all of it for programs, with the keys of the run file and their values"),
-        (
-            "report.html, cell.glb, page-data.json",
-            "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false or --no-page",
-        ),
-        ("stability-{best,worst}.csv, stability.svg", "with a table [stability]: critical depth along the path"),
-        ("certificate.json", "with --certify or a table [certificate]: bounds and gaps, and why where there are none"),
-        (
-            "open-region.{csv,svg}, open-region-worst.svg",
-            "with --certify or a table [certificate]: where a placement may be better, or worse, by more than the gap",
-        ),
-    ],
+    files: "\
+placements.csv: the four cases: pose, postures, mean and largest deflection, times, highest feed
+best.csv, worst.csv: plan of the best and of the worst placement, point by point
+best-worst-plan.csv, worst-worst-plan.csv: the same placements with the worst plan of the spindle angle
+deflection-map-{best,worst}.{csv,svg}: smallest deflection, or what forbids it, over path point and spindle angle; \
+    unless [output] maps = false
+lean-map.csv: with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless \
+    [output] maps = false
+convergence.{csv,svg}: the genetic searches, generation by generation
+refinements.csv: the gradient refinement of each basin: start, end, optimality residual, status
+transfers.csv: joint moves between segments: duration and largest travel
+cell.svg: the cell from above: reach, limits, placements
+setup.svg: setup sheet of the best placement, an A4 page to print: where all stands, check points, tolerances; unless \
+    [output] page = false or --no-page
+notes.txt: the summary, the tables of all cases, every warning and every note
+summary.json: all of it for programs, with the keys of the run file and their values
+report.html, cell.glb, page-data.json: page for the browser, moving 3-D scene, what `stead page` makes both of; \
+    unless [output] page = false or --no-page
+stability-{best,worst}.csv, stability.svg: with a table [stability]: critical depth along the path
+certificate.json: with --certify or a table [certificate]: bounds and gaps, and why where there are none
+open-region.{csv,svg}, open-region-worst.svg: with --certify or a table [certificate]: where a placement may be \
+    better, or worse, by more than the gap",
     remarks: "With --no-worst no file of the worst placement is written.",
     done: "done; also when a certificate did not reach its gap or was ended by Ctrl-C",
     failed: "no feasible placement was found, or a file could not be written after the search",
@@ -121,14 +112,11 @@ fn read(options: &PlaceOptions, terminal: &Terminal) -> Result<Run, Failure> {
 
 /// The placements that are found; where there are none, what was read is said with the error.
 fn search(options: &PlaceOptions, run: &Run, terminal: &Terminal) -> Result<Placements, Failure> {
-    let shown = terminal.show(None);
-    let found = on_threads(options.threads, || run.search(&shown.monitor))?;
-    let was_stopped = shown.monitor.should_stop();
-    drop(shown);
-    let placements = found.inspect_err(|error| {
+    let search = |monitor: &Monitor| (run.search(monitor), monitor.should_stop());
+    let (found, was_stopped) = terminal.on_threads(options.threads, search)?;
+    Ok(found.inspect_err(|error| {
         if is_short(options) {
-            say_notes(run.notes());
-            say_warnings(run.warnings());
+            say_all(run.notes(), run.warnings());
         }
         if let (true, Error::Infeasible(nothing)) = (options.json, error) {
             // What cannot be printed is said as the error all the same.
@@ -137,8 +125,7 @@ fn search(options: &PlaceOptions, run: &Run, terminal: &Terminal) -> Result<Plac
         if was_stopped {
             say("interrupted: this is what was found so far, not the end of the search");
         }
-    })?;
-    Ok(placements)
+    })?)
 }
 
 /// Whether the result is printed in a few lines.
@@ -154,8 +141,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
     terminal.holds(&out.folder);
     let is_short = is_short(options);
     if !is_short {
-        say_notes(run.notes());
-        say_warnings(run.warnings());
+        say_all(run.notes(), run.warnings());
     }
     say_warnings(run.certificate_warning().as_slice());
     say_notes(run.certificate_note().as_slice());
@@ -188,9 +174,7 @@ pub(super) fn run(options: &PlaceOptions) -> Result<(), Failure> {
         say_warnings(placements.warnings().get(run.warnings().len()..).unwrap_or_default());
     }
 
-    let shown = terminal.show(None);
-    let is_certified = on_threads(options.threads, || placements.certify(&shown.monitor).is_some())?;
-    drop(shown);
+    let is_certified = terminal.on_threads(options.threads, |monitor| placements.certify(monitor).is_some())?;
     if is_certified {
         written = written.and(show_certificate(options, &run, &placements, &out.folder, waits));
     }

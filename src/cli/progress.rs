@@ -14,16 +14,6 @@ use stead_certify::{Forecast, Outlook};
 use stead_numerics::monitor::{Monitor, Progress, StopHandle};
 use stead_report::output::Folder;
 
-/// Runs a job on so many threads, or on as many as there are processors.
-pub(super) fn on_threads<T: Send>(threads: Option<usize>, job: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = threads {
-        builder = builder.num_threads(threads);
-    }
-    let pool = builder.build().map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
-    Ok(pool.install(job))
-}
-
 /// Between two lines where standard error is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(30);
 
@@ -37,9 +27,9 @@ pub(super) struct Terminal {
 }
 
 /// A monitor that shows progress on standard error, until it is dropped.
-pub(super) struct Shown {
+struct Shown {
     /// What the job reports to.
-    pub monitor: Monitor,
+    monitor: Monitor,
     bar: ProgressBar,
     /// What writes lines, where there is no terminal.
     _lines: Option<Lines>,
@@ -79,8 +69,23 @@ impl Terminal {
         *locked(&self.lock) = Some(out.lock_file().to_owned());
     }
 
-    /// A monitor of one job, stopped by Ctrl-C, or at a deadline.
-    pub fn show(&self, deadline: Option<Instant>) -> Shown {
+    /// Does a job with a monitor that shows its progress until it has ended, and is stopped by Ctrl-C.
+    pub fn during<T>(&self, job: impl FnOnce(&Monitor) -> T) -> T {
+        job(&self.show().monitor)
+    }
+
+    /// Does a job so on so many threads, or on as many as there are processors.
+    pub fn on_threads<T, F>(&self, threads: Option<usize>, job: F) -> Result<T, Failure>
+    where
+        T: Send,
+        F: FnOnce(&Monitor) -> T + Send,
+    {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
+        let pool = pool.map_err(|e| Failure::Job(format!("the threads cannot be started: {e}")))?;
+        Ok(self.during(|monitor| pool.install(|| job(monitor))))
+    }
+
+    fn show(&self) -> Shown {
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
         *locked(&self.bar) = bar.clone();
         let (monitor, lines) = if std::io::stderr().is_terminal() {
@@ -112,7 +117,7 @@ impl Terminal {
             };
             (Monitor::new(keep), Some(lines))
         };
-        Shown { monitor: monitor.with_stop(self.stop.clone()).with_deadline(deadline), bar, _lines: lines }
+        Shown { monitor: monitor.with_stop(self.stop.clone()), bar, _lines: lines }
     }
 }
 

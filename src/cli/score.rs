@@ -3,8 +3,8 @@
 use super::Failure;
 use super::given::{GivenPlacement, GivenRun};
 use super::manual::Manual;
-use super::output::{files_written, left_in, more, print, print_json, say_notes, say_warnings, show};
-use super::progress::{Terminal, on_threads};
+use super::output::{files_written, left_in, more, print, print_json, say_all, say_notes, say_warnings, show};
+use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
 use stead::Error;
@@ -40,29 +40,20 @@ pub(super) const MANUAL: Manual = Manual {
         "stead score configs/tilting-table.toml --x-mm 1700 --y-mm 0 --z-mm 700 --yaw-deg 0 --orientation flat",
     ],
     written: "with --out",
-    files: &[
-        ("best-plan.csv, worst-plan.csv", "the two plans, point by point"),
-        (
-            "deflection-map.{csv,svg}",
-            "smallest deflection, or what forbids it, over path point and spindle angle; unless [output] maps = false",
-        ),
-        (
-            "lean-map.csv",
-            "with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless [output] maps = false",
-        ),
-        ("placement.svg", "the cell from above with the placement"),
-        (
-            "report.html, cell.glb, page-data.json",
-            "page for the browser, moving 3-D scene, what `stead page` makes both of; unless [output] page = false",
-        ),
-        (
-            "setup.svg",
-            "setup sheet of the placement, an A4 page to print: where all stands, check points, tolerances; unless [output] page = false",
-        ),
-        ("notes.txt", "the summary, the table, every warning and every note"),
-        ("score.json", "what --json prints, and with a setup sheet its numbers"),
-        ("stability-{best,worst}-plan.csv, stability.svg", "with a table [stability]: critical depth along the path"),
-    ],
+    files: "\
+best-plan.csv, worst-plan.csv: the two plans, point by point
+deflection-map.{csv,svg}: smallest deflection, or what forbids it, over path point and spindle angle; unless [output] \
+    maps = false
+lean-map.csv: with a table [lean]: smallest deflection over lead and tilt at the worst point of the best plan; unless \
+    [output] maps = false
+placement.svg: the cell from above with the placement
+report.html, cell.glb, page-data.json: page for the browser, moving 3-D scene, what `stead page` makes both of; \
+    unless [output] page = false
+setup.svg: setup sheet of the placement, an A4 page to print: where all stands, check points, tolerances; unless \
+    [output] page = false
+notes.txt: the summary, the table, every warning and every note
+score.json: what --json prints, and with a setup sheet its numbers
+stability-{best,worst}-plan.csv, stability.svg: with a table [stability]: critical depth along the path",
     failed: "the placement is infeasible, with the violated constraints and the path points, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",
     interrupted: "ended early by Ctrl-C: both plans are there, critical depths, the map of a long path and that over lead and tilt may be left out",
@@ -74,30 +65,27 @@ pub(super) fn run(options: &ScoreOptions) -> Result<(), Failure> {
     let run = options.run.read(&terminal, None)?;
     let (run, placement) = options.place.of(run)?;
     // Taken before the work is done.
-    let out = options.out.as_deref().map(Folder::create).transpose().map_err(Failure::Output)?;
+    let out = options.out.as_deref().map(Folder::create).transpose()?;
     let out = out.map(|folder| folder.keeping_partial(options.keep_partial));
-    out.iter().try_for_each(|out| out.has_no_other(MANUAL.file_names())).map_err(Failure::Output)?;
+    out.iter().try_for_each(|out| out.has_no_other(MANUAL.file_names()))?;
     out.iter().for_each(|out| terminal.holds(out));
     let is_short = !options.notes && !options.json;
     let outside_cell = run.outside_cell(&placement);
     let say_read = || {
-        say_notes(run.notes());
-        say_warnings(run.warnings());
+        say_all(run.notes(), run.warnings());
         say_notes(outside_cell.as_slice());
     };
     if !is_short {
         say_read();
     }
-    let shown = terminal.show(None);
-    let score = on_threads(None, || {
-        let mut score = run.score(&placement, &shown.monitor)?;
+    let score = terminal.on_threads(None, |monitor| {
+        let mut score = run.score(&placement, monitor)?;
         if options.out.is_some() {
-            score.map(&shown.monitor);
-            score.make_sheet(&shown.monitor);
+            score.map(monitor);
+            score.make_sheet(monitor);
         }
         Ok(score)
     })?;
-    drop(shown);
     let score = score.inspect_err(|error| {
         if is_short {
             say_read();

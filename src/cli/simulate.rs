@@ -3,7 +3,7 @@
 use super::Failure;
 use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
-use super::output::{out_folder, results_in, say_notes, say_warnings};
+use super::output::{out_folder, results_in, say_all};
 use super::progress::Terminal;
 use clap::Args;
 use std::path::PathBuf;
@@ -31,13 +31,12 @@ pub(super) const MANUAL: Manual = Manual {
         "stead simulate configs/umons-aluminium.toml --variant gravity",
         "stead simulate configs/umons-steel.toml --damping-scale 10 --out results/steel-damped",
     ],
-    files: &[
-        ("series.csv", "forces and tool positions over time"),
-        ("wall.csv, wall.svg", "profile of the wall that is left, and its roughness"),
-        ("forces.svg, turns.svg", "forces over the pass, and over three turns of the spindle"),
-        ("summary.json", "all of it for programs"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+series.csv: forces and tool positions over time
+wall.csv, wall.svg: profile of the wall that is left, and its roughness
+forces.svg, turns.svg: forces over the pass, and over three turns of the spindle
+summary.json: all of it for programs
+report.html: a page whose charts answer to the pointer",
     done: "done; an unstable cut is a result, too",
     failed: "the pass cannot be simulated, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",
@@ -48,11 +47,7 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &SimulateOptions) -> Result<(), Failure> {
     let run = SimulationRun::read_with(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let pass = run.simulate(&shown.monitor);
-    drop(shown);
-    let pass = pass?;
-    say_notes(pass.notes());
-    say_warnings(pass.warnings());
+    let pass = Terminal::start(Some(&out.folder)).during(|monitor| run.simulate(monitor))?;
+    say_all(pass.notes(), pass.warnings());
     out.show(pass.write_in(&out.folder), &pass, options.json, results_in)
 }

@@ -3,8 +3,8 @@
 use super::Failure;
 use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
-use super::output::{out_folder_named, results_in, say_notes, say_warnings};
-use super::progress::{Terminal, on_threads};
+use super::output::{out_folder_named, results_in, say_all};
+use super::progress::Terminal;
 use super::values::threads;
 use clap::Args;
 use std::path::PathBuf;
@@ -34,16 +34,13 @@ pub(super) const MANUAL: Manual = Manual {
         "stead stability configs/umons-steel.toml",
         "stead stability configs/umons-steel.toml --damping-scale 10 --spindle-rpm 5000 --out results/steel-5000",
     ],
-    files: &[
-        ("lobes.{csv,svg}", "critical depth over spindle speed, by semi-discretisation and by the zero-order solution"),
-        (
-            "frequency-response.{csv,svg}",
-            "frequency response function of the tool tip: along the feed, along the wall normal, and cross",
-        ),
-        ("modes.csv", "natural frequencies, damping ratios and mode shapes"),
-        ("summary.json", "all of it for programs, with the verdict on the given cut"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+lobes.{csv,svg}: critical depth over spindle speed, by semi-discretisation and by the zero-order solution
+frequency-response.{csv,svg}: frequency response function of the tool tip: along the feed, along the wall normal, and \
+    cross
+modes.csv: natural frequencies, damping ratios and mode shapes
+summary.json: all of it for programs, with the verdict on the given cut
+report.html: a page whose charts answer to the pointer",
     done: "done, whether the cut is stable or not",
     failed: "the small motions of the arm cannot be computed there, or a file could not be written",
     refused: "wrong usage, bad input, or a results folder that cannot be written to",
@@ -54,11 +51,7 @@ pub(super) const MANUAL: Manual = Manual {
 pub(super) fn run(options: &StabilityOptions) -> Result<(), Failure> {
     let run = StabilityRun::read_with(&options.config, &Overrides::from(&options.model))?;
     let out = out_folder_named(options.out.as_deref(), &options.config, "-stability", &MANUAL)?;
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let analysis = on_threads(options.threads, || run.analyse(&shown.monitor))?;
-    drop(shown);
-    let analysis = analysis?;
-    say_notes(analysis.notes());
-    say_warnings(analysis.warnings());
+    let analysis = Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.analyse(monitor))??;
+    say_all(analysis.notes(), analysis.warnings());
     out.show(analysis.write_in(&out.folder), &analysis, options.json, results_in)
 }

@@ -1,5 +1,7 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
+use std::fmt::Display;
+use std::str::FromStr;
 use stead::MAX_THREADS;
 use stead_assessment::roundness::Sector;
 use stead_format::MAX_SPINDLE_SPEED_RPM;
@@ -10,9 +12,24 @@ use stead_run_files::{GAPS_ALLOWED, MAX_DAMPING_SCALE};
 use stead_simulation::arm::Variant;
 use stead_study::cases::Shard;
 
+/// A number that is as it should be.
+pub(super) fn parsed<T: FromStr>(
+    text: &str,
+    is_allowed: impl FnOnce(&T) -> bool,
+    allowed: impl Display,
+) -> Result<T, String> {
+    text.parse().ok().filter(is_allowed).ok_or_else(|| format!("allowed: {allowed}"))
+}
+
 pub(super) fn variant(text: &str) -> Result<Variant, String> {
-    let found = Variant::ALL.into_iter().find(|variant| variant.word() == text);
-    found.ok_or_else(|| format!("allowed: {}", Variant::ALL.map(Variant::word).join(", ")))
+    by_word(Variant::WORDS, text)
+}
+
+/// The value of a word.
+fn by_word<T: Copy>(words: &[(&str, T)], text: &str) -> Result<T, String> {
+    let found = words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value);
+    let allowed = || words.iter().map(|(word, _)| *word).collect::<Vec<_>>().join(", ");
+    found.ok_or_else(|| format!("allowed: {}", allowed()))
 }
 
 /// A value for a field, by its path.
@@ -21,24 +38,21 @@ pub(super) fn field(text: &str) -> Result<FieldOverride, String> {
 }
 
 pub(super) fn damping_scale(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number from 0 to {MAX_DAMPING_SCALE}");
-    finite(text).ok().filter(|scale| (0.0..=MAX_DAMPING_SCALE).contains(scale)).ok_or_else(allowed)
+    let allowed = format_args!("a number from 0 to {MAX_DAMPING_SCALE}");
+    parsed(text, |scale| (0.0..=MAX_DAMPING_SCALE).contains(scale), allowed)
 }
 
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
-    let allowed = || format!("allowed: a number above 0 and not above {MAX_SPINDLE_SPEED_RPM}");
-    finite(text).ok().filter(|rpm| *rpm > 0.0 && *rpm <= MAX_SPINDLE_SPEED_RPM).ok_or_else(allowed)
+    let allowed = format_args!("a number above 0 and not above {MAX_SPINDLE_SPEED_RPM}");
+    parsed(text, |rpm| *rpm > 0.0 && *rpm <= MAX_SPINDLE_SPEED_RPM, allowed)
 }
 
 pub(super) fn finite(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err("allowed: a finite decimal number".to_owned()),
-    }
+    parsed(text, |value: &f64| value.is_finite(), "a finite decimal number")
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|v| *v > 0.0).ok_or_else(|| "allowed: a finite decimal number above 0".to_owned())
+    parsed(text, |value: &f64| value.is_finite() && *value > 0.0, "a finite decimal number above 0")
 }
 
 /// Six numbers with commas between them.
@@ -64,8 +78,7 @@ pub(super) fn home(text: &str) -> Result<Home, String> {
 }
 
 pub(super) fn controller(text: &str) -> Result<ControllerKind, String> {
-    let found = ControllerKind::ALL.into_iter().find(|kind| kind.word() == text);
-    found.ok_or_else(|| format!("allowed: {}", ControllerKind::ALL.map(ControllerKind::word).join(", ")))
+    by_word(ControllerKind::WORDS, text)
 }
 
 /// Per cent in, a share out.
@@ -82,19 +95,19 @@ pub(super) fn sector(text: &str) -> Result<Sector, String> {
 }
 
 pub(super) fn quaternion(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|q| (-1.0..=1.0).contains(q)).ok_or_else(|| "allowed: a number from -1 to 1".to_owned())
+    parsed(text, |q| (-1.0..=1.0).contains(q), "a number from -1 to 1")
 }
 
 /// Seeds are what a run file can hold too.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     const MAX: u64 = i64::MAX as u64;
-    text.parse().ok().filter(|n| *n <= MAX).ok_or_else(|| format!("allowed: a whole number from 0 to {MAX}"))
+    parsed(text, |seed| *seed <= MAX, format_args!("a whole number from 0 to {MAX}"))
 }
 
 /// Per cent in, a share out.
 pub(super) fn noise(text: &str) -> Result<f64, String> {
-    let percent = finite(text).ok().filter(|percent| (0.0..100.0).contains(percent));
-    percent.map(|percent| percent / 100.0).ok_or_else(|| "allowed: a number from 0 to below 100".to_owned())
+    parsed(text, |percent| (0.0..100.0).contains(percent), "a number from 0 to below 100")
+        .map(|percent| percent / 100.0)
 }
 
 /// A part of a study.
@@ -106,23 +119,17 @@ pub(super) fn shard(text: &str) -> Result<Shard, String> {
 const MAX_SHARDS: usize = 1000;
 
 pub(super) fn shards(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|n| (1..=MAX_SHARDS).contains(n))
-        .ok_or_else(|| format!("allowed: a whole number from 1 to {MAX_SHARDS}"))
+    parsed(text, |n| (1..=MAX_SHARDS).contains(n), format_args!("a whole number from 1 to {MAX_SHARDS}"))
 }
 
 pub(super) fn case(text: &str) -> Result<u8, String> {
-    text.parse().ok().filter(|case| [1, 3].contains(case)).ok_or_else(|| "allowed: 1 or 3".to_owned())
+    parsed(text, |case| [1, 3].contains(case), "1 or 3")
 }
 
 pub(super) fn point(text: &str) -> Result<usize, String> {
-    text.parse().map_err(|_| "allowed: a whole number from 0".to_owned())
+    parsed(text, |_| true, "a whole number from 0")
 }
 
 pub(super) fn threads(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|n| (1..=MAX_THREADS).contains(n))
-        .ok_or_else(|| format!("allowed: a whole number from 1 to {MAX_THREADS}"))
+    parsed(text, |n| (1..=MAX_THREADS).contains(n), format_args!("a whole number from 1 to {MAX_THREADS}"))
 }

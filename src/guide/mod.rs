@@ -33,93 +33,18 @@
 //!
 //! The pages are the files `src/guide/*.md` of the repository. Their examples in Rust run as tests.
 
-#[doc = include_str!("assess.md")]
-pub mod assess {}
-#[doc = include_str!("assessment_file.md")]
-pub mod assessment_file {}
-#[doc = include_str!("cell_setup.md")]
-pub mod cell_setup {}
-#[doc = include_str!("certify.md")]
-pub mod certify {}
-#[doc = include_str!("circularity.md")]
-pub mod circularity {}
-#[doc = include_str!("columns.md")]
-pub mod columns {}
-#[doc = include_str!("compensate.md")]
-pub mod compensate {}
-#[doc = include_str!("compensation_file.md")]
-pub mod compensation_file {}
-#[doc = include_str!("conventions.md")]
-pub mod conventions {}
-#[doc = include_str!("explain.md")]
-pub mod explain {}
-#[doc = include_str!("export.md")]
-pub mod export {}
-#[doc = include_str!("files.md")]
-pub mod files {}
-#[doc = include_str!("forces.md")]
-pub mod forces {}
-#[doc = include_str!("forces_file.md")]
-pub mod forces_file {}
-#[doc = include_str!("glossary.md")]
-pub mod glossary {}
-#[doc = include_str!("identification_file.md")]
-pub mod identification_file {}
-#[doc = include_str!("identify.md")]
-pub mod identify {}
-#[doc = include_str!("import_path.md")]
-pub mod import_path {}
-#[doc = include_str!("import_robot.md")]
-pub mod import_robot {}
-#[doc = include_str!("lean.md")]
-pub mod lean {}
-#[doc = include_str!("library.md")]
-pub mod library {}
-#[doc = include_str!("live.md")]
-pub mod live {}
-#[doc = include_str!("method.md")]
-pub mod method {}
-#[doc = include_str!("objective.md")]
-pub mod objective {}
-#[doc = include_str!("page.md")]
-pub mod page {}
-#[doc = include_str!("place.md")]
-pub mod place {}
-#[doc = include_str!("python.md")]
-pub mod python {}
-#[doc = include_str!("release.md")]
-pub mod release {}
-#[doc = include_str!("robot_file.md")]
-pub mod robot_file {}
-#[doc = include_str!("robots.md")]
-pub mod robots {}
-#[doc = include_str!("run_file.md")]
-pub mod run_file {}
-#[doc = include_str!("score.md")]
-pub mod score {}
-#[doc = include_str!("simulate.md")]
-pub mod simulate {}
-#[doc = include_str!("simulation_file.md")]
-pub mod simulation_file {}
-#[doc = include_str!("stability.md")]
-pub mod stability {}
-#[doc = include_str!("starting.md")]
-pub mod starting {}
-#[doc = include_str!("studies.md")]
-pub mod studies {}
-#[doc = include_str!("study.md")]
-pub mod study {}
-#[doc = include_str!("study_file.md")]
-pub mod study_file {}
-#[doc = include_str!("surroundings.md")]
-pub mod surroundings {}
-#[doc = include_str!("tables.md")]
-pub mod tables {}
-#[doc = include_str!("troubleshooting.md")]
-pub mod troubleshooting {}
-#[doc = include_str!("validation.md")]
-pub mod validation {}
-#[doc = include_str!("whole_arm.md")]
-pub mod whole_arm {}
-#[doc = include_str!("your_cell.md")]
-pub mod your_cell {}
+/// A module for every page, with the page as its comment.
+macro_rules! pages {
+    ($($name:ident),*) => {$(
+        #[doc = include_str!(concat!(stringify!($name), ".md"))]
+        pub mod $name {}
+    )*};
+}
+
+pages! {
+    assess, assessment_file, cell_setup, certify, circularity, columns, compensate, compensation_file,
+    conventions, explain, export, files, forces, forces_file, glossary, identification_file, identify,
+    import_path, import_robot, lean, library, live, method, objective, page, place, python, release, robot_file,
+    robots, run_file, score, simulate, simulation_file, stability, starting, studies, study, study_file,
+    surroundings, tables, troubleshooting, validation, whole_arm, your_cell
+}

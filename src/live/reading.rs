@@ -20,7 +20,7 @@ pub(super) struct Reading {
 
 impl Reading {
     pub fn new(version: u64, run: Run, edits: Vec<FieldOverride>) -> Self {
-        let context = Context::new(&run.run, run.run.search);
+        let context = Context::new(&run.run);
         Self { version, run, context, edits }
     }
 }

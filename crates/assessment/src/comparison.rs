@@ -29,36 +29,25 @@ pub struct Comparison {
     pub selection: Selection,
 }
 
-/// Which elbow goes by which name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum ElbowNames {
-    /// Up is above the line from the shoulder to the wrist centre.
-    Geometric,
-    /// Up is below that line: the readings of Klimchik 2017 fit its tables only so.
-    Swapped,
+stead_numerics::worded! {
+    /// Which elbow goes by which name.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    pub enum ElbowNames {
+        /// Up is above the line from the shoulder to the wrist centre.
+        Geometric = "geometric",
+        /// Up is below that line: the readings of Klimchik 2017 fit its tables only so.
+        Swapped = "swapped",
+    }
 }
 
-impl ElbowNames {
-    /// Each with its word in files and results.
-    pub const WORDS: [(&'static str, Self); 2] = [("geometric", Self::Geometric), ("swapped", Self::Swapped)];
-}
-
-/// Under which load a circle is milled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum Load {
-    /// The wrench of the benchmark.
-    Test,
-    /// The same wrench scaled so that the force in the plane is a share of the weight of the robot's payload.
-    Rated,
-}
-
-impl Load {
-    /// The word for it in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Load::Test => "test",
-            Load::Rated => "rated",
-        }
+stead_numerics::worded! {
+    /// Under which load a circle is milled.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    pub enum Load {
+        /// The wrench of the benchmark.
+        Test = "test",
+        /// The same wrench scaled so that the force in the plane is a share of the weight of the robot's payload.
+        Rated = "rated",
     }
 }
 

@@ -39,26 +39,20 @@ impl Grid {
     }
 }
 
-/// Which way the elbow stands, seen in the plane of the arm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub enum Elbow {
-    /// Above the line from the shoulder to the wrist centre.
-    Up,
-    /// Below it.
-    Down,
+stead_numerics::worded! {
+    /// Which way the elbow stands, seen in the plane of the arm.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    pub enum Elbow {
+        /// Above the line from the shoulder to the wrist centre.
+        Up = "up",
+        /// Below it.
+        Down = "down",
+    }
 }
 
 impl Elbow {
     /// Both.
     pub const BOTH: [Elbow; 2] = [Elbow::Up, Elbow::Down];
-
-    /// The word for it in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Elbow::Up => "up",
-            Elbow::Down => "down",
-        }
-    }
 
     /// The other one.
     pub fn other(self) -> Self {

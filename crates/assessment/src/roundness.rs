@@ -239,11 +239,11 @@ mod tests {
     #[test]
     fn what_is_left_must_be_a_circle() {
         let all = [degrees(0.0, 360.0)];
-        let none = RoundnessError::Left { count: 0, cause: CircleError::TooFew { distinct: 0 } };
+        let none = RoundnessError::Left { count: 0, cause: CircleError::TooFew(0) };
         assert_eq!(assess(&Measured::Planar(ring(9)), &all), Err(none));
-        let two = RoundnessError::Left { count: 2, cause: CircleError::TooFew { distinct: 2 } };
+        let two = RoundnessError::Left { count: 2, cause: CircleError::TooFew(2) };
         assert_eq!(assess(&Measured::Planar(ring(9)), &[degrees(90.0, 361.0)]), Err(two));
         let flat = Measured::Spatial(vec![[1.0, 2.0, 3.0]; 5]);
-        assert_eq!(assess(&flat, &[]), Err(RoundnessError::Points(CircleError::TooFew { distinct: 1 })));
+        assert_eq!(assess(&flat, &[]), Err(RoundnessError::Points(CircleError::TooFew(1))));
     }
 }

@@ -18,5 +18,6 @@ pub mod files;
 pub mod input;
 pub mod manifest;
 pub mod quote;
+pub mod template;
 
 pub use files::new::Existing;

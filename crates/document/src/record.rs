@@ -12,81 +12,57 @@
 //!
 //! declares a struct that serialises and has a schema, and makes it from a `&Mode` by `From`. With
 //! `of (mode: &Mode, number: usize)` in place of `from mode: &Mode` it is made by `ModeFigures::of(mode, number)`. What
-//! several fields share is computed by statements before them: `{ let .. } with { fields }`.
+//! several fields share is computed by statements before them: `{ let .. } with { fields }`. A field `name?: T` is an
+//! `Option<T>` that is left out where there is none.
 
 /// Declares results, as the head of this module says.
 #[macro_export]
 macro_rules! records {
     () => {};
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident from $source:ident: $given:ty { $($shared:tt)* } with {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
-        impl From<$given> for $name {
-            fn from($source: $given) -> Self {
-                $($shared)*
-                Self { $($field: $value),* }
-            }
-        }
+    // From one thing, which needs no parentheses.
+    ($(#[$about:meta])* $seen:vis struct $name:ident from $source:ident: $given:ty { $($body:tt)* } $($rest:tt)*) => {
+        $crate::records! { $(#[$about])* $seen struct $name from ($source: $given) { $($body)* } $($rest)* }
+    };
+    ($(#[$about:meta])* $seen:vis struct $name:ident $by:ident $given:tt $shared:tt with $fields:tt $($rest:tt)*) => {
+        $crate::records! { @fields { $(#[$about])* $seen struct $name $by $given $shared } {} $fields }
         $crate::records! { $($rest)* }
     };
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident of ($($source:ident: $given:ty),* $(,)?) { $($shared:tt)* } with {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! { @declare $(#[$about])* $seen struct $name { $($(#[$meaning])* $shown $field: $type),* } }
-        impl $name {
-            /// It, as its fields say.
-            pub(crate) fn of($($source: $given),*) -> Self {
-                $($shared)*
-                Self { $($field: $value),* }
-            }
-        }
-        $crate::records! { $($rest)* }
+    // Without what fields share.
+    ($(#[$about:meta])* $seen:vis struct $name:ident $by:ident $given:tt $fields:tt $($rest:tt)*) => {
+        $crate::records! { $(#[$about])* $seen struct $name $by $given {} with $fields $($rest)* }
     };
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident from $source:ident: $given:ty {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! {
-            $(#[$about])* $seen struct $name from $source: $given {} with {
-                $($(#[$meaning])* $shown $field: $type = $value),*
-            }
-        }
-        $crate::records! { $($rest)* }
+    // Field by field: those that are done, and those to do.
+    (@fields $of:tt {$($done:tt)*}
+        {$(#[$meaning:meta])* $shown:vis $field:ident?: $type:ty = $value:expr $(, $($rest:tt)*)?}) => {
+        $crate::records! { @fields $of {
+            $($done)* $(#[$meaning])* #[serde(skip_serializing_if = "Option::is_none")]
+            $shown $field: Option<$type> = $value,
+        } {$($($rest)*)?} }
     };
-    (
-        $(#[$about:meta])*
-        $seen:vis struct $name:ident of ($($source:ident: $given:ty),* $(,)?) {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr),* $(,)?
-        }
-        $($rest:tt)*
-    ) => {
-        $crate::records! {
-            $(#[$about])* $seen struct $name of ($($source: $given),*) {} with {
-                $($(#[$meaning])* $shown $field: $type = $value),*
-            }
-        }
-        $crate::records! { $($rest)* }
+    (@fields $of:tt {$($done:tt)*}
+        {$(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr $(, $($rest:tt)*)?}) => {
+        $crate::records! { @fields $of {
+            $($done)* $(#[$meaning])* $shown $field: $type = $value,
+        } {$($($rest)*)?} }
     };
-    (
-        @declare $(#[$about:meta])* $seen:vis struct $name:ident {
-            $($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty),*
-        }
-    ) => {
+    (@fields { $(#[$about:meta])* $seen:vis struct $name:ident $by:ident $given:tt {$($shared:tt)*} }
+        {$($(#[$meaning:meta])* $shown:vis $field:ident: $type:ty = $value:expr,)*} {}) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, serde::Serialize, schemars::JsonSchema)]
         $seen struct $name { $($(#[$meaning])* $shown $field: $type),* }
+
+        $crate::records! { @$by $name $given { $($shared)* Self { $($field: $value),* } } }
+    };
+    (@from $name:ident ($source:ident: $given:ty) $body:block) => {
+        impl From<$given> for $name {
+            fn from($source: $given) -> Self $body
+        }
+    };
+    (@of $name:ident ($($source:ident: $given:ty),* $(,)?) $body:block) => {
+        impl $name {
+            /// It, as its fields say.
+            pub(crate) fn of($($source: $given),*) -> Self $body
+        }
     };
 }
 
@@ -111,7 +87,7 @@ mod tests {
             /// The first.
             from_mm: PlaceMm = from.into(),
             /// The last.
-            #[serde(skip_serializing_if = "Option::is_none")] to_mm: Option<PlaceMm> = (to > from).then(|| to.into()),
+            to_mm?: PlaceMm = (to > from).then(|| to.into()),
         }
     }
 

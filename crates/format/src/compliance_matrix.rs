@@ -89,7 +89,7 @@ fn located(at: &Place<'_>, error: &MatrixError) -> InputError {
             let problem = format!("makes the matrix unsymmetric, against {} = {}", mirror.path, mirror.written());
             entry(row, column).error(problem, "the same number on both sides of the diagonal, up to 1e-9 of the trace")
         }
-        MatrixError::Negative { eigenvalue } => {
+        MatrixError::Negative(eigenvalue) => {
             at.error(format!("has an eigenvalue of {:.3e}", eigenvalue / MICRO), SEMIDEFINITE)
         }
     }

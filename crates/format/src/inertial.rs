@@ -72,9 +72,9 @@ pub(super) fn inertial_from(
     let inertia = at.require(INERTIA, inertia)?;
     Inertial::new(mass, centre, inertia.tensor()).map_err(|error| {
         let (field, problem) = match error {
-            InertialError::Mass { .. } | InertialError::Centre => (MASS, error.to_string()),
+            InertialError::Mass(_) | InertialError::Centre => (MASS, error.to_string()),
             InertialError::NotFinite => (INERTIA, "is no tensor of finite numbers".to_owned()),
-            InertialError::NotPositiveDefinite { smallest } => {
+            InertialError::NotPositiveDefinite(smallest) => {
                 (INERTIA, format!("is not positive definite: its smallest principal moment is {smallest:.6} kg m^2"))
             }
             InertialError::Triangle { largest, others } => {

@@ -66,6 +66,8 @@ pub trait Range: Copy + Debug + PartialEq + 'static {
     const ENDS: (Bound<f64>, Bound<f64>);
     /// What is said behind them of one number.
     const EXAMPLE: &'static str = "";
+    /// What is said of one number or two of it, where the range does not say it all.
+    const ONE_OR_PAIR: &'static str = "";
 }
 
 /// A finite number of a file in a unit and a range, and no larger than any machine has it.

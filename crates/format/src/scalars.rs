@@ -87,18 +87,18 @@ pub trait Words<Vocabulary>: Copy + PartialEq + 'static {
     fn words() -> Vec<(&'static str, Self)>;
 }
 
-/// Implements [`Words`] by a table of words and meanings, the one given or the constant `WORDS` of the type, in the
+/// Implements [`Words`] by a table of words and meanings, the one given or the constant `WORDS` of the types, in the
 /// vocabulary of the crate that calls it.
 #[expect(clippy::crate_in_macro_def, reason = "the vocabulary is that of the crate that calls the macro")]
 #[macro_export]
 macro_rules! words {
-    ($kind:ty) => {
+    ($($kind:ty),+) => {$(
         impl $crate::scalars::Words<crate::Vocabulary> for $kind {
             fn words() -> Vec<(&'static str, Self)> {
                 Self::WORDS.to_vec()
             }
         }
-    };
+    )+};
     ($kind:ty: $($word:literal => $meaning:expr),+ $(,)?) => {
         impl $crate::scalars::Words<crate::Vocabulary> for $kind {
             fn words() -> Vec<(&'static str, Self)> {

@@ -173,7 +173,8 @@ impl<Q: JsonSchema + Expects, const APART: bool> JsonSchema for Ends<Q, APART> {
 }
 
 /// One value of a kind or more.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
 pub struct List<T>(pub Vec<T>);
 
 impl<U: Unit, R: Range> List<Quantity<U, R>> {
@@ -206,12 +207,6 @@ impl<'de, T: Expects + Deserialize<'de>> Visitor<'de> for Reading<List<T>> {
 
     fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> Result<Self::Value, A::Error> {
         all(values).map(List)
-    }
-}
-
-impl<T: Serialize> Serialize for List<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(&self.0)
     }
 }
 

@@ -74,47 +74,43 @@ pub fn parse_csv(file: &Path, bytes: &[u8]) -> Result<Imported, InputError> {
     let other_kind = |error: InputError| FileKind::foreign(bytes).map_or(error, |kind| kind.refused(file));
     let mut table = CsvTable::new(file, bytes).map_err(other_kind)?;
     let columns = Columns::find(&table).map_err(other_kind)?;
-    let mut points = Vec::new();
-    let mut wrenches = columns.force.map(|_| Vec::new());
-    let mut normals = columns.normal.map(|_| Vec::new());
-    let mut feeds = columns.feed.map(|_| Vec::new());
-    let mut part = columns.part.map(|_| Vec::new());
-    let mut leans = columns.lean.is_there().then(Vec::new);
-    let mut lines = Vec::new();
+    let (mut points, mut lines, mut feeds, mut normals) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut wrenches, mut part, mut leans) = (Vec::new(), Vec::new(), Vec::new());
     while let Some(row) = table.next_row()? {
         let segment = segment(&row, columns.required[0])?;
         let at = |k: usize| row.vector([0, 1, 2].map(|axis| columns.required[k + axis]));
         let is_scored = columns.scored.map_or(Ok(true), |scored| flag(&row, scored))?;
-        if let (Some(feeds), Some(feed)) = (feeds.as_mut(), columns.feed) {
+        if let Some(feed) = columns.feed {
             feeds.push(positive(&row, feed)? * 1e-3);
         }
         points.push((segment, PathPoint { position: at(1)? * 1e-3, feed: at(4)?, axis: at(7)? }, is_scored));
-        if let (Some(wrenches), Some(force)) = (wrenches.as_mut(), columns.force) {
+        if let Some(force) = columns.force {
             let moment = columns.moment.map_or(Ok(Vector3::zeros()), |moment| row.vector(moment))?;
             wrenches.push(Wrench { force: row.vector(force)?, moment });
         }
-        if let (Some(normals), Some(normal)) = (normals.as_mut(), columns.normal) {
+        if let Some(normal) = columns.normal {
             normals.push(row.vector(normal)?);
         }
-        if let (Some(part), Some(entries)) = (part.as_mut(), columns.part) {
+        if let Some(entries) = columns.part {
             part.push(part_compliance(&row, entries)?);
         }
-        if let Some(leans) = leans.as_mut() {
+        if columns.lean.is_there() {
             leans.push(columns.lean.of(&row)?);
         }
         lines.push(row.line());
     }
-    let with_normals = |path: ToolPath| match normals {
-        Some(normals) => path.with_surface_normals(normals),
+    let with_normals = |path: ToolPath| match columns.normal {
+        Some(_) => path.with_surface_normals(normals),
         None => Ok(path),
     };
-    let with_feeds = |path: ToolPath| match feeds {
-        Some(feeds) => path.with_feeds(feeds),
+    let with_feeds = |path: ToolPath| match columns.feed {
+        Some(_) => path.with_feeds(feeds),
         None => Ok(path),
     };
     let path = ToolPath::partly_scored(points).and_then(with_normals).and_then(with_feeds);
     let path = path.map_err(|e| locate(file, &lines, &e))?;
-    Ok(Imported { path, wrenches, part, leans, lines })
+    let (wrenches, part) = (columns.force.map(|_| wrenches), columns.part.map(|_| part));
+    Ok(Imported { path, wrenches, part, leans: columns.lean.is_there().then_some(leans), lines })
 }
 
 /// Where each column of the contract stands in this file.
@@ -229,7 +225,7 @@ fn locate(file: &Path, lines: &[usize], error: &TaskError) -> InputError {
             Some(format!("{angle_deg:.2} deg")),
             format!("at least {} deg from the tool axis", stead_model::task::MIN_FEED_TO_AXIS_DEG),
         ),
-        TaskError::Repeated { point } => (*point, "x_mm,y_mm,z_mm", None, "each point at a new place".to_owned()),
+        TaskError::Repeated(point) => (*point, "x_mm,y_mm,z_mm", None, "each point at a new place".to_owned()),
         TaskError::SegmentOrder { point, before, found } => {
             let allowed = match before {
                 0 => "1 at the start".to_owned(),

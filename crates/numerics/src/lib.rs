@@ -31,3 +31,4 @@ pub mod rotation;
 pub mod scalar;
 pub mod simd;
 pub mod unit;
+pub mod word;

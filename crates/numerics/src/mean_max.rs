@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Mean and largest value of a magnitude.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct MeanAndMax {
     /// Mean.
     pub mean: f64,

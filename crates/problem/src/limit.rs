@@ -54,6 +54,34 @@ pub enum Limit {
 impl Limit {
     /// The walls of the cell: x, y, z, yaw.
     pub const ALL_WALLS: [Self; 4] = [Self::CellX, Self::CellY, Self::CellZ, Self::CellYaw];
+
+    /// By what people know it, which is its key in a run file where it has one, and its name in the table of a study.
+    pub fn names(self) -> [String; 2] {
+        let (known, in_table) = match self {
+            Self::Joint(joint) => return [format!("limit of joint {joint}"), format!("joint_{joint}")],
+            Self::JointStep(joint) => return [format!("speed of joint {joint}"), format!("joint_{joint}_step")],
+            Self::CellX => ("cell.x_mm", "x"),
+            Self::CellY => ("cell.y_mm", "y"),
+            Self::CellZ => ("cell.z_mm", "z"),
+            Self::CellYaw => ("cell.yaw_deg", "yaw"),
+            Self::AxesSum => ("limit of axes 2+3", "axes_2_3"),
+            Self::Conditioning => ("constraints.min_inverse_condition", "inverse_condition"),
+            Self::BetaRate => ("redundancy.max_beta_rate_deg_per_mm", "beta_rate"),
+            Self::SpindleTurn => ("redundancy.max_spindle_turn_deg_per_mm", "spindle_turn"),
+            Self::SpindleSpeed => ("redundancy.max_spindle_turn_deg_per_s", "spindle_turn"),
+            Self::MaxDeflection => ("constraints.max_deflection_mm", "deflection"),
+            Self::BaseDistance => ("constraints.min_base_distance_mm", "base_distance"),
+            Self::Clearance(_) => ("collision.clearance_mm", "clearance"),
+            Self::KeepOut(_) => ("keep_out", "keep_out"),
+            Self::Lead => ("lean.lead_deg", "lead"),
+            Self::Tilt => ("lean.tilt_deg", "tilt"),
+            Self::MaxLean => ("lean.max_lean_deg", "lean"),
+            Self::Scallop => ("lean.scallop_mm", "scallop"),
+            Self::StepOver => ("lean.step_over_mm", "step_over"),
+            Self::ContactTolerance => ("lean.contact_tolerance_mm", "contact_tolerance"),
+        };
+        [known, in_table].map(str::to_owned)
+    }
 }
 
 /// One side of a limit.

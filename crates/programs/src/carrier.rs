@@ -32,10 +32,12 @@ fn last(problem: &Problem) -> Option<&ExternalAxis> {
 /// without a coupling.
 ///
 /// # Errors
-/// [`ProgramError::Carrier`] for an option that is missing, wrong or not for the run, and for a Fanuc where the
+/// [`ProgramError::Argument`] for an option that is missing, wrong or not for the run, and for a Fanuc where the
 /// workpiece moves in the cut.
 pub(super) fn carrier<'a>(problem: &Problem, options: &ExportOptions<'a>) -> Result<Option<Carrier<'a>>, ProgramError> {
-    let refused = |option, problem: String, allowed| Err(ProgramError::Carrier { option, problem, allowed });
+    let refused = |option, problem: String, allowed: &str| {
+        Err(ProgramError::Argument { option, problem, allowed: allowed.to_owned() })
+    };
     let axis = last(problem);
     let given = [
         ("--mechanism", options.mechanism.is_some(), ProgramFormat::Krl),

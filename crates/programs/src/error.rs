@@ -16,43 +16,15 @@ pub enum ProgramError {
         /// What would be taken.
         allowed: String,
     },
-    /// A statement that could break out of its line.
-    #[error("{option}: is no statement that is taken, found {found}; allowed: {allowed}")]
-    Statement {
-        /// The option with the statement.
-        option: &'static str,
-        /// What was found, in quotes.
-        found: String,
-        /// What would be taken.
-        allowed: String,
-    },
-    /// The form is for other controllers than the robot's.
-    #[error("--format: {format} is not for the robot's controller; allowed: {allowed}")]
-    OtherController {
-        /// The form.
-        format: &'static str,
-        /// The forms for the robot.
-        allowed: String,
-    },
-    /// What carries the workpiece is not stated, or is not what the form or the run takes.
+    /// The value of an option is not what the form, the robot or the run takes.
     #[error("{option}: {problem}; allowed: {allowed}")]
-    Carrier {
+    Argument {
         /// The option.
         option: &'static str,
         /// What is wrong.
         problem: String,
         /// What would be taken.
-        allowed: &'static str,
-    },
-    /// A number is out of its range.
-    #[error("{option}: is out of range, found {found}; allowed: {allowed}")]
-    Range {
-        /// The option.
-        option: &'static str,
-        /// Its value.
-        found: String,
-        /// The range.
-        allowed: &'static str,
+        allowed: String,
     },
     /// Moves between segments for which no free way is known.
     #[error(

@@ -5,6 +5,7 @@ use super::motion::{Move, MoveKind, external_units};
 use super::names::{comment, number};
 use super::stale;
 use super::status::fanuc_config;
+use stead_disk::template::filled;
 use stead_model::robot::Pose;
 use stead_numerics::rotation::zyx_from_rotation;
 
@@ -45,19 +46,17 @@ impl Statements {
 }
 
 fn program(name: &str, statements: &Statements, positions: &str) -> ProgramFile {
-    let mut lines = Lines::default();
-    lines.line(format_args!("/PROG  {name}"));
-    lines.line("/ATTR");
-    lines.line("OWNER\t\t= MNEDITOR;");
-    lines.line(stale::TP_MARK);
-    lines.line("PROTECT\t\t= READ_WRITE;");
-    lines.line("DEFAULT_GROUP\t= 1,*,*,*,*;");
-    lines.line("/MN");
-    lines.0.push_str(&statements.lines.0);
-    lines.line("/POS");
-    lines.0.push_str(positions);
-    lines.line("/END");
-    ProgramFile { name: format!("{name}.ls"), text: lines.0 }
+    let whole = |lines: &str| lines.strip_suffix('\n').map(str::to_owned);
+    let text = filled(
+        include_str!("fanuc.ls"),
+        &[
+            ("name", Some(name.to_owned())),
+            ("mark", Some(stale::TP_MARK.to_owned())),
+            ("statements", whole(&statements.lines.0)),
+            ("positions", whole(positions)),
+        ],
+    );
+    ProgramFile { name: format!("{name}.ls"), text }
 }
 
 /// The main program, which calls the parts.

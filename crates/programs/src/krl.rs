@@ -4,6 +4,7 @@ use super::carrier::Carrier;
 use super::layout::{Layout, Lines, ProgramFile};
 use super::motion::{Move, MoveKind};
 use super::names::number;
+use stead_disk::template::{filled, shown_if};
 use stead_model::robot::{Pose, kuka_status_and_turn};
 use stead_numerics::rotation::zyx_from_rotation;
 
@@ -25,16 +26,9 @@ const POSE_DECIMALS: [usize; 2] = [3, 4];
 /// Decimals of joint angles: all six off by half a unit move nothing 4 m away by 3e-3 mm.
 const AXIS_DECIMALS: usize = 5;
 
-fn head(layout: &Layout<'_>, name: &str) -> Lines {
-    let mut lines = Lines::default();
-    lines.line("&ACCESS RVP");
-    lines.line("&REL 1");
-    lines.line(format_args!("DEF {name} ( )"));
-    layout.origin.iter().for_each(|text| lines.line(format_args!("; {text}")));
-    lines.line(";FOLD INI");
-    lines.line("BAS (#INITMOV,0)");
-    lines.line(";ENDFOLD (INI)");
-    lines
+fn head(layout: &Layout<'_>, name: &str) -> String {
+    let holes = [("name", Some(name.to_owned())), ("origin", layout.origin_behind("; "))];
+    filled(include_str!("krl_head.src"), &holes)
 }
 
 /// The base of linear moves: it stands still in the robot root, or moves with a mechanism.
@@ -50,28 +44,26 @@ fn base(layout: &Layout<'_>) -> String {
 
 /// The main program, which calls the parts.
 pub(super) fn main(layout: &Layout<'_>) -> ProgramFile {
-    let mut lines = head(layout, layout.options.name);
-    lines.line(format_args!("; $BASE={}", base(layout)));
-    if let Some(table) = &layout.frames.root_from_table {
-        lines.line(
-            "; the flange of this mechanism with its axes at 0, in the robot root, as it is taken here: compare it",
-        );
-        lines.line(format_args!("; {{{}}}", frame(table, FRAME_DECIMALS)));
-    }
-    lines.line(format_args!("; $TOOL={{{}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
-    lines.line(layout.spindle_on.as_deref().unwrap_or("; spindle on: stead export --spindle-on"));
-    for index in 0..layout.parts.len() {
-        lines.line(format_args!("{} ( )", layout.part_name(index)));
-    }
-    lines.line(layout.spindle_off.as_deref().unwrap_or("; spindle off: stead export --spindle-off"));
-    lines.line("END");
-    ProgramFile { name: format!("{}.src", layout.options.name), text: lines.0 }
+    let statement = |given: &Option<String>, none: &str| Some(given.as_deref().unwrap_or(none).to_owned());
+    let body = filled(
+        include_str!("krl_main.src"),
+        &[
+            ("base", Some(base(layout))),
+            ("has_table", shown_if(layout.frames.root_from_table.is_some())),
+            ("table", layout.frames.root_from_table.map(|table| frame(&table, FRAME_DECIMALS))),
+            ("tool", Some(frame(&layout.frames.flange_from_tool, FRAME_DECIMALS))),
+            ("on", statement(&layout.spindle_on, "; spindle on: stead export --spindle-on")),
+            ("calls", layout.calls(|part| format!("{part} ( )"))),
+            ("off", statement(&layout.spindle_off, "; spindle off: stead export --spindle-off")),
+        ],
+    );
+    ProgramFile { name: format!("{}.src", layout.options.name), text: head(layout, layout.options.name) + &body }
 }
 
 /// A part, counted from 0.
 pub(super) fn part(layout: &Layout<'_>, index: usize) -> ProgramFile {
     let name = layout.part_name(index);
-    let mut lines = head(layout, &name);
+    let mut lines = Lines(head(layout, &name));
     lines.line(format_args!("$BASE={}", base(layout)));
     lines.line(format_args!("$TOOL={{FRAME: {}}}", frame(&layout.frames.flange_from_tool, FRAME_DECIMALS)));
     lines.line("$ADVANCE=5");

@@ -42,6 +42,16 @@ impl Layout<'_> {
         format!("{}{}", self.options.name, names::part(index + 1))
     }
 
+    /// What the program is and what it was made of, as lines of comments behind a mark.
+    pub fn origin_behind(&self, mark: &str) -> Option<String> {
+        Some(self.origin.iter().map(|text| format!("{mark}{text}")).collect::<Vec<_>>().join("\n"))
+    }
+
+    /// The statements that call the parts.
+    pub fn calls(&self, call: impl Fn(String) -> String) -> Option<String> {
+        Some((0..self.parts.len()).map(|index| call(self.part_name(index))).collect::<Vec<_>>().join("\n"))
+    }
+
     /// The moves of a part.
     pub fn moves_of(&self, index: usize) -> &[Move] {
         &self.moves[self.parts[index].clone()]

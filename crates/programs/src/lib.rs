@@ -84,14 +84,19 @@ impl ProgramFormat {
     /// All, in the order in which they are listed.
     pub const ALL: [Self; 4] = [Self::Krl, Self::Rapid, Self::Fanuc, Self::Csv];
 
+    /// Its name on the command line, the ending of its files, and whose controllers take it.
+    fn about(self) -> (&'static str, &'static str, Option<ControllerKind>) {
+        match self {
+            Self::Krl => ("krl", "src", Some(ControllerKind::Kuka)),
+            Self::Rapid => ("rapid", "mod", Some(ControllerKind::Abb)),
+            Self::Fanuc => ("fanuc", "ls", Some(ControllerKind::Fanuc)),
+            Self::Csv => ("csv", "csv", None),
+        }
+    }
+
     /// Its name on the command line.
     pub fn word(self) -> &'static str {
-        match self {
-            Self::Krl => "krl",
-            Self::Rapid => "rapid",
-            Self::Fanuc => "fanuc",
-            Self::Csv => "csv",
-        }
+        self.about().0
     }
 
     /// The form that the controller of an arm takes; the table where none is known, or one of another kind.
@@ -102,22 +107,12 @@ impl ProgramFormat {
 
     /// The ending of its files.
     pub fn extension(self) -> &'static str {
-        match self {
-            Self::Krl => "src",
-            Self::Rapid => "mod",
-            Self::Fanuc => "ls",
-            Self::Csv => "csv",
-        }
+        self.about().1
     }
 
     /// Whose controllers take it; none for the table.
     pub fn controller(self) -> Option<ControllerKind> {
-        match self {
-            Self::Krl => Some(ControllerKind::Kuka),
-            Self::Rapid => Some(ControllerKind::Abb),
-            Self::Fanuc => Some(ControllerKind::Fanuc),
-            Self::Csv => None,
-        }
+        self.about().2
     }
 }
 
@@ -367,20 +362,26 @@ fn targets(run: &Run, plan: &Path, options: &ExportOptions<'_>, monitor: &Monito
 /// The key by which an arm with a linkage says how its controller counts axis 3.
 const IS_J3_LEVEL: &str = "controller.is_j3_level";
 
+/// That the value of an option is beyond what is allowed.
+fn out_of_range(option: &'static str, found: &str, allowed: &str) -> ExportError {
+    let problem = format!("is out of range, found {found}");
+    ProgramError::Argument { option, problem, allowed: allowed.to_owned() }.into()
+}
+
 /// Whether the options are in their ranges, and the form is one for the robot.
 fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportError> {
     names::check(options.name, options.format, 1)?;
-    let lengths = [("--approach-mm", options.approach), ("--blend-mm", options.blend)];
-    for (((option, length), max), allowed) in
-        lengths.into_iter().zip(MAX_LENGTHS).zip(["a number from 0 to 1000", "a number from 0 to 100"])
-    {
+    for (option, length, max, allowed) in [
+        ("--approach-mm", options.approach, MAX_LENGTHS[0], "a number from 0 to 1000"),
+        ("--blend-mm", options.blend, MAX_LENGTHS[1], "a number from 0 to 100"),
+    ] {
         if !(0.0..=max).contains(&length) {
-            return Err(ProgramError::Range { option, found: format!("{} mm", length * 1e3), allowed }.into());
+            return Err(out_of_range(option, &format!("{} mm", length * 1e3), allowed));
         }
     }
     if !(1..=MAX_MOVES).contains(&options.max_moves) {
-        let (option, allowed) = ("--max-moves", "a whole number from 1 to 1000000");
-        return Err(ProgramError::Range { option, found: options.max_moves.to_string(), allowed }.into());
+        let allowed = "a whole number from 1 to 1000000";
+        return Err(out_of_range("--max-moves", &options.max_moves.to_string(), allowed));
     }
     let Some(kind) = options.format.controller() else { return Ok(()) };
     let controller = run.problem.robot.controller();
@@ -389,8 +390,8 @@ fn check_options(run: &Run, options: &ExportOptions<'_>) -> Result<(), ExportErr
         Some(controller) if controller.kind != kind => {
             let fitting = ProgramFormat::ALL.into_iter().filter(|format| format.controller() == Some(controller.kind));
             let words: Vec<&str> = fitting.chain([ProgramFormat::Csv]).map(ProgramFormat::word).collect();
-            let allowed = words.join(", ");
-            return Err(ProgramError::OtherController { format: options.format.word(), allowed }.into());
+            let problem = format!("{} is not for the robot's controller", options.format.word());
+            return Err(ProgramError::Argument { option: "--format", problem, allowed: words.join(", ") }.into());
         }
         Some(controller) if controller.root_from_base.is_none() => "root",
         Some(controller) if run.problem.robot.has_linkage() && controller.is_j3_level.is_none() => IS_J3_LEVEL,

@@ -82,7 +82,7 @@ const LONGEST_STATEMENT: usize = 120;
 /// Checks a statement of the user's own, which is written as it is.
 ///
 /// # Errors
-/// [`ProgramError::Statement`] unless it is one line of printable ASCII, for Fanuc without a semicolon, which would end
+/// [`ProgramError::Argument`] unless it is one line of printable ASCII, for Fanuc without a semicolon, which would end
 /// it.
 pub(super) fn statement(option: &'static str, text: &str, format: ProgramFormat) -> Result<String, ProgramError> {
     let is_plain = text.chars().all(|c| c == ' ' || c.is_ascii_graphic());
@@ -90,9 +90,9 @@ pub(super) fn statement(option: &'static str, text: &str, format: ProgramFormat)
     let text = text.trim();
     if !is_plain || ends_it || text.is_empty() || text.len() > LONGEST_STATEMENT {
         let rule = if format == ProgramFormat::Fanuc { ", without a semicolon" } else { "" };
-        return Err(ProgramError::Statement {
+        return Err(ProgramError::Argument {
             option,
-            found: quoted(text),
+            problem: format!("is no statement that is taken, found {}", quoted(text)),
             allowed: format!("a statement on one line of up to {LONGEST_STATEMENT} printable ASCII characters{rule}"),
         });
     }

@@ -5,6 +5,7 @@ use super::layout::{Layout, Lines, ProgramFile};
 use super::motion::{Move, MoveKind};
 use super::names::{MODULE, number};
 use nalgebra::{Matrix3, Vector3};
+use stead_disk::template::{filled, shown_if};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::quaternion_from_rotation;
 
@@ -16,8 +17,6 @@ const QUATERNION_DECIMALS: usize = 9;
 const AXIS_DECIMALS: usize = 5;
 /// An external axis that is not there.
 const NO_AXIS: &str = "9E9";
-/// A frame that is where the one it is given in is.
-const STILL: &str = "[[0,0,0],[1,0,0,0]]";
 /// Speeds of reorientation, of linear and of rotating external axes, as in the predefined speed data.
 const OTHER_SPEEDS: &str = "500,5000,1000";
 
@@ -59,65 +58,47 @@ fn statement(text: &str) -> String {
 
 /// The main module, with the data and a procedure that calls the parts.
 pub(super) fn main(layout: &Layout<'_>) -> ProgramFile {
-    let mut lines = Lines::default();
-    let [tool, workpiece, zone, speed] = data(layout);
-    lines.line(format_args!("MODULE {MODULE}{}", layout.options.name));
-    layout.origin.iter().for_each(|text| lines.line(format_args!("  ! {text}")));
-    let pose = &layout.frames.flange_from_tool;
+    let [tool, workpiece, zone, speed] = data(layout).map(Some);
+    let (name, frames) = (layout.options.name, &layout.frames);
     let load = layout.problem.spindle.carried_mass();
     let (mass, centre) = load.map_or((1.0, Vector3::z() * 0.001), |body| (body.mass, body.centre));
-    if load.is_none() {
-        lines.line("  ! mass and centre of the spindle are not known: put them in before this runs");
-    }
-    lines.line(format_args!(
-        "  PERS tooldata {tool}:=[TRUE,[{},{}],[{},{},[1,0,0,0],0,0,0]];",
-        position(&pose.translation),
-        orientation(&pose.rotation),
-        number(mass, 3),
-        list(centre.iter().map(|m| m * 1e3), 1)
-    ));
     let framed = |pose: &Pose<f64>| format!("[{},{}]", position(&pose.translation), orientation(&pose.rotation));
-    let coupled = match (layout.carrier, layout.frames.table_from_workpiece(), layout.frames.root_from_table) {
-        (Some(Carrier::Unit(unit)), Some(on_table), Some(table)) => Some((unit, on_table, table)),
+    // The controller takes the user frame from the unit, whatever stands here.
+    let coupled = match (layout.carrier, frames.table_from_workpiece(), frames.root_from_table) {
+        (Some(Carrier::Unit(unit)), Some(on_table), Some(table)) => Some((unit, framed(&on_table), framed(&table))),
         _ => None,
     };
-    match &coupled {
-        // The controller takes the user frame from the unit, whatever stands here.
-        Some((unit, on_table, table)) => {
-            lines
-                .line(format_args!("  ! the user frame of {unit} with its axes at 0, as it is taken here: compare it"));
-            lines.line(format_args!("  ! {}", framed(table)));
-            lines.line(format_args!(
-                "  PERS wobjdata {workpiece}:=[FALSE,FALSE,\"{unit}\",{STILL},{}];",
-                framed(on_table)
-            ));
-        }
-        None => lines.line(format_args!(
-            "  PERS wobjdata {workpiece}:=[FALSE,TRUE,\"\",{},{STILL}];",
-            framed(&layout.frames.root_from_workpiece)
-        )),
-    }
-    let blend = number(layout.options.blend * 1e3, 3);
-    let wide = number(layout.options.blend * 1.5e3, 3);
-    let turn = number(layout.options.blend * 0.15e3, 3);
-    lines.line(format_args!("  CONST zonedata {zone}:=[FALSE,{blend},{wide},{wide},{turn},{wide},{turn}];"));
-    lines.line(format_args!("  CONST speeddata {speed}:=[200,30,200,30];"));
-    lines.line(format_args!("  PROC {}()", layout.options.name));
-    lines.line("    ConfL\\Off;");
-    if let Some((unit, ..)) = coupled {
-        lines.line(format_args!("    ActUnit {unit};"));
-    }
-    lines
-        .line(layout.spindle_on.as_deref().map_or("    ! spindle on: stead export --spindle-on".to_owned(), statement));
-    for index in 0..layout.parts.len() {
-        lines.line(format_args!("    {};", layout.part_name(index)));
-    }
-    lines.line(
-        layout.spindle_off.as_deref().map_or("    ! spindle off: stead export --spindle-off".to_owned(), statement),
+    let still = coupled.is_none().then(|| framed(&frames.root_from_workpiece));
+    let (unit, on_table) = coupled.clone().map(|(unit, on_table, _)| (unit.to_owned(), on_table)).unzip();
+    let blend = |factor: f64| Some(number(layout.options.blend * factor, 3));
+    let own = |text: &Option<String>, none: &str| Some(text.as_deref().map_or(format!("    ! {none}"), statement));
+    let text = filled(
+        include_str!("rapid_main.mod"),
+        &[
+            ("module", Some(format!("{MODULE}{name}"))),
+            ("origin", layout.origin_behind("  ! ")),
+            ("has_no_load", shown_if(load.is_none())),
+            ("tool", tool),
+            ("tool_frame", Some(framed(&frames.flange_from_tool))),
+            ("mass", Some(number(mass, 3))),
+            ("centre", Some(list(centre.iter().map(|m| m * 1e3), 1))),
+            ("unit", unit),
+            ("table", coupled.map(|(_, _, table)| table)),
+            ("workpiece", workpiece),
+            ("on_table", on_table),
+            ("still", still),
+            ("zone", zone),
+            ("blend", blend(1e3)),
+            ("wide", blend(1.5e3)),
+            ("turn", blend(0.15e3)),
+            ("speed", speed),
+            ("name", Some(name.to_owned())),
+            ("on", own(&layout.spindle_on, "spindle on: stead export --spindle-on")),
+            ("calls", layout.calls(|part| format!("    {part};"))),
+            ("off", own(&layout.spindle_off, "spindle off: stead export --spindle-off")),
+        ],
     );
-    lines.line("  ENDPROC");
-    lines.line("ENDMODULE");
-    ProgramFile { name: format!("{}.mod", layout.options.name), text: lines.0 }
+    ProgramFile { name: format!("{name}.mod"), text }
 }
 
 /// A part, counted from 0.

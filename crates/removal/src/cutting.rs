@@ -1,5 +1,6 @@
 //! The cutter as the removal needs it: pieces, teeth, the force on a bit of removed volume.
 
+use crate::load::Sums;
 use crate::moves::Move;
 use crate::operation::EndMill;
 use crate::piece::{EdgePoint, Piece, Surface};
@@ -7,6 +8,7 @@ use crate::profile::Profile;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use stead_model::cutting::{Coefficients, Cutter};
+use stead_model::task::Wrench;
 
 /// A cutter, ready to remove.
 #[derive(Debug, Clone)]
@@ -39,16 +41,8 @@ const TIP: [f64; 2] = [0.28, 0.08];
 pub struct Bit {
     /// When in the move it is cut; below zero before it begins.
     pub when: f64,
-    /// Volume. m3
-    pub volume: f64,
-    /// The part of the force that grows with the feed, integrated over the path. N m
-    pub chip_force: Vector3<f64>,
-    /// Its moment about the tool centre point. N m2
-    pub chip_moment: Vector3<f64>,
-    /// The part of the edges, integrated over the path. N m
-    pub edge_force: Vector3<f64>,
-    /// Its moment about the tool centre point. N m2
-    pub edge_moment: Vector3<f64>,
+    /// What it adds to those of its node.
+    pub sums: Sums,
     /// Height above the tool centre point. m
     pub height: f64,
     /// Distance from the axis. m
@@ -189,19 +183,17 @@ impl<'m> Moving<'m> {
         let k = &self.coefficients;
         let per = volume / (TAU * mean_radius);
         let speed = n.dot(&u) * self.per_length;
-        let chip_force = (n * -k.radial - t * k.tangential + s * k.axial) * (per * one.feed_per_turn);
-        let edge_force = (n * -k.radial_edge - t * k.tangential_edge) * (per * self.teeth / speed.max(1e-6));
+        let of = |force: Vector3<f64>| Wrench { force, moment: y.cross(&force) };
+        let chip = of((n * -k.radial - t * k.tangential + s * k.axial) * (per * one.feed_per_turn));
+        let edge = of((n * -k.radial_edge - t * k.tangential_edge) * (per * self.teeth / speed.max(1e-6)));
+        let thickest = one.feed_per_turn / self.teeth * speed;
         let along_edge = match surface {
             Surface::Side => tool.starts[number] + tool.pieces[number].along(height, radius),
             Surface::Bottom | Surface::Top => radius,
         };
         Some(Bit {
             when,
-            volume,
-            chip_force,
-            chip_moment: y.cross(&chip_force),
-            edge_force,
-            edge_moment: y.cross(&edge_force),
+            sums: Sums { volume, chip, edge, heights: [height; 2], thickest },
             height,
             radius,
             mean_radius,

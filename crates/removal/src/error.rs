@@ -17,12 +17,9 @@ pub enum ForcesError {
     /// Stock from a path on which nothing is scored.
     #[error("no scored move of the path has a wall")]
     NoWall,
-    /// The stock is too long.
-    #[error("the stock is {length} m long: at most {most} m", most = LARGEST)]
-    Large {
-        /// Its longest side. m
-        length: f64,
-    },
+    /// The stock is too long: its longest side. m
+    #[error("the stock is {0} m long: at most {most} m", most = LARGEST)]
+    Large(f64),
     /// The surface of the stock is not closed, or crosses itself.
     #[error("the surface of the stock is no closed one: {share:.1e} of the lines through it do not go in and out in turn, as at {}", place(.at))]
     Open {

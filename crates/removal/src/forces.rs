@@ -3,6 +3,7 @@
 use crate::cutting::Tool;
 use crate::error::ForcesError;
 use crate::kept::CutResult;
+use crate::load::Sums;
 use crate::memory;
 use crate::moves::{PathMoves, window_for};
 use crate::operation::{EndMill, ForcesProblem, Operation};
@@ -10,7 +11,7 @@ use crate::outcome::{ForcesDifference, RemovalForces};
 use crate::points::{Loads, points_between};
 use crate::removal::Workpiece;
 use crate::solid_lines::Body;
-use crate::sums::{Found, Requested, Sums};
+use crate::sums::{Found, Requested};
 use crate::surface::{Surface, surface};
 use stead_cell::Solid;
 use stead_numerics::monitor::Monitor;
@@ -64,7 +65,7 @@ pub fn cut(problem: &ForcesProblem, monitor: &Monitor) -> Result<CutResult, Forc
     };
     let window = window_for(cell);
     // The first run is that with cells twice as large, where they are.
-    let known = first.filter(|run| (run.workpiece.cell() - 2.0 * cell).abs() < 1e-12 && run.path.window == window);
+    let known = first.filter(|run| (run.workpiece.cell - 2.0 * cell).abs() < 1e-12 && run.path.window == window);
     let stage = "cutting with cells twice as large";
     // Of that its sums alone are kept.
     let Run { path, found, .. } = match known {
@@ -129,7 +130,7 @@ impl Run {
     /// cut along legs with a wall, or, where a round corner cuts all of it, than a share of the width that it cuts at
     /// that depth. m
     fn cell_for(&self, operation: &Operation) -> f64 {
-        let force = |sums: &Sums| (sums.chip_force + sums.edge_force).norm();
+        let force = |sums: &Sums| (sums.chip.force + sums.edge.force).norm();
         let cuts = |has_wall: bool| {
             let legs = self.path.legs.iter().filter(move |leg| leg.has_wall == has_wall);
             let nodes = legs.flat_map(|leg| &self.found.sums[leg.nodes.first..=leg.nodes.first + leg.nodes.intervals]);
@@ -166,7 +167,7 @@ impl Run {
         let volumes = self.workpiece.removed().into_iter().zip(self.removed_before);
         let most = volumes.max_by_key(|((lines, _), _)| *lines);
         CutResult {
-            cell: self.workpiece.cell(),
+            cell: self.workpiece.cell,
             difference: ForcesDifference::between(&loads, &rough),
             removed: most.map_or(0.0, |((_, volume), before)| volume - before),
             added: points_between(&operation.path, &loads, &fine),

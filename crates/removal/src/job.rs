@@ -1,12 +1,13 @@
 //! Moves through the lines of a tile: what each sweeps, and what that adds to the sums.
 
 use crate::cutting::{Moving, Tool};
-use crate::lattice::{TileKey, TileLines, tiles_within};
+use crate::lattice::{TileKey, TileLines, by_tile};
+use crate::load::Sums;
 use crate::moves::{Move, MoveKind};
 use crate::quadrature::Quadrature;
 use crate::reach::Reach;
 use crate::solid_lines::{Body, tile_of};
-use crate::sums::{Event, Found, GOUGE, Requested, Sums};
+use crate::sums::{Event, Found, GOUGE, Requested};
 use crate::tile::{NANO, Tile, nanometres};
 use crate::turn::{Arcs, TurnGrid};
 use nalgebra::Vector3;
@@ -144,15 +145,12 @@ impl Removed<'_> {
 impl Job<'_> {
     /// The tiles that the moves reach, with the holder too where there is one, each with the numbers of its moves.
     pub fn tiles_met(&self) -> Vec<(TileKey, Vec<u32>)> {
-        let mut met: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-        for (index, reach) in self.reaches.iter().enumerate() {
+        let whole = |(index, reach): (usize, &Reach)| {
             let held = self.held.get(index).filter(|held| !held.is_empty());
             let whole = held.map_or(*reach, |held| reach.with(held));
-            if !whole.is_empty() {
-                tiles_within(&whole.0, self.cell).for_each(|key| met.entry(key).or_default().push(index as u32));
-            }
-        }
-        met.into_iter().collect()
+            (!whole.is_empty()).then_some((index as u32, whole.0))
+        };
+        by_tile(self.reaches.iter().enumerate().filter_map(whole), self.cell).into_iter().collect()
     }
 
     /// Takes moves through tiles, each by itself; those not met before are made.
@@ -257,7 +255,7 @@ impl Job<'_> {
             let point = removed.at(low + (high - low) * share);
             let volume = cell * cell * (high - low) * weight;
             let Some(bit) = moving.bit(&point, removed.axis, volume) else { continue };
-            let mut event = |event: Event| of_tile.add_event(event, one, bit.volume);
+            let mut event = |event: Event| of_tile.add_event(event, one, bit.sums.volume);
             match one.kind {
                 MoveKind::Rapid => event(Event::Rapid),
                 MoveKind::InPlace => event(Event::InPlace),
@@ -270,13 +268,11 @@ impl Job<'_> {
                     if bit.is_below && bit.radius < self.tool.dead_centre {
                         event(Event::DeadCentre);
                     }
-                    let teeth = self.tool.cutter.teeth().len() as f64;
-                    let of_bit = Sums::of(&bit, one.feed_per_turn / teeth * bit.speed);
                     for (node, part) in shares(one.nodes, bit.when) {
                         if part > 0.0
                             && let Some(sums) = of_nodes.entry(node, Sums::default)
                         {
-                            sums.add(&of_bit, part);
+                            sums.add(&bit.sums, part);
                         }
                     }
                     if self.requested == Requested::Turns {
@@ -305,7 +301,7 @@ impl Job<'_> {
                 continue;
             }
             if let Some(bit) = moving.bit(&point, removed.axis, piece * self.cell * self.cell) {
-                of_tile.add_event(Event::Gouge, moving.one, bit.volume);
+                of_tile.add_event(Event::Gouge, moving.one, bit.sums.volume);
             }
         }
     }

@@ -26,16 +26,6 @@ pub struct CutResult {
     pub(crate) events: Events,
 }
 
-/// Events by the words that stand for them.
-const EVENTS: [(Event, &str); 7] = [
-    (Event::Rapid, "rapid"),
-    (Event::InPlace, "in-place"),
-    (Event::Before, "before"),
-    (Event::AboveFlutes, "above-flutes"),
-    (Event::DeadCentre, "dead-centre"),
-    (Event::Holder, "holder"),
-    (Event::Gouge, "gouge"),
-];
 /// Numbers of a load.
 const OF_LOAD: usize = 19;
 
@@ -76,8 +66,7 @@ impl CutResult {
             row(&mut text, "added", &[&place[..], &numbers(load)].concat());
         }
         for ((event, point), volume) in &self.events {
-            let word = EVENTS.iter().find(|(known, _)| known == event).map_or("", |(_, word)| word);
-            row(&mut text, &format!("event,{word}"), &[f64::from(*point), *volume].map(Some));
+            row(&mut text, &format!("event,{}", event.word()), &[f64::from(*point), *volume].map(Some));
         }
         for (number, surface) in self.stock.iter().enumerate() {
             for at in &surface.vertices {
@@ -111,7 +100,7 @@ impl CutResult {
                 }
                 "event" => {
                     let (word, rest) = rest.split_once(',')?;
-                    let (event, _) = EVENTS.iter().find(|(_, known)| *known == word)?;
+                    let (_, event) = Event::WORDS.iter().find(|(known, _)| *known == word)?;
                     let [point, volume] = exactly(&fields(rest)?)?;
                     let point = index(point).filter(|point| (*point as usize) < points)?;
                     events.insert((*event, point), volume);

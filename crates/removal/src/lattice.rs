@@ -1,6 +1,7 @@
 //! Lines through the stock: a sheared lattice, so that no wall or floor is parallel to its rows, in square tiles.
 
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// The golden section, whose multiples fall most evenly between whole numbers.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
@@ -39,6 +40,15 @@ pub fn tiles_within(reach: &[[f64; 2]; 3], cell: f64) -> impl Iterator<Item = Ti
         let [rows, columns] = others(axis).map(|side| sides[side].clone());
         rows.flat_map(move |i| columns.clone().map(move |j| (axis, i, j)))
     })
+}
+
+/// The numbers of boxes (m) by the tiles that they meet.
+pub fn by_tile(boxes: impl Iterator<Item = (u32, [[f64; 2]; 3])>, cell: f64) -> BTreeMap<TileKey, Vec<u32>> {
+    let mut numbers: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
+    for (number, reach) in boxes {
+        tiles_within(&reach, cell).for_each(|key| numbers.entry(key).or_default().push(number));
+    }
+    numbers
 }
 
 /// The rows of a tile, by its number, that a stretch of an axis (m) may meet; a line is shifted by less than a cell.
@@ -89,15 +99,10 @@ impl TileLines {
 /// The line nearest to a place, in lengths of a cell.
 pub fn nearest(x: f64, y: f64) -> (i64, i64) {
     let (i, j) = (x.round() as i64, y.round() as i64);
-    let mut best = (f64::INFINITY, (i, j));
-    for i in i - 2..=i + 1 {
-        for j in j - 2..=j + 1 {
-            let [at_x, at_y] = place(i, j);
-            let apart = libm::hypot(at_x - x, at_y - y);
-            if apart < best.0 {
-                best = (apart, (i, j));
-            }
-        }
-    }
-    best.1
+    let apart = |(i, j): &(i64, i64)| {
+        let [at_x, at_y] = place(*i, *j);
+        libm::hypot(at_x - x, at_y - y)
+    };
+    let near = (i - 2..=i + 1).flat_map(|i| (j - 2..=j + 1).map(move |j| (i, j)));
+    near.min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap_or((i, j))
 }

@@ -3,10 +3,10 @@
 use crate::cutting::Tool;
 use crate::error::ForcesError;
 use crate::lattice::{TILE, TileKey, tiles, tiles_within};
+use crate::load::Sums;
 use crate::moves::{PathMoves, window_for};
 use crate::operation::{ForcesProblem, Operation};
 use crate::reach::{Reach, Size};
-use crate::sums::Sums;
 use crate::tile::Tile;
 use crate::turn::Turn;
 use nalgebra::Vector3;

@@ -1,12 +1,12 @@
 //! The load at the points of a path, and the points that are added where a straight line between two misses it.
 
-use crate::load::PointForces;
+use crate::load::{PointForces, Sums};
 use crate::moves::{LegPlace, PathMoves, has_wall};
 
-use crate::sums::{Found, Sums};
+use crate::sums::Found;
 use crate::turn::Turn;
 use nalgebra::Vector3;
-use stead_model::task::{PathPoint, TaskError, ToolPath, Wrench};
+use stead_model::task::{PathPoint, TaskError, ToolPath};
 
 /// A point is added where the force is off a straight line by more than this share of the largest there.
 const STRAIGHT: f64 = 0.1;
@@ -36,7 +36,7 @@ impl Loads<'_> {
         let larger = |a: PointForces, b: PointForces| {
             if b.at_feed(1.0).force.norm() > a.at_feed(1.0).force.norm() { b } else { a }
         };
-        places.reduce(larger).unwrap_or_else(PointForces::nothing)
+        places.reduce(larger).unwrap_or_default()
     }
 
     /// The load at a place of a leg.
@@ -55,21 +55,19 @@ impl Loads<'_> {
             }
         }
         if sums.volume < NOTHING {
-            return PointForces::nothing();
+            return PointForces::default();
         }
-        let chip = Wrench { force: sums.chip_force, moment: sums.chip_moment };
-        let edge = Wrench { force: sums.edge_force, moment: sums.edge_moment };
         let turn = self.turn(place);
-        let mean = (chip.force + edge.force).norm();
+        let mean = (sums.chip.force + sums.edge.force).norm();
         PointForces {
             is_added: false,
-            chip,
-            edge,
+            chip: sums.chip,
+            edge: sums.edge,
             largest: turn.largest.max(mean),
             removed: sums.volume,
             heights: Some(sums.heights),
             angles: turn.angles,
-            chip_thickness: sums.chip,
+            chip_thickness: sums.thickest,
         }
     }
 

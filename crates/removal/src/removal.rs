@@ -39,9 +39,11 @@ const CHUNK_TURNS: f64 = 128.0;
 /// The stock while it is cut.
 #[derive(Debug, Clone)]
 pub struct Workpiece {
-    body: Body,
+    /// The stock before.
+    pub body: Body,
     part: Option<Body>,
-    cell: f64,
+    /// Distance of neighbouring lines. m
+    pub cell: f64,
     tiles: BTreeMap<TileKey, Tile>,
 }
 
@@ -49,16 +51,6 @@ impl Workpiece {
     /// Stock that is not cut yet, by lines at a distance (m), with the finished part that may be in it.
     pub fn new(body: Body, part: Option<Body>, cell: f64) -> Self {
         Self { body, part, cell, tiles: BTreeMap::new() }
-    }
-
-    /// Distance of neighbouring lines. m
-    pub fn cell(&self) -> f64 {
-        self.cell
-    }
-
-    /// Lower and upper corner of the stock. m
-    pub fn extent(&self) -> &[Vector3<f64>; 2] {
-        &self.body.extent
     }
 
     /// Goes through moves one after the other. The result does not depend on the number of threads.

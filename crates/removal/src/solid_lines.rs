@@ -1,7 +1,7 @@
 //! Where lines along the axes run inside a body: the stock before it is cut, and the finished part.
 
 use crate::error::{ForcesError, LARGEST};
-use crate::lattice::{TILE, TileKey, lines_of, others, place, tiles_within};
+use crate::lattice::{TILE, TileKey, by_tile, lines_of, others, place};
 use crate::operation::{ForcesProblem, Stock};
 use crate::swept::Swept;
 use crate::tile::{NANO, Tile};
@@ -52,7 +52,7 @@ impl Body {
     pub fn of_stock(problem: &ForcesProblem, cell: f64) -> Result<Self, ForcesError> {
         let small = |extent: [Vector3<f64>; 2]| {
             let length = (extent[1] - extent[0]).max();
-            if length > LARGEST { Err(ForcesError::Large { length }) } else { Ok(extent) }
+            if length > LARGEST { Err(ForcesError::Large(length)) } else { Ok(extent) }
         };
         match &problem.stock {
             Stock::Solid { solid, pose } => {
@@ -195,13 +195,8 @@ impl Facets {
         let vertices: Vec<Vector3<f64>> = mesh.vertices().iter().map(|vertex| pose.point(vertex)).collect();
         let corners: Vec<[Vector3<f64>; 3]> =
             mesh.triangles().iter().map(|triangle| triangle.map(|vertex| vertices[vertex as usize])).collect();
-        let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-        for (number, corners) in corners.iter().enumerate() {
-            let reach = [0, 1, 2].map(|k| ends(corners.map(|corner| corner[k])));
-            for key in tiles_within(&reach, cell) {
-                by_tile.entry(key).or_default().push(number as u32);
-            }
-        }
+        let reach = |corners: &[Vector3<f64>; 3]| [0, 1, 2].map(|k| ends(corners.map(|corner| corner[k])));
+        let by_tile = by_tile((0..).zip(corners.iter().map(reach)), cell);
         Self { corners, by_tile }
     }
 
@@ -293,6 +288,7 @@ pub(crate) fn tile_of(body: &Body, extent: &[Vector3<f64>; 2], cell: f64, key: T
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lattice::tiles_within;
 
     /// A block with a pyramid on top, in a turned pose: triangles large and small, and edges that lines may meet.
     #[test]

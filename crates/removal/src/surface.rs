@@ -28,9 +28,9 @@ struct Grid {
 impl Grid {
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn new(workpiece: &Workpiece) -> Self {
-        let [low, high] = *workpiece.extent();
+        let [low, high] = workpiece.body.extent;
         let size = high - low;
-        let step = (size.max() / FINE).max(workpiece.cell());
+        let step = (size.max() / FINE).max(workpiece.cell);
         let counts = [0, 1, 2].map(|k| (size[k] / step).ceil() as usize + 3);
         // Even on both sides, so that no node is on a side.
         let low = Vector3::from_fn(|k, _| low[k] - ((counts[k] - 1) as f64 * step - size[k]) / 2.0);
@@ -73,63 +73,56 @@ impl Grid {
 }
 
 /// The surface between nodes inside and outside: a vertex in every cell that it passes, at the mean of its crossings.
-#[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
 pub fn surface(workpiece: &Workpiece) -> Surface {
     let grid = Grid::new(workpiece);
-    let [nx, ny, nz] = grid.counts;
+    let [nx, ny, nz] = grid.counts.map(|count| count - 1);
+    let nodes = |first: usize| {
+        (first..nx).flat_map(move |i| (first..ny).flat_map(move |j| (first..nz).map(move |k| [i, j, k])))
+    };
     let mut of_cell = vec![u32::MAX; grid.inside.len()];
     let mut surface = Surface::default();
     let corner = |[i, j, k]: [usize; 3], bits: usize| [i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1)];
-    for i in 0..nx - 1 {
-        for j in 0..ny - 1 {
-            for k in 0..nz - 1 {
-                let (mut sum, mut count) = (Vector3::zeros(), 0.0);
-                for from in 0..8 {
-                    for axis in 0..3 {
-                        let to = from | 1 << axis;
-                        let (a, b) = (corner([i, j, k], from), corner([i, j, k], to));
-                        let (at, other) = (grid.at(a), grid.at(b));
-                        if to == from || (at > 0.0) == (other > 0.0) {
-                            continue;
-                        }
-                        let share = at / (at - other);
-                        sum += grid.place(a) * (1.0 - share) + grid.place(b) * share;
-                        count += 1.0;
-                    }
+    for node in nodes(0) {
+        let (mut sum, mut count) = (Vector3::zeros(), 0.0);
+        for from in 0..8 {
+            for axis in 0..3 {
+                let to = from | 1 << axis;
+                let (a, b) = (corner(node, from), corner(node, to));
+                let (at, other) = (grid.at(a), grid.at(b));
+                if to == from || (at > 0.0) == (other > 0.0) {
+                    continue;
                 }
-                if count > 0.0 {
-                    of_cell[grid.number([i, j, k])] = surface.vertices.len() as u32;
-                    surface.vertices.push(sum / count);
-                }
+                let share = at / (at - other);
+                sum += grid.place(a) * (1.0 - share) + grid.place(b) * share;
+                count += 1.0;
             }
         }
+        if count > 0.0 {
+            of_cell[grid.number(node)] = surface.vertices.len() as u32;
+            surface.vertices.push(sum / count);
+        }
     }
-    for i in 1..nx - 1 {
-        for j in 1..ny - 1 {
-            for k in 1..nz - 1 {
-                let node = [i, j, k];
-                for axis in 0..3 {
-                    let mut next = node;
-                    next[axis] += 1;
-                    let is_in = grid.at(node) > 0.0;
-                    if is_in == (grid.at(next) > 0.0) {
-                        continue;
-                    }
-                    let [a, b] = others(axis);
-                    let cell = |back_a: usize, back_b: usize| {
-                        let mut cell = node;
-                        cell[a] -= back_a;
-                        cell[b] -= back_b;
-                        of_cell[grid.number(cell)]
-                    };
-                    let mut around = [cell(1, 1), cell(0, 1), cell(0, 0), cell(1, 0)];
-                    if !is_in {
-                        around.reverse();
-                    }
-                    let [p, q, r, s] = around;
-                    surface.triangles.extend([[p, q, r], [p, r, s]]);
-                }
+    for node in nodes(1) {
+        for axis in 0..3 {
+            let mut next = node;
+            next[axis] += 1;
+            let is_in = grid.at(node) > 0.0;
+            if is_in == (grid.at(next) > 0.0) {
+                continue;
             }
+            let [a, b] = others(axis);
+            let cell = |back_a: usize, back_b: usize| {
+                let mut cell = node;
+                cell[a] -= back_a;
+                cell[b] -= back_b;
+                of_cell[grid.number(cell)]
+            };
+            let mut around = [cell(1, 1), cell(0, 1), cell(0, 0), cell(1, 0)];
+            if !is_in {
+                around.reverse();
+            }
+            let [p, q, r, s] = around;
+            surface.triangles.extend([[p, q, r], [p, r, s]]);
         }
     }
     surface

@@ -1,7 +1,7 @@
 //! Stock from the path: what a cutter sweeps on its scored moves, less what a smaller one would.
 
 use crate::cutting::Tool;
-use crate::lattice::{TILE, TileKey, TileLines, tiles_within};
+use crate::lattice::{TILE, TileKey, TileLines, by_tile};
 use crate::moves::{Move, MoveKind, PathMoves, has_wall};
 use crate::operation::{Operation, PathStock};
 use crate::piece::Piece;
@@ -89,12 +89,8 @@ impl Sweep {
     fn new(pieces: Vec<Piece>, moves: Vec<Move>, extent: &[Vector3<f64>; 2], cell: f64) -> Self {
         let size = Size::of(&pieces);
         let reaches: Vec<Reach> = moves.iter().map(|one| one.reach(&size, extent)).collect();
-        let mut by_tile: BTreeMap<TileKey, Vec<u32>> = BTreeMap::new();
-        for (number, Reach(reach)) in (0..).zip(&reaches).filter(|(_, reach)| !reach.is_empty()) {
-            for key in tiles_within(reach, cell) {
-                by_tile.entry(key).or_default().push(number);
-            }
-        }
+        let met = (0..).zip(&reaches).filter(|(_, reach)| !reach.is_empty());
+        let by_tile = by_tile(met.map(|(number, reach)| (number, reach.0)), cell);
         Self { pieces, moves, reaches, by_tile }
     }
 

@@ -107,7 +107,7 @@ impl TurnGrid {
         let (sine, cosine) = (bit.outward.dot(ahead), bit.outward.dot(left) * self.clockwise);
         let angle = self.angles.of(sine, cosine);
         let slice = ((bit.along_edge * self.per_slice) as usize).min(self.slices - 1);
-        let over_radius = bit.volume / bit.mean_radius;
+        let over_radius = bit.sums.volume / bit.mean_radius;
         let sums = [over_radius / bit.speed.max(1e-6), over_radius * moving.one.feed_per_turn];
         Field { number: slice * ANGLES + angle, sums }
     }

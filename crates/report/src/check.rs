@@ -79,12 +79,8 @@ fn path_lines(problem: &Problem, overview: &Overview) -> Vec<String> {
         DEG.text(overview.tool_tilt)
     ));
     let lengths = &overview.segment_lengths;
-    say(format!(
-        "path      {} points in {} segments, {} mm in all",
-        problem.task.points().len(),
-        lengths.len(),
-        MM.text(lengths.iter().sum())
-    ));
+    let (points, length) = (problem.task.points().len(), MM.text(lengths.iter().sum()));
+    say(format!("path      {points} points in {} segments, {length} mm in all", lengths.len()));
     let [x, y, z] = overview.extents.map(|extent| interval(MM, extent));
     say(format!("          in the workpiece frame x {x}, y {y}, z {z} mm"));
     say(format!("          tool axis tilted {} deg against z of the workpiece", interval(DEG, overview.tilts)));
@@ -210,8 +206,7 @@ records! {
         /// Size of the moment about the tool centre point. N m
         moment_nm: MeanFigures = (&overview.moment).into(),
         /// What the path cuts of a stock, where the run has one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        cut: Option<CutRecord> = run.cut.as_ref().map(Into::into),
+        cut?: CutRecord = run.cut.as_ref().map(Into::into),
         /// Least and largest distance of the cell from axis 1.
         cell_distances_mm: [PlaceMm; 2] = each(overview.cell_distances),
         /// What the arm reaches with the workpiece in the middle of the cell.
@@ -232,16 +227,14 @@ records! {
 
     /// What the arm reaches with the workpiece in the middle of the cell.
     pub struct MiddleFigures of (run: &CheckedRun<'_>) {
-        let middle = &run.overview.middle;
-    } with {
         /// The placement.
-        placement: PlacementFigures = (&middle.placement).into(),
+        placement: PlacementFigures = (&run.overview.middle.placement).into(),
         /// Path points tried.
-        points_tried: usize = middle.tried,
+        points_tried: usize = run.overview.middle.tried,
         /// Path points reached within the joint limits.
-        points_reached: usize = middle.reached,
+        points_reached: usize = run.overview.middle.reached,
         /// The first of them, from 0.
-        first_point_reached: Option<usize> = middle.first.map(|(point, _)| point),
+        first_point_reached: Option<usize> = run.overview.middle.first.map(|(point, _)| point),
     }
 
     /// A shape of the cell.

@@ -6,7 +6,7 @@ mod page;
 use super::output::ReportError;
 use super::page::PAGE;
 use super::{Files, named};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::rows;
 use crate::document::{Document, bytes};
 use crate::figure::{AngleDeg, MeasuredMm, MmDeflection, each, some};
@@ -80,7 +80,7 @@ records! {
         /// y of its centre.
         center_y_mm: MeasuredMm = y.into(),
         /// z of its centre, of points in space.
-        #[serde(skip_serializing_if = "Option::is_none")] center_z_mm: Option<MeasuredMm> = some(z),
+        center_z_mm?: MeasuredMm = some(z),
         /// Its radius.
         radius_mm: MeasuredMm = fit.circle.radius.into(),
         /// Largest less smallest distance of a point from its centre.
@@ -105,31 +105,21 @@ pub fn circularity_text(file: &PointFile, found: &Roundness) -> String {
     let mut text = format!("{}: {all} points, {} left out\n", file.input.name, all - kept);
     if let (Some(plane), Some(flatness)) = (&found.plane, found.flatness()) {
         let (c, n) = (plane.center, plane.normal);
-        text.push_str(&format!(
-            "plane through ({}, {}, {}) mm, normal ({}, {}, {}), flatness {} mm\n",
-            fixed(c.x, 4),
-            fixed(c.y, 4),
-            fixed(c.z, 4),
-            fixed(n.x, 6),
-            fixed(n.y, 6),
-            fixed(n.z, 6),
-            fixed(flatness, 5),
-        ));
+        let center = [c.x, c.y, c.z].map(|value| fixed(value, 4)).join(", ");
+        let normal = [n.x, n.y, n.z].map(|value| fixed(value, 6)).join(", ");
+        let flatness = fixed(flatness, 5);
+        text.push_str(&format!("plane through ({center}) mm, normal ({normal}), flatness {flatness} mm\n"));
     }
-    let mut header =
-        ["reference circle", "circularity mm", "radius mm", "center x mm", "y mm"].map(str::to_owned).to_vec();
-    if found.plane.is_some() {
-        header.push("z mm".to_owned());
-    }
-    let mut rows = vec![header];
-    for (_, name, fit) in page::circles(found) {
+    let header = ["reference circle", "circularity mm", "radius mm", "center x mm", "y mm"];
+    let header = header.into_iter().chain(found.plane.as_ref().map(|_| "z mm"));
+    let rows = page::circles(found).into_iter().map(|(_, name, fit)| {
         let ([x, y], z) = found.center(fit);
         let mut row = vec![name.to_owned(), fixed(fit.circularity, 6), fixed(fit.circle.radius, 5)];
         row.extend([Some(x), Some(y), z].into_iter().flatten().map(|value| fixed(value, 5)));
-        rows.push(row);
-    }
+        row
+    });
     text.push('\n');
-    text.push_str(&aligned(&rows, &[0]));
+    text.push_str(&table(header, rows, &[0]));
     text
 }
 
@@ -151,14 +141,13 @@ records! {
         /// y as it was read. mm
         y_mm: f64 = y_mm,
         /// z as it was read, of points in space. mm
-        #[serde(skip_serializing_if = "Option::is_none")] z_mm: Option<f64> = z_mm,
+        z_mm?: f64 = z_mm,
         /// Polar angle, by which `--exclude-deg` goes.
         angle_deg: AngleDeg = point.angle.into(),
         /// Whether it was left out.
         excluded: bool = point.is_excluded,
         /// Height over the plane, of points in space.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        height_mm: Option<MmDeflection> = is_spatial.then(|| point.height.into()),
+        height_mm?: MmDeflection = is_spatial.then(|| point.height.into()),
         /// About the least squares circle.
         lsc: AboutCircle = AboutCircle::of(point, &found.circles.lsc),
         /// About the minimum zone circle.

@@ -7,7 +7,7 @@ use super::output::ReportError;
 use super::page::PAGE;
 use super::picture;
 use super::{Files, named};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::rows_or;
 use crate::document::{Document, PlacementFigures, bytes};
 use crate::figure::{DeflectionMm, Direction, FinestAngleDeg, Percent, each, some};
@@ -41,8 +41,6 @@ records! {
     pub struct CorrectedRow of (index: usize, point: &CompensatedPoint) {
         // The tool's z axis points out of the spindle.
         let axis: Vector3<f64> = -point.command.rotation.column(2);
-        let [axis_x, axis_y, axis_z] = each(axis.into());
-        let [rotation_x_deg, rotation_y_deg, rotation_z_deg] = each(point.correction.angular.into());
     } with {
         /// Path point, from 0.
         point: usize = index,
@@ -53,17 +51,17 @@ records! {
         /// The corrected command.
         corrected: Millimetres = point.command.translation.into(),
         /// x of the tool axis of the command, from the workpiece to the robot.
-        axis_x: Direction = axis_x,
+        axis_x: Direction = axis.x.into(),
         /// y of it.
-        axis_y: Direction = axis_y,
+        axis_y: Direction = axis.y.into(),
         /// z of it.
-        axis_z: Direction = axis_z,
+        axis_z: Direction = axis.z.into(),
         /// x of the rotation vector from the orientation of the target to that of the command.
-        rotation_x_deg: FinestAngleDeg = rotation_x_deg,
+        rotation_x_deg: FinestAngleDeg = point.correction.angular.x.into(),
         /// y of it.
-        rotation_y_deg: FinestAngleDeg = rotation_y_deg,
+        rotation_y_deg: FinestAngleDeg = point.correction.angular.y.into(),
         /// z of it.
-        rotation_z_deg: FinestAngleDeg = rotation_z_deg,
+        rotation_z_deg: FinestAngleDeg = point.correction.angular.z.into(),
         #[serde(flatten)] joints: JointColumns<FinestAngleDeg> = point.joints.into(),
         /// The deflection without correction; empty where the arm gives way.
         before: DeflectionColumns = (&point.before).into(),
@@ -78,14 +76,12 @@ records! {
     /// A place in a row.
     #[derive(Copy, Default)]
     struct Millimetres from place: Vector3<f64> {
-        let [x_mm, y_mm, z_mm] = each(place.into());
-    } with {
         /// x.
-        x_mm: DeflectionMm = x_mm,
+        x_mm: DeflectionMm = place.x.into(),
         /// y.
-        y_mm: DeflectionMm = y_mm,
+        y_mm: DeflectionMm = place.y.into(),
         /// z.
-        z_mm: DeflectionMm = z_mm,
+        z_mm: DeflectionMm = place.z.into(),
     }
 
     /// A deflection in a row.
@@ -128,7 +124,7 @@ records! {
         /// The model of the deflection.
         model: Word<DeflectionModel> = Word::from(settings.model),
         /// True where the weight of links and spindle is corrected too; left out where it is not.
-        #[serde(skip_serializing_if = "Option::is_none")] gravity: Option<bool> = settings.gravity.then_some(true),
+        gravity?: bool = settings.gravity.then_some(true),
         /// Share of the deflection that each iteration corrects.
         alpha: f64 = settings.alpha,
         /// The iteration ends below this. mm
@@ -238,20 +234,20 @@ pub fn compensation_text(run: &CompensateRun, outcome: &CompensatedPath) -> Stri
     };
     text.push_str(&format!("{executed}\n\n"));
     let header = ["", "before: mean mm", "max mm", "after: mean mm", "max mm", "reduction %"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
     // Less than the tolerance says where the iteration ended, and nothing of the path.
     let tolerance = run.job.settings.tolerance;
     let remaining = |value: f64| match value {
         value if value < tolerance => format!("< {}", figures(tolerance * 1e3)),
         value => figures(value * 1e3),
     };
-    for (name, pair) in [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())] {
+    let parts = [("deflection", outcome.deflections()), ("normal to the feed", outcome.normal_parts())];
+    let rows = parts.map(|(name, pair)| {
         let mut row = vec![name.to_owned()];
         row.extend(pair.iter().flat_map(|figures| [figures.mean, figures.max]).map(&remaining));
         row.push(reduction(pair).map_or_else(|| "-".to_owned(), |share| fixed(share * 100.0, 1)));
-        rows.push(row);
-    }
-    text.push_str(&aligned(&rows, &[0]));
+        row
+    });
+    text.push_str(&table(header, rows, &[0]));
     text.push_str(&format!(
         "\nlargest correction {} mm and {} deg, in at most {} iterations\n",
         fixed(outcome.figures(|point| Some(point.correction.linear.norm())).max * 1e3, 4),

@@ -2,7 +2,7 @@
 
 use super::output::ReportError;
 use crate::csv_file::rows_or;
-use crate::figure::{AngleDeg, ForceN, MomentNm, each};
+use crate::figure::{AngleDeg, ForceN, MomentNm};
 use crate::page::cards::{Axis, Chart, Mark, Series, Style};
 use crate::units::fixed;
 use nalgebra::Vector3;
@@ -25,30 +25,25 @@ records! {
         tooth_deg: AngleDeg = sample.phi.into(),
         #[serde(flatten)] load: LoadColumns = sample.into(),
     }
-}
 
-records! {
     /// Force on the tool, and moment about its centre point: along the feed, to the left of it, and along the tool axis
     /// from the work to the spindle.
     #[derive(Default)]
     struct LoadColumns from sample: &Sample {
-        let [force_feed_n, force_left_n, force_axis_n] = each(sample.wrench.force.into());
-        let [moment_feed_nm, moment_left_nm, moment_axis_nm] = each(sample.wrench.moment.into());
-    } with {
         /// Force along the feed.
-        force_feed_n: ForceN = force_feed_n,
+        force_feed_n: ForceN = sample.wrench.force.x.into(),
         /// Force to the left of it.
-        force_left_n: ForceN = force_left_n,
+        force_left_n: ForceN = sample.wrench.force.y.into(),
         /// Force along the tool axis.
-        force_axis_n: ForceN = force_axis_n,
+        force_axis_n: ForceN = sample.wrench.force.z.into(),
         /// Size of the force.
         force_n: ForceN = sample.wrench.force.norm().into(),
         /// Moment about the feed.
-        moment_feed_nm: MomentNm = moment_feed_nm,
+        moment_feed_nm: MomentNm = sample.wrench.moment.x.into(),
         /// Moment about the left.
-        moment_left_nm: MomentNm = moment_left_nm,
+        moment_left_nm: MomentNm = sample.wrench.moment.y.into(),
         /// Moment about the tool axis.
-        moment_axis_nm: MomentNm = moment_axis_nm,
+        moment_axis_nm: MomentNm = sample.wrench.moment.z.into(),
         /// Size of the moment.
         moment_nm: MomentNm = sample.wrench.moment.norm().into(),
     }
@@ -90,32 +85,21 @@ impl Quantity {
             let level = [0.0, 360.0].map(|angle| [angle, mean[axis]]);
             Series::curve("", COLOURS[axis], level).styled(Style::Dashed)
         });
-        let entering = self.chart(force_history, &force_history.entering, 180.0);
-        let turn = self.chart(force_history, &force_history.turn, 360.0);
-        let name = self.name.to_lowercase();
+        let (name, unit, norm) = (self.name.to_lowercase(), self.unit, fixed(mean.norm(), self.decimals));
+        let entering = ["of a cut to an angle", "engagement angle"];
+        let entering = self.chart(entering, force_history, &force_history.entering, 180.0);
+        let turn = ["of all teeth over one turn", "angle of the first tooth"];
+        let turn = self.chart(turn, force_history, &force_history.turn, 360.0);
+        let turn = Chart { series: means.into_iter().chain(turn.series).collect(), ..turn };
         [
-            Chart {
-                title: format!("{} of a cut to an angle", self.name),
-                detail: "mean over a turn, engaged from 0; that of arcs is what components gain over them".to_owned(),
-                x: Axis { label: format!("engagement angle {SENSE}"), ..entering.x },
-                ..entering
-            },
-            Chart {
-                title: format!("{} of all teeth over one turn", self.name),
-                detail: format!(
-                    "mean {name}, dashed: ({x}, {y}, {z}) {unit}, magnitude {} {unit}",
-                    fixed(mean.norm(), self.decimals),
-                    unit = self.unit
-                ),
-                x: Axis { label: format!("angle of the first tooth {SENSE}"), ..turn.x },
-                series: means.into_iter().chain(turn.series).collect(),
-                ..turn
-            },
+            entering.detailed("mean over a turn, engaged from 0; that of arcs is what components gain over them"),
+            turn.detailed(format!("mean {name}, dashed: ({x}, {y}, {z}) {unit}, magnitude {norm} {unit}")),
         ]
     }
 
     /// Components and magnitude over the angle up to a last one (deg), zero, and the arcs of the cut.
-    fn chart(&self, force_history: &ForceHistory, samples: &[Sample], last: f64) -> Chart {
+    fn chart(&self, words: [&str; 2], force_history: &ForceHistory, samples: &[Sample], last: f64) -> Chart {
+        let [what, angle] = words;
         let curve = |name: &str, color: usize, value: &dyn Fn(&Vector3<f64>) -> f64| {
             let points = samples.iter().map(|of| [of.phi.to_degrees(), value(&(self.of)(&of.wrench))]);
             Series::curve(name, color, points)
@@ -125,15 +109,12 @@ impl Quantity {
         let arcs = force_history.engagement.arcs().iter().flat_map(|arc| [("enters", arc.entry), ("leaves", arc.exit)]);
         let arcs = arcs.map(|(what, angle)| {
             let at = angle.to_degrees();
-            Mark { is_level: false, at, label: format!("a tooth {what}, {} deg", fixed(at, 1)) }
+            Mark::across(at, format!("a tooth {what}, {} deg", fixed(at, 1)))
         });
-        Chart {
-            x: Axis { range: Some([0.0, last]), ..Axis::default() },
-            y: Axis::new(format!("{} ({}) {}", self.name.to_lowercase(), self.unit, self.about)),
-            series: components.chain([curve("magnitude", 3, &|vector| vector.norm())]).collect(),
-            marks: arcs.chain([Mark { is_level: true, at: 0.0, label: String::new() }]).collect(),
-            ..Chart::default()
-        }
+        let x = Axis { range: Some([0.0, last]), ..Axis::new(format!("{angle} {SENSE}")) };
+        let y = format!("{} ({}) {}", self.name.to_lowercase(), self.unit, self.about);
+        let curves = components.chain([curve("magnitude", 3, &|vector| vector.norm())]);
+        Chart::new(format!("{} {what}", self.name), x, y, curves).marked(arcs.chain([Mark::level(0.0, "")]))
     }
 }
 

@@ -119,7 +119,7 @@ records! {
     }
 
     /// A placement with every digit, so that reading it again gives the same placement.
-    #[derive(Copy)]
+    #[derive(Copy, Default)]
     pub struct PlacementExact from placement: &Placement {
         /// x of the workpiece origin. mm
         x_mm: f64 = placement.x * 1e3,
@@ -180,7 +180,7 @@ records! {
         /// The joint, from 1; null where it is an external axis.
         joint: Option<usize> = external_axis.is_none().then_some(joint),
         /// The external axis.
-        #[serde(skip_serializing_if = "Option::is_none")] external_axis: Option<String> = external_axis,
+        external_axis?: String = external_axis,
         /// The segment, from 1.
         segment: usize = segment,
         /// The path point, from 0.
@@ -190,13 +190,6 @@ records! {
     /// How much the joints turn in the cut.
     #[derive(Copy)]
     pub struct JointTravelFigures from travel: &JointTravel {
-        let largest = |Swing { joint, angle, length, points }| LargestTurn {
-            joint,
-            turn_deg: AngleDeg(angle),
-            length_mm: PlaceMm(length),
-            points,
-        };
-    } with {
         /// What all joints turn.
         total_deg: AngleDeg = travel.total.into(),
         /// Length of the path that they do it on.
@@ -204,21 +197,21 @@ records! {
         /// The largest turn of one joint from a point to the next.
         max_step_deg: AngleDeg = travel.largest_step.into(),
         /// The largest turn of a joint along a short stretch of the path.
-        largest_turn: Option<LargestTurn> = travel.swing.map(largest),
+        largest_turn: Option<LargestTurn> = travel.swing.as_ref().map(Into::into),
     }
-}
 
-/// A turn of a joint along the path.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub struct LargestTurn {
-    /// The joint, from 1.
-    joint: usize,
-    /// How far it turns.
-    turn_deg: AngleDeg,
-    /// Length of the path on which it does.
-    length_mm: PlaceMm,
-    /// The path points of its start and its end, from 0.
-    points: [usize; 2],
+    /// A turn of a joint along the path.
+    #[derive(Copy)]
+    pub struct LargestTurn from swing: &Swing {
+        /// The joint, from 1.
+        joint: usize = swing.joint,
+        /// How far it turns.
+        turn_deg: AngleDeg = swing.angle.into(),
+        /// Length of the path on which it does.
+        length_mm: PlaceMm = swing.length.into(),
+        /// The path points of its start and its end, from 0.
+        points: [usize; 2] = swing.points,
+    }
 }
 
 #[cfg(test)]

@@ -6,12 +6,12 @@ mod page;
 use super::output::ReportError;
 use super::picture;
 use super::{Files, named};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::rows;
 use crate::document::{Document, bytes};
 use crate::figure::{
     AngleDeg, Direction, ForceN, HeightUm, MomentNm, Percent, PlaceMm, PowerKw, RateCm3PerMin, RemovalMm2, SpeedMmPerS,
-    TaskMm, VolumeMm3, each, some,
+    TaskMm, VolumeMm3, some,
 };
 use crate::units::fixed;
 use nalgebra::Vector3;
@@ -48,54 +48,44 @@ pub fn forces_files(run: &ForcesRun, forces: &RemovalForces) -> Result<Files, Re
 records! {
     /// A point of a task with forces, in the workpiece frame; a file that `stead place` and the others read.
     pub struct ForceTaskRow of (segment: usize, point: &PathPoint, normal: Option<&Vector3<f64>>, wrench: &Wrench, feed: f64, is_scored: bool) {
-        let [x_mm, y_mm, z_mm] = each(point.position.into());
-        let [feed_x, feed_y, feed_z] = each(point.feed.into());
-        let [axis_x, axis_y, axis_z] = each(point.axis.into());
-        let [normal_x, normal_y, normal_z] = [0, 1, 2].map(|k| normal.map(|normal| Direction(normal[k])));
-        let [force_x_n, force_y_n, force_z_n] = each(wrench.force.into());
-        let [moment_x_nm, moment_y_nm, moment_z_nm] = each(wrench.moment.into());
-    } with {
         /// Segment, from 1.
         segment: usize = segment,
         /// x of the tool centre point.
-        x_mm: TaskMm = x_mm,
+        x_mm: TaskMm = point.position.x.into(),
         /// y of it.
-        y_mm: TaskMm = y_mm,
+        y_mm: TaskMm = point.position.y.into(),
         /// z of it.
-        z_mm: TaskMm = z_mm,
+        z_mm: TaskMm = point.position.z.into(),
         /// x of the feed direction.
-        feed_x: Direction = feed_x,
+        feed_x: Direction = point.feed.x.into(),
         /// y of it.
-        feed_y: Direction = feed_y,
+        feed_y: Direction = point.feed.y.into(),
         /// z of it.
-        feed_z: Direction = feed_z,
+        feed_z: Direction = point.feed.z.into(),
         /// x of the tool axis, from the workpiece to the spindle.
-        axis_x: Direction = axis_x,
+        axis_x: Direction = point.axis.x.into(),
         /// y of it.
-        axis_y: Direction = axis_y,
+        axis_y: Direction = point.axis.y.into(),
         /// z of it.
-        axis_z: Direction = axis_z,
+        axis_z: Direction = point.axis.z.into(),
         /// x of the normal of the surface, where the path states it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        normal_x: Option<Direction> = normal_x,
+        normal_x?: Direction = normal.map(|normal| normal.x.into()),
         /// y of it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        normal_y: Option<Direction> = normal_y,
+        normal_y?: Direction = normal.map(|normal| normal.y.into()),
         /// z of it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        normal_z: Option<Direction> = normal_z,
+        normal_z?: Direction = normal.map(|normal| normal.z.into()),
         /// x of what the workpiece does to the tool: the mean force over a turn.
-        force_x_n: ForceN = force_x_n,
+        force_x_n: ForceN = wrench.force.x.into(),
         /// y of it.
-        force_y_n: ForceN = force_y_n,
+        force_y_n: ForceN = wrench.force.y.into(),
         /// z of it.
-        force_z_n: ForceN = force_z_n,
+        force_z_n: ForceN = wrench.force.z.into(),
         /// x of the mean moment about the tool centre point.
-        moment_x_nm: MomentNm = moment_x_nm,
+        moment_x_nm: MomentNm = wrench.moment.x.into(),
         /// y of it.
-        moment_y_nm: MomentNm = moment_y_nm,
+        moment_y_nm: MomentNm = wrench.moment.y.into(),
         /// z of it.
-        moment_z_nm: MomentNm = moment_z_nm,
+        moment_z_nm: MomentNm = wrench.moment.z.into(),
         /// Feed of the move to the point.
         feed_mm_per_s: SpeedMmPerS = feed.into(),
         /// 0 for a point that is followed but not scored: its force is stated, and has no part in a score.
@@ -106,9 +96,6 @@ records! {
     /// tool, in the workpiece frame, moments about the tool centre point, in two parts: at the share s of the
     /// programmed feed the force is s times that of the chips, and that of the edges.
     pub struct EngagementRow of (index: usize, segment: usize, along: f64, is_scored: bool, load: &PointForces) {
-        let [lowest_mm, highest_mm] = [0, 1].map(|k| load.heights.map(|heights| PlaceMm(heights[k])));
-        let [entry_deg, exit_deg] = [0, 1].map(|k| load.angles.map(|angles| AngleDeg(angles[k])));
-    } with {
         /// Path point, from 0.
         point: usize = index,
         /// Segment, from 1.
@@ -134,51 +121,45 @@ records! {
         /// Removed volume over length of path.
         removed_mm3_per_mm: RemovalMm2 = load.removed.into(),
         /// Lowest height above the tool centre point that cuts; empty where nothing does, as what follows.
-        lowest_mm: Option<PlaceMm> = lowest_mm,
+        lowest_mm: Option<PlaceMm> = load.heights.map(|heights| heights[0].into()),
         /// Highest height that cuts.
-        highest_mm: Option<PlaceMm> = highest_mm,
+        highest_mm: Option<PlaceMm> = load.heights.map(|heights| heights[1].into()),
         /// Angle at which a tooth enters, 0 where it moves along the feed, in the sense of rotation.
-        entry_deg: Option<AngleDeg> = entry_deg,
+        entry_deg: Option<AngleDeg> = load.angles.map(|angles| angles[0].into()),
         /// Angle at which a tooth leaves.
-        exit_deg: Option<AngleDeg> = exit_deg,
+        exit_deg: Option<AngleDeg> = load.angles.map(|angles| angles[1].into()),
         /// Thickest chip.
         chip_um: HeightUm = load.chip_thickness.into(),
     }
 
     /// A part of the force in a row.
     pub struct ForceColumns from force: Vector3<f64> {
-        let [x_n, y_n, z_n] = each(force.into());
-    } with {
         /// Along x, of the part that the name begins with.
-        x_n: ForceN = x_n,
+        x_n: ForceN = force.x.into(),
         /// Along y.
-        y_n: ForceN = y_n,
+        y_n: ForceN = force.y.into(),
         /// Along z.
-        z_n: ForceN = z_n,
+        z_n: ForceN = force.z.into(),
     }
 
     /// A part of the moment in a row.
     pub struct MomentColumns from moment: Vector3<f64> {
-        let [x_nm, y_nm, z_nm] = each(moment.into());
-    } with {
         /// About x, of the part that the name begins with.
-        x_nm: MomentNm = x_nm,
+        x_nm: MomentNm = moment.x.into(),
         /// About y.
-        y_nm: MomentNm = y_nm,
+        y_nm: MomentNm = moment.y.into(),
         /// About z.
-        z_nm: MomentNm = z_nm,
+        z_nm: MomentNm = moment.z.into(),
     }
 
     /// What the scored points of a path cut, in a few figures.
     pub struct CutRecord from cut: &CutFigures {
-        let [depth, most, deepest] = cut.depths;
-    } with {
         /// Axial depth that half of the points do not exceed.
-        depth_mm: PlaceMm = depth.into(),
+        depth_mm: PlaceMm = cut.depths[0].into(),
         /// Axial depth that 95 of 100 points do not exceed.
-        depth_95_mm: PlaceMm = most.into(),
+        depth_95_mm: PlaceMm = cut.depths[1].into(),
         /// Largest axial depth.
-        deepest_mm: PlaceMm = deepest.into(),
+        deepest_mm: PlaceMm = cut.depths[2].into(),
         /// The point of it, from 0.
         deepest_point: usize = cut.deepest,
         /// Diameter of the cutter.
@@ -246,16 +227,14 @@ records! {
 
     /// A difference of forces and moments over the largest of the path.
     pub struct DifferenceFigures from difference: &ForcesDifference {
-        let ForcesDifference { rms, largest } = difference;
-    } with {
         /// Root mean square of the force.
-        force_rms_percent: Percent = rms[0].into(),
+        force_rms_percent: Percent = difference.rms[0].into(),
         /// Largest of the force.
-        force_max_percent: Percent = largest[0].into(),
+        force_max_percent: Percent = difference.largest[0].into(),
         /// Root mean square of the moment.
-        moment_rms_percent: Percent = rms[1].into(),
+        moment_rms_percent: Percent = difference.rms[1].into(),
         /// Largest of the moment.
-        moment_max_percent: Percent = largest[1].into(),
+        moment_max_percent: Percent = difference.largest[1].into(),
     }
 }
 
@@ -319,7 +298,7 @@ pub fn forces_text(run: &ForcesRun, forces: &RemovalForces) -> String {
     let mut text =
         format!("{name}: {} points, {} of them added, {} scored\n\n", figures.points, figures.added, figures.scored);
     let header = ["", "force N", "moment N m", "in a turn N", "removed mm3/mm", "height mm", "chip um"];
-    let mut table = vec![header.map(str::to_owned).to_vec()];
+    let mut rows = Vec::new();
     let scored: Vec<&PointForces> = (0..forces.points.len())
         .filter(|point| forces.path.is_scored(*point) && forces.points[*point].heights.is_some())
         .map(|point| &forces.points[point])
@@ -337,10 +316,10 @@ pub fn forces_text(run: &ForcesRun, forces: &RemovalForces) -> String {
     if !scored.is_empty() {
         for (name, value) in [("mean", &mean as &dyn Fn(fn(&PointForces) -> f64) -> f64), ("largest", &most)] {
             let cells = of.iter().map(|(of, decimals)| fixed(value(*of), *decimals));
-            table.push(std::iter::once(name.to_owned()).chain(cells).collect());
+            rows.push(std::iter::once(name.to_owned()).chain(cells).collect());
         }
     }
-    text.push_str(&aligned(&table, &[0]));
+    text.push_str(&table(header, rows, &[0]));
     let _ = writeln!(
         text,
         "\nof scored points that cut; {} % of the scored length cuts nothing; {} mm3 removed",

@@ -65,36 +65,9 @@ pub(super) fn postures_within(scheme: &[Posture], width: usize) -> String {
     if counted.len() <= width { counted } else { format!("{} segments", scheme.len()) }
 }
 
-/// A limit that can hold an optimum, by its key of the files where it has one.
-fn limit(limit: Limit) -> String {
-    match limit {
-        Limit::CellX => "cell.x_mm".to_owned(),
-        Limit::CellY => "cell.y_mm".to_owned(),
-        Limit::CellZ => "cell.z_mm".to_owned(),
-        Limit::CellYaw => "cell.yaw_deg".to_owned(),
-        Limit::Joint(joint) => format!("limit of joint {joint}"),
-        Limit::AxesSum => "limit of axes 2+3".to_owned(),
-        Limit::JointStep(joint) => format!("speed of joint {joint}"),
-        Limit::Conditioning => "constraints.min_inverse_condition".to_owned(),
-        Limit::BetaRate => "redundancy.max_beta_rate_deg_per_mm".to_owned(),
-        Limit::SpindleTurn => "redundancy.max_spindle_turn_deg_per_mm".to_owned(),
-        Limit::SpindleSpeed => "redundancy.max_spindle_turn_deg_per_s".to_owned(),
-        Limit::MaxDeflection => "constraints.max_deflection_mm".to_owned(),
-        Limit::BaseDistance => "constraints.min_base_distance_mm".to_owned(),
-        Limit::Clearance(_) => "collision.clearance_mm".to_owned(),
-        Limit::KeepOut(_) => "keep_out".to_owned(),
-        Limit::Lead => "lean.lead_deg".to_owned(),
-        Limit::Tilt => "lean.tilt_deg".to_owned(),
-        Limit::MaxLean => "lean.max_lean_deg".to_owned(),
-        Limit::Scallop => "lean.scallop_mm".to_owned(),
-        Limit::StepOver => "lean.step_over_mm".to_owned(),
-        Limit::ContactTolerance => "lean.contact_tolerance_mm".to_owned(),
-    }
-}
-
 /// A bound that holds an optimum: its limit, and of a distance that two have to keep which these are.
 pub fn bound(bound: &ActiveBound) -> String {
-    let limit = limit(bound.side.limit);
+    let [limit, _] = bound.side.limit.names();
     match &bound.names {
         Some([a, b]) => format!("{limit} of {a} and {b}"),
         None => limit,

@@ -88,10 +88,8 @@ pub fn program_text(program: &Program) -> String {
         plural(program.parts, "part"),
     );
     if program.uncorrected > 0 {
-        text.push_str(&format!(
-            "{} as planned, for they could not be corrected\n",
-            plural(program.uncorrected, "point")
-        ));
+        let points = plural(program.uncorrected, "point");
+        text.push_str(&format!("{points} as planned, for they could not be corrected\n"));
     }
     if !program.frames.is_empty() {
         text.push_str("\nframes at the controller:\n");
@@ -118,8 +116,7 @@ records! {
         /// Largest deviation of an angle. deg
         angle_deg: Option<LargestFigures> = check.angle.as_ref().map(LargestFigures::of),
         /// Largest deviation of the contact of a leaning tool, from tip and axis in the program. mm
-        #[serde(skip_serializing_if = "Option::is_none")]
-        contact_mm: Option<LargestFigures> = check.contact.as_ref().map(LargestFigures::of),
+        contact_mm?: LargestFigures = check.contact.as_ref().map(LargestFigures::of),
         /// Why the program is another one.
         mismatch: Option<String> = check.mismatch.as_ref().map(ToString::to_string),
         /// Moves that hit.
@@ -131,8 +128,7 @@ records! {
         /// Largest deviation of an angle that is allowed. deg
         allowed_deg: f64 = ANGLE_DEG,
         /// Largest deviation of the contact that is allowed, where the tool leans. mm
-        #[serde(skip_serializing_if = "Option::is_none")]
-        allowed_contact_mm: Option<f64> = check.contact.as_ref().map(|_| check.contact_allowed),
+        allowed_contact_mm?: f64 = check.contact.as_ref().map(|_| check.contact_allowed),
     }
 
     /// Where a move is.

@@ -1,6 +1,6 @@
 //! Arms: the poses of given joint angles, and the list of shipped arms.
 
-use crate::columns::{aligned, line};
+use crate::columns::{line, table};
 use crate::document::Document;
 use crate::figure::{AngleDeg, ControllerMm, each};
 use crate::units::{Unit, fixed};
@@ -99,16 +99,14 @@ pub fn pose_text(pose: &ArmPose) -> String {
     let row = |name: &str, angles: [f64; 6]| {
         std::iter::once(name.to_owned()).chain(angles.map(|angle| ANGLE_DEG.text(angle))).collect::<Vec<_>>()
     };
-    let mut rows = vec![std::iter::once(String::new()).chain(names.clone()).collect()];
-    rows.push(row("theta deg", pose.joints));
+    let mut rows = vec![row("theta deg", pose.joints)];
     rows.extend(controller.map(|controller| row("controller deg", controller.angles(&pose.robot, &pose.joints))));
-    text.push_str(&aligned(&rows, &[0]));
+    text.push_str(&table(std::iter::once(String::new()).chain(names.clone()), rows, &[0]));
     text.push('\n');
     text.push_str(&frames_text(&pose.frames()));
     text.push_str(&format!("\nAll postures of this flange pose, in {}\n\n", angles_of(controller)));
     let header = std::iter::once("posture".to_owned()).chain(names).chain(["within limits", ""].map(str::to_owned));
-    let mut rows = vec![header.collect::<Vec<_>>()];
-    for (posture, found) in pose.postures() {
+    let rows = pose.postures().into_iter().map(|(posture, found)| {
         let angles = found
             .map(|found| controller.map_or(found.angles, |controller| controller.angles(&pose.robot, &found.angles)));
         let cells = angles.map_or_else(|| vec!["-".to_owned(); 6], |of| of.map(|angle| ANGLE_DEG.text(angle)).into());
@@ -117,14 +115,10 @@ pub fn pose_text(pose: &ArmPose) -> String {
             Some(Reached { is_within: false, .. }) => "no",
             None => "out of reach",
         };
-        rows.push(
-            std::iter::once(posture.to_string())
-                .chain(cells)
-                .chain([verdict.to_owned(), pose.robot.posture_words(posture).to_string()])
-                .collect(),
-        );
-    }
-    text.push_str(&aligned(&rows, &[7, 8]));
+        let said = [verdict.to_owned(), pose.robot.posture_words(posture).to_string()];
+        std::iter::once(posture.to_string()).chain(cells).chain(said).collect()
+    });
+    text.push_str(&table(header, rows, &[7, 8]));
     text
 }
 
@@ -135,14 +129,13 @@ fn angles_of(controller: Option<&Controller>) -> &'static str {
 
 fn frames_text(frames: &[NamedFrame]) -> String {
     let header = ["frame", "x mm", "y mm", "z mm", "A deg", "B deg", "C deg", "qw", "qx", "qy", "qz"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for (name, of, pose) in frames {
+    let rows = frames.iter().map(|(name, of, pose)| {
         let place = pose.translation.iter().map(|v| PLACE_MM.text(*v));
         let angles = zyx_from_rotation(&pose.rotation).map(|angle| ANGLE_DEG.text(angle));
         let quaternion = quaternion_from_rotation(&pose.rotation).map(|v| fixed(v, 6));
-        rows.push(std::iter::once(format!("{name} in {of}")).chain(place).chain(angles).chain(quaternion).collect());
-    }
-    let mut text = aligned(&rows, &[0]);
+        std::iter::once(format!("{name} in {of}")).chain(place).chain(angles).chain(quaternion).collect()
+    });
+    let mut text = table(header, rows, &[0]);
     text.push_str(
         "\nRotation = Rz(A) Ry(B) Rx(C): KUKA's A, B, C; Fanuc's R, P, W; yaw, pitch, roll. As matrices, by rows:\n",
     );
@@ -174,9 +167,7 @@ records! {
         /// Every posture that has the flange here.
         postures: Vec<PostureFigures> = pose.postures().into_iter().map(posture).collect(),
     }
-}
 
-records! {
     /// A frame.
     pub struct FrameFigures of (frame: &'static str, within: &'static str, pose: &Pose<f64>) {
         /// `flange` or `tool`.
@@ -192,9 +183,7 @@ records! {
         /// Its rotation as a matrix, by rows.
         rotation: Vec<Vec<f64>> = pose.rotation.row_iter().map(|row| row.iter().copied().collect()).collect(),
     }
-}
 
-records! {
     /// Joint angles of a posture; null where it does not reach the pose.
     pub struct PostureFigures of (pose: &ArmPose, posture: Posture, found: Option<Reached>) {
         /// The posture, 1 to 8.
@@ -219,11 +208,10 @@ pub fn pose_json(pose: &ArmPose) -> Value {
 pub fn robots_text(arms: &[ShippedArm]) -> String {
     let header =
         ["name", "arm", "payload kg", "wrist reach mm", "stiffness", "masses", "linkage", "controller", "not verified"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
     let yes = |is: bool| if is { "yes" } else { "-" }.to_owned();
-    for arm in arms {
+    let rows = arms.iter().map(|arm| {
         let unverified = arm.robot.unverified();
-        rows.push(vec![
+        vec![
             arm.name.to_owned(),
             arm.robot.name().to_owned(),
             arm.robot.data_sheet().payload.map_or_else(String::new, |kg| fixed(kg, 0)),
@@ -233,9 +221,9 @@ pub fn robots_text(arms: &[ShippedArm]) -> String {
             yes(arm.robot.has_linkage()),
             arm.robot.controller().map_or_else(|| "-".to_owned(), |controller| controller.kind.word().to_owned()),
             if unverified.is_empty() { "-".to_owned() } else { unverified.join("; ") },
-        ]);
-    }
-    aligned(&rows, &[0, 1, 4, 5, 6, 7, 8])
+        ]
+    });
+    table(header, rows, &[0, 1, 4, 5, 6, 7, 8])
 }
 
 records! {

@@ -18,8 +18,7 @@ use stead_problem::evaluate::reference::State;
 use stead_problem::joint_travel::JointTravel;
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::sense::{BySense, Sense};
-use stead_problem::settings::SearchSettings;
-use stead_problem::settings::TransferSettings;
+use stead_problem::settings::{SearchSettings, TransferSettings};
 use stead_problem::testing::five_segments;
 
 /// Grid steps of beta from point to point.

@@ -16,7 +16,7 @@ pub trait Worded: Copy + PartialEq + 'static {
 macro_rules! worded {
     ($($kind:ty),+) => {$(
         impl Worded for $kind {
-            const WORDS: &'static [(&'static str, Self)] = &<$kind>::WORDS;
+            const WORDS: &'static [(&'static str, Self)] = <$kind>::WORDS;
         }
     )+};
 }

@@ -86,7 +86,7 @@ impl ForcesRun {
         let at = |place: &InputError, allowed: &str| place.clone().because(error).allowed(allowed).into();
         match error {
             ForcesError::Stopped(stop) => (*stop).into(),
-            ForcesError::Form | ForcesError::Large { .. } => {
+            ForcesError::Form | ForcesError::Large(_) => {
                 at(&self.places.stock, "a box, a cylinder or a closed mesh, at most 4.2 m long")
             }
             ForcesError::Open { .. } => at(&self.places.stock, "a closed mesh whose surface does not cross itself"),

@@ -5,8 +5,7 @@ use stead_assessment::circle::CircleError;
 use stead_assessment::roundness::{Measured, RoundnessError};
 use stead_disk::files;
 use stead_disk::input::csv_table::CsvTable;
-use stead_disk::input::input_file;
-use stead_disk::input::{InputError, InputFile};
+use stead_disk::input::{InputError, InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
 use stead_disk::quote::shorten;
 
@@ -75,10 +74,8 @@ impl PointFile {
         };
         let first = self.lines.first().copied().unwrap_or(1);
         let (line, found, allowed) = match cause {
-            CircleError::NotFinite { point } => {
-                (self.lines.get(point).copied().unwrap_or(first), None, "finite numbers")
-            }
-            CircleError::TooFew { distinct } => (first, Some(format!("{distinct} different points")), ALLOWED),
+            CircleError::NotFinite(point) => (self.lines.get(point).copied().unwrap_or(first), None, "finite numbers"),
+            CircleError::TooFew(distinct) => (first, Some(format!("{distinct} different points")), ALLOWED),
             CircleError::Collinear => (first, Some(format!("{} points on a line", self.lines.len())), ALLOWED),
             CircleError::Straight => {
                 (first, None, "points of a circle, or of an arc that is bent more than it is rough")

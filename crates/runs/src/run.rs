@@ -6,9 +6,7 @@ use stead_disk::input::InputFile;
 use stead_model::published::Published;
 use stead_numerics::message::{Note, Warning};
 use stead_problem::problem::Problem;
-use stead_problem::settings::CertificateSettings;
-use stead_problem::settings::SearchSettings;
-use stead_problem::settings::TransferSettings;
+use stead_problem::settings::{CertificateSettings, SearchSettings, TransferSettings};
 use stead_removal::outcome::RemovalForces;
 use stead_simulation::path_stability::PathStabilityAnalysis;
 

@@ -7,33 +7,22 @@ use stead_model::robot::chain::{Axis, Chain, Link, Posed};
 use stead_model::robot::{Inertial, JointDynamics, Orthogonal, Pose, Robot, Spindle};
 use stead_numerics::message::Warning;
 
-/// How much of the arm is modelled; each adds to the one before.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-pub enum Variant {
-    /// A spring and a damper about each joint axis, no gravity.
-    Springs,
-    /// Gravity and its compensators too.
-    Gravity,
-    /// Springs and dampers normal to the joint axes too.
-    Orthogonal,
-    /// Backlash of the gears too.
-    Backlash,
+stead_numerics::worded! {
+    /// How much of the arm is modelled; each adds to the one before.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    pub enum Variant {
+        /// A spring and a damper about each joint axis, no gravity.
+        Springs = "springs",
+        /// Gravity and its compensators too.
+        Gravity = "gravity",
+        /// Springs and dampers normal to the joint axes too.
+        Orthogonal = "orthogonal",
+        /// Backlash of the gears too.
+        Backlash = "backlash",
+    }
 }
 
 impl Variant {
-    /// All four, the simplest first.
-    pub const ALL: [Self; 4] = [Self::Springs, Self::Gravity, Self::Orthogonal, Self::Backlash];
-
-    /// The word for it in files and on the command line.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Springs => "springs",
-            Self::Gravity => "gravity",
-            Self::Orthogonal => "orthogonal",
-            Self::Backlash => "backlash",
-        }
-    }
-
     /// That this variant leaves out springs of a full set, of which those about the axes are but a part.
     pub fn left_out(self, robot: &Robot) -> Option<Warning> {
         (self < Self::Orthogonal && robot.normal_springs().is_some()).then(|| {
@@ -54,12 +43,9 @@ pub enum Missing {
     /// The robot has no masses.
     #[error("the robot has no masses and inertias")]
     Dynamics,
-    /// A joint has no stiffness normal to its axis, which the variant takes into account.
-    #[error("joint {joint} has no stiffness and damping normal to its axis")]
-    Orthogonal {
-        /// Number of the joint, from 1.
-        joint: usize,
-    },
+    /// A joint, by its number from 1, has no stiffness normal to its axis, which the variant takes into account.
+    #[error("joint {0} has no stiffness and damping normal to its axis")]
+    Orthogonal(usize),
 }
 
 /// A chain of `N` joints, six of them with motors, and the drives about all.
@@ -151,7 +137,7 @@ impl Arm<18> {
         let parts = Parts::new(robot, spindle, theta)?;
         let mut normal = [Orthogonal { stiffness: [0.0; 2], damping: [0.0; 2] }; 6];
         for (j, slot) in normal.iter_mut().enumerate() {
-            *slot = parts.dynamics[j].orthogonal.ok_or(Missing::Orthogonal { joint: j + 1 })?;
+            *slot = parts.dynamics[j].orthogonal.ok_or(Missing::Orthogonal(j + 1))?;
         }
         // The frame of a row, seen from the same axes in the joint's bearing.
         let bearing = |j: usize| Vector3::new(0.0, 0.0, parts.dynamics[j].bearing);

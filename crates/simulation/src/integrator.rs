@@ -75,21 +75,9 @@ pub enum StepError {
         /// The shortest step tried. s
         step: f64,
     },
-    /// The mass matrix with damping and stiffness is not positive definite.
-    #[error("at {time} s the matrix of the step is not positive definite")]
-    Singular {
-        /// Start of the step. s
-        time: f64,
-    },
-}
-
-/// Effort of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Effort {
-    /// Evaluations of the unbalanced forces.
-    pub evaluations: usize,
-    /// Parts in which the step was made.
-    pub parts: usize,
+    /// The mass matrix with damping and stiffness is not positive definite: the start of the step. s
+    #[error("at {0} s the matrix of the step is not positive definite")]
+    Singular(f64),
 }
 
 /// The method with its matrix.
@@ -123,7 +111,7 @@ impl<const N: usize> Newmark<N> {
         state: &MotionState<N>,
     ) -> Result<MotionState<N>, StepError> {
         let mut state = *state;
-        let mass = system.tangent(time, &state).mass.cholesky().ok_or(StepError::Singular { time })?;
+        let mass = system.tangent(time, &state).mass.cholesky().ok_or(StepError::Singular(time))?;
         for _ in 0..20 {
             let change = mass.solve(&system.unbalanced(time, &state));
             state.acceleration -= change;
@@ -144,18 +132,16 @@ impl<const N: usize> Newmark<N> {
         time: f64,
         step: f64,
         state: &mut MotionState<N>,
-    ) -> Result<Effort, StepError> {
+    ) -> Result<(), StepError> {
         let parts = 1_u64 << self.settings.max_halvings;
         let (mut done, mut width) = (0, parts);
-        let mut effort = Effort::default();
         while done < parts {
             let from = time + step * (done as f64 / parts as f64);
             let length = step * (width as f64 / parts as f64);
-            match self.part(system, from, length, state, &mut effort.evaluations) {
+            match self.part(system, from, length, state) {
                 Ok(next) => {
                     *state = next;
                     done += width;
-                    effort.parts += 1;
                     system.accept(time + step * (done as f64 / parts as f64), state);
                     if width < parts && done % (2 * width) == 0 {
                         width *= 2;
@@ -165,7 +151,7 @@ impl<const N: usize> Newmark<N> {
                 Err(_) => width /= 2,
             }
         }
-        Ok(effort)
+        Ok(())
     }
 
     /// One part of a step, with the matrix there is, or with a new one if that is too slow.
@@ -175,16 +161,15 @@ impl<const N: usize> Newmark<N> {
         time: f64,
         step: f64,
         state: &MotionState<N>,
-        evaluations: &mut usize,
     ) -> Result<MotionState<N>, StepError> {
         if self.inverse.as_ref().is_some_and(|(made_for, _)| *made_for == step)
-            && let Some(next) = self.solved(system, time, step, state, evaluations)
+            && let Some(next) = self.solved(system, time, step, state)
             && self.contraction <= SLOW
         {
             return Ok(next);
         }
         self.factor(system, time, step, state)?;
-        self.solved(system, time, step, state, evaluations).ok_or(StepError::NotConverged { time, step })
+        self.solved(system, time, step, state).ok_or(StepError::NotConverged { time, step })
     }
 
     fn factor<S: System<N>>(
@@ -197,7 +182,7 @@ impl<const N: usize> Newmark<N> {
         let Tangent { mass, damping, stiffness } = system.tangent(time, state);
         let Settings { beta, gamma, .. } = self.settings;
         let matrix = mass + damping * (gamma * step) + stiffness * (beta * step * step);
-        let factor = matrix.cholesky().ok_or(StepError::Singular { time })?;
+        let factor = matrix.cholesky().ok_or(StepError::Singular(time))?;
         self.inverse = Some((step, factor.inverse()));
         self.contraction = MIN_CONTRACTION;
         Ok(())
@@ -210,7 +195,6 @@ impl<const N: usize> Newmark<N> {
         time: f64,
         step: f64,
         state: &MotionState<N>,
-        evaluations: &mut usize,
     ) -> Option<MotionState<N>> {
         let Settings { beta, gamma, tolerance, max_corrections, .. } = self.settings;
         let (_, inverse) = self.inverse.as_ref()?;
@@ -222,7 +206,6 @@ impl<const N: usize> Newmark<N> {
         let mut before = f64::INFINITY;
         for _ in 0..max_corrections {
             let change = inverse * system.unbalanced(time + step, &next);
-            *evaluations += 1;
             next.acceleration -= change;
             next.speed -= change * (gamma * step);
             next.q -= change * (beta * step * step);

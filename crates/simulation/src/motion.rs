@@ -95,12 +95,16 @@ pub enum MotionError {
 /// slopes there, and cubics between.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    ramp: Ramp,
-    length: f64,
+    /// How it starts.
+    pub ramp: Ramp,
+    /// How far it goes. m
+    pub length: f64,
     spacing: f64,
     knots: Vec<Knot>,
-    start: Pose<f64>,
-    direction: Vector3<f64>,
+    /// The tool frame at the start, in the base frame.
+    pub start: Pose<f64>,
+    /// Direction of the feed in the base frame.
+    pub direction: Vector3<f64>,
 }
 
 /// Joint angles (rad) and their derivatives along the pass (rad/m).
@@ -158,26 +162,6 @@ impl Motion {
     /// When the pass is completed. s
     pub fn duration(&self) -> f64 {
         self.ramp.time_of(self.length)
-    }
-
-    /// How it starts.
-    pub fn ramp(&self) -> &Ramp {
-        &self.ramp
-    }
-
-    /// How far it goes. m
-    pub fn length(&self) -> f64 {
-        self.length
-    }
-
-    /// Direction of the feed in the base frame.
-    pub fn direction(&self) -> &Vector3<f64> {
-        &self.direction
-    }
-
-    /// The tool frame at the start, in the base frame.
-    pub fn start(&self) -> &Pose<f64> {
-        &self.start
     }
 
     /// The frame of a cut along the pass, with the wall on a side of the feed.

@@ -106,9 +106,9 @@ impl Simulation {
     pub fn of(job: &Job<'_>, settings: &EvaluationSettings, run: Run) -> Result<Self, SimulationError> {
         let distance = |share: f64| {
             let distance = job.cutter.radius() + job.gap + share * job.cut.length;
-            distance.min(job.setup.motion.length())
+            distance.min(job.setup.motion.length)
         };
-        let at = |share: f64| job.setup.motion.ramp().time_of(distance(share));
+        let at = |share: f64| job.setup.motion.ramp.time_of(distance(share));
         let window = settings.window.unwrap_or_else(|| [at(0.25), at(0.9)]);
         let half = [(window[0] + window[1]) / 2.0, window[1]];
         let turn = job.cut.steps_per_turn as f64;

@@ -108,7 +108,7 @@ pub fn analyse(
         frequency_response: linear.frequency_response(&frame, &between(settings.frequencies, FREQUENCIES))?,
         cut_stability: cut_stability(&plant, cutter, cut, settings.max_depth)?,
         lobes: lobes(&plant, cutter, cut, &speeds, settings.max_depth, monitor)?,
-        pass_time: cut.length / setup.motion.ramp().feed,
+        pass_time: cut.length / setup.motion.ramp.feed,
         warnings: setup.warnings(),
         notes: setup
             .notes()

@@ -36,16 +36,13 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead identify fit configs/identify-example.toml",
         "stead identify fit configs/identify-example.toml --json --out results/arm-17",
     ],
-    files: &[
-        (
-            "robot-identified.toml",
-            "the robot file with the identified values and a table [covariance]; all else, comments included, is unchanged",
-        ),
-        ("compliances.csv", "every estimate with standard deviation and 95 % interval"),
-        ("residuals.csv, deflections.svg", "every reading beside what the identified arm gives"),
-        ("report.json", "all of it for programs, with tracker position and reference points"),
-        ("report.html", "a page whose charts answer to the pointer"),
-    ],
+    files: "\
+robot-identified.toml: the robot file with the identified values and a table [covariance]; all else, comments \
+    included, is unchanged
+compliances.csv: every estimate with standard deviation and 95 % interval
+residuals.csv, deflections.svg: every reading beside what the identified arm gives
+report.json: all of it for programs, with tracker position and reference points
+report.html: a page whose charts answer to the pointer",
     failed: "sound readings for which no spring or no positive compliance is found",
     refused: "wrong usage, bad input, or readings from which the parameters are not identifiable",
     interrupted: STOPPED,
@@ -63,9 +60,6 @@ fn fit(options: &IdentifyFitOptions) -> Result<(), Failure> {
     let run = FitRun::read(&options.config)?;
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let robot = run.fit(&shown.monitor);
-    drop(shown);
-    let robot = robot?;
+    let robot = Terminal::start(Some(&out.folder)).during(|monitor| run.fit(monitor))?;
     out.show(robot.write_in(&out.folder), &robot, options.json, results_in)
 }

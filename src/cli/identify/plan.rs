@@ -2,7 +2,7 @@
 
 use super::super::Failure;
 use super::super::output::{out_folder, say_notes};
-use super::super::progress::{Terminal, on_threads};
+use super::super::progress::Terminal;
 use crate::cli::manual::{Manual, STOPPED};
 use crate::cli::values::{seed, threads};
 use clap::Args;
@@ -34,14 +34,10 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead identify plan configs/identify-plan-example.toml",
         "stead identify plan configs/identify-plan-example.toml --seed 2 --out results/plan-2",
     ],
-    files: &[
-        ("sheet.csv", "the measurement sheet to be filled in; never overwritten once it holds a reading"),
-        (
-            "expected.csv, plan.svg",
-            "the standard deviations that `identify fit` will report, and the same for random sets",
-        ),
-        ("plan.json", "all of it for programs"),
-    ],
+    files: "\
+sheet.csv: the measurement sheet to be filled in; never overwritten once it holds a reading
+expected.csv, plan.svg: the standard deviations that `identify fit` will report, and the same for random sets
+plan.json: all of it for programs",
     failed: "too few configurations or test poses are within the limits, or no compliance is identifiable",
     refused: "wrong usage, bad input, or a sheet with readings in the results folder",
     interrupted: STOPPED,
@@ -53,9 +49,7 @@ pub(super) fn run(options: &IdentifyPlanOptions) -> Result<(), Failure> {
     let out = out_folder(options.out.as_deref(), &options.config, &MANUAL)?;
     run.check_folder(out.folder.path())?;
     say_notes(run.notes());
-    let shown = Terminal::start(Some(&out.folder)).show(None);
-    let plan = on_threads(options.threads, || run.plan(&shown.monitor))??;
-    drop(shown);
+    let plan = Terminal::start(Some(&out.folder)).on_threads(options.threads, |monitor| run.plan(monitor))??;
     out.show(plan.write_in(&out.folder), &plan, options.json, |folder| {
         if folder.is_empty() {
             folder

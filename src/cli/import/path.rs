@@ -3,7 +3,7 @@
 use super::super::Failure;
 use super::super::given::Force;
 use super::super::output::{print, say_notes};
-use super::super::values::{finite, positive};
+use super::super::values::{finite, parsed};
 use crate::cli::manual::Manual;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -24,13 +24,13 @@ pub(in super::super) struct PathOptions {
     #[arg(long, value_name = "C", default_value = "0.01", value_parser = chord, allow_hyphen_values = true)]
     pub chord_mm: f64,
     /// Unit of length, where the file does not state it
-    #[arg(long, value_parser = one_of(&LengthUnit::WORDS))]
+    #[arg(long, value_parser = one_of(LengthUnit::WORDS))]
     pub units: Option<LengthUnit>,
     /// What the file is written in; cldata: a dialect told from the file [default: told from the file]
-    #[arg(long, value_parser = one_of(&CamFormat::WORDS))]
+    #[arg(long, value_parser = one_of(CamFormat::WORDS))]
     pub format: Option<CamFormat>,
     /// Machine that G-code with rotary axes is for
-    #[arg(long, value_parser = one_of(&Machine::WORDS))]
+    #[arg(long, value_parser = one_of(Machine::WORDS))]
     pub machine: Option<Machine>,
     /// Take tool centre point control as on though the G-code has no G43.4
     #[arg(long)]
@@ -62,10 +62,9 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead import path part.nc --machine table-ac --step-mm 5 --out my/part.csv",
     ],
     written: "as --out names them",
-    files: &[
-        ("NAME.csv", "the task: path points without forces"),
-        ("NAME-tool.toml", "the cutter, where the program describes one"),
-    ],
+    files: "\
+NAME.csv: the task: path points without forces
+NAME-tool.toml: the cutter, where the program describes one",
     remarks: "The task has no forces: a run takes them from [tool] and [cut], or from [forces]. `stead init place \
               --robot .. --task ..` takes both files.",
     refused: "wrong usage, a program that is refused, with line and word, or a file that is there already (--force replaces it): nothing is written",
@@ -89,7 +88,7 @@ pub(super) fn run(options: &PathOptions) -> Result<(), Failure> {
     let report = if options.report {
         format!("{path}\n")
     } else {
-        say_notes(path.notes());
+        say_notes(&path.notes);
         String::new()
     };
     let [points, scored] = path.point_counts();
@@ -109,22 +108,17 @@ fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [(&'static str, T)]) 
 
 /// A length from 0.01 to 1000 mm.
 fn step(text: &str) -> Result<f64, String> {
-    let allowed = || "allowed: a number from 0.01 to 1000".to_owned();
-    positive(text).ok().filter(|step| (0.01..=1000.0).contains(step)).ok_or_else(allowed)
+    parsed(text, |step| (0.01..=1000.0).contains(step), "a number from 0.01 to 1000")
 }
 
 /// A length from 0.0001 to 10 mm.
 fn chord(text: &str) -> Result<f64, String> {
-    let allowed = || "allowed: a number from 0.0001 to 10".to_owned();
-    positive(text).ok().filter(|chord| (1e-4..=10.0).contains(chord)).ok_or_else(allowed)
+    parsed(text, |chord| (1e-4..=10.0).contains(chord), "a number from 0.0001 to 10")
 }
 
 fn place(text: &str) -> Result<[f64; 3], String> {
-    let allowed = || "allowed: three numbers up to 10000, as in 0,0,150".to_owned();
     let number = |text: &str| finite(text.trim()).ok().filter(|value| value.abs() <= 1e4);
     let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
-    match numbers.as_deref() {
-        Some([x, y, z]) => Ok([*x, *y, *z]),
-        _ => Err(allowed()),
-    }
+    let allowed = || "allowed: three numbers up to 10000, as in 0,0,150".to_owned();
+    numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(allowed)
 }

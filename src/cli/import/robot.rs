@@ -51,10 +51,9 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead import robot kr210.urdf --controller kuka --out my/kr210.toml \\\n      --home-deg=-31.2,-71.4,63.7,17.9,52.6,-117.3=1791.52,1023.61,1741.52,99.95,-2.34,131.94",
     ],
     written: "as --out names them",
-    files: &[
-        ("NAME.toml", "the robot file"),
-        ("NAME-cell.toml", "with --collision: the links as shapes of surroundings"),
-    ],
+    files: "\
+NAME.toml: the robot file
+NAME-cell.toml: with --collision: the links as shapes of surroundings",
     remarks: "Joint stiffness is not in a URDF: its six lines are written commented out, or with --stiffness-like \
               taken from a shipped arm (`stead robots` lists them), which ranks placements and does not predict \
               millimetres.",

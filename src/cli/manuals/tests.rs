@@ -48,12 +48,12 @@ fn file_table(name: &str) -> String {
     let command = command_of(name);
     let out = command.get_arguments().find(|option| option.get_long() == Some("out")).map(|option| said(option).1);
     let place = out.filter(|folder| folder.starts_with("results")).map(|folder| format!(" in `{folder}`"));
-    let row = |(names, content): &(&str, &str)| {
+    let row = |(names, content): (&str, &str)| {
         let names: Vec<_> =
             names.split(", ").map(|name| if name == ".." { name.to_owned() } else { format!("`{name}`") }).collect();
         format!("| {} | {} |\n", names.join(", "), marked(content))
     };
-    let rows: String = manual(name).files.iter().map(row).collect();
+    let rows: String = manual(name).files().map(row).collect();
     format!("| file{} | content |\n|---|---|\n{rows}", place.unwrap_or_default())
 }
 
@@ -147,7 +147,7 @@ fn commands_write_the_files_that_they_declare() {
             let name = result["command"].as_str().unwrap();
             let files = result["files"].as_array().unwrap();
             let files: Vec<&str> = files.iter().map(|file| file["name"].as_str().unwrap()).collect();
-            let declared = manual(name).files.iter().flat_map(|(names, content)| {
+            let declared = manual(name).files().flat_map(|(names, content)| {
                 names.split(", ").flat_map(expanded).map(move |name| (name, content.split(' ').next() == Some("with")))
             });
             let declared: Vec<(String, bool)> = declared.collect();
@@ -202,7 +202,7 @@ fn the_guide_has_the_starter_sets() {
         let words = text.split([' ', ',', '`', ';']).filter(|word| word.ends_with(".toml") || word.ends_with(".csv"));
         words.map(str::to_owned).collect()
     };
-    for (set, files) in manual("init").files {
+    for (set, files) in manual("init").files() {
         let row = page.lines().find(|line| line.starts_with(&format!("| `{set}` |"))).unwrap();
         let written = files.split(';').next().unwrap();
         assert_eq!(names(row.split('|').nth(2).unwrap()), names(written), "{set}");

@@ -2,15 +2,14 @@
 
 use crate::cli::Failure;
 use crate::cli::output::say;
-use crate::cli::progress::{Terminal, on_threads};
+use crate::cli::progress::Terminal;
 use std::path::{Path, PathBuf};
 use stead::Study;
 use stead::study::StudyStatus;
 
 /// Reads a study and all its cases, whose forces may have to be computed, on so many threads.
 pub(super) fn read(config: &Path, threads: Option<usize>, terminal: &Terminal) -> Result<Study, Failure> {
-    let shown = terminal.show(None);
-    Ok(on_threads(threads, || Study::read_with(config, &shown.monitor))??)
+    Ok(terminal.on_threads(threads, |monitor| Study::read_with(config, monitor))??)
 }
 
 /// The folder requested, or `results/` and the name of the study.

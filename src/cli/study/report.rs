@@ -43,17 +43,13 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead study report configs/study-example.toml --front best_mean_total_mm,cycle_s,min_joint_margin_deg",
     ],
     written: "to the folder of the study",
-    files: &[
-        ("study-ranking.csv", "every layout with its rank by --by; ties share one"),
-        ("study-front.{csv,svg}", "the compromises: layouts that no other is better than in every column of --front"),
-        (
-            "study-effects.{csv,svg}",
-            "what each axis does to the column of the ranking: mean for each value, share of the variance",
-        ),
-        ("study-map.svg", "with two axes, or one and several tasks: that column over both, the mean over all others"),
-        ("study-report.json", "what --json prints"),
-        ("report.html", "a page with all of it, which leads to the pages of kept cases"),
-    ],
+    files: "\
+study-ranking.csv: every layout with its rank by --by; ties share one
+study-front.{csv,svg}: the compromises: layouts that no other is better than in every column of --front
+study-effects.{csv,svg}: what each axis does to the column of the ranking: mean for each value, share of the variance
+study-map.svg: with two axes, or one and several tasks: that column over both, the mean over all others
+study-report.json: what --json prints
+report.html: a page with all of it, which leads to the pages of kept cases",
     failed: "a file could not be written",
     refused: "wrong usage, bad input, or a study that is not done",
     ..Manual::NEW
@@ -76,7 +72,7 @@ pub(super) fn run(options: &StudyReportOptions) -> Result<(), Failure> {
     let report = study.report(&folder, &question)?;
     // The last shards may have ended at the same time or elsewhere, or the study may have been edited since.
     study.merge(&folder)?;
-    let out = Folder::create(&folder).map_err(Failure::Output)?;
+    let out = Folder::create(&folder)?;
     files_written(report.write_in(&out))?;
     if options.json {
         return print_json(&report);

@@ -4,7 +4,7 @@ use super::read::{counted_cases, folder, read, say_stale};
 use crate::cli::Failure;
 use crate::cli::manual::Manual;
 use crate::cli::output::{print, say};
-use crate::cli::progress::{Terminal, on_threads};
+use crate::cli::progress::Terminal;
 use crate::cli::values::{shard, threads};
 use clap::Args;
 use std::path::PathBuf;
@@ -36,12 +36,11 @@ pub(in crate::cli) const MANUAL: Manual = Manual {
         "stead study run configs/study-example.toml --shard 3/4",
         "stead study run configs/study-example.toml --prune",
     ],
-    files: &[
-        ("study.csv", "one row for each case, once every case is done"),
-        ("study-timing.csv", "where and how long each case was computed, and on how many threads"),
-        ("cases/<number>-<digest>/", "with keep in the study file: what `stead place` writes"),
-        ("study.json, shards/", "what is done so far"),
-    ],
+    files: "\
+study.csv: one row for each case, once every case is done
+study-timing.csv: where and how long each case was computed, and on how many threads
+cases/<number>-<digest>/: with keep in the study file: what `stead place` writes
+study.json, shards/: what is done so far",
     remarks: "The command may be killed at any moment: the same command continues where it was. After an edit of the \
               study file it does what the edit has changed; kept cases that are not of the study any longer are named, \
               and removed with --prune. Shards may run at the same time, on many machines, in one folder that they \
@@ -64,10 +63,7 @@ pub(super) fn run(options: &StudyRunOptions) -> Result<(), Failure> {
         say(&format!("note: {} removed that the study has no longer", counted_cases(gone.len())));
     }
     say_stale(&study.status(&folder)?);
-    let shown = terminal.show(None);
-    let finished = on_threads(options.threads, || study.run(&folder, shard, &shown.monitor))?;
-    drop(shown);
-    let finished = finished?;
+    let finished = terminal.on_threads(options.threads, |monitor| study.run(&folder, shard, monitor))??;
     for problem in &finished.problems {
         say(&format!("warning: {problem}"));
     }

@@ -10,9 +10,10 @@ use stead_model::robot::{
     angles::{ANGLE_ROUNDING, wrap},
     turns::Range,
 };
-use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
+use stead_model::stiffness::elastic::ElasticArm;
 use stead_model::stiffness::loaded::loaded_displacement;
 use stead_model::stiffness::whole::WholeArm;
+use stead_model::task::Wrench;
 
 /// An arm on the benchmark: what does not change from circle to circle.
 #[derive(Debug, Clone)]
@@ -209,7 +210,7 @@ impl<'a> DeflectedCircle<'a> {
     fn loaded(&self, joints: &[f64; 6], force: &Vector3<f64>, moment: &Vector3<f64>) -> Result<Vector3<f64>, Obstacle> {
         let compliances = self.compliances(joints);
         let moved = if self.robot.normal_springs().is_some() {
-            let load = ToolLoad { force: *force, moment: *moment };
+            let load = Wrench { force: *force, moment: *moment };
             ElasticArm::new(&self.robot, &self.spindle).loaded_displacement(&compliances, joints, &load)?
         } else {
             let frames = Frames::new(&self.robot, joints);

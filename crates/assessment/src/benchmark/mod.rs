@@ -49,33 +49,27 @@ impl Plane {
     }
 }
 
-/// Sense in which the wrench turns as the tool follows the circle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Turning {
-    /// By the polar angle, as the tool and its feed do (eq. 34 as written).
-    WithTool,
-    /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity is
-    /// then `|F| (lambda_max + lambda_min)` to first order.
-    AgainstTool,
+stead_numerics::worded! {
+    /// Sense in which the wrench turns as the tool follows the circle.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Turning {
+        /// By the polar angle, as the tool and its feed do (eq. 34 as written).
+        WithTool = "with-tool",
+        /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity is
+        /// then `|F| (lambda_max + lambda_min)` to first order.
+        AgainstTool = "against-tool",
+    }
 }
 
-impl Turning {
-    /// Each with its word in files and results.
-    pub const WORDS: [(&'static str, Self); 2] = [("with-tool", Self::WithTool), ("against-tool", Self::AgainstTool)];
-}
-
-/// Where the limits of the joints are checked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LimitsAt {
-    /// At every point of the circle: the whole circle can be milled in one posture.
-    Circle,
-    /// At its centre only. The circle may then have points that the joints cannot reach.
-    Centre,
-}
-
-impl LimitsAt {
-    /// Each with its word in files and results.
-    pub const WORDS: [(&'static str, Self); 2] = [("circle", Self::Circle), ("centre", Self::Centre)];
+stead_numerics::worded! {
+    /// Where the limits of the joints are checked.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum LimitsAt {
+        /// At every point of the circle: the whole circle can be milled in one posture.
+        Circle = "circle",
+        /// At its centre only. The circle may then have points that the joints cannot reach.
+        Centre = "centre",
+    }
 }
 
 /// The deflection of one pose.

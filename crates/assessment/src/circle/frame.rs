@@ -39,7 +39,7 @@ impl Spread {
             visit(q);
         }
         let spread = Self { origin, extent: squared.sqrt(), direction, allowance: ROUNDING * largest + MIN_ALLOWANCE };
-        if spread.extent > spread.allowance { Ok(spread) } else { Err(CircleError::TooFew { distinct: 1 }) }
+        if spread.extent > spread.allowance { Ok(spread) } else { Err(CircleError::TooFew(1)) }
     }
 
     /// Whether there are three different points at least, and not all on one line.
@@ -57,14 +57,14 @@ impl Spread {
         let second = points.iter().find(|p| apart(p, &first)).unwrap_or(&first);
         match points.iter().any(|p| apart(p, &first) && apart(p, second)) {
             true => Err(CircleError::Collinear),
-            false => Err(CircleError::TooFew { distinct: 2 }),
+            false => Err(CircleError::TooFew(2)),
         }
     }
 }
 
 /// A mean of the points; it need not be exact, only near their middle.
 fn mean(points: &[Point]) -> Result<Point, CircleError> {
-    let first = *points.first().ok_or(CircleError::TooFew { distinct: 0 })?;
+    let first = *points.first().ok_or(CircleError::TooFew(0))?;
     let (mut sum, mut is_good) = ([0.0; 2], true);
     for p in points {
         is_good &= p[0].abs() <= MAX_COORDINATE && p[1].abs() <= MAX_COORDINATE;
@@ -72,7 +72,7 @@ fn mean(points: &[Point]) -> Result<Point, CircleError> {
     }
     if !is_good {
         let is_bad = |p: &Point| !(p[0].abs() <= MAX_COORDINATE && p[1].abs() <= MAX_COORDINATE);
-        return Err(CircleError::NotFinite { point: points.iter().position(is_bad).unwrap_or(0) });
+        return Err(CircleError::NotFinite(points.iter().position(is_bad).unwrap_or(0)));
     }
     let count = points.len() as f64;
     Ok([first[0] + sum[0] / count, first[1] + sum[1] / count])

@@ -89,18 +89,13 @@ pub struct Circles {
 /// Why points have no reference circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum CircleError {
-    /// A coordinate is not a number, infinite, or beyond `1e60`.
-    #[error("point {point} has a coordinate that is no finite number")]
-    NotFinite {
-        /// Index of the point.
-        point: usize,
-    },
-    /// Fewer than three different points. Differences of a few units in the last place of the coordinates do not count.
+    /// A coordinate of the point of this index is not a number, infinite, or beyond `1e60`.
+    #[error("point {0} has a coordinate that is no finite number")]
+    NotFinite(usize),
+    /// Only so many different points, fewer than three. Differences of a few units in the last place of the coordinates
+    /// do not count.
     #[error("a circle needs at least three different points")]
-    TooFew {
-        /// Different points there are.
-        distinct: usize,
-    },
+    TooFew(usize),
     /// All points lie on one straight line, but for the rounding of their coordinates.
     #[error("all points lie on one straight line")]
     Collinear,

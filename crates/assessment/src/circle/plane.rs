@@ -33,9 +33,9 @@ impl FittedPlane {
     pub fn fit(points: &[[f64; 3]]) -> Result<Self, CircleError> {
         let vectors = || points.iter().map(|p| Vector3::from(*p));
         if let Some(point) = points.iter().position(|p| p.iter().any(|c| !c.is_finite() || c.abs() > MAX_COORDINATE)) {
-            return Err(CircleError::NotFinite { point });
+            return Err(CircleError::NotFinite(point));
         }
-        let first = vectors().next().ok_or(CircleError::TooFew { distinct: 0 })?;
+        let first = vectors().next().ok_or(CircleError::TooFew(0))?;
         let sum = vectors().fold(Vector3::zeros(), |sum, p| sum + (p - first));
         let center = first + sum / points.len() as f64;
         let scatter = vectors().fold(Matrix3::zeros(), |sum, p| sum + (p - center) * (p - center).transpose());
@@ -72,10 +72,10 @@ impl FittedPlane {
 fn on_a_line(points: &[[f64; 3]], allowance: f64) -> CircleError {
     let apart = |p: &[f64; 3], q: &[f64; 3]| (0..3).any(|k| (p[k] - q[k]).abs() > allowance);
     let first = points[0];
-    let Some(second) = points.iter().find(|p| apart(p, &first)) else { return CircleError::TooFew { distinct: 1 } };
+    let Some(second) = points.iter().find(|p| apart(p, &first)) else { return CircleError::TooFew(1) };
     match points.iter().any(|p| apart(p, &first) && apart(p, second)) {
         true => CircleError::Collinear,
-        false => CircleError::TooFew { distinct: 2 },
+        false => CircleError::TooFew(2),
     }
 }
 
@@ -117,8 +117,8 @@ mod tests {
         assert!((upright.x_axis - Vector3::y()).norm() < 1e-15);
         let line: Vec<[f64; 3]> = (0..9).map(|k| [1e4 + 0.1 * f64::from(k), 0.3 * f64::from(k), 0.7]).collect();
         assert_eq!(FittedPlane::fit(&line), Err(CircleError::Collinear));
-        assert_eq!(FittedPlane::fit(&[[1.0; 3]; 4]), Err(CircleError::TooFew { distinct: 1 }));
-        assert_eq!(FittedPlane::fit(&[[1.0; 3], [2.0; 3], [1.0; 3]]), Err(CircleError::TooFew { distinct: 2 }));
-        assert_eq!(FittedPlane::fit(&[[1.0; 3], [f64::NAN; 3]]), Err(CircleError::NotFinite { point: 1 }));
+        assert_eq!(FittedPlane::fit(&[[1.0; 3]; 4]), Err(CircleError::TooFew(1)));
+        assert_eq!(FittedPlane::fit(&[[1.0; 3], [2.0; 3], [1.0; 3]]), Err(CircleError::TooFew(2)));
+        assert_eq!(FittedPlane::fit(&[[1.0; 3], [f64::NAN; 3]]), Err(CircleError::NotFinite(1)));
     }
 }

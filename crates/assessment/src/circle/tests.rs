@@ -242,14 +242,14 @@ fn what_is_no_circle_has_a_name() {
     let line = [[1.0, 1.0], [2.1, 2.1], [3.3, 3.3], [0.7, 0.7]];
     let slanted: Points = (0..20).map(|k| [1e4 + 0.1 * f64::from(k), 2e4 + 0.3 * f64::from(k)]).collect();
     for fit in fits {
-        assert_eq!(fit(&[]), Err(CircleError::TooFew { distinct: 0 }));
-        assert_eq!(fit(&[[1.1, 2.0]]), Err(CircleError::TooFew { distinct: 1 }));
-        assert_eq!(fit(&[[1.1, 2.0]; 7]), Err(CircleError::TooFew { distinct: 1 }));
-        assert_eq!(fit(&[[1.0, 2.0], [3.0, 4.0], [1.0, 2.0]]), Err(CircleError::TooFew { distinct: 2 }));
+        assert_eq!(fit(&[]), Err(CircleError::TooFew(0)));
+        assert_eq!(fit(&[[1.1, 2.0]]), Err(CircleError::TooFew(1)));
+        assert_eq!(fit(&[[1.1, 2.0]; 7]), Err(CircleError::TooFew(1)));
+        assert_eq!(fit(&[[1.0, 2.0], [3.0, 4.0], [1.0, 2.0]]), Err(CircleError::TooFew(2)));
         assert_eq!(fit(&line), Err(CircleError::Collinear));
         assert_eq!(fit(&slanted), Err(CircleError::Collinear));
-        assert_eq!(fit(&[[0.0, 1.0], [f64::NAN, 0.0], [2.0, 3.0]]), Err(CircleError::NotFinite { point: 1 }));
-        assert_eq!(fit(&[[0.0, 1.0], [1.0, 0.0], [f64::INFINITY, 3.0]]), Err(CircleError::NotFinite { point: 2 }));
+        assert_eq!(fit(&[[0.0, 1.0], [f64::NAN, 0.0], [2.0, 3.0]]), Err(CircleError::NotFinite(1)));
+        assert_eq!(fit(&[[0.0, 1.0], [1.0, 0.0], [f64::INFINITY, 3.0]]), Err(CircleError::NotFinite(2)));
     }
 }
 

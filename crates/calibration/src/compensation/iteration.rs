@@ -6,9 +6,10 @@ use super::{
 use std::f64::consts::TAU;
 use stead_model::robot::{Frames, Pose, Robot, angles::ANGLE_ROUNDING};
 use stead_model::stiffness::Displacement;
-use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
+use stead_model::stiffness::elastic::ElasticArm;
 use stead_model::stiffness::equilibrium::{Load, NoEquilibrium, equilibrium};
 use stead_model::stiffness::whole::{WholeArm, yields_elsewhere};
+use stead_model::task::Wrench;
 use stead_numerics::rotation::{rotation_from_vector, rotation_vector};
 
 /// A commanded pose.
@@ -124,7 +125,7 @@ fn at_rest(
     }
     let arm = ElasticArm::new(robot, &job.spindle);
     let arm = if job.settings.gravity { arm.in_gravity(free_fall) } else { arm };
-    arm.at_rest(joints, &ToolLoad { force, moment })
+    arm.at_rest(joints, &Wrench { force, moment })
 }
 
 /// Where the tool of an arm is by the displacement linear in the load.

@@ -73,18 +73,15 @@ pub struct PathPoint {
     pub normal: Vector3<f64>,
 }
 
-/// The deflection model of the corrections.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DeflectionModel {
-    /// The exact static equilibrium ([`stead_model::stiffness::equilibrium`]).
-    Equilibrium,
-    /// The displacement linear in the load ([`stead_model::stiffness::whole`]), as in the score of a placement.
-    Linear,
-}
-
-impl DeflectionModel {
-    /// Each with its word in files and results.
-    pub const WORDS: [(&'static str, Self); 2] = [("equilibrium", Self::Equilibrium), ("linear", Self::Linear)];
+stead_numerics::worded! {
+    /// The deflection model of the corrections.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum DeflectionModel {
+        /// The exact static equilibrium ([`stead_model::stiffness::equilibrium`]).
+        Equilibrium = "equilibrium",
+        /// The displacement linear in the load ([`stead_model::stiffness::whole`]), as in the score of a placement.
+        Linear = "linear",
+    }
 }
 
 /// Settings of the iteration.

@@ -14,26 +14,20 @@ pub const AXES: usize = 6;
 /// Columns of a fit of the springs about three directions of every joint.
 pub const FULL: usize = 18;
 
-/// About which axes the joints of an arm have springs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FitModel {
-    /// About the joint axes alone: these springs absorb what links and bearings do, as far as they can.
-    #[default]
-    Axes,
-    /// About z, x and y of the frame of every row.
-    Full,
+stead_numerics::worded! {
+    /// About which axes the joints of an arm have springs.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum FitModel {
+        /// About the joint axes alone: these springs absorb what links and bearings do, as far as they can.
+        #[default]
+        Axes = "axes",
+        /// About z, x and y of the frame of every row.
+        Full = "full",
+    }
 }
 
 impl FitModel {
-    /// As files state it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Axes => "axes",
-            Self::Full => "full",
-        }
-    }
-
     /// How many springs the arm has.
     pub fn columns(self) -> usize {
         match self {
@@ -58,7 +52,7 @@ impl FitModel {
 
 /// A spring as identification files name it: `joints[3].x`.
 pub fn key_name(spring: Spring) -> String {
-    format!("joints[{}].{}", spring.joint + 1, spring.about.name())
+    format!("joints[{}].{}", spring.joint + 1, spring.about.word())
 }
 
 /// The spring of a column.

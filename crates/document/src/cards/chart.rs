@@ -72,8 +72,29 @@ pub struct Chart {
 
 impl Chart {
     /// A chart under a heading.
-    pub fn new(title: impl Into<String>, x: impl Into<Axis>, y: impl Into<Axis>, series: Vec<Series>) -> Self {
+    pub fn new(
+        title: impl Into<String>,
+        x: impl Into<Axis>,
+        y: impl Into<Axis>,
+        series: impl IntoIterator<Item = Series>,
+    ) -> Self {
+        let series = series.into_iter().collect();
         Self { title: title.into(), x: x.into(), y: y.into(), series, ..Self::default() }
+    }
+
+    /// With words beside the heading.
+    pub fn detailed(self, detail: impl Into<String>) -> Self {
+        Self { detail: detail.into(), ..self }
+    }
+
+    /// With lines at values.
+    pub fn marked(self, marks: impl IntoIterator<Item = Mark>) -> Self {
+        Self { marks: marks.into_iter().collect(), ..self }
+    }
+
+    /// Over the whole width of the page.
+    pub fn wide(self) -> Self {
+        Self { is_wide: true, ..self }
     }
 }
 
@@ -159,6 +180,18 @@ pub struct Mark {
     pub at: f64,
     /// What it is.
     pub label: String,
+}
+
+impl Mark {
+    /// At a value of the axis upwards.
+    pub fn level(at: f64, label: impl Into<String>) -> Self {
+        Self { is_level: true, at, label: label.into() }
+    }
+
+    /// At a value of the axis across.
+    pub fn across(at: f64, label: impl Into<String>) -> Self {
+        Self { is_level: false, at, label: label.into() }
+    }
 }
 
 /// Values over two axes as colours.

@@ -22,6 +22,16 @@ impl Table {
     pub fn new(title: impl Into<String>, columns: Vec<Column>, rows: Vec<Vec<Cell>>) -> Self {
         Self { title: title.into(), columns, rows, ..Self::default() }
     }
+
+    /// With words beside the heading.
+    pub fn detailed(self, detail: impl Into<String>) -> Self {
+        Self { detail: detail.into(), ..self }
+    }
+
+    /// With a field for a word that rows are filtered by.
+    pub fn filtered(self) -> Self {
+        Self { can_filter: true, ..self }
+    }
 }
 
 /// A column.

@@ -1,6 +1,6 @@
 //! Axes: scales from numbers to pixels, ticks at round numbers, and a frame with labels.
 
-use super::canvas::{Canvas, Place, TextStyle};
+use super::canvas::{Canvas, Pixel, Place, TextStyle};
 use super::colour::{GRID, INK};
 use crate::units::fixed;
 use std::borrow::Cow;
@@ -143,7 +143,21 @@ pub fn around(points: impl IntoIterator<Item = [f64; 2]>) -> Option<Window> {
         .reduce(|[low, high], [point, _]| [[0, 1].map(|k| low[k].min(point[k])), [0, 1].map(|k| high[k].max(point[k]))])
 }
 
+/// The square around points, half as wide as that part of what they take, or of 100 if that is more.
+pub fn square_around(points: impl IntoIterator<Item = [f64; 2]>, part: f64) -> Window {
+    let [low, high] = around(points).unwrap_or_default();
+    let half = part * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
+    [-half, half].map(|by| [0, 1].map(|k| (low[k] + high[k]) / 2.0 + by))
+}
+
 impl Panel {
+    /// A square panel that shows a window, by its upper left corner.
+    pub fn square(shown: Window, corner: Pixel, side: i32, labels: [&'static str; 2]) -> Self {
+        let ([low, high], (left, top)) = (shown, corner);
+        let (x, y) = (Scale::new(low[0], high[0], left, left + side), Scale::new(low[1], high[1], top + side, top));
+        Self::new(x, y, [8, 8], labels)
+    }
+
     /// A panel with at most so many ticks at round numbers along each axis.
     pub fn new(x: Scale, y: Scale, ticks: [usize; 2], labels: [impl Into<Cow<'static, str>>; 2]) -> Self {
         let [x_label, y_label] = labels.map(Into::into);

@@ -26,9 +26,10 @@ pub struct ImportedPath {
     tools: Vec<String>,
     /// Tables of a run file for its cutter, where it is described.
     cutter: Option<String>,
-    /// The tool with the longest way.
-    tool: Option<ProgramTool>,
-    notes: Vec<String>,
+    /// What the program says of its tool: of several that with the longest way.
+    pub tool: Option<ProgramTool>,
+    /// What was found and changed.
+    pub notes: Vec<String>,
     /// The program that it was made from.
     pub(super) inputs: Vec<InputFile>,
 }
@@ -166,11 +167,6 @@ impl ImportedPath {
         &self.cuts.rapids
     }
 
-    /// What the program says of its tool: of several that with the longest way.
-    pub fn tool(&self) -> Option<&ProgramTool> {
-        self.tool.as_ref()
-    }
-
     /// Number of segments.
     pub fn segment_count(&self) -> usize {
         self.cuts.segments.len()
@@ -180,11 +176,6 @@ impl ImportedPath {
     pub fn point_counts(&self) -> [usize; 2] {
         let points = || self.cuts.segments.iter().flatten();
         [points().count(), points().filter(|point| point.is_scored).count()]
-    }
-
-    /// What was changed and why, in sentences.
-    pub fn notes(&self) -> &[String] {
-        &self.notes
     }
 }
 

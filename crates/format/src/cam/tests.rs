@@ -72,7 +72,7 @@ fn turns_in_place_are_followed_and_not_scored() {
     assert!(turned.iter().all(|point| !read.path.is_scored(*point)));
     assert!(read.path.is_scored(turned[0] - 1) && read.path.is_scored(turned[5] + 1));
     assert!(read.path.step_time(turned[0], 1.0).is_infinite());
-    assert!(path.notes().iter().any(|note| note.starts_with("6 points of turns of the tool in place")), "{path}");
+    assert!(path.notes.iter().any(|note| note.starts_with("6 points of turns of the tool in place")), "{path}");
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn dense_points_are_thinned_within_the_chord_error() {
             assert!((a.y + (b.y - a.y) * share - wave(x)).abs() < 0.0105 * 1.1, "at {x}");
         }
     }
-    assert!(path.notes()[0].ends_with("stand within the chord error"), "{path}");
+    assert!(path.notes[0].ends_with("stand within the chord error"), "{path}");
 }
 
 #[test]
@@ -175,7 +175,7 @@ G1 X200 F2400
 M30
 ";
     let path = import_bytes(Path::new("part.nc"), text.as_bytes(), &settings()).unwrap();
-    let note = path.notes().iter().find(|note| note.starts_with("2 tools cut")).unwrap();
+    let note = path.notes.iter().find(|note| note.starts_with("2 tools cut")).unwrap();
     assert!(note.contains("D 6 mm, corner radius 3 mm, 12000 rpm") && note.contains("D 20 mm"), "{note}");
     let written = cutter(text).unwrap();
     for part in

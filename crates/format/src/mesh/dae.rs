@@ -3,7 +3,7 @@
 //!
 //! The coordinates are taken as they are written, whatever `<up_axis>` says: so ROS shows them.
 
-use super::stl::{number_of, shortened};
+use super::stl::number_of;
 use super::{MAX_TRIANGLES, THINNER, Triangles};
 use crate::urdf::xml::{Element, one_line};
 use nalgebra::{Matrix4, Rotation3, Unit, Vector3, Vector4};
@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
 use stead_disk::input::InputError;
+use stead_disk::quote::shorten;
 
 /// Nodes within nodes, and nodes in all with those that are shown again: no more than any scene has.
 const DEEPEST: usize = 64;
@@ -230,7 +231,7 @@ fn words<'a>(at: Element<'a>) -> impl Iterator<Item = &'a str> {
 
 fn numbers(at: Element<'_>) -> Result<Vec<f64>, InputError> {
     let wrong = |word: &str| {
-        at.error(None, "has a word that is no finite number", "finite numbers").found(format!("'{}'", shortened(word)))
+        at.error(None, "has a word that is no finite number", "finite numbers").found(format!("'{}'", shorten(word)))
     };
     words(at).map(|word| number_of(word).ok_or_else(|| wrong(word))).collect()
 }
@@ -238,7 +239,7 @@ fn numbers(at: Element<'_>) -> Result<Vec<f64>, InputError> {
 fn wholes(at: Element<'_>) -> Result<Vec<usize>, InputError> {
     let wrong = |word: &str| {
         let error = at.error(None, "has a word that is no number of a vertex", "whole numbers from 0");
-        error.found(format!("'{}'", shortened(word)))
+        error.found(format!("'{}'", shorten(word)))
     };
     words(at).map(|word| word.parse::<u32>().map(|n| n as usize).map_err(|_| wrong(word))).collect()
 }

@@ -1,38 +1,17 @@
 //! OBJ: vertices, and faces that name them. Of a face only its vertices are read; one with more than three corners
 //! becomes a fan of triangles, which covers it.
 
-use super::stl::{number_of, shortened};
+use super::stl::number_of;
 use super::{MAX_TRIANGLES, THINNER, Triangles};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_disk::input::InputError;
+use stead_disk::quote::shorten;
 
 /// Statements that say nothing of the surface: texture, normals, names, materials, display, and what is no surface
 /// (points, lines).
-const WITHOUT_SURFACE: [&str; 22] = [
-    "vt",
-    "vn",
-    "vp",
-    "g",
-    "o",
-    "s",
-    "mg",
-    "usemtl",
-    "mtllib",
-    "usemap",
-    "maplib",
-    "p",
-    "l",
-    "bevel",
-    "c_interp",
-    "d_interp",
-    "lod",
-    "shadow_obj",
-    "trace_obj",
-    "ctech",
-    "stech",
-    "end",
-];
+const WITHOUT_SURFACE: &str = "vt vn vp g o s mg usemtl mtllib usemap maplib p l bevel c_interp d_interp lod \
+                               shadow_obj trace_obj ctech stech end";
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
     let text = String::from_utf8_lossy(bytes);
@@ -43,10 +22,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
         let mut words = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
         let Some(kind) = words.next() else { continue };
         let fail = |problem: &str, allowed: &str| {
-            Err(InputError::new(file, problem)
-                .at_line(number)
-                .found(format!("'{}'", shortened(&line)))
-                .allowed(allowed))
+            Err(InputError::new(file, problem).at_line(number).found(format!("'{}'", shorten(&line))).allowed(allowed))
         };
         match kind {
             "v" => match words.by_ref().take(3).map(number_of).collect::<Vec<_>>()[..] {
@@ -70,7 +46,7 @@ pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
                     return fail("makes too many triangles", THINNER);
                 }
             }
-            kind if WITHOUT_SURFACE.contains(&kind) => {}
+            kind if WITHOUT_SURFACE.split(' ').any(|known| known == kind) => {}
             _ => {
                 return fail(
                     "is a statement that is not read",

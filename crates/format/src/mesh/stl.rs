@@ -7,6 +7,7 @@ use super::{MAX_TRIANGLES, THINNER, Triangles};
 use nalgebra::Vector3;
 use std::path::Path;
 use stead_disk::input::InputError;
+use stead_disk::quote::shorten;
 
 /// The header of a binary file with the count of triangles.
 const HEADER: usize = 84;
@@ -87,7 +88,7 @@ fn ascii(file: &Path, text: &str) -> Result<Triangles, InputError> {
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
         let Some(first) = words.first() else { continue };
         let fail = |problem: &str, allowed: &str| {
-            Err(InputError::new(file, problem).at_line(number).found(format!("'{}'", shortened(line))).allowed(allowed))
+            Err(InputError::new(file, problem).at_line(number).found(format!("'{}'", shorten(line))).allowed(allowed))
         };
         last = number;
         match (first.to_ascii_lowercase().as_str(), depth) {
@@ -120,9 +121,4 @@ fn ascii(file: &Path, text: &str) -> Result<Triangles, InputError> {
 /// A finite number as a word of a mesh file.
 pub(super) fn number_of(word: &str) -> Option<f64> {
     word.parse::<f64>().ok().filter(|number| number.is_finite())
-}
-
-/// A line as messages quote it.
-pub(super) fn shortened(line: &str) -> String {
-    stead_disk::quote::shorten(line)
 }

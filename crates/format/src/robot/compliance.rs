@@ -1,7 +1,7 @@
 //! The compliance of a joint: a number, a range, or a number beside a compensator.
 
 use super::file::JointRow;
-use super::one_or_range::OneOrRange;
+use super::one_or_pair::OneOrRange;
 use crate::place::Place;
 use stead_disk::input::InputError;
 use stead_model::robot::{Compensator, Compliance};
@@ -25,7 +25,7 @@ pub(super) fn compliance_from(joint: &JointRow, at: &Place<'_>) -> Result<Compli
     let alone = match (joint.stiffness_mnm_per_rad, joint.compliance_urad_per_nm) {
         (Some(stiffness), None) => 1e-6 / stiffness.written(),
         (None, Some(OneOrRange::One(compliance))) => compliance.si(),
-        (None, Some(OneOrRange::Range(range))) => {
+        (None, Some(OneOrRange::Pair(range))) => {
             if joint.compensator.is_some() {
                 return Err(at.key(COMPLIANCE).error(
                     format!("is a range beside a {COMPENSATOR}"),

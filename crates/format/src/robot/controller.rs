@@ -3,15 +3,11 @@
 use super::file::{ControllerTable, RobotFile, RootTable};
 use crate::orientation::orientation_keys;
 use crate::place::Place;
-use crate::scalars::Words;
+use crate::scalars::words;
 use stead_disk::input::InputError;
 use stead_model::robot::{Controller, ControllerKind, Pose, Robot};
 
-impl Words<crate::Vocabulary> for ControllerKind {
-    fn words() -> Vec<(&'static str, Self)> {
-        Self::ALL.map(|kind| (kind.word(), kind)).to_vec()
-    }
-}
+words!(ControllerKind);
 
 /// The robot with the controller that its file states.
 ///

@@ -125,7 +125,7 @@ fn locate(at: &Place<'_>, error: &UncertaintyError) -> InputError {
         UncertaintyError::Correlation { row, column, correlation } => {
             entry(*row, *column).error(format!("makes a correlation of {correlation}"), "a correlation from -1 to 1")
         }
-        UncertaintyError::Indefinite { eigenvalue } => {
+        UncertaintyError::Indefinite(eigenvalue) => {
             matrix.error(format!("has correlations with an eigenvalue of {eigenvalue:.3e}"), SEMIDEFINITE)
         }
     }

@@ -76,32 +76,24 @@ pub fn checked_to_move(robot: Robot, source: &TomlFile, orthogonal: bool) -> Res
         let key = keys.iter().find(|key| !row.key(key).is_given()).unwrap_or(&MASS);
         row.key(key).error(format!("is missing: {what}"), format!("{} in every [[joints]]", keys.join(", ")))
     };
-    match robot.dynamics() {
-        None => {
-            let what = "this robot file says nothing of masses and damping, so its motion cannot be computed";
-            Err(lacking(0, &[MASS, CENTRE, INERTIA, DAMPING], what))
-        }
-        Some(dynamics) => match dynamics.iter().position(|joint| orthogonal && joint.orthogonal.is_none()) {
-            Some(joint) => {
-                let what = "the variant takes into account how joints yield normal to their axes";
-                Err(lacking(joint, &[ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING], what))
-            }
-            None => {
-                let is_rigid = |joint: &JointDynamics| {
-                    let springs = joint.orthogonal.filter(|_| orthogonal);
-                    springs.is_some_and(|springs| springs.stiffness.iter().any(|stiffness| !stiffness.is_finite()))
-                };
-                match dynamics.iter().position(is_rigid) {
-                    Some(joint) => {
-                        let at = document.root().key("joints").element(joint + 1).key(ORTHOGONAL_COMPLIANCE);
-                        let problem = "is rigid, but the variant asks how the joint moves normal to its axis";
-                        Err(at.error(problem, "numbers above 0 where the variant is orthogonal or backlash"))
-                    }
-                    None => Ok(robot),
-                }
-            }
-        },
+    let Some(dynamics) = robot.dynamics() else {
+        let what = "this robot file says nothing of masses and damping, so its motion cannot be computed";
+        return Err(lacking(0, &[MASS, CENTRE, INERTIA, DAMPING], what));
+    };
+    if let Some(joint) = dynamics.iter().position(|joint| orthogonal && joint.orthogonal.is_none()) {
+        let what = "the variant takes into account how joints yield normal to their axes";
+        return Err(lacking(joint, &[ORTHOGONAL_STIFFNESS, ORTHOGONAL_DAMPING], what));
     }
+    let is_rigid = |joint: &JointDynamics| {
+        let springs = joint.orthogonal.filter(|_| orthogonal);
+        springs.is_some_and(|springs| springs.stiffness.iter().any(|stiffness| !stiffness.is_finite()))
+    };
+    if let Some(joint) = dynamics.iter().position(is_rigid) {
+        let at = document.root().key("joints").element(joint + 1).key(ORTHOGONAL_COMPLIANCE);
+        let problem = "is rigid, but the variant asks how the joint moves normal to its axis";
+        return Err(at.error(problem, "numbers above 0 where the variant is orthogonal or backlash"));
+    }
+    Ok(robot)
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! What a robot file declares.
 
-use super::one_or_pair::OneOrPair;
-use super::one_or_range::OneOrRange;
+use super::one_or_pair::{OneOrPair, OneOrRange};
 use crate::inertial::InertiaTable;
 use crate::orientation::Quaternion;
 use crate::scalars::Word;

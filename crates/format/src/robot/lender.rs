@@ -1,7 +1,7 @@
 //! The joint stiffness of a shipped arm, for another arm that states none.
 
 use super::file::{JointRow, RobotFile};
-use super::one_or_range::OneOrRange;
+use super::one_or_pair::OneOrRange;
 use crate::shipped::{PREFIX, by_name, names_near};
 use crate::toml_file::TomlFile;
 use std::path::Path;
@@ -37,7 +37,7 @@ pub(crate) fn lent_urad_per_nm(row: &JointRow) -> Option<f64> {
     stiffness.or_else(|| {
         Some(match row.compliance_urad_per_nm? {
             OneOrRange::One(compliance) => compliance.written(),
-            OneOrRange::Range(range) => {
+            OneOrRange::Pair(range) => {
                 let [from, to] = range.0.map(|end| end.written());
                 ((from + to) / 2.0 * 1e9).round() / 1e9
             }

@@ -7,13 +7,11 @@ mod dynamics;
 mod file;
 mod lender;
 mod one_or_pair;
-mod one_or_range;
 mod springs;
 
 pub use file::{Axes23Table, CompensatorTable, ControllerTable, CovarianceTable, JointRow, RobotFile, RootTable};
 pub(crate) use lender::{NoLender, lender, lent_urad_per_nm};
-pub use one_or_pair::OneOrPair;
-pub use one_or_range::OneOrRange;
+pub use one_or_pair::{OneOrPair, OneOrRange};
 pub use springs::checked_to_score;
 
 use crate::place::Place;

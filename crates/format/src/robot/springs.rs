@@ -3,7 +3,7 @@
 use super::file::{JointRow, RobotFile};
 use crate::place::Place;
 use crate::quantity::Quantity;
-use crate::scalars::{Words, words};
+use crate::scalars::words;
 use crate::toml_file::TomlFile;
 use stead_disk::input::InputError;
 use stead_model::robot::{MeasuredFrom, NormalSprings, Robot, SpringModel};
@@ -12,13 +12,7 @@ pub(super) const ORTHOGONAL_STIFFNESS: &str = "orthogonal_stiffness_mnm_per_rad"
 pub(super) const ORTHOGONAL_COMPLIANCE: &str = "orthogonal_compliance_urad_per_nm";
 const STIFFNESS_MODEL: &str = "stiffness_model";
 
-impl Words<crate::Vocabulary> for SpringModel {
-    fn words() -> Vec<(&'static str, Self)> {
-        Self::ALL.map(|model| (model.word(), model)).to_vec()
-    }
-}
-
-words!(MeasuredFrom: "base" => MeasuredFrom::Base, "floor" => MeasuredFrom::Floor);
+words!(SpringModel, MeasuredFrom);
 
 impl JointRow {
     /// Whether the row states springs normal to its axis.

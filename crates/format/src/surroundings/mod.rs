@@ -148,19 +148,12 @@ fn surroundings(
         ignored.extend(collision.ignored().map(|pair| pair.map(known)));
     }
     if shapes.is_empty() && zones.is_empty() {
-        if let Some(part) = parts.iter().find(|part| part.at.key("visual").is_given()) {
-            let at = part.at.key("visual");
-            return Err(at.error("is there without anything that could collide", "[[shape]] beside it").found_if(None));
-        }
-        return match parts.iter().find(|part| part.at.key("collision").is_given()) {
-            Some(part) => {
-                let at = part.at.key("collision");
-                Err(at
-                    .error("is there without anything that could collide", "[[shape]] or [[keep_out]] beside it")
-                    .found_if(None))
+        for (key, beside) in [("visual", "[[shape]] beside it"), ("collision", "[[shape]] or [[keep_out]] beside it")] {
+            if let Some(at) = parts.iter().map(|part| part.at.key(key)).find(Place::is_given) {
+                return Err(at.error("is there without anything that could collide", beside).found_if(None));
             }
-            None => Ok(None),
-        };
+        }
+        return Ok(None);
     }
     let mut visuals = Vec::new();
     for Part { tables, at } in parts {

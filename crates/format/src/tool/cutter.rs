@@ -32,11 +32,11 @@ impl Cutting<'_> {
         Cutter::new(teeth.collect(), helix, flute_length, rotation, coefficients).map_err(|error| {
             let key = match error {
                 CutterError::Toothless => "teeth",
-                CutterError::Pitch { .. } => "pitch_deg",
-                CutterError::Radius { .. } => "runout_um",
-                CutterError::Helix { .. } => "helix_deg",
-                CutterError::Flute { .. } => "flute_length_mm",
-                CutterError::Coefficient { .. } => source,
+                CutterError::Pitch(_) => "pitch_deg",
+                CutterError::Radius(_) => "runout_um",
+                CutterError::Helix(_) => "helix_deg",
+                CutterError::Flute(_) => "flute_length_mm",
+                CutterError::Coefficient(_) => source,
             };
             at.key(key).error(format!("makes no cutter: {error}"), "the numbers of a real cutter, its forces finite")
         })

@@ -8,28 +8,24 @@ use stead_disk::input::InputError;
 use stead_model::cutting::{Coefficients, Cutter, CuttingForce, Engagement, ForceHistory, RakeFace};
 use stead_model::task::Wrench;
 
-/// The ways of milling that the key `engagement` names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EngagementKind {
-    /// The whole width of the cutter.
-    Slot,
-    /// Up-milling.
-    Up,
-    /// Down-milling.
-    Down,
-    /// The middle of the cutter.
-    Centred,
-    /// A slot that is open in its middle.
-    OpenSlot,
+stead_numerics::worded! {
+    /// The ways of milling that the key `engagement` names.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum EngagementKind {
+        /// The whole width of the cutter.
+        Slot = "slot",
+        /// Up-milling.
+        Up = "up",
+        /// Down-milling.
+        Down = "down",
+        /// The middle of the cutter.
+        Centred = "centred",
+        /// A slot that is open in its middle.
+        OpenSlot = "open-slot",
+    }
 }
 
-words!(EngagementKind:
-    "slot" => EngagementKind::Slot,
-    "up" => EngagementKind::Up,
-    "down" => EngagementKind::Down,
-    "centred" => EngagementKind::Centred,
-    "open-slot" => EngagementKind::OpenSlot,
-);
+words!(EngagementKind);
 
 /// A cutter in the work.
 #[derive(Debug, Clone, PartialEq)]

@@ -72,10 +72,10 @@ impl Cutting<'_> {
                 let allowed = format!("a number above 0 and not above flute_length_mm = {flute}");
                 cut.key("axial_depth_mm").error("is deeper than the flutes of the cutter", allowed)
             }
-            CutError::Coefficient { .. } | CutError::EdgeForces => {
+            CutError::Coefficient(_) | CutError::EdgeForces => {
                 tool.key("kt_mpa").error(format!("makes no cut: {error}"), "a number above 0")
             }
-            CutError::Positive { .. } | CutError::Slices => {
+            CutError::Positive(_) | CutError::Slices => {
                 cut.key("spindle_rpm").error(format!("makes no cut: {error}"), "finite numbers above 0")
             }
             CutError::Steps { min, .. } => {

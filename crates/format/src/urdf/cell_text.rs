@@ -8,62 +8,48 @@ use super::xml::one_line;
 use crate::mesh::MeshUnit;
 use crate::written::relative;
 use nalgebra::Vector3;
-use std::fmt::Write;
 use std::path::Path;
-use stead_cell::Solid;
+use stead_cell::{Attachment, Shape, Solid, Visual};
+use stead_disk::template::{filled, shown_if};
 use stead_model::robot::Pose;
 use stead_numerics::rotation::{quaternion_from_rotation, zyx_from_rotation};
 use toml::Value;
 
 /// The text of a file of surroundings at a path, from whose folder mesh files are named.
 pub(super) fn text(robot: &ImportedRobot, links: &LinkShapes, file: &Path) -> String {
-    let visuals = &robot.link_visuals;
-    let mut text = format!(
-        "# The links of an arm, by `stead import robot --collision` from {}: its <collision> shapes in the frames of the rows.\n\
-         # A run file takes it by surroundings = \"{}\"; fence, table and spindle are added beside it.\n",
-        robot.name,
-        one_line(&file.file_name().unwrap_or_default().to_string_lossy()),
-    );
-    if let Some(mount) = &robot.mount {
-        let [yaw, pitch, roll] = zyx_from_rotation(&mount.rotation).map(|angle| rounded(angle.to_degrees()));
-        let _ = writeln!(
-            text,
-            "\n# Where the robot stands by the fixed joints before link {}: the base frame of its rows in the cell frame, which is that\n\
-             # of the root link, its z axis up. Of a robot that stands elsewhere, the shapes on \"base\" below move too.\n\
-             [mount]\nxyz_mm = {}\nrpy_deg = {:?}",
-            one_line(&robot.base_link),
-            vector(&mount.translation),
-            [roll, pitch, yaw]
-        );
-    }
-    links.shapes.iter().for_each(|link| shape(&mut text, link, file));
-    if !links.ignored.is_empty() {
-        text.push_str(
-            "\n# These touch in every posture tried, or at joint values zero of the URDF, or are near each other in \
-             every posture.\n\
-             [collision]\nignore = [\n",
-        );
-        for [a, b] in &links.ignored {
-            let _ = writeln!(text, "    [{}, {}],", Value::from(a.as_str()), Value::from(b.as_str()));
-        }
-        text.push_str("]\n");
-    }
-    if !visuals.is_empty() {
-        text.push_str("\n# What the links look like: drawn, and held against nothing.");
-        visuals.iter().for_each(|of| visual(&mut text, of, file));
-    }
-    text
+    let joined = |parts: Vec<String>| {
+        let all = parts.join("\n");
+        (!all.is_empty()).then(|| all.trim_end_matches('\n').to_owned())
+    };
+    let shapes = links.shapes.iter().map(|link| shape(link, file)).collect();
+    let visuals = robot.link_visuals.iter().map(|of| visual(of, file)).collect();
+    let name = |name: &String| Value::from(name.as_str());
+    let ignored = links.ignored.iter().map(|[a, b]| format!("    [{}, {}],", name(a), name(b))).collect();
+    let angles = robot.mount.map(|mount| zyx_from_rotation(&mount.rotation).map(|angle| rounded(angle.to_degrees())));
+    filled(
+        include_str!("cell_text.toml"),
+        &[
+            ("robot", Some(robot.name.clone())),
+            ("file", Some(one_line(&file.file_name().unwrap_or_default().to_string_lossy()))),
+            ("stands", shown_if(robot.mount.is_some())),
+            ("base", Some(one_line(&robot.base_link))),
+            ("xyz", robot.mount.map(|mount| vector(&mount.translation))),
+            ("rpy", angles.map(|[yaw, pitch, roll]| format!("{:?}", [roll, pitch, yaw]))),
+            ("shapes", joined(shapes)),
+            ("touch", shown_if(!links.ignored.is_empty())),
+            ("ignored", joined(ignored)),
+            ("drawn", shown_if(!robot.link_visuals.is_empty())),
+            ("visuals", joined(visuals)),
+        ],
+    )
 }
 
-fn visual(text: &mut String, of: &LinkVisual, out: &Path) {
-    let visual = &of.visual;
-    let name = Value::from(visual.name.as_str());
-    let _ = writeln!(text, "\n[[visual]]\nname = {name}\nattached = \"{}\"", visual.attached);
-    let _ = writeln!(text, "mesh = {}", mesh_file(&of.file, of.unit, out));
-    if let Some(color) = visual.color {
-        let _ = writeln!(text, "color = {:?}", color.map(|part| (part * 1e3).round() / 1e3));
-    }
-    place(text, &visual.pose);
+fn visual(of: &LinkVisual, out: &Path) -> String {
+    let Visual { name, attached, pose, color, .. } = &of.visual;
+    let color = color.map(|color| format!("{:?}", color.map(|part| (part * 1e3).round() / 1e3)));
+    let own =
+        [("table", Some("visual".to_owned())), ("mesh", Some(mesh_file(&of.file, of.unit, out))), ("color", color)];
+    part(name, *attached, pose, own)
 }
 
 /// A mesh file as it is named from the folder of a file, with the line of its unit behind it.
@@ -72,31 +58,36 @@ fn mesh_file(mesh: &Path, unit: MeshUnit, out: &Path) -> String {
     format!("{name}{}", if unit == MeshUnit::Metre { "\nunit = \"m\"" } else { "" })
 }
 
-fn place(text: &mut String, pose: &Pose<f64>) {
-    let _ = writeln!(text, "xyz_mm = {}", vector(&pose.translation));
-    let turn = quaternion_from_rotation(&pose.rotation).map(|value| (value * 1e15).round() / 1e15 + 0.0);
-    if turn != [1.0, 0.0, 0.0, 0.0] {
-        let _ = writeln!(text, "quaternion_wxyz = {turn:?}");
-    }
+fn shape(of: &LinkShape, out: &Path) -> String {
+    let Shape { name, attached, solid, pose } = &of.shape;
+    let round = |radius: f64, length: f64| format!("{{ radius = {:?}, length = {:?} }}", mm(radius), mm(length));
+    let mesh = || of.file.as_ref().map(|(path, unit)| mesh_file(path, *unit, out)).unwrap_or_default();
+    let (key, form) = match solid {
+        Solid::Box(edges) => ("box", vector(edges)),
+        Solid::Cylinder { radius, length } => ("cylinder", round(*radius, *length)),
+        Solid::Capsule { radius, length } => ("capsule", round(*radius, *length)),
+        Solid::Hull(_) => ("hull", mesh()),
+        Solid::Mesh(_) => ("mesh", mesh()),
+    };
+    part(name, *attached, pose, [("table", Some("shape".to_owned())), (key, Some(form))])
 }
 
-/// Writing to a text cannot fail.
-fn shape(text: &mut String, of: &LinkShape, out: &Path) {
-    let shape = &of.shape;
-    let _ =
-        writeln!(text, "\n[[shape]]\nname = {}\nattached = \"{}\"", Value::from(shape.name.as_str()), shape.attached);
-    let round = |radius: f64, length: f64| format!("{{ radius = {:?}, length = {:?} }}", mm(radius), mm(length));
-    let _ = match &shape.solid {
-        Solid::Box(edges) => writeln!(text, "box_mm = {}", vector(edges)),
-        Solid::Cylinder { radius, length } => writeln!(text, "cylinder_mm = {}", round(*radius, *length)),
-        Solid::Capsule { radius, length } => writeln!(text, "capsule_mm = {}", round(*radius, *length)),
-        Solid::Hull(_) | Solid::Mesh(_) => {
-            let key = if matches!(shape.solid, Solid::Hull(_)) { "hull" } else { "mesh" };
-            let named = of.file.as_ref().map(|(path, unit)| mesh_file(path, *unit, out));
-            writeln!(text, "{key} = {}", named.unwrap_or_default())
-        }
-    };
-    place(text, &shape.pose);
+/// A table of a shape or a visual, with what is its own.
+fn part(
+    name: &str,
+    attached: Attachment,
+    pose: &Pose<f64>,
+    own: impl IntoIterator<Item = (&'static str, Option<String>)>,
+) -> String {
+    let turn = quaternion_from_rotation(&pose.rotation).map(|value| (value * 1e15).round() / 1e15 + 0.0);
+    let mut holes = vec![
+        ("name", Some(Value::from(name).to_string())),
+        ("attached", Some(attached.to_string())),
+        ("xyz", Some(vector(&pose.translation))),
+        ("turn", (turn != [1.0, 0.0, 0.0, 0.0]).then(|| format!("{turn:?}"))),
+    ];
+    holes.extend(own);
+    filled(include_str!("cell_part.toml"), &holes)
 }
 
 /// A length in mm, to 1e-9 mm.

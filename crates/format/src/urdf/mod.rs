@@ -130,6 +130,7 @@ pub fn import_robot(file: &Path, options: &ImportOptions<'_>) -> Result<Imported
 ///
 /// # Errors
 /// Those of [`import_robot`].
+#[cfg(any(test, feature = "testing"))]
 pub fn import_robot_text(file: &Path, text: &str, options: &ImportOptions<'_>) -> Result<ImportedRobot, InputError> {
     imported(&Urdf::parse(file, text.to_owned())?, options)
 }

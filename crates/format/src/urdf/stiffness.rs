@@ -60,7 +60,7 @@ fn line(row: &JointRow) -> String {
     match (row.stiffness_mnm_per_rad, row.compliance_urad_per_nm) {
         (Some(stiffness), _) => format!("stiffness_mnm_per_rad = {:?}", stiffness.written()),
         (None, Some(OneOrRange::One(compliance))) => format!("compliance_urad_per_nm = {:?}", compliance.written()),
-        (None, Some(OneOrRange::Range(range))) => {
+        (None, Some(OneOrRange::Pair(range))) => {
             let [from, to] = range.0.map(|end| end.written());
             let middle = lent_urad_per_nm(row).unwrap_or_default();
             format!("compliance_urad_per_nm = {middle:?}   # the middle of {from:?} to {to:?}")

@@ -5,8 +5,8 @@ use super::rows::written;
 use super::stiffness::Borrowed;
 use super::xml::{one_line, quoted};
 use super::{ImportedRobot, POSTURES};
-use crate::written::{filled, shown_if};
 use nalgebra::{Matrix3, Vector3};
+use stead_disk::template::{filled, shown_if};
 use stead_model::robot::{ControllerKind, Inertial, Pose};
 use toml::Value;
 

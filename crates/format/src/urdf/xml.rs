@@ -57,32 +57,31 @@ impl<'a> Element<'a> {
 
     /// The number of an attribute, where it is given; its size may not be above `largest`.
     pub fn number(self, name: &str, largest: f64) -> Result<Option<f64>, InputError> {
-        let Some(text) = self.attribute(name) else { return Ok(None) };
-        match self.numbers(text, largest)[..] {
-            [Some(value)] => Ok(Some(value)),
-            _ => {
-                let error = self.error(Some(name), "is not one finite number in range", "");
-                Err(error.found(quoted(text)).allowed(format!("a number from -{largest} to {largest}")))
-            }
-        }
+        let number = self.numbers(name, largest, "one finite number", "a number")?;
+        Ok(number.map(|[number]| number))
     }
 
     /// The three numbers of an attribute, where it is given.
     pub fn vector(self, name: &str, largest: f64) -> Result<Option<[f64; 3]>, InputError> {
-        let Some(text) = self.attribute(name) else { return Ok(None) };
-        match self.numbers(text, largest)[..] {
-            [Some(x), Some(y), Some(z)] => Ok(Some([x, y, z])),
-            _ => {
-                let error = self.error(Some(name), "is not three finite numbers in range", "");
-                Err(error.found(quoted(text)).allowed(format!("three numbers from -{largest} to {largest}")))
-            }
-        }
+        self.numbers(name, largest, "three finite numbers", "three numbers")
     }
 
-    fn numbers(self, text: &str, largest: f64) -> Vec<Option<f64>> {
+    fn numbers<const N: usize>(
+        self,
+        name: &str,
+        largest: f64,
+        what: &str,
+        allowed: &str,
+    ) -> Result<Option<[f64; N]>, InputError> {
+        let Some(text) = self.attribute(name) else { return Ok(None) };
         let number = |word: &str| word.parse::<f64>().ok().filter(|value| value.abs() <= largest);
-        // One more than is ever wanted tells that there are too many.
-        text.split_ascii_whitespace().take(4).map(number).collect()
+        // One more than is wanted tells that there are too many.
+        let numbers: Option<Vec<f64>> = text.split_ascii_whitespace().take(N + 1).map(number).collect();
+        let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+        numbers.map(Some).ok_or_else(|| {
+            let error = self.error(Some(name), format!("is not {what} in range"), "");
+            error.found(quoted(text)).allowed(format!("{allowed} from -{largest} to {largest}"))
+        })
     }
 
     /// An error here: at an attribute, or at the element as a whole.

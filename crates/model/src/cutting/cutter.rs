@@ -35,36 +35,21 @@ pub enum CutterError {
     /// No tooth.
     #[error("a cutter needs at least one tooth")]
     Toothless,
-    /// Pitches that do not make a turn.
-    #[error("the pitches of all teeth must be above 0 and make one turn, 360 deg, but make {} deg", .sum.to_degrees())]
-    Pitch {
-        /// Their sum, or the one that is not above 0. rad
-        sum: f64,
-    },
-    /// An edge without a radius.
-    #[error("the radius of every tooth must be a finite number above 0, but one is {radius} m")]
-    Radius {
-        /// The radius. m
-        radius: f64,
-    },
-    /// A helix that cannot be ground.
-    #[error("the helix angle must be between -90 and 90 deg, but is {} deg", .helix.to_degrees())]
-    Helix {
-        /// The angle. rad
-        helix: f64,
-    },
-    /// No cutting length.
-    #[error("the length of the flutes must be a finite number above 0, but is {flute} m")]
-    Flute {
-        /// The length. m
-        flute: f64,
-    },
-    /// A coefficient that is not finite.
-    #[error("cutting coefficients must be finite numbers, but one is {coefficient}")]
-    Coefficient {
-        /// The coefficient. Pa or N/m
-        coefficient: f64,
-    },
+    /// Pitches that do not make a turn: their sum, or the one that is not above 0. rad
+    #[error("the pitches of all teeth must be above 0 and make one turn, 360 deg, but make {} deg", .0.to_degrees())]
+    Pitch(f64),
+    /// An edge without a radius. m
+    #[error("the radius of every tooth must be a finite number above 0, but one is {0} m")]
+    Radius(f64),
+    /// A helix that cannot be ground. rad
+    #[error("the helix angle must be between -90 and 90 deg, but is {} deg", .0.to_degrees())]
+    Helix(f64),
+    /// No cutting length. m
+    #[error("the length of the flutes must be a finite number above 0, but is {0} m")]
+    Flute(f64),
+    /// A coefficient that is not finite. Pa or N/m
+    #[error("cutting coefficients must be finite numbers, but one is {0}")]
+    Coefficient(f64),
 }
 
 impl Cutter {
@@ -84,25 +69,25 @@ impl Cutter {
             return Err(CutterError::Toothless);
         }
         if let Some(tooth) = teeth.iter().find(|tooth| !is_length(tooth.pitch)) {
-            return Err(CutterError::Pitch { sum: tooth.pitch });
+            return Err(CutterError::Pitch(tooth.pitch));
         }
         let sum: f64 = teeth.iter().map(|tooth| tooth.pitch).sum();
         let is_a_turn = (sum - TAU).abs() < 1e-9;
         if !is_a_turn {
-            return Err(CutterError::Pitch { sum });
+            return Err(CutterError::Pitch(sum));
         }
         if let Some(tooth) = teeth.iter().find(|tooth| !is_length(tooth.radius)) {
-            return Err(CutterError::Radius { radius: tooth.radius });
+            return Err(CutterError::Radius(tooth.radius));
         }
         let is_below_a_quarter = helix.abs() < FRAC_PI_2;
         if !is_below_a_quarter {
-            return Err(CutterError::Helix { helix });
+            return Err(CutterError::Helix(helix));
         }
         if let Some(flute) = flute_length.filter(|flute| !is_length(*flute)) {
-            return Err(CutterError::Flute { flute });
+            return Err(CutterError::Flute(flute));
         }
         match coefficients.parts().into_iter().find(|coefficient| !coefficient.is_finite()) {
-            Some(coefficient) => Err(CutterError::Coefficient { coefficient }),
+            Some(coefficient) => Err(CutterError::Coefficient(coefficient)),
             None => Ok(Self { teeth, helix, flute_length, rotation, coefficients }),
         }
     }
@@ -128,6 +113,7 @@ impl Cutter {
     }
 
     /// Helix angle. rad
+    #[cfg(any(test, feature = "testing"))]
     pub fn helix(&self) -> f64 {
         self.helix
     }

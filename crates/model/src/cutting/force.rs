@@ -59,7 +59,7 @@ impl CuttingForce<'_> {
     /// Wrench of all teeth while the first is at angle phi (rad), any angle, in the frame of [this
     /// room](crate::cutting).
     pub fn instantaneous_wrench(&self, engagement: &Engagement, phi: f64) -> Wrench {
-        let mut sum = Wrench::zero();
+        let mut sum = Wrench::default();
         for offset in self.cutter.offsets() {
             let phi = (phi + offset).rem_euclid(TAU);
             if engagement.cuts_at(phi) {
@@ -80,6 +80,7 @@ impl CuttingForce<'_> {
     /// What the height of a cut that begins at the tip adds to the moment about the tool centre point of a force: half
     /// the depth of cut along the tool axis, times the force. The other moments here leave it out, as Klimchik 2017
     /// does; the moments along a path with its stock have it.
+    #[cfg(any(test, feature = "testing"))]
     pub fn lever(&self, force: &Vector3<f64>) -> Vector3<f64> {
         (Vector3::z() * (self.axial_depth / 2.0)).cross(force)
     }

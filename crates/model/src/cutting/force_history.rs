@@ -60,7 +60,7 @@ mod tests {
     fn means_grow_from_nothing_to_the_slot_and_gain_any_cut_over_its_arcs() {
         let tool = published();
         let force_history = ForceHistory::new(&tool.force(&tool.cutter()), &Engagement::open_slot(0.5, 1.0).unwrap());
-        assert_eq!(force_history.entering[0], Sample { phi: 0.0, wrench: Wrench::zero() });
+        assert_eq!(force_history.entering[0], Sample { phi: 0.0, wrench: Wrench::default() });
         assert_eq!(force_history.entering[180].phi, PI);
         assert_eq!(force_history.entering[180].wrench, tool.mean_wrench(&Engagement::slot()));
         // The arcs of this cut are 0 to 60 and 120 to 180 deg.

@@ -38,21 +38,15 @@ pub enum CutError {
         /// Length of the flutes. m
         flute: f64,
     },
-    /// A tangential coefficient that is not above 0: nothing would hold the chip back.
-    #[error("the tangential coefficient K_t must be above 0, but is {tangential} Pa")]
-    Coefficient {
-        /// The coefficient. Pa
-        tangential: f64,
-    },
+    /// A tangential coefficient that is not above 0: nothing would hold the chip back. Pa
+    #[error("the tangential coefficient K_t must be above 0, but is {0} Pa")]
+    Coefficient(f64),
     /// Edge forces, which chips of simulated passes do not have.
     #[error("the simulated force has no edge forces, but the cutter has")]
     EdgeForces,
-    /// No work, or no speed.
-    #[error("length of the work and spindle speed must be finite numbers above 0, but one is {value}")]
-    Positive {
-        /// The value. m or rad/s
-        value: f64,
-    },
+    /// No work, or no speed. m or rad/s
+    #[error("length of the work and spindle speed must be finite numbers above 0, but one is {0}")]
+    Positive(f64),
     /// No slice.
     #[error("there must be at least one slice")]
     Slices,
@@ -85,11 +79,11 @@ impl PassCut {
         }
         let tangential = cutter.coefficients().tangential;
         if tangential <= 0.0 {
-            return Err(CutError::Coefficient { tangential });
+            return Err(CutError::Coefficient(tangential));
         }
         for value in [self.length, self.spindle_speed] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(CutError::Positive { value });
+                return Err(CutError::Positive(value));
             }
         }
         if self.slices == 0 {

@@ -112,7 +112,7 @@ fn engagements() -> impl Strategy<Value = Engagement> {
         (0.01..=1.0_f64).prop_map(|width| Engagement::down(width, 1.0).unwrap()),
         (0.01..=1.0_f64).prop_map(|width| Engagement::centred(width, 1.0).unwrap()),
         (0.01..0.99_f64).prop_map(|width| Engagement::open_slot(width, 1.0).unwrap()),
-        (0.0..0.5_f64, 0.51..1.0_f64).prop_map(|(from, to)| Engagement::strip(from, to, 1.0).unwrap()),
+        (0.0..0.5_f64, 0.51..1.0_f64).prop_map(|(entry, exit)| Engagement::between(entry * PI, exit * PI)),
     ]
 }
 
@@ -216,7 +216,7 @@ proptest! {
     #[test]
     fn the_closed_form_agrees_with_summing_over_tooth_positions(tool in tools(), engagement in engagements()) {
         let mean = tool.mean_wrench(&engagement);
-        let mut sum = Wrench::zero();
+        let mut sum = Wrench::default();
         let steps = 500;
         for arc in engagement.arcs() {
             let step = (arc.exit - arc.entry) / f64::from(steps);
@@ -229,7 +229,7 @@ proptest! {
         }
         prop_assert!(apart(&tool, &mean, &sum) < 3e-6, "{mean:?} {sum:?}");
 
-        let mut turned = Wrench::zero();
+        let mut turned = Wrench::default();
         let steps = 5000;
         for k in 0..steps {
             // From any start: the teeth follow each other.

@@ -2,31 +2,18 @@
 
 use super::{Pose, Posture, Robot};
 
-/// Whose controller it is: it decides the words and conventions of programs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ControllerKind {
-    /// KUKA (KRC): A1 to A6, frames as X, Y, Z, A, B, C.
-    Kuka,
-    /// ABB (IRC5, OmniCore): frames as a position and a quaternion.
-    Abb,
-    /// Fanuc: J1 to J6, frames as X, Y, Z, W, P, R.
-    Fanuc,
-    /// Staubli (CS8, CS9): j1 to j6.
-    Staubli,
-}
-
-impl ControllerKind {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Kuka, Self::Abb, Self::Fanuc, Self::Staubli];
-
-    /// The word for it in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Kuka => "kuka",
-            Self::Abb => "abb",
-            Self::Fanuc => "fanuc",
-            Self::Staubli => "staubli",
-        }
+stead_numerics::worded! {
+    /// Whose controller it is: it decides the words and conventions of programs.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum ControllerKind {
+        /// KUKA (KRC): A1 to A6, frames as X, Y, Z, A, B, C.
+        Kuka = "kuka",
+        /// ABB (IRC5, OmniCore): frames as a position and a quaternion.
+        Abb = "abb",
+        /// Fanuc: J1 to J6, frames as X, Y, Z, W, P, R.
+        Fanuc = "fanuc",
+        /// Staubli (CS8, CS9): j1 to j6.
+        Staubli = "staubli",
     }
 }
 

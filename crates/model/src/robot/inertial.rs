@@ -23,24 +23,18 @@ pub struct Inertial {
 /// Why numbers are not those of a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum InertialError {
-    /// The mass is not a finite number above zero.
-    #[error("the mass is {value} kg, but must be above zero")]
-    Mass {
-        /// What was found. kg
-        value: f64,
-    },
+    /// The mass is not a finite number above zero. kg
+    #[error("the mass is {0} kg, but must be above zero")]
+    Mass(f64),
     /// The centre of mass has a coordinate that is NaN or infinite.
     #[error("the centre of mass is not finite")]
     Centre,
     /// The tensor has an entry that is NaN or infinite.
     #[error("the inertia tensor is not finite")]
     NotFinite,
-    /// A principal moment of inertia is not above zero.
-    #[error("the inertia tensor is not positive definite: its smallest principal moment is {smallest} kg m^2")]
-    NotPositiveDefinite {
-        /// The smallest principal moment. kg m^2
-        smallest: f64,
-    },
+    /// A principal moment of inertia is not above zero: the smallest. kg m^2
+    #[error("the inertia tensor is not positive definite: its smallest principal moment is {0} kg m^2")]
+    NotPositiveDefinite(f64),
     /// A principal moment is larger than the sum of the two others: no distribution of mass has that.
     #[error(
         "the inertia tensor breaks the triangle inequality: its largest principal moment, {largest} kg m^2, is above the sum \
@@ -66,7 +60,7 @@ impl Inertial {
     /// [`InertialError`] when no rigid body has these numbers.
     pub fn new(mass: f64, centre: Vector3<f64>, inertia: Matrix3<f64>) -> Result<Self, InertialError> {
         if !(mass > 0.0 && mass.is_finite()) {
-            return Err(InertialError::Mass { value: mass });
+            return Err(InertialError::Mass(mass));
         }
         if !centre.iter().all(|value| value.is_finite()) {
             return Err(InertialError::Centre);
@@ -78,7 +72,7 @@ impl Inertial {
         let moments = SymmetricEigen::new(inertia).eigenvalues;
         let (smallest, largest) = (moments.min(), moments.max());
         if smallest.is_nan() || smallest <= 0.0 {
-            return Err(InertialError::NotPositiveDefinite { smallest });
+            return Err(InertialError::NotPositiveDefinite(smallest));
         }
         let others = moments.sum() - largest;
         if largest > others * (1.0 + ROUNDING) {
@@ -139,16 +133,14 @@ mod tests {
     fn what_no_rigid_body_has_is_refused() {
         let (here, unit) = (vector![0.0, 0.0, 0.0], Matrix3::identity());
         for mass in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(Inertial::new(mass, here, unit), Err(InertialError::Mass { .. })));
+            assert!(matches!(Inertial::new(mass, here, unit), Err(InertialError::Mass(_))));
         }
         assert_eq!(Inertial::new(1.0, vector![f64::NAN, 0.0, 0.0], unit), Err(InertialError::Centre));
         assert_eq!(Inertial::new(1.0, here, unit * f64::INFINITY), Err(InertialError::NotFinite));
         // Positive on the diagonal, but a product of inertia too large.
         let tilted = matrix![1.0, 1.5, 0.0; 1.5, 1.0, 0.0; 0.0, 0.0, 1.0];
         let error = Inertial::new(1.0, here, tilted);
-        assert!(
-            matches!(error, Err(InertialError::NotPositiveDefinite { smallest }) if (smallest + 0.5).abs() < 1e-12)
-        );
+        assert!(matches!(error, Err(InertialError::NotPositiveDefinite(smallest)) if (smallest + 0.5).abs() < 1e-12));
         let rod = Matrix3::from_diagonal(&vector![1.0, 1.0, 2.1]);
         let error = Inertial::new(1.0, here, rod);
         assert!(matches!(error, Err(InertialError::Triangle { others, .. }) if (others - 2.0).abs() < 1e-12));

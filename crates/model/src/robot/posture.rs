@@ -70,51 +70,35 @@ impl Posture {
     }
 }
 
-/// One side of a pair by which postures are told apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PostureWord {
-    /// The wrist is in front of axis 1.
-    Front,
-    /// It is behind it: the arm reaches over its head.
-    Back,
-    /// Axis 3 is above the line from axis 2 to the wrist.
-    ElbowUp,
-    /// It is below that line.
-    ElbowDown,
-    /// A5 is below zero.
-    Flip,
-    /// It is not.
-    NoFlip,
+stead_numerics::worded! {
+    /// One side of a pair by which postures are told apart; the sides of a pair stand after each other.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum PostureWord {
+        /// The wrist is in front of axis 1.
+        Front = "front",
+        /// It is behind it: the arm reaches over its head.
+        Back = "back",
+        /// Axis 3 is above the line from axis 2 to the wrist.
+        ElbowUp = "elbow up",
+        /// It is below that line.
+        ElbowDown = "elbow down",
+        /// A5 is below zero.
+        Flip = "flip",
+        /// It is not.
+        NoFlip = "no flip",
+    }
 }
 
 impl PostureWord {
-    /// Every word, the sides of a pair after each other.
-    pub const WORDS: [(&str, Self); 6] = [
-        ("front", Self::Front),
-        ("back", Self::Back),
-        ("elbow up", Self::ElbowUp),
-        ("elbow down", Self::ElbowDown),
-        ("flip", Self::Flip),
-        ("no flip", Self::NoFlip),
-    ];
-
     /// The other side of its pair.
     pub fn other(self) -> Self {
-        match self {
-            Self::Front => Self::Back,
-            Self::Back => Self::Front,
-            Self::ElbowUp => Self::ElbowDown,
-            Self::ElbowDown => Self::ElbowUp,
-            Self::Flip => Self::NoFlip,
-            Self::NoFlip => Self::Flip,
-        }
+        Self::WORDS[self as usize ^ 1].1
     }
 }
 
 impl fmt::Display for PostureWord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let known = Self::WORDS.iter().find(|(_, word)| word == self);
-        f.write_str(known.map_or("", |(text, _)| text))
+        f.write_str(self.word())
     }
 }
 

@@ -1,6 +1,7 @@
 //! The spindle on the flange.
 
 use super::{Inertial, PointMass, Pose};
+#[cfg(any(test, feature = "testing"))]
 use crate::stiffness::matrix::{MatrixError, checked};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use stead_numerics::rotation::orthonormal;
@@ -60,6 +61,7 @@ impl Spindle {
     ///
     /// # Errors
     /// [`MatrixError`] for a matrix that is no compliance.
+    #[cfg(any(test, feature = "testing"))]
     pub fn with_mount(self, matrix: Matrix6<f64>) -> Result<Self, MatrixError> {
         Ok(Self { mount: Some(checked(matrix)?), ..self })
     }
@@ -68,6 +70,7 @@ impl Spindle {
     ///
     /// # Errors
     /// [`MatrixError`] for a matrix that is no compliance.
+    #[cfg(any(test, feature = "testing"))]
     pub fn with_tip(self, matrix: Matrix3<f64>) -> Result<Self, MatrixError> {
         Ok(Self { tip: Some(checked(matrix)?), ..self })
     }

@@ -20,26 +20,17 @@ pub struct NormalSprings {
     pub bearing: f64,
 }
 
-/// The axis of the frame of a row about which a spring of the joint turns.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum About {
-    /// The axis of the joint.
-    Z,
-    /// Normal to it.
-    X,
-    /// Normal to it.
-    Y,
-}
-
-impl About {
-    /// As the frame names it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Z => "z",
-            Self::X => "x",
-            Self::Y => "y",
-        }
+stead_numerics::worded! {
+    /// The axis of the frame of a row about which a spring of the joint turns.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum About {
+        /// The axis of the joint.
+        Z = "z",
+        /// Normal to it.
+        X = "x",
+        /// Normal to it.
+        Y = "y",
     }
 }
 
@@ -55,54 +46,31 @@ pub struct Spring {
 impl fmt::Display for Spring {
     /// `joint 3 about x`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "joint {} about {}", self.joint + 1, self.about.name())
+        write!(f, "joint {} about {}", self.joint + 1, self.about.word())
     }
 }
 
-/// What the compliances of an arm stand for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpringModel {
-    /// A fit of springs about the axes alone, which absorb what links and bearings do.
-    Axes,
-    /// The springs about the axes of a full set, without the others: they leave out part of the deflection.
-    AxialPart,
-    /// Springs about three directions of every joint.
-    Full,
-}
-
-impl SpringModel {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Axes, Self::AxialPart, Self::Full];
-
-    /// As files state it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Axes => "axes",
-            Self::AxialPart => "axial_part",
-            Self::Full => "full",
-        }
+stead_numerics::worded! {
+    /// What the compliances of an arm stand for.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum SpringModel {
+        /// A fit of springs about the axes alone, which absorb what links and bearings do.
+        Axes = "axes",
+        /// The springs about the axes of a full set, without the others: they leave out part of the deflection.
+        AxialPart = "axial_part",
+        /// Springs about three directions of every joint.
+        Full = "full",
     }
 }
 
-/// What the measuring instrument stood on when the compliances were identified.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MeasuredFrom {
-    /// The base of the robot: what yields under it was not seen.
-    Base,
-    /// The floor: what yields under the base is in the compliances.
-    Floor,
-}
-
-impl MeasuredFrom {
-    /// Both of them.
-    pub const ALL: [Self; 2] = [Self::Base, Self::Floor];
-
-    /// As files state it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Base => "base",
-            Self::Floor => "floor",
-        }
+stead_numerics::worded! {
+    /// What the measuring instrument stood on when the compliances were identified.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum MeasuredFrom {
+        /// The base of the robot: what yields under it was not seen.
+        Base = "base",
+        /// The floor: what yields under the base is in the compliances.
+        Floor = "floor",
     }
 }
 

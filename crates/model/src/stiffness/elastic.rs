@@ -17,9 +17,10 @@ mod root;
 mod tests;
 
 use super::Displacement;
-use super::equilibrium::NoEquilibrium;
+use super::equilibrium::{NoEquilibrium, loaded_in_steps, settled};
 use super::loaded::Buckled;
 use crate::robot::{NormalSprings, PointMass, Pose, Robot, Spindle};
+use crate::task::Wrench;
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3};
 use posed::{Applied, Posed};
 
@@ -38,20 +39,6 @@ const TIP: usize = 30;
 
 type Coordinates = SVector<f64, COUNT>;
 type Square = SMatrix<f64, COUNT, COUNT>;
-
-/// Force and moment on the tool at its centre point, in the frame in which the arm is given.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToolLoad {
-    /// Force. N
-    pub force: Vector3<f64>,
-    /// Moment. N m
-    pub moment: Vector3<f64>,
-}
-
-impl ToolLoad {
-    /// None.
-    pub const NONE: Self = Self { force: Vector3::new(0.0, 0.0, 0.0), moment: Vector3::new(0.0, 0.0, 0.0) };
-}
 
 /// An arm with a spindle, and everything of it that yields.
 #[derive(Debug, Clone)]
@@ -103,23 +90,17 @@ impl<'a> ElasticArm<'a> {
     ///
     /// # Errors
     /// [`NoEquilibrium`] when the arm gives way before the load is complete.
-    pub fn at_rest(&self, theta: &[f64; 6], load: &ToolLoad) -> Result<Pose<f64>, NoEquilibrium> {
+    pub fn at_rest(&self, theta: &[f64; 6], load: &Wrench) -> Result<Pose<f64>, NoEquilibrium> {
         let scale = self.scale_at(&self.robot.compliances_at(theta));
-        let commanded = Commanded { arm: self, theta, load, scale, taken: self.taken(theta) };
-        let mut deflection = Coordinates::zeros();
-        let (mut share, mut step) = (0.0_f64, 1.0);
-        while share < 1.0 {
-            let next = (share + step).min(1.0);
-            match commanded.settle(next, deflection) {
-                Some(settled) => {
-                    deflection = settled;
-                    share = next;
-                    step *= 2.0;
-                }
-                None if step > super::equilibrium::MIN_LOAD_STEP => step /= 2.0,
-                None => return Err(NoEquilibrium { share }),
-            }
-        }
+        let taken = self.taken(theta);
+        let deflection = loaded_in_steps(Coordinates::zeros(), |share, start| {
+            settled(&scale, start, |deflection| {
+                let posed = self.posed(theta, &(scale * deflection));
+                let applied = self.applied(&posed, load, share);
+                let inverse = inverse_tangent(&(scale.tr_mul(&posed.hessian(&applied)) * scale))?;
+                Some((inverse, posed.torques(&applied) + taken * share))
+            })
+        })?;
         Ok(self.posed(theta, &(scale * deflection)).base_from_tool)
     }
 
@@ -128,7 +109,7 @@ impl<'a> ElasticArm<'a> {
     pub fn sag(&self, theta: &[f64; 6]) -> Displacement<f64> {
         let scale = self.scale_at(&self.robot.compliances_at(theta));
         let posed = self.posed(theta, &Coordinates::zeros());
-        let torques = posed.torques(&self.applied(&posed, &ToolLoad::NONE, 1.0)) + self.taken(theta);
+        let torques = posed.torques(&self.applied(&posed, &Wrench::default(), 1.0)) + self.taken(theta);
         posed.moved(&(scale * scale.tr_mul(&torques)))
     }
 
@@ -142,7 +123,7 @@ impl<'a> ElasticArm<'a> {
         &self,
         compliances: &[f64; 6],
         theta: &[f64; 6],
-        load: &ToolLoad,
+        load: &Wrench,
     ) -> Result<Displacement<f64>, Buckled> {
         let scale = self.scale_at(compliances);
         let posed = self.posed(theta, &Coordinates::zeros());
@@ -181,7 +162,7 @@ impl<'a> ElasticArm<'a> {
         }
         let planar = [theta[0], theta[1], theta[2], 0.0, theta[4], 0.0];
         let posed = self.posed(&planar, &Coordinates::zeros());
-        let torques = posed.torques(&self.applied(&posed, &ToolLoad::NONE, 1.0));
+        let torques = posed.torques(&self.applied(&posed, &Wrench::default(), 1.0));
         for (j, _) in dynamics.iter().enumerate().filter(|(_, joint)| joint.gravity_compensated) {
             let k = JOINTS + 3 * j;
             taken[k] = -torques[k];
@@ -198,7 +179,7 @@ impl<'a> ElasticArm<'a> {
     }
 
     /// What presses on the posed chain: a share of a load on the tool, and of the weight where that counts.
-    fn applied(&self, posed: &Posed, load: &ToolLoad, share: f64) -> [Applied; 8] {
+    fn applied(&self, posed: &Posed, load: &Wrench, share: f64) -> [Applied; 8] {
         let mut all = [Applied::NONE; 8];
         all[7] = Applied {
             behind: COUNT,
@@ -224,43 +205,6 @@ impl<'a> ElasticArm<'a> {
 
     fn posed(&self, theta: &[f64; 6], q: &Coordinates) -> Posed {
         posed::Chain { robot: self.robot, spindle: self.spindle, bearings: &self.bearings }.at(theta, q)
-    }
-}
-
-/// An arm commanded to joint angles (rad) under a load.
-struct Commanded<'a> {
-    arm: &'a ElasticArm<'a>,
-    theta: &'a [f64; 6],
-    load: &'a ToolLoad,
-    /// See [`ElasticArm::scale_at`].
-    scale: Square,
-    /// See [`ElasticArm::taken`].
-    taken: Coordinates,
-}
-
-impl Commanded<'_> {
-    /// Newton's method on `x - S^T tau(S x) = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where
-    /// it leads through a configuration that does not hold.
-    fn settle(&self, share: f64, mut deflection: Coordinates) -> Option<Coordinates> {
-        let Self { arm, theta, load, scale, taken } = self;
-        let mut is_last = false;
-        for _ in 0..super::equilibrium::MAX_STEPS {
-            let posed = arm.posed(theta, &(scale * deflection));
-            let applied = arm.applied(&posed, load, share);
-            let inverse = inverse_tangent(&(scale.tr_mul(&posed.hessian(&applied)) * scale))?;
-            if is_last {
-                return Some(deflection);
-            }
-            let torques = posed.torques(&applied) + taken * share;
-            let step = inverse * (scale.tr_mul(&torques) - deflection);
-            let widest = (scale * step).amax();
-            if !widest.is_finite() || widest > super::equilibrium::WIDEST_STEP {
-                return None;
-            }
-            deflection += step;
-            is_last = widest <= super::equilibrium::LAST_STEP;
-        }
-        None
     }
 }
 

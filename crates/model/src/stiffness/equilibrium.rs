@@ -5,10 +5,12 @@
 //! displaced point. K_theta is that of the commanded configuration (Klimchik et al. 2017, eq. 12: it depends on q, not
 //! on the deflection). Of several equilibria the one is found that the arm comes to as the load grows from zero.
 
+#[cfg(any(test, feature = "testing"))]
 use super::Displacement;
 use super::loaded::{inverse_tangent, load_hessian, scale};
 use crate::robot::{Frames, Robot};
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{SMatrix, SVector, Vector3, Vector6};
+#[cfg(any(test, feature = "testing"))]
 use stead_numerics::rotation::rotation_vector;
 
 /// A load acting at a point of the tool.
@@ -51,21 +53,21 @@ pub fn equilibrium_with(
 ) -> Result<[f64; 6], NoEquilibrium> {
     let scale = scale(&Frames::new(robot, theta), compliances);
     // Deflections are scaled: theta - theta_0 = S x.
-    let mut deflection = Vector6::zeros();
-    let (mut share, mut step) = (0.0_f64, 1.0);
-    while share < 1.0 {
-        let next = (share + step).min(1.0);
-        match settle(robot, theta, &scale, load, next, deflection) {
-            Some(settled) => {
-                deflection = settled;
-                share = next;
-                step *= 2.0;
-            }
-            None if step > MIN_LOAD_STEP => step /= 2.0,
-            None => return Err(NoEquilibrium { share }),
-        }
-    }
-    Ok(turned(theta, &scale, &deflection))
+    let turned = |deflection: &Vector6<f64>| {
+        let turns = scale * deflection;
+        std::array::from_fn(|j| theta[j] + turns[j])
+    };
+    let deflection = loaded_in_steps(Vector6::zeros(), |share, start| {
+        let (force, moment) = (load.force * share, load.moment * share);
+        let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+        settled(&scale, start, |deflection| {
+            let frames = Frames::new(robot, &turned(deflection));
+            let point = frames.base_from_flange.point(&load.point);
+            let inverse = inverse_tangent(&load_hessian(&frames, &point, &force, &moment), &scale).ok()?;
+            Some((inverse, frames.jacobian(&point).transpose() * wrench))
+        })
+    })?;
+    Ok(turned(&deflection))
 }
 
 /// Displacement of the point of a load and rotation of the tool, from the commanded configuration `theta` (rad) to the
@@ -73,6 +75,7 @@ pub fn equilibrium_with(
 ///
 /// # Errors
 /// Those of [`equilibrium`].
+#[cfg(any(test, feature = "testing"))]
 pub fn displaced(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<Displacement<f64>, NoEquilibrium> {
     let before = robot.forward(theta);
     let after = robot.forward(&equilibrium(robot, theta, load)?);
@@ -83,35 +86,45 @@ pub fn displaced(robot: &Robot, theta: &[f64; 6], load: &Load) -> Result<Displac
 }
 
 /// The load is not applied in smaller steps than this share.
-pub(super) const MIN_LOAD_STEP: f64 = 1.0 / 4096.0;
+const MIN_LOAD_STEP: f64 = 1.0 / 4096.0;
 /// Newton steps at the most; convergence is quadratic.
-pub(super) const MAX_STEPS: usize = 20;
+const MAX_STEPS: usize = 20;
 /// A Newton step that turns a joint farther than this does not follow the arm any more. rad
-pub(super) const WIDEST_STEP: f64 = 0.5;
+const WIDEST_STEP: f64 = 0.5;
 /// A Newton step below this is the last: the next would be below its square. rad
-pub(super) const LAST_STEP: f64 = 1e-9;
+const LAST_STEP: f64 = 1e-9;
 
-/// Newton's method on `x - S^T J^T w = 0` for a share of the load, with the tangent `1 - S^T H S`; `None` where it
-/// leads through a configuration that does not hold.
-fn settle(
-    robot: &Robot,
-    theta: &[f64; 6],
-    scale: &Matrix6<f64>,
-    load: &Load,
-    share: f64,
-    mut deflection: Vector6<f64>,
-) -> Option<Vector6<f64>> {
-    let (force, moment) = (load.force * share, load.moment * share);
-    let wrench = Vector6::new(force.x, force.y, force.z, moment.x, moment.y, moment.z);
+/// The deflection under the whole load, from none, in steps so large that each can be followed: `settle` takes the
+/// share of the load and the deflection before.
+pub(super) fn loaded_in_steps<D: Copy>(unloaded: D, settle: impl Fn(f64, D) -> Option<D>) -> Result<D, NoEquilibrium> {
+    let (mut deflection, mut share, mut step) = (unloaded, 0.0_f64, 1.0);
+    while share < 1.0 {
+        let next = (share + step).min(1.0);
+        match settle(next, deflection) {
+            Some(settled) => {
+                (deflection, share) = (settled, next);
+                step *= 2.0;
+            }
+            None if step > MIN_LOAD_STEP => step /= 2.0,
+            None => return Err(NoEquilibrium { share }),
+        }
+    }
+    Ok(deflection)
+}
+
+/// Newton's method on `x - S^T tau(S x) = 0` with the tangent `1 - S^T H S`: `at` gives the inverse of the tangent and
+/// the torques tau at a deflection x; `None` where it leads through a configuration that does not hold.
+pub(super) fn settled<const N: usize>(
+    scale: &SMatrix<f64, N, N>,
+    mut deflection: SVector<f64, N>,
+    at: impl Fn(&SVector<f64, N>) -> Option<(SMatrix<f64, N, N>, SVector<f64, N>)>,
+) -> Option<SVector<f64, N>> {
     let mut is_last = false;
     for _ in 0..MAX_STEPS {
-        let frames = Frames::new(robot, &turned(theta, scale, &deflection));
-        let point = frames.base_from_flange.point(&load.point);
-        let inverse = inverse_tangent(&load_hessian(&frames, &point, &force, &moment), scale).ok()?;
+        let (inverse, torques) = at(&deflection)?;
         if is_last {
             return Some(deflection);
         }
-        let torques = frames.jacobian(&point).transpose() * wrench;
         let step = inverse * (scale.tr_mul(&torques) - deflection);
         let widest = (scale * step).amax();
         if !widest.is_finite() || widest > WIDEST_STEP {
@@ -121,11 +134,6 @@ fn settle(
         is_last = widest <= LAST_STEP;
     }
     None
-}
-
-fn turned(theta: &[f64; 6], scale: &Matrix6<f64>, deflection: &Vector6<f64>) -> [f64; 6] {
-    let turns = scale * deflection;
-    std::array::from_fn(|j| theta[j] + turns[j])
 }
 
 #[cfg(test)]

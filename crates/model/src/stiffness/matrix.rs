@@ -27,12 +27,9 @@ pub enum MatrixError {
         /// The entry with row and column exchanged, in SI units.
         mirrored: f64,
     },
-    /// Some load would be answered against its direction.
-    #[error("the matrix has an eigenvalue of {eigenvalue}, but none may be below zero")]
-    Negative {
-        /// The smallest eigenvalue, in SI units.
-        eigenvalue: f64,
-    },
+    /// Some load would be answered against its direction: the smallest eigenvalue, in SI units.
+    #[error("the matrix has an eigenvalue of {0}, but none may be below zero")]
+    Negative(f64),
 }
 
 /// What rounding may do to symmetry and eigenvalues: a share of the trace.
@@ -64,7 +61,7 @@ pub fn checked<const N: usize>(matrix: SMatrix<f64, N, N>) -> Result<SMatrix<f64
     let dynamic = DMatrix::from_fn(N, N, |row, column| symmetric[(row, column)]);
     let eigenvalue = SymmetricEigen::new(dynamic).eigenvalues.min();
     if eigenvalue < -rounding {
-        return Err(MatrixError::Negative { eigenvalue });
+        return Err(MatrixError::Negative(eigenvalue));
     }
     Ok(symmetric)
 }
@@ -86,7 +83,7 @@ mod tests {
         };
         assert!(matches!(with(1, 2, f64::NAN), MatrixError::NotFinite { row: 1, column: 2, .. }));
         assert!(matches!(with(1, 0, 0.5 + 4e-9), MatrixError::NotSymmetric { row: 1, column: 0, mirrored: 0.5, .. }));
-        assert!(matches!(with(2, 2, -4e-9), MatrixError::Negative { eigenvalue } if eigenvalue < 0.0));
+        assert!(matches!(with(2, 2, -4e-9), MatrixError::Negative(eigenvalue) if eigenvalue < 0.0));
         // Up to a billionth of the trace it is rounding.
         let mut rounded = good;
         rounded[(1, 0)] += 2e-9;

@@ -110,7 +110,7 @@ mod tests {
         assert_eq!((path.scored_count(), path.first_unscored()), (3, Some(2)));
         assert_eq!(path.scored_where(|point| point > 0).scored_count(), 2);
         assert_eq!(path.scored_where(|_| false), *path);
-        assert_eq!((task.loads()[1].wrench, task.loads()[2].wrench), (force, Wrench::zero()));
+        assert_eq!((task.loads()[1].wrench, task.loads()[2].wrench), (force, Wrench::default()));
         let unscored = ToolPath::partly_scored([(1, point(0.0, Vector3::z()), false)]);
         assert_eq!(unscored, Err(TaskError::NothingScored));
     }
@@ -119,10 +119,10 @@ mod tests {
     fn a_thinned_path_keeps_the_time_of_what_is_left_out() {
         let points = [0.0, 0.1, 0.3].map(|x| (1, point(x, Vector3::z())));
         let path = ToolPath::new(points).unwrap().with_feeds(vec![1.0, 0.1, 0.05]).unwrap();
-        let task = Task::new(path, vec![Wrench::zero(); 3]).unwrap();
+        let task = Task::new(path, vec![Wrench::default(); 3]).unwrap();
         let ends = task.thinned(&[0, 2].map(|point| KeptPoint { point, weight: 1.5 }));
         assert!((ends.path().step_time(1, 9.0) - 5.0).abs() < 1e-12);
-        let turning = Task::new(turning(), vec![Wrench::zero(); 5]).unwrap();
+        let turning = Task::new(turning(), vec![Wrench::default(); 5]).unwrap();
         let ends = turning.thinned(&[0, 4].map(|point| KeptPoint { point, weight: 1.5 }));
         assert!(ends.path().turns_in_place(1) && ends.path().step_time(1, 9.0).is_infinite());
     }

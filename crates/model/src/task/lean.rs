@@ -162,48 +162,31 @@ fn nearest(from: &Vector3<f64>, to: &Vector3<f64>, direction: &Vector3<f64>) -> 
     if is_between { libm::asin(normal.dot(direction).abs().min(1.0)) } else { ends }
 }
 
-/// What stays where it is when the tool leans.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ContactRule {
-    /// The centre of a ball, and so its contact with whatever surface.
-    Centre,
-    /// The point in which the cutter touches a surface of known normal.
-    Contact,
-    /// The plane that the cutter touches, normal to the surface's normal or, where that is not known, to the tool axis
-    /// of the path: the contact moves by up to the radius of the cutter towards the side to which it leans.
-    Plane,
-}
-
-impl ContactRule {
-    /// As it is written in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Centre => "centre",
-            Self::Contact => "contact",
-            Self::Plane => "plane",
-        }
+stead_numerics::worded! {
+    /// What stays where it is when the tool leans.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum ContactRule {
+        /// The centre of a ball, and so its contact with whatever surface.
+        Centre = "centre",
+        /// The point in which the cutter touches a surface of known normal.
+        Contact = "contact",
+        /// The plane that the cutter touches, normal to the surface's normal or, where that is not known, to the tool axis
+        /// of the path: the contact moves by up to the radius of the cutter towards the side to which it leans.
+        Plane = "plane",
     }
 }
 
-/// What the forces of the path do when the tool leans.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
-#[serde(rename_all = "lowercase")]
-pub enum LeanForce {
-    /// They stay in the directions of feed and wall.
-    #[default]
-    Feed,
-    /// They turn with the tool.
-    Tool,
-}
-
-impl LeanForce {
-    /// As it is written in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Feed => "feed",
-            Self::Tool => "tool",
-        }
+stead_numerics::worded! {
+    /// What the forces of the path do when the tool leans.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
+    #[serde(rename_all = "lowercase")]
+    pub enum LeanForce {
+        /// They stay in the directions of feed and wall.
+        #[default]
+        Feed = "feed",
+        /// They turn with the tool.
+        Tool = "tool",
     }
 }
 

@@ -28,7 +28,7 @@ impl PointLeanForces {
     /// Between the values of the grid in proportion to lead and to tilt; outside of them as at the nearest.
     fn at(&self, of: &[Wrench], lean: &Lean) -> Wrench {
         let (lead, tilt) = (share(&self.leads, lean.lead), share(&self.tilts, lean.tilt));
-        let mut sum = Wrench::zero();
+        let mut sum = Wrench::default();
         for (row, of_lead) in [(lead.0, 1.0 - lead.1), (lead.0 + 1, lead.1)] {
             for (column, of_tilt) in [(tilt.0, 1.0 - tilt.1), (tilt.0 + 1, tilt.1)] {
                 let share = of_lead * of_tilt;
@@ -136,7 +136,7 @@ mod tests {
 
     fn task() -> Task {
         let task = five_segments();
-        let edges = vec![Wrench::zero(); task.points().len()];
+        let edges = vec![Wrench::default(); task.points().len()];
         let point = |point: usize| {
             let leads = vec![0.0, 0.0, 0.0, 0.1, 0.25];
             let tilts = vec![-0.2, -0.1, 0.0];
@@ -200,10 +200,10 @@ mod tests {
     fn forces_that_do_not_fit_are_refused() {
         let wrong = PointLeanForces { leads: vec![0.0], tilts: vec![0.0, 0.1], wrenches: Vec::new(), edges: None };
         assert!(LeanForces::new(vec![wrong.clone()]).is_err());
-        let nan = Wrench { force: Vector3::repeat(f64::NAN), ..Wrench::zero() };
+        let nan = Wrench { force: Vector3::repeat(f64::NAN), ..Wrench::default() };
         let point = PointLeanForces { wrenches: vec![nan, nan], ..wrong };
         assert!(matches!(LeanForces::new(vec![point.clone()]), Err(TaskError::NotFinite { .. })));
-        let point = PointLeanForces { wrenches: vec![Wrench::zero(); 2], ..point };
+        let point = PointLeanForces { wrenches: vec![Wrench::default(); 2], ..point };
         let one = LeanForces::new(vec![point]).unwrap();
         assert!(five_segments().with_lean_forces(Arc::new(one)).is_err());
     }

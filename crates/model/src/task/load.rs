@@ -12,8 +12,9 @@ use crate::stiffness::matrix::checked;
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-/// What the workpiece does to the tool at the tool centre point, in the workpiece frame.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// What the workpiece does to the tool at the tool centre point, in the workpiece frame where no other is named;
+/// nothing by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Wrench {
     /// Force. N
     pub force: Vector3<f64>,
@@ -22,11 +23,6 @@ pub struct Wrench {
 }
 
 impl Wrench {
-    /// No force, no moment.
-    pub fn zero() -> Self {
-        Self { force: Vector3::zeros(), moment: Vector3::zeros() }
-    }
-
     /// The wrench in the directions of the frame in which a rotation is given.
     pub(super) fn turned(&self, rotation: &Matrix3<f64>) -> Self {
         Self { force: rotation * self.force, moment: rotation * self.moment }
@@ -85,7 +81,7 @@ impl ToolPath {
                 }
             }
         }
-        let of = |(point, wrench)| if self.is_scored(point) { wrench } else { Wrench::zero() };
+        let of = |(point, wrench)| if self.is_scored(point) { wrench } else { Wrench::default() };
         Ok(wrenches.into_iter().enumerate().map(of))
     }
 }

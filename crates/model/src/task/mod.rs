@@ -110,12 +110,9 @@ pub enum TaskError {
         /// Angle between feed and tool axis in degrees.
         angle_deg: f64,
     },
-    /// Two points in a row of the same segment are at the same place.
-    #[error("point {point} repeats the position of the point before it")]
-    Repeated {
-        /// The second of the two.
-        point: usize,
-    },
+    /// Two points in a row of the same segment are at the same place: the second of the two.
+    #[error("point {0} repeats the position of the point before it")]
+    Repeated(usize),
     /// There are not as many surface normals as points.
     #[error("{normals} surface normals for {points} points")]
     Normals {
@@ -220,7 +217,7 @@ impl ToolPath {
             } else if segment == before && before > 0 {
                 let way = path.points[index - 1].position - point.position;
                 if way.norm() < SAME_PLACE && is_scored && all_scored[index - 1] {
-                    return Err(TaskError::Repeated { point: index });
+                    return Err(TaskError::Repeated(index));
                 }
                 path.segments[segment as usize - 1].end = index + 1;
             } else {
@@ -390,7 +387,7 @@ mod tests {
     #[test]
     fn each_rule_is_checked() {
         assert_eq!(ToolPath::new([]), Err(TaskError::Empty));
-        assert_eq!(ToolPath::new([(1, point(0.0)), (1, point(0.0))]), Err(TaskError::Repeated { point: 1 }));
+        assert_eq!(ToolPath::new([(1, point(0.0)), (1, point(0.0))]), Err(TaskError::Repeated(1)));
         assert!(matches!(ToolPath::new([(2, point(0.0))]), Err(TaskError::SegmentOrder { before: 0, found: 2, .. })));
         let backwards = [(1, point(0.0)), (2, point(0.1)), (1, point(0.2))];
         assert!(matches!(ToolPath::new(backwards), Err(TaskError::SegmentOrder { point: 2, before: 2, found: 1 })));

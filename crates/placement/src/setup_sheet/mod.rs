@@ -9,6 +9,7 @@ pub use tolerance::{Allowed, Blocked, OffDirection, RISES, Tolerance, Tolerances
 use crate::case::{Case, Plan, PlanPoint};
 use moves::joint_moves;
 use nalgebra::Vector3;
+use serde::Serialize;
 use std::sync::Arc;
 use stead_cell::{Attachment, Solid};
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis, carried};
@@ -22,7 +23,8 @@ use stead_problem::problem::{Placement, Problem};
 use tolerance::tolerances;
 
 /// The frame in which a sheet states places.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum SheetFrame {
     /// The root of the controller, which the pendant shows.
     Root,
@@ -72,7 +74,8 @@ pub struct CheckPoint {
 
 /// What is known of the ways between check points, one after the other: out along the tool axis, a joint move, and in
 /// again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Ways {
     /// There is one point alone.
     None,

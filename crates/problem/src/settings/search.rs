@@ -2,9 +2,11 @@
 
 use crate::problem::Problem;
 use crate::sense::Sense;
+use serde::Serialize;
 
 /// How the posture scheme of a candidate placement is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PostureSearch {
     /// Exactly: the best posture of each segment, for every candidate.
     Exact,
@@ -13,7 +15,8 @@ pub enum PostureSearch {
 }
 
 /// Whether the search uses a lookup table ([`crate::table_shape`]).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LookupUse {
     /// Where the task allows it and the table fits in memory.
     Auto,

@@ -8,31 +8,8 @@ use std::collections::BTreeMap;
 use stead_disk::input::InputError;
 
 /// Words that begin a statement whose effect on the path is not understood.
-const NOT_UNDERSTOOD: [&str; 23] = [
-    "BAS",
-    "CIRC",
-    "CIRC_REL",
-    "PTP_REL",
-    "LIN_REL",
-    "SPTP",
-    "SLIN",
-    "SCIRC",
-    "SPL",
-    "SPTP_REL",
-    "SLIN_REL",
-    "SPLINE",
-    "PTP_SPLINE",
-    "IF",
-    "FOR",
-    "WHILE",
-    "LOOP",
-    "REPEAT",
-    "SWITCH",
-    "GOTO",
-    "RETURN",
-    "EXIT",
-    "INTERRUPT",
-];
+const NOT_UNDERSTOOD: &str = "BAS CIRC CIRC_REL PTP_REL LIN_REL SPTP SLIN SCIRC SPL SPTP_REL SLIN_REL SPLINE \
+    PTP_SPLINE IF FOR WHILE LOOP REPEAT SWITCH GOTO RETURN EXIT INTERRUPT";
 
 /// Variables that bear on frames and paths, of which only those above are understood.
 const SET_WHOLE: [&str; 4] = ["$BASE", "$TOOL", "$VEL", "$APO"];
@@ -83,7 +60,9 @@ fn read(source: &Source, state: &mut State, moves: &mut Moves) -> Result<(), Inp
                 moves.push(source, line, (Goal::Line { tool, base, mounted }, external, pace))?;
             }
             "BAS" if HARMLESS_BAS.iter().any(|what| upper.contains(&format!("#{what},"))) => {}
-            word if NOT_UNDERSTOOD.contains(&word) || SET_WHOLE.iter().any(|name| word.starts_with(name)) => {
+            word if NOT_UNDERSTOOD.split(' ').any(|known| known == word)
+                || SET_WHOLE.iter().any(|name| word.starts_with(name)) =>
+            {
                 return Err(source.error(line, "is not understood, and may move the robot elsewhere", whole));
             }
             word => {

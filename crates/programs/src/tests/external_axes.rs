@@ -117,7 +117,7 @@ fn a_static_base_under_a_part_that_turns_is_found() {
 #[test]
 fn what_carries_the_workpiece_has_to_be_stated() {
     let message = |bench: &Bench, options: &ExportOptions<'_>| match bench.export(options) {
-        Err(ExportError::Program(error @ ProgramError::Carrier { .. })) => error.to_string(),
+        Err(ExportError::Program(error @ ProgramError::Argument { .. })) => error.to_string(),
         other => panic!("{other:?}"),
     };
     let kuka = bench("kuka");

@@ -228,7 +228,10 @@ fn numbers_out_of_range_and_points_out_of_reach_are_refused() {
         ExportOptions { blend: 0.2, ..bench.options() },
         ExportOptions { max_moves: 0, ..bench.options() },
     ] {
-        assert!(matches!(bench.export(&options), Err(ExportError::Program(ProgramError::Range { .. }))), "{options:?}");
+        assert!(
+            matches!(bench.export(&options), Err(ExportError::Program(ProgramError::Argument { .. }))),
+            "{options:?}"
+        );
     }
     // A metre back along the tool axis leads out of the reach or the limits somewhere.
     let message = refused(&bench, &ExportOptions { approach: 1.0, ..bench.options() });

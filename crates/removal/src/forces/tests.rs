@@ -136,7 +136,7 @@ fn the_same_path_in_other_moves_removes_the_same() {
             &Monitor::silent(),
         );
         let run = run.unwrap();
-        let force: Vector3<f64> = run.found.sums.iter().map(|sums| sums.chip_force + sums.edge_force).sum();
+        let force: Vector3<f64> = run.found.sums.iter().map(|sums| sums.chip.force + sums.edge.force).sum();
         (run.workpiece.removed().map(|(_, volume)| volume), force)
     };
     let (lost, force) = removed(60.0);

@@ -29,11 +29,11 @@ records! {
         reference: Option<AgreementFigures> =
             agreement.map(|(published, agreement)| AgreementFigures::of(&published.source, agreement)),
         /// What was compared.
-        #[serde(skip_serializing_if = "Option::is_none")] benchmark: Option<BenchmarkFigures> = None,
+        benchmark?: BenchmarkFigures = None,
         /// Threads used.
-        #[serde(skip_serializing_if = "Option::is_none")] threads: Option<usize> = None,
+        threads?: usize = None,
         /// Time on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = None,
+        wall_s?: TimeS = None,
     }
 
     /// The circularity of a robot under a force.
@@ -103,12 +103,10 @@ records! {
 
     /// A place in the coordinates of the plane.
     pub struct PlanePlace from place: [f64; 2] {
-        let [x_mm, y_mm] = each(place);
-    } with {
         /// Coordinate along x of the plane.
-        x_mm: PlaceMm = x_mm,
+        x_mm: PlaceMm = place[0].into(),
         /// Coordinate along y of the plane.
-        y_mm: PlaceMm = y_mm,
+        y_mm: PlaceMm = place[1].into(),
     }
 
     /// Square zones of a size.
@@ -201,14 +199,12 @@ records! {
 
     /// A plane.
     pub struct PlaneFigures of (comparison: &Comparison) {
-        let plane = &comparison.benchmark.plane;
-    } with {
         /// Origin of the plane.
-        origin_mm: [PlaceMm; 3] = each(plane.origin.into()),
+        origin_mm: [PlaceMm; 3] = each(comparison.benchmark.plane.origin.into()),
         /// Direction of its x axis.
-        x: [Plain; 3] = each(plane.x.into()),
+        x: [Plain; 3] = each(comparison.benchmark.plane.x.into()),
         /// Direction of its y axis.
-        y: [Plain; 3] = each(plane.y.into()),
+        y: [Plain; 3] = each(comparison.benchmark.plane.y.into()),
     }
 
     /// The map of the places of the circle: its ends and its step.

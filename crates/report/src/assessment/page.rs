@@ -2,7 +2,7 @@
 
 use super::AssessmentContext;
 use super::map;
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, HeatMap, Page, Series, Table, Tile, Tiles};
+use crate::page::cards::{Axis, Cell, Chart, Column, HeatMap, Page, Series, Table, Tile};
 use crate::picture::{ColourRange, PlaneView};
 use crate::units::{figures, fixed};
 use stead_assessment::comparison::{Assessment, Comparison, Configuration, RobotResult, Zones};
@@ -29,15 +29,14 @@ pub(super) fn page(comparison: &Comparison, assessment: &Assessment, context: &A
         [one] => one.name.clone(),
         robots => format!("{} robots", robots.len()),
     };
-    let mut page = Page::new(&title, "circularity over the working plane", lead, &context.inputs)
+    let selection = (!assessment.capable.is_empty()).then(|| selection(assessment));
+    let page = Page::new(&title, "circularity over the working plane", lead, &context.inputs)
         .messages(&assessment.warnings, &context.notes)
         .with(tiles(assessment))
         .with(ranking(assessment))
         .with(accuracies(assessment))
-        .with(configurations(assessment));
-    if !assessment.capable.is_empty() {
-        page = page.with(selection(assessment));
-    }
+        .with(configurations(assessment))
+        .with_all(selection);
     let maps =
         || assessment.robots.iter().flat_map(|robot| robot.maps.iter().map(move |(elbow, map)| (robot, *elbow, map)));
     let total: usize = maps().filter(|(.., map)| map.count() > 0).map(|(.., map)| map.grid.len()).sum();
@@ -50,7 +49,7 @@ pub(super) fn page(comparison: &Comparison, assessment: &Assessment, context: &A
     let mut cards: Vec<HeatMap> =
         drawn.map(|(robot, elbow, map)| map::chart(&view, robot, elbow, map, stride)).collect();
     map::compare(&mut cards, ColourRange::round);
-    cards.into_iter().fold(page, |page, card| page.with(Card::HeatMap(card.into())))
+    page.with_all(cards)
 }
 
 fn millimetres(length: Option<f64>) -> Option<String> {
@@ -58,7 +57,7 @@ fn millimetres(length: Option<f64>) -> Option<String> {
 }
 
 /// The figures of the first robots, the most accurate first.
-fn tiles(assessment: &Assessment) -> Card {
+fn tiles(assessment: &Assessment) -> Vec<Tile> {
     let robot = |name: &String| assessment.robots.iter().find(|robot| robot.name == *name);
     let tile = |robot: &RobotResult| {
         let payload =
@@ -66,10 +65,10 @@ fn tiles(assessment: &Assessment) -> Card {
         let detail = format!("reach {} mm{payload}", fixed(robot.working_radius * 1e3, 0));
         Tile::new(&robot.name, millimetres(robot.competitor().min).unwrap_or_else(|| "–".to_owned()), "mm", detail)
     };
-    Card::Tiles(Tiles { tiles: assessment.order.iter().take(6).filter_map(robot).map(tile).collect() })
+    assessment.order.iter().take(6).filter_map(robot).map(tile).collect()
 }
 
-fn ranking(assessment: &Assessment) -> Card {
+fn ranking(assessment: &Assessment) -> Table {
     let row = |(rank, name): (usize, &String)| {
         let robot = assessment.robots.iter().find(|robot| robot.name == *name);
         let number = |of: fn(&RobotResult) -> Option<String>| Cell::optional(robot.and_then(of));
@@ -83,36 +82,25 @@ fn ranking(assessment: &Assessment) -> Card {
         ]
     };
     let numbers = ["smallest circularity mm", "working radius mm", "payload kg", "price EUR"].map(Column::number);
-    Card::Table(Table {
-        detail: "most accurate first".to_owned(),
-        can_filter: assessment.order.len() > 8,
-        ..Table::new(
-            "Ranking",
-            [Column::number("rank"), Column::text("robot")].into_iter().chain(numbers).collect(),
-            assessment.order.iter().enumerate().map(row).collect(),
-        )
-    })
+    let columns = [Column::number("rank"), Column::text("robot")].into_iter().chain(numbers);
+    let rows = assessment.order.iter().enumerate().map(row);
+    let table = Table::new("Ranking", columns.collect(), rows.collect()).detailed("most accurate first");
+    Table { can_filter: assessment.order.len() > 8, ..table }
 }
 
-fn accuracies(assessment: &Assessment) -> Card {
+fn accuracies(assessment: &Assessment) -> Chart {
     let curve = |(color, robot): (usize, &RobotResult)| {
         let cells = assessment.accuracies.iter().filter(|cell| cell.robot == robot.name);
         let points = cells.map(|cell| [cell.force, cell.circularity.map_or(f64::NAN, |length| length * 1e3)]);
         Series::curve(&robot.name, color, points)
     };
-    Card::Chart(Chart {
-        detail: "at the best place, without compensation".to_owned(),
-        is_wide: true,
-        ..Chart::new(
-            "Accuracy at a force",
-            "cutting force (N)",
-            Axis::log("circularity (mm)"),
-            assessment.robots.iter().enumerate().map(curve).collect(),
-        )
-    })
+    let curves = assessment.robots.iter().enumerate().map(curve);
+    Chart::new("Accuracy at a force", "cutting force (N)", Axis::log("circularity (mm)"), curves)
+        .detailed("at the best place, without compensation")
+        .wide()
 }
 
-fn configurations(assessment: &Assessment) -> Card {
+fn configurations(assessment: &Assessment) -> Table {
     let first = assessment.robots.first().and_then(|robot| robot.configurations.first());
     let sides: Vec<f64> =
         first.map_or(vec![], |configuration| configuration.zones.iter().map(|zones| zones.side).collect());
@@ -130,14 +118,12 @@ fn configurations(assessment: &Assessment) -> Card {
         words.into_iter().chain(force).chain(spots).chain([Cell::Number(of.circles.to_string())]).chain(zones).collect()
     };
     let rows = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |of| row(robot, of)));
-    Card::Table(Table {
-        detail: "circularity in mm; of a zone, its largest".to_owned(),
-        can_filter: true,
-        ..Table::new("Configurations and zones", columns.collect(), rows.collect())
-    })
+    Table::new("Configurations and zones", columns.collect(), rows.collect())
+        .detailed("circularity in mm; of a zone, its largest")
+        .filtered()
 }
 
-fn selection(assessment: &Assessment) -> Card {
+fn selection(assessment: &Assessment) -> Table {
     let row = |cell: &stead_assessment::ranking::Capable| {
         vec![
             Cell::Number(figures(cell.accuracy * 1e3)),
@@ -147,13 +133,8 @@ fn selection(assessment: &Assessment) -> Card {
         ]
     };
     let numbers = ["accuracy mm", "force N", "robots"].map(Column::number);
-    Card::Table(Table {
-        detail: "with errors compensated".to_owned(),
-        can_filter: true,
-        ..Table::new(
-            "Which robots for which task",
-            numbers.into_iter().chain([Column::text("which")]).collect(),
-            assessment.capable.iter().map(row).collect(),
-        )
-    })
+    let columns = numbers.into_iter().chain([Column::text("which")]).collect();
+    Table::new("Which robots for which task", columns, assessment.capable.iter().map(row).collect())
+        .detailed("with errors compensated")
+        .filtered()
 }

@@ -1,7 +1,7 @@
 //! The short tables for people.
 
 use super::AssessmentContext;
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::units::{figures, fixed};
 use stead_assessment::comparison::{Assessment, Configuration, RobotResult};
 use stead_assessment::published::{PublishedTables, Quantity};
@@ -11,7 +11,7 @@ use stead_assessment::published::{PublishedTables, Quantity};
 /// published tables agree.
 pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> String {
     let published = context.published.as_ref().map(|(published, _)| &published.figures);
-    let mut text = aligned(&configuration_rows(assessment, published), &[0, 1, 2]);
+    let mut text = configurations(assessment, published);
     for warning in &assessment.warnings {
         text += &format!("warning: {warning}\n");
     }
@@ -21,7 +21,7 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
         forces.dedup();
         let forces: Vec<String> = forces.into_iter().map(|force| fixed(force, 0)).collect();
         text += &format!("\naccuracy reached at the best place up to which of {} N:\n", forces.join(", "));
-        text += &aligned(&selection_rows(assessment), &[0]);
+        text += &selection(assessment);
     }
     text += &format!("\nmost accurate first: {}\n", assessment.order.join(", "));
     if let Some((published, agreement)) = &context.published {
@@ -43,23 +43,22 @@ pub fn assessment_text(assessment: &Assessment, context: &AssessmentContext) -> 
     text
 }
 
-fn configuration_rows(assessment: &Assessment, published: Option<&PublishedTables>) -> Vec<Vec<String>> {
-    let mut header = ["robot", "elbow", "load", "force N", "min mm", "max mm", "middle mm"].map(str::to_owned).to_vec();
+fn configurations(assessment: &Assessment, published: Option<&PublishedTables>) -> String {
+    let header = ["robot", "elbow", "load", "force N", "min mm", "max mm", "middle mm"].map(str::to_owned);
     let first = assessment.robots.first().and_then(|robot| robot.configurations.first());
     let sides: Vec<f64> = first.map_or(vec![], |configuration| configuration.zones.iter().map(|z| z.side).collect());
-    header.extend(sides.iter().map(|side| format!("in {0}x{0}", fixed(side * 1e3, 0))));
-    let mut rows = vec![header];
+    let header = header.into_iter().chain(sides.iter().map(|side| format!("in {0}x{0}", fixed(side * 1e3, 0))));
     let every = assessment.robots.iter().flat_map(|robot| robot.configurations.iter().map(move |c| (robot, c)));
-    for (robot, configuration) in every {
+    let rows = every.map(|(robot, configuration)| {
         let mut row =
             vec![robot.name.clone(), configuration.elbow.word().to_owned(), configuration.load.word().to_owned()];
         row.push(fixed(configuration.force, 0));
         let zones = sides.iter().map(|side| Quantity::OptimalZone(*side));
         let quantities = [Quantity::Minimum, Quantity::Maximum, Quantity::Middle].into_iter().chain(zones);
         row.extend(quantities.map(|quantity| cell(robot, configuration, quantity, published)));
-        rows.push(row);
-    }
-    rows
+        row
+    });
+    table(header, rows, &[0, 1, 2])
 }
 
 /// Our value, and the published one in parentheses.
@@ -75,7 +74,7 @@ fn cell(robot: &RobotResult, of: &Configuration, quantity: Quantity, published: 
 
 /// Robots by accuracies: the largest of the forces at which a robot reaches the accuracy. A robot that does at one
 /// force does at any smaller one.
-fn selection_rows(assessment: &Assessment) -> Vec<Vec<String>> {
+fn selection(assessment: &Assessment) -> String {
     let mut accuracies: Vec<f64> = Vec::new();
     for cell in &assessment.capable {
         if accuracies.last() != Some(&cell.accuracy) {
@@ -83,14 +82,14 @@ fn selection_rows(assessment: &Assessment) -> Vec<Vec<String>> {
         }
     }
     let millimetres = |accuracy: &f64| format!("{} mm", (accuracy * 1e9).round() / 1e6);
-    let mut rows = vec![std::iter::once("robot".to_owned()).chain(accuracies.iter().map(millimetres)).collect()];
-    for robot in &assessment.robots {
+    let header = std::iter::once("robot".to_owned()).chain(accuracies.iter().map(millimetres));
+    let rows = assessment.robots.iter().map(|robot| {
         let largest = |accuracy: &f64| {
             let cells = assessment.capable.iter().filter(|cell| cell.accuracy == *accuracy);
             let able = cells.filter(|cell| cell.robots.contains(&robot.name)).map(|cell| cell.force);
             able.reduce(f64::max).map_or_else(|| "-".to_owned(), |force| format!("{} N", fixed(force, 0)))
         };
-        rows.push(std::iter::once(robot.name.clone()).chain(accuracies.iter().map(largest)).collect());
-    }
-    rows
+        std::iter::once(robot.name.clone()).chain(accuracies.iter().map(largest)).collect()
+    });
+    table(header, rows, &[0])
 }

@@ -34,7 +34,7 @@ records! {
         /// Boxes of placements examined.
         nodes: usize = [best, worst].into_iter().flatten().map(|proof| proof.bound.nodes).sum(),
         /// Time on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = wall_s,
+        wall_s?: TimeS = wall_s,
     }
 
     /// What is proved of a placement.

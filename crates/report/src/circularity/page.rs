@@ -1,6 +1,6 @@
 //! `report.html` of a roundness.
 
-use crate::page::cards::{Card, Cell, Chart, Column, Page, Polar, PolarChoice, Series, Table, Tile, Tiles};
+use crate::page::cards::{Cell, Chart, Column, Page, Polar, PolarChoice, Series, Table, Tile};
 use crate::picture;
 use crate::units::{figures, fixed};
 use stead_assessment::circle::Fit;
@@ -36,26 +36,20 @@ pub(super) fn page(file: &PointFile, found: &Roundness) -> Page {
     );
     let none: [&str; 0] = [];
     let subtitle = format!("roundness · {all} points, {} left out", all - kept);
-    let mut page = Page::new(&file.input.name, subtitle, lead, std::slice::from_ref(&file.input))
+    Page::new(&file.input.name, subtitle, lead, std::slice::from_ref(&file.input))
         .messages(&found.warnings(), &none)
         .with(tiles(found))
-        .with(Card::Polar(polar(found)))
-        .with(table(found));
-    if found.plane.is_some() {
-        page = page.with(heights(found));
-    }
-    page
+        .with(polar(found))
+        .with(table(found))
+        .with_all(found.plane.is_some().then(|| heights(found)))
 }
 
-fn tiles(found: &Roundness) -> Card {
+fn tiles(found: &Roundness) -> Vec<Tile> {
     let tile = |(_, name, fit): (&str, &str, &Fit)| {
         Tile::new(name, figures(fit.circularity), "mm", format!("radius {} mm", fixed(fit.circle.radius, 4)))
     };
-    let mut tiles: Vec<Tile> = circles(found).into_iter().map(tile).collect();
-    let flatness =
-        found.flatness().map(|flatness| Tile::new("flatness", figures(flatness), "mm", "of the plane fitted"));
-    tiles.extend(flatness);
-    Card::Tiles(Tiles { tiles })
+    let flatness = |flatness: f64| Tile::new("flatness", figures(flatness), "mm", "of the plane fitted");
+    circles(found).into_iter().map(tile).chain(found.flatness().map(flatness)).collect()
 }
 
 fn polar(found: &Roundness) -> Polar {
@@ -94,22 +88,19 @@ fn polar(found: &Roundness) -> Polar {
     }
 }
 
-fn table(found: &Roundness) -> Card {
+fn table(found: &Roundness) -> Table {
     let names = ["circularity mm", "radius mm", "center x mm", "center y mm"].map(Column::number);
     let row = |(_, name, fit): (&str, &str, &Fit)| {
         let ([x, y], _) = found.center(fit);
         let numbers = [fixed(fit.circularity, 6), fixed(fit.circle.radius, 5), fixed(x, 5), fixed(y, 5)];
         std::iter::once(Cell::Text(name.to_owned())).chain(numbers.map(Cell::Number)).collect()
     };
-    Card::Table(Table::new(
-        "Reference circles",
-        std::iter::once(Column::text("reference circle")).chain(names).collect(),
-        circles(found).into_iter().map(row).collect(),
-    ))
+    let columns = std::iter::once(Column::text("reference circle")).chain(names).collect();
+    Table::new("Reference circles", columns, circles(found).into_iter().map(row).collect())
 }
 
 /// How far the points are out of their plane.
-fn heights(found: &Roundness) -> Card {
+fn heights(found: &Roundness) -> Chart {
     let of = |is_excluded: bool| {
         let points = found.points.iter().filter(move |point| point.is_excluded == is_excluded);
         points.map(|point| [point.angle.to_degrees().rem_euclid(360.0), point.height])
@@ -118,5 +109,5 @@ fn heights(found: &Roundness) -> Card {
     if found.points.iter().any(|point| point.is_excluded) {
         series.push(Series::dots("left out", 2, of(true)));
     }
-    Card::Chart(Chart::new("Height above the plane", "angle (deg)", "height (mm)", series))
+    Chart::new("Height above the plane", "angle (deg)", "height (mm)", series)
 }

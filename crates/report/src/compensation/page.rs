@@ -1,6 +1,6 @@
 //! `report.html` of a compensation.
 
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
+use crate::page::cards::{Axis, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile};
 use crate::units::{figures, fixed};
 use stead_calibration::compensation::{CompensatedPath, CompensatedPoint, Deflection, MeanAndMax, reduction};
 use stead_runs::CompensateRun;
@@ -24,28 +24,19 @@ pub(super) fn page(run: &CompensateRun, outcome: &CompensatedPath) -> Page {
         lead.push_str(&format!("; {} of {count} points keep their target", kept.len()));
     }
     lead.push('.');
-    let mut page = Page::new(run.job.robot.name(), subtitle, lead, &run.inputs)
-        .messages(
-            &[run.warnings.as_slice(), &outcome.warnings].concat(),
-            &[run.notes.as_slice(), &outcome.notes].concat(),
-        )
-        .with(tiles(outcome));
-    for chart in before_and_after(outcome) {
-        page = page.with(Card::Chart(chart));
-    }
-    page = page.with(correction(outcome));
-    if kept.is_empty() {
-        return page;
-    }
+    let warnings = [run.warnings.as_slice(), &outcome.warnings].concat();
     let row = |(point, reason): &(usize, _)| vec![Cell::Number(point.to_string()), Cell::Text(format!("{reason}"))];
-    page.with(Card::Table(Table::new(
-        "Points that keep their target",
-        vec![Column::number("point"), Column::text("reason")],
-        kept.iter().map(row).collect(),
-    )))
+    let columns = vec![Column::number("point"), Column::text("reason")];
+    let table = || Table::new("Points that keep their target", columns, kept.iter().map(row).collect());
+    Page::new(run.job.robot.name(), subtitle, lead, &run.inputs)
+        .messages(&warnings, &[run.notes.as_slice(), &outcome.notes].concat())
+        .with(tiles(outcome))
+        .with_all(before_and_after(outcome))
+        .with(correction(outcome))
+        .with_all((!kept.is_empty()).then(table))
 }
 
-fn tiles(outcome: &CompensatedPath) -> Card {
+fn tiles(outcome: &CompensatedPath) -> Vec<Tile> {
     let of = |what: &str, pair: [MeanAndMax; 2]| {
         let [before, after] = pair;
         let largest = |figures_: &MeanAndMax| format!("largest {} mm", millimetres(figures_.max));
@@ -61,7 +52,7 @@ fn tiles(outcome: &CompensatedPath) -> Card {
     let mut tiles = of("deflection", outcome.deflections()).to_vec();
     tiles.extend(of("normal to the feed", outcome.normal_parts()));
     tiles.push(Tile::new("largest correction", figures(moved), "mm", detail));
-    Card::Tiles(Tiles { tiles })
+    tiles
 }
 
 /// What is smaller is how well the equations of the model are solved, and no accuracy. m
@@ -97,40 +88,23 @@ fn along(title: &str, outcome: &CompensatedPath, pair: [MeanAndMax; 2], part: fn
         let value = |point: &CompensatedPoint| of(point).as_ref().map(part).filter(|part| *part > 0.0);
         Series::curve(name, color, by_segment(outcome, |point| value(point).map_or(f64::NAN, |part| part * 1e3)))
     };
-    Chart {
-        detail: format!("mean magnitude {before} mm before, {after} mm after{change}"),
-        marks: starts(outcome),
-        is_wide: true,
-        ..Chart::new(
-            title.to_owned(),
-            "path point",
-            Axis::log("deflection (mm)"),
-            vec![
-                curve("target commanded", 1, |point| &point.before),
-                curve("corrected command", 0, |point| &point.after),
-            ],
-        )
-    }
+    let curves =
+        [curve("target commanded", 1, |point| &point.before), curve("corrected command", 0, |point| &point.after)];
+    Chart::new(title, "path point", Axis::log("deflection (mm)"), curves)
+        .detailed(format!("mean magnitude {before} mm before, {after} mm after{change}"))
+        .marked(starts(outcome))
+        .wide()
 }
 
 /// By how much the command differs from the target.
-fn correction(outcome: &CompensatedPath) -> Card {
+fn correction(outcome: &CompensatedPath) -> Chart {
     let shift = by_segment(outcome, |point| point.correction.linear.norm() * 1e3);
     let turn = by_segment(outcome, |point| point.correction.angular.norm().to_degrees());
-    Card::Chart(Chart {
-        detail: "of the place in mm, of the orientation in deg".to_owned(),
-        marks: starts(outcome),
-        is_wide: true,
-        ..Chart::new(
-            "Corrections",
-            "path point",
-            "mm and deg",
-            vec![
-                Series::curve("place (mm)", 0, shift),
-                Series::curve("orientation (deg)", 2, turn).styled(Style::Dashed),
-            ],
-        )
-    })
+    let turn = Series::curve("orientation (deg)", 2, turn).styled(Style::Dashed);
+    Chart::new("Corrections", "path point", "mm and deg", [Series::curve("place (mm)", 0, shift), turn])
+        .detailed("of the place in mm, of the orientation in deg")
+        .marked(starts(outcome))
+        .wide()
 }
 
 /// A value over the path points, without a line from segment to segment.
@@ -150,9 +124,7 @@ fn by_segment(outcome: &CompensatedPath, value: impl Fn(&CompensatedPoint) -> f6
 /// Where segments begin, but for the first.
 fn starts(outcome: &CompensatedPath) -> Vec<Mark> {
     let pairs = outcome.points.windows(2).enumerate().filter(|(_, pair)| pair[0].segment != pair[1].segment);
-    pairs
-        .map(|(k, pair)| Mark { is_level: false, at: k as f64 + 0.5, label: format!("segment {}", pair[1].segment) })
-        .collect()
+    pairs.map(|(k, pair)| Mark::across(k as f64 + 0.5, format!("segment {}", pair[1].segment))).collect()
 }
 
 #[cfg(test)]

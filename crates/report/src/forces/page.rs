@@ -1,7 +1,7 @@
 //! `NAME-forces.html`: the page of forces from a path.
 
 use super::ForcesFigures;
-use crate::page::cards::{Card, Chart, Page, Series, Style, Tile, Tiles};
+use crate::page::cards::{Chart, Page, Series, Style, Tile};
 use crate::units::fixed;
 use stead_removal::load::PointForces;
 use stead_removal::outcome::RemovalForces;
@@ -23,30 +23,22 @@ pub(super) fn page(run: &ForcesRun, forces: &RemovalForces) -> Page {
     };
     let notes = [run.notes.as_slice(), &forces.notes].concat();
     let title = run.problem.operation.name.trim_start_matches("../");
-    let page = Page::new(title, subtitle, lead, &run.inputs).messages(&forces.warnings, &notes);
-    charts(forces).into_iter().fold(page.with(tiles(forces, &figures)), |page, chart| page.with(Card::Chart(chart)))
+    Page::new(title, subtitle, lead, &run.inputs)
+        .messages(&forces.warnings, &notes)
+        .with(tiles(forces, &figures))
+        .with_all(charts(forces))
 }
 
-fn tiles(forces: &RemovalForces, figures: &ForcesFigures) -> Card {
-    let percent = |share: f64| fixed(share * 100.0, 1);
-    let error = format!(
-        "cells of {} mm; twice as large ones are off by {} % rms",
-        fixed(forces.cell * 1e3, 3),
-        fixed(forces.difference.rms[0] * 100.0, 2)
-    );
-    Card::Tiles(Tiles {
-        tiles: vec![
-            Tile::new("largest mean force", fixed(figures.max_force_n.0, 1), "N", error),
-            Tile::new("largest in a turn", fixed(figures.max_in_turn_n.0, 1), "N", "within 15 %"),
-            Tile::new("largest mean moment", fixed(figures.max_moment_nm.0, 3), "N m", "about the tool centre point"),
-            Tile::new(
-                "removed",
-                fixed(forces.removed * 1e9, 0),
-                "mm³",
-                format!("{} % of the scored length cuts nothing", percent(forces.air)),
-            ),
-        ],
-    })
+fn tiles(forces: &RemovalForces, figures: &ForcesFigures) -> Vec<Tile> {
+    let air = format!("{} % of the scored length cuts nothing", fixed(forces.air * 100.0, 1));
+    let (cell, off) = (fixed(forces.cell * 1e3, 3), fixed(forces.difference.rms[0] * 100.0, 2));
+    let error = format!("cells of {cell} mm; twice as large ones are off by {off} % rms");
+    vec![
+        Tile::new("largest mean force", fixed(figures.max_force_n.0, 1), "N", error),
+        Tile::new("largest in a turn", fixed(figures.max_in_turn_n.0, 1), "N", "within 15 %"),
+        Tile::new("largest mean moment", fixed(figures.max_moment_nm.0, 3), "N m", "about the tool centre point"),
+        Tile::new("removed", fixed(forces.removed * 1e9, 0), "mm³", air),
+    ]
 }
 
 /// Force, moment, height, angles and chip along the path.
@@ -56,10 +48,7 @@ pub(super) fn charts(forces: &RemovalForces) -> Vec<Chart> {
         let points = along.iter().zip(&forces.points).map(|(at, load)| [at * 1e3, of(load)]);
         Series::curve(name, color, points)
     };
-    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
-        is_wide: true,
-        ..Chart::new(title.to_owned(), "length of path (mm)", y, series)
-    };
+    let chart = |title: &str, y: &str, series: Vec<Series>| Chart::new(title, "length of path (mm)", y, series).wide();
     let height = |k: usize| move |load: &PointForces| load.heights.map_or(f64::NAN, |heights| heights[k] * 1e3);
     let angle = |k: usize| move |load: &PointForces| load.angles.map_or(f64::NAN, |angles| angles[k].to_degrees());
     vec![

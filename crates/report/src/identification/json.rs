@@ -2,8 +2,7 @@
 
 use crate::document::Document;
 use crate::figure::{AngleDeg, PlaceMm, each, some};
-use schemars::JsonSchema;
-use serde::Serialize;
+use nalgebra::Vector3;
 use serde_json::Value;
 use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::law::{ArmParameter, Quantity};
@@ -20,17 +19,14 @@ const DIGITS: usize = 12;
 records! {
     /// An identified arm. Estimates have twelve significant digits.
     pub struct IdentificationFigures of (run: &IdentifyRun, found: &Identified) {
-        let sheet = &run.problem.sheet;
-    } with {
         /// Name of the robot.
         robot: String = found.robot.name().to_owned(),
         /// Which springs were sought, where those normal to the axes were too: `full`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        model: Option<&'static str> = is_full(found).then(|| found.model.word()),
+        model?: &'static str = is_full(found).then(|| found.model.word()),
         /// Configurations measured.
-        configurations: usize = sheet.configurations.len(),
+        configurations: usize = run.problem.sheet.configurations.len(),
         /// Readings.
-        readings: usize = sheet.readings.len(),
+        readings: usize = run.problem.sheet.readings.len(),
         /// Every compliance, one for each distinct angle of the joint beside a compensator; of springs that cannot be
         /// told apart their sum.
         compliances: Vec<ComplianceFigures> =
@@ -40,14 +36,12 @@ records! {
         /// The parameters of the robot file.
         arm: Vec<ParameterFigures> = found.arm.iter().map(Into::into).collect(),
         /// The springs of the robot file, where those normal to the axes were sought too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        springs: Option<Vec<SpringsFigures>> =
+        springs?: Vec<SpringsFigures> =
             is_full(found).then(|| (0..6).map(|joint| SpringsFigures::of(found, joint)).collect()),
         /// Joints that keep the compliance of the robot file, from 1: that about their axis.
         held: Vec<usize> = held(found),
         /// All springs that do, by name, where those normal to the axes were sought too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        held_springs: Option<Vec<String>> = is_full(found).then(|| held_springs(found)),
+        held_springs?: Vec<String> = is_full(found).then(|| held_springs(found)),
         /// Standard deviation of a reading. mm
         noise_mm: f64 = millimetres(found.noise),
         /// Whether it was estimated from the readings.
@@ -79,16 +73,13 @@ records! {
         joint: usize = joint + 1,
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes were sought
         /// too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        about: Option<&'static str> = is_full(found).then(|| found.spring(estimate.parameter).about.name()),
+        about?: &'static str = is_full(found).then(|| found.spring(estimate.parameter).about.word()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        with: Option<Vec<SharedFigures>> = shared(&found.gauge, found.spring(estimate.parameter)),
+        with?: Vec<SharedFigures> = shared(&found.gauge, found.spring(estimate.parameter)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
-        #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = some(estimate.angle),
+        angle_deg?: AngleDeg = some(estimate.angle),
         /// The same angle under the name of joint 2; only where that joint is beside the compensator.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        q2_deg: Option<AngleDeg> = some(estimate.angle.filter(|_| joint == 1)),
+        q2_deg?: AngleDeg = some(estimate.angle.filter(|_| joint == 1)),
         /// Estimated compliance. urad/(N m)
         urad_per_nm: f64 = urad_per_nm,
         /// Standard deviation of the estimate. urad/(N m)
@@ -98,22 +89,20 @@ records! {
         /// Upper end of the 95 % confidence interval. urad/(N m)
         high_urad_per_nm: f64 = high_urad_per_nm,
     }
-}
 
-/// A spring whose compliance is in the estimate of another.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct SharedFigures {
-    /// The spring, as identification files name it.
-    spring: String,
-    /// How much of its compliance is in the sum.
-    share: f64,
+    /// A spring whose compliance is in the estimate of another.
+    pub struct SharedFigures of (spring: Spring, share: f64) {
+        /// The spring, as identification files name it.
+        spring: String = key_name(spring),
+        /// How much of its compliance is in the sum.
+        share: f64 = share,
+    }
 }
 
 /// The springs that are told only together with one.
 pub(super) fn shared(gauge: &Gauge, spring: Spring) -> Option<Vec<SharedFigures>> {
     let others = gauge.others(spring);
-    let figures = |(other, share): (Spring, f64)| SharedFigures { spring: key_name(other), share };
-    (!others.is_empty()).then(|| others.into_iter().map(figures).collect())
+    (!others.is_empty()).then(|| others.into_iter().map(|(other, share)| SharedFigures::of(other, share)).collect())
 }
 
 records! {
@@ -135,9 +124,7 @@ records! {
         /// Compliance about y of the frame of its row. urad/(N m)
         about_y_urad_per_nm: f64 = rounded(about_y * URAD, DIGITS),
     }
-}
 
-records! {
     /// A joint beside a compensator.
     pub struct CompensatorFigures of (found: &Identified, joint: usize, alone: f64, spring: &Compensator) {
         let deviation = |quantity: Quantity, factor: f64| {
@@ -168,9 +155,7 @@ records! {
         /// Angle between the lines from the joint axis to both ends of the spring, at joint angle 0. deg
         alpha_deg: f64 = rounded(spring.alpha.to_degrees(), DIGITS),
     }
-}
 
-records! {
     /// A parameter of the robot file, in the unit of its key.
     pub struct ParameterFigures from estimate: &Estimate<ArmParameter> {
         let (parameter, factor) = key(&estimate.parameter);
@@ -190,14 +175,12 @@ records! {
 
     /// A reading left out.
     pub struct OutlierFigures of (run: &IdentifyRun, row: &RowResult) {
-        let sheet = &run.problem.sheet;
-    } with {
         /// Line of the reading in the sheet, from 1.
         line: usize = row.line,
         /// Name of the configuration.
-        configuration: String = sheet.configurations[row.configuration].name.clone(),
+        configuration: String = run.problem.sheet.configurations[row.configuration].name.clone(),
         /// Name of the reference point.
-        point: String = sheet.points[row.point].clone(),
+        point: String = run.problem.sheet.points[row.point].clone(),
         /// Magnitude of the residual: read less predicted deflection. mm
         residual_mm: f64 = millimetres((row.measured - row.predicted).norm()),
         /// The residual divided by its own standard deviation.
@@ -209,27 +192,24 @@ records! {
         let sheet = &run.problem.sheet;
         let name = |index: usize| sheet.configurations[index].name.clone();
         let prediction = &found.prediction;
-        let worst = |(index, rms)| WorstConfiguration { configuration: name(index), rms_mm: millimetres(rms) };
     } with {
         /// Root mean square of the prediction errors over all configurations. mm
         rms_mm: f64 = millimetres(prediction.rms),
         /// The configuration with the largest prediction error.
-        worst: Option<WorstConfiguration> = prediction.worst.map(worst),
+        worst: Option<WorstConfiguration> =
+            prediction.worst.map(|(index, rms)| WorstConfiguration::of(name(index), rms)),
         /// Names of configurations that cannot be predicted, since without them a compliance is not identifiable.
         unpredicted: Vec<String> = prediction.unpredicted.iter().map(|index| name(*index)).collect(),
     }
-}
 
-/// The configuration that is predicted worst.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct WorstConfiguration {
-    /// Name of the configuration.
-    configuration: String,
-    /// Root mean square of its prediction errors. mm
-    rms_mm: f64,
-}
+    /// The configuration that is predicted worst.
+    pub struct WorstConfiguration of (name: String, rms: f64) {
+        /// Name of the configuration.
+        configuration: String = name,
+        /// Root mean square of its prediction errors. mm
+        rms_mm: f64 = millimetres(rms),
+    }
 
-records! {
     /// Where tracker and reference points are.
     pub struct SetupFigures of (run: &IdentifyRun, found: &Identified) {
         /// Pose of the robot base in the frame of the tracker.
@@ -237,12 +217,7 @@ records! {
         /// The reference points.
         points: Vec<ReferencePoint> =
             run.problem.sheet.points.iter().zip(&found.setup.points).zip(&found.setup_fit.point_deviations)
-            .map(|((name, place), std)| ReferencePoint {
-                point: name.clone(),
-                flange_mm: each((*place).into()),
-                std_mm: millimetres(*std),
-            })
-            .collect(),
+            .map(|((name, place), std)| ReferencePoint::of(name, *place, *std)).collect(),
         /// Root mean square of the residuals of the readings without a load. mm
         residual_rms_mm: f64 = millimetres(found.setup.residual_rms),
         /// The reading without a load that has the largest residual.
@@ -259,20 +234,17 @@ records! {
         rotation: [[f64; 3]; 3] =
             [0, 1, 2].map(|row| [0, 1, 2].map(|column| rounded(base.rotation[(row, column)], DIGITS))),
     }
-}
 
-/// A reference point.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ReferencePoint {
-    /// Name of the point.
-    point: String,
-    /// Place of the point in the flange frame.
-    flange_mm: [PlaceMm; 3],
-    /// Standard deviation of that place in the direction in which it is largest. mm
-    std_mm: f64,
-}
+    /// A reference point.
+    pub struct ReferencePoint of (name: &str, place: Vector3<f64>, deviation: f64) {
+        /// Name of the point.
+        point: String = name.to_owned(),
+        /// Place of the point in the flange frame.
+        flange_mm: [PlaceMm; 3] = each(place.into()),
+        /// Standard deviation of that place in the direction in which it is largest. mm
+        std_mm: f64 = millimetres(deviation),
+    }
 
-records! {
     /// A reading with its residual.
     pub struct WorstReading of (found: &Identified) {
         let (line, distance) = found.setup_fit.worst;

@@ -1,7 +1,7 @@
 //! `report.html` of an identification.
 
 use super::json::{URAD, key, unit};
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
+use crate::page::cards::{Axis, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile};
 use crate::units::{figures, fixed};
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{FitModel, Identified, RowResult};
@@ -17,39 +17,29 @@ pub(super) fn page(run: &IdentifyRun, found: &Identified) -> Page {
         fixed(found.residual_rms * 1e3, 4),
         fixed(found.prediction.rms * 1e3, 4)
     );
-    let mut page = Page::new(found.robot.name(), subtitle, lead, &run.inputs)
+    Page::new(found.robot.name(), subtitle, lead, &run.inputs)
         .messages(&found.warnings, &run.notes)
         .with(tiles(found))
         .with(intervals(found))
-        .with(compliances(found));
-    if found.varying.is_some() {
-        page = page.with(arm(found));
-    }
-    if found.model == FitModel::Full {
-        page = page.with(springs(found));
-    }
-    page.with(Card::Chart(agreement(run, found)))
-        .with(Card::Chart(residuals_chart(run, found)))
+        .with(compliances(found))
+        .with_all(found.varying.is_some().then(|| arm(found)))
+        .with_all((found.model == FitModel::Full).then(|| springs(found)))
+        .with(agreement(run, found))
+        .with(residuals_chart(run, found))
         .with(residuals(run, found))
 }
 
-fn tiles(found: &Identified) -> Card {
+fn tiles(found: &Identified) -> Vec<Tile> {
     let mm = |length: f64| fixed(length * 1e3, 4);
     let noise = if found.is_noise_estimated { "estimated from the residuals" } else { "as stated" };
-    Card::Tiles(Tiles {
-        tiles: vec![
-            Tile::new(
-                "residual",
-                mm(found.residual_rms),
-                "mm rms",
-                format!("{} degrees of freedom", found.degrees_of_freedom),
-            ),
-            Tile::new("noise of one reading", mm(found.noise), "mm", noise),
-            Tile::new("prediction", mm(found.prediction.rms), "mm rms", "of a configuration left out"),
-            Tile::new("outliers", found.outliers().count().to_string(), "", "readings left out"),
-            Tile::new("unloaded readings", mm(found.setup.residual_rms), "mm rms", "off the joint angles"),
-        ],
-    })
+    let freedom = format!("{} degrees of freedom", found.degrees_of_freedom);
+    vec![
+        Tile::new("residual", mm(found.residual_rms), "mm rms", freedom),
+        Tile::new("noise of one reading", mm(found.noise), "mm", noise),
+        Tile::new("prediction", mm(found.prediction.rms), "mm rms", "of a configuration left out"),
+        Tile::new("outliers", found.outliers().count().to_string(), "", "readings left out"),
+        Tile::new("unloaded readings", mm(found.setup.residual_rms), "mm rms", "off the joint angles"),
+    ]
 }
 
 /// What a compliance is of.
@@ -61,7 +51,7 @@ fn name(found: &Identified, estimate: &Estimate<stead_calibration::identificatio
     estimate.angle.map_or(joint.clone(), |angle| format!("{joint} at {} deg", fixed(angle.to_degrees(), 2)))
 }
 
-fn intervals(found: &Identified) -> Card {
+fn intervals(found: &Identified) -> Chart {
     let names: Vec<String> = found.compliances.iter().map(|estimate| name(found, estimate)).collect();
     let of = |value: fn(&Estimate<_>) -> f64| {
         found.compliances.iter().map(|estimate| value(estimate) * URAD).collect::<Vec<f64>>()
@@ -77,12 +67,8 @@ fn intervals(found: &Identified) -> Card {
         low,
         ..Series::default()
     };
-    Card::Chart(Chart::new(
-        "Compliances with their 95 % intervals",
-        Axis::named("", names),
-        Axis { is_log, ..Axis::new("compliance (urad/(N m))") },
-        vec![series],
-    ))
+    let y = Axis { is_log, ..Axis::new("compliance (urad/(N m))") };
+    Chart::new("Compliances with their 95 % intervals", Axis::named("", names), y, [series])
 }
 
 /// Value, standard deviation, its share and the interval, each with two digits of the standard deviation.
@@ -97,29 +83,28 @@ fn columns(first: &str, value: &str) -> Vec<Column> {
     std::iter::once(Column::text(first)).chain(numbers).chain([Column::text("95 % interval")]).collect()
 }
 
-fn compliances(found: &Identified) -> Card {
+fn compliances(found: &Identified) -> Table {
     let row = |estimate| std::iter::once(Cell::Text(name(found, estimate))).chain(cells(estimate, URAD)).collect();
-    Card::Table(Table::new("Compliances", columns("joint", "urad/(N m)"), found.compliances.iter().map(row).collect()))
+    Table::new("Compliances", columns("joint", "urad/(N m)"), found.compliances.iter().map(row).collect())
 }
 
-fn arm(found: &Identified) -> Card {
+fn arm(found: &Identified) -> Table {
     let row = |estimate: &Estimate<_>| {
         let (name, factor) = key(&estimate.parameter);
         let name = format!("{name} ({})", unit(estimate.parameter.quantity));
         std::iter::once(Cell::Text(name)).chain(cells(estimate, factor)).collect()
     };
-    Card::Table(Table::new("In the robot file", columns("parameter", "value"), found.arm.iter().map(row).collect()))
+    Table::new("In the robot file", columns("parameter", "value"), found.arm.iter().map(row).collect())
 }
 
 /// The springs as the robot file has them.
-fn springs(found: &Identified) -> Card {
-    let rows = super::text::spring_rows(found).into_iter().skip(1);
+fn springs(found: &Identified) -> Table {
+    let rows = super::text::spring_rows(found);
     let rows = rows.map(|row| row.into_iter().map(Cell::Number).collect()).collect();
     let columns = ["joint", "about z", "about x", "about y"].map(Column::number);
     let split =
         "springs that cannot be told apart are split such that none is below zero and the sum of squares is least";
-    let detail = format!("urad/(N m); {split}");
-    Card::Table(Table { detail, ..Table::new("Springs of the robot file", columns.to_vec(), rows) })
+    Table::new("Springs of the robot file", columns.to_vec(), rows).detailed(format!("urad/(N m); {split}"))
 }
 
 /// What a reading is.
@@ -155,32 +140,19 @@ pub(super) fn agreement(run: &IdentifyRun, found: &Identified) -> Chart {
     let reach = components.fold(0.0_f64, |reach, part| reach.max(part.abs())) * 1e3;
     let mut series = dots(run, found, |measured, _| measured);
     series.push(Series::curve("read as predicted", 4, [[-reach, -reach], [reach, reach]]).styled(Style::Dashed));
-    Chart {
-        is_even: true,
-        ..Chart::new(
-            "Deflection read and by the identified arm",
-            "predicted component (mm)",
-            "component read (mm)",
-            series,
-        )
-    }
+    let title = "Deflection read and by the identified arm";
+    Chart { is_even: true, ..Chart::new(title, "predicted component (mm)", "component read (mm)", series) }
 }
 
 /// What is left of it, over the predicted one.
 pub(super) fn residuals_chart(run: &IdentifyRun, found: &Identified) -> Chart {
-    Chart {
-        detail: format!("{} mm rms", figures(found.residual_rms * 1e3)),
-        marks: vec![Mark { is_level: true, at: 0.0, label: String::new() }],
-        ..Chart::new(
-            "Residuals",
-            "predicted component (mm)",
-            "read less predicted (mm)",
-            dots(run, found, |measured, predicted| measured - predicted),
-        )
-    }
+    let dots = dots(run, found, |measured, predicted| measured - predicted);
+    Chart::new("Residuals", "predicted component (mm)", "read less predicted (mm)", dots)
+        .detailed(format!("{} mm rms", figures(found.residual_rms * 1e3)))
+        .marked([Mark::level(0.0, "")])
 }
 
-fn residuals(run: &IdentifyRun, found: &Identified) -> Card {
+fn residuals(run: &IdentifyRun, found: &Identified) -> Table {
     let sheet = &run.problem.sheet;
     let row = |row: &RowResult| {
         let residual = row.measured - row.predicted;
@@ -194,17 +166,9 @@ fn residuals(run: &IdentifyRun, found: &Identified) -> Card {
             .collect()
     };
     let numbers = ["read mm", "residual mm", "x mm", "y mm", "z mm", "studentised"].map(Column::number);
-    Card::Table(Table {
-        detail: "sizes of deflection and residual; residual in the base frame".to_owned(),
-        can_filter: true,
-        ..Table::new(
-            "Readings",
-            [Column::number("line"), Column::text("configuration"), Column::text("point")]
-                .into_iter()
-                .chain(numbers)
-                .chain([Column::text("outlier")])
-                .collect(),
-            found.rows.iter().map(row).collect(),
-        )
-    })
+    let first = [Column::number("line"), Column::text("configuration"), Column::text("point")];
+    let columns = first.into_iter().chain(numbers).chain([Column::text("outlier")]).collect();
+    Table::new("Readings", columns, found.rows.iter().map(row).collect())
+        .detailed("sizes of deflection and residual; residual in the base frame")
+        .filtered()
 }

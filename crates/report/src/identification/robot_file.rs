@@ -64,7 +64,7 @@ pub fn robot_file(text: &str, found: &Identified) -> Result<String, ReportError>
         ("stiffness_measured_from", found.robot.stiffness_measured_from().map(MeasuredFrom::word)),
     ] {
         if let Some(word) = word {
-            set_word(&mut document, name, word);
+            set(document.as_table_mut(), name, word);
         }
     }
     if found.robot.stiffness_like().is_none() {
@@ -96,9 +96,9 @@ fn number(item: &Item) -> Option<f64> {
     item.as_float().or_else(|| item.as_integer().map(|integer| integer as f64))
 }
 
-/// Sets a number, keeping blanks and comment around it.
-fn set(table: &mut dyn TableLike, name: &str, number: f64) {
-    let mut value = Value::from(number);
+/// Sets a value, keeping blanks and comment around it.
+fn set(table: &mut dyn TableLike, name: &str, value: impl Into<Value>) {
+    let mut value = value.into();
     if let Some(old) = table.get(name).and_then(Item::as_value) {
         *value.decor_mut() = old.decor().clone();
     }
@@ -106,15 +106,6 @@ fn set(table: &mut dyn TableLike, name: &str, number: f64) {
         Some(slot) => *slot = Item::Value(value),
         None => drop(table.insert(name, Item::Value(value))),
     }
-}
-
-/// Sets a word of the file, keeping blanks and comment around it.
-fn set_word(document: &mut DocumentMut, name: &str, word: &str) {
-    let mut value = Value::from(word);
-    if let Some(old) = document.get(name).and_then(Item::as_value) {
-        *value.decor_mut() = old.decor().clone();
-    }
-    document[name] = Item::Value(value);
 }
 
 /// Sets the compliances normal to the axis of a joint, unless both are held as the row states them.
@@ -129,14 +120,7 @@ fn set_normal(row: &mut dyn TableLike, found: &Identified, joint: usize) {
     }
     row.remove(NORMAL_STIFFNESS);
     let normal = found.robot.stated_normal_springs().map_or([0.0; 2], |all| all[joint].compliance);
-    let mut value = Value::from(normal.map(|value| value * 1e6).into_iter().collect::<Array>());
-    if let Some(old) = row.get(NORMAL_COMPLIANCE).and_then(Item::as_value) {
-        *value.decor_mut() = old.decor().clone();
-    }
-    match row.get_mut(NORMAL_COMPLIANCE) {
-        Some(slot) => *slot = Item::Value(value),
-        None => drop(row.insert(NORMAL_COMPLIANCE, Item::Value(value))),
-    }
+    set(row, NORMAL_COMPLIANCE, normal.map(|value| value * 1e6).into_iter().collect::<Array>());
 }
 
 /// Puts a compliance in the place of compliance or stiffness.

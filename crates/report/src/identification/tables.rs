@@ -1,10 +1,9 @@
 //! The CSV files of an identification.
 
 use super::super::output::ReportError;
-use super::json::numbers;
-use super::json::{URAD, key, rounded, unit};
+use super::json::{URAD, key, numbers, rounded, unit};
 use crate::csv_file::rows_or;
-use crate::figure::{AngleDeg, DeflectionMm, Studentised, each, some};
+use crate::figure::{AngleDeg, DeflectionMm, Studentised, some};
 use nalgebra::Vector3;
 use stead_calibration::identification::gauge::Gauge;
 use stead_calibration::identification::outcome::RowResult;
@@ -70,14 +69,12 @@ records! {
     /// A reading: its deflection read and by the identified arm, in the base frame.
     #[derive(Default)]
     pub struct ResidualRow of (row: &RowResult, run: &IdentifyRun) {
-        let sheet = &run.problem.sheet;
-    } with {
         /// Its line in the sheet.
         line: usize = row.line,
         /// Its configuration.
-        configuration: String = sheet.configurations[row.configuration].name.clone(),
+        configuration: String = run.problem.sheet.configurations[row.configuration].name.clone(),
         /// Its reference point.
-        point: String = sheet.points[row.point].clone(),
+        point: String = run.problem.sheet.points[row.point].clone(),
         /// The deflection read.
         measured: Deflection = row.measured.into(),
         /// That of the identified arm.
@@ -93,14 +90,12 @@ records! {
     /// A deflection in a row.
     #[derive(Copy, Default)]
     struct Deflection from deflection: Vector3<f64> {
-        let [x_mm, y_mm, z_mm] = each(deflection.into());
-    } with {
         /// x.
-        x_mm: DeflectionMm = x_mm,
+        x_mm: DeflectionMm = deflection.x.into(),
         /// y.
-        y_mm: DeflectionMm = y_mm,
+        y_mm: DeflectionMm = deflection.y.into(),
         /// z.
-        z_mm: DeflectionMm = z_mm,
+        z_mm: DeflectionMm = deflection.z.into(),
     }
 }
 

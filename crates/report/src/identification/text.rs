@@ -1,7 +1,7 @@
 //! The table for people.
 
 use super::json::{URAD, is_full, key};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::units::fixed;
 use stead_calibration::identification::outcome::Estimate;
 use stead_calibration::identification::{FitModel, Identified, RowResult};
@@ -12,21 +12,17 @@ use stead_runs::IdentifyRun;
 /// readings, outliers, and warnings.
 pub fn identify_text(run: &IdentifyRun, found: &Identified) -> String {
     let sheet = &run.problem.sheet;
-    let mut text = format!(
-        "{}: {} readings of {} points in {} configurations\n\n",
-        found.robot.name(),
-        sheet.readings.len(),
-        sheet.points.len(),
-        sheet.configurations.len()
-    );
-    text += &aligned(&compliance_rows(found), &[0]);
+    let (name, readings) = (found.robot.name(), sheet.readings.len());
+    let (points, configurations) = (sheet.points.len(), sheet.configurations.len());
+    let mut text = format!("{name}: {readings} readings of {points} points in {configurations} configurations\n\n");
+    text += &compliances(found);
     if is_full(found) {
         text += "\nin the robot file, urad/(N m)\n";
-        text += &aligned(&spring_rows(found), &[0]);
+        text += &table(["joint", "about z", "about x", "about y"], spring_rows(found), &[0]);
     }
     if found.varying.is_some() {
         text += "\n";
-        text += &aligned(&arm_rows(found), &[0]);
+        text += &arm(found);
     }
     let how = if found.is_noise_estimated { "estimated from the residuals" } else { "as stated" };
     text += &format!(
@@ -61,50 +57,37 @@ pub(super) fn cells<P>(estimate: &Estimate<P>, factor: f64) -> [String; 4] {
     [fixed(value, decimals), fixed(deviation, decimals), percent, format!("{low} .. {high}")]
 }
 
-fn compliance_rows(found: &Identified) -> Vec<Vec<String>> {
+fn compliances(found: &Identified) -> String {
     let first = if is_full(found) { "spring" } else { "joint" };
-    let header = [first, "at deg", "urad/(N m)", "std", "%", "95 % interval"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for estimate in &found.compliances {
+    let rows = found.compliances.iter().map(|estimate| {
         let angle = estimate.angle.map_or_else(|| "-".to_owned(), |angle| fixed(angle.to_degrees(), 2));
         let name = match found.model {
             FitModel::Axes => (found.joint(estimate.parameter) + 1).to_string(),
             FitModel::Full => found.name(estimate.parameter, None),
         };
-        let mut row = vec![name, angle];
-        row.extend(cells(estimate, URAD));
-        rows.push(row);
-    }
-    rows
+        [name, angle].into_iter().chain(cells(estimate, URAD)).collect()
+    });
+    table([first, "at deg", "urad/(N m)", "std", "%", "95 % interval"], rows, &[0])
 }
 
 /// The springs of the robot file, a joint a row.
-pub(super) fn spring_rows(found: &Identified) -> Vec<Vec<String>> {
-    let header = ["joint", "about z", "about x", "about y"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for (joint, row) in found.robot.joints().iter().enumerate() {
+pub(super) fn spring_rows(found: &Identified) -> impl Iterator<Item = Vec<String>> {
+    found.robot.joints().iter().enumerate().map(|(joint, row)| {
         let about_z = match row.compliance {
             Compliance::Constant(value) => fixed(value * URAD, 4),
             _ => "by its law".to_owned(),
         };
         let normal = found.robot.stated_normal_springs().map_or([0.0; 2], |all| all[joint].compliance);
-        rows.push(
-            [vec![(joint + 1).to_string(), about_z], normal.map(|value| fixed(value * URAD, 4)).to_vec()].concat(),
-        );
-    }
-    rows
+        [vec![(joint + 1).to_string(), about_z], normal.map(|value| fixed(value * URAD, 4)).to_vec()].concat()
+    })
 }
 
-fn arm_rows(found: &Identified) -> Vec<Vec<String>> {
-    let header = ["in the robot file", "value", "std", "%", "95 % interval"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for estimate in &found.arm {
+fn arm(found: &Identified) -> String {
+    let rows = found.arm.iter().map(|estimate| {
         let (name, factor) = key(&estimate.parameter);
-        let mut row = vec![name];
-        row.extend(cells(estimate, factor));
-        rows.push(row);
-    }
-    rows
+        std::iter::once(name).chain(cells(estimate, factor)).collect()
+    });
+    table(["in the robot file", "value", "std", "%", "95 % interval"], rows, &[0])
 }
 
 fn outlier(run: &IdentifyRun, row: &RowResult) -> String {

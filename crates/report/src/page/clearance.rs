@@ -18,7 +18,7 @@ records! {
         let name = |number: usize| scene.pair(number).map_or_else(String::new, ToString::to_string);
     } with {
         /// The pairs left out.
-        still: Vec<StillPair> = changing.still.iter().map(|of| StillPair { pair: name(of.pair), distance_mm: of.distance.into() }).collect(),
+        still: Vec<StillPair> = changing.still.iter().map(|of| StillPair::of(name(of.pair), of.distance)).collect(),
         /// The pairs of the points.
         pairs: Vec<String> = numbers.iter().map(|number| name(*number)).collect(),
         /// For each point the number of its pair, from 0; NaN where nothing is nearer than 1 m.
@@ -26,15 +26,14 @@ records! {
         /// The distance of that pair. mm
         clearance_mm: String = singles(changing.at.iter().map(|at| at.map_or(f64::NAN, |at| at.distance * 1e3))),
     }
-}
 
-/// Two shapes that stand still to each other.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, schemars::JsonSchema)]
-pub struct StillPair {
-    /// The two.
-    pair: String,
-    /// Their distance.
-    distance_mm: PlaceMm,
+    /// Two shapes that stand still to each other.
+    pub struct StillPair of (pair: String, distance: f64) {
+        /// The two.
+        pair: String = pair,
+        /// Their distance.
+        distance_mm: PlaceMm = distance.into(),
+    }
 }
 
 /// For each plan its changing room, null where that is the room of the table; nothing where it is so of all plans.

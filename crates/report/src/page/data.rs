@@ -10,50 +10,20 @@ use super::removal::RemovalData;
 use super::setup::{AxisData, external_axes, part_turns};
 use super::shapes::bodies;
 use super::surroundings::surroundings;
-use crate::document::Document;
 use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, each, some};
+use crate::placement::context::{CaseOfStudy, Context};
 use nalgebra::Vector3;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
 use stead_model::robot::{Axes23, Compliance, Controller, Joint, Robot};
-use stead_numerics::message::{Note, NoteGroup};
+use stead_numerics::message::NoteGroup;
 use stead_placement::outcome::Case;
 use stead_planning::feasibility::DeflectionMap;
 use stead_problem::criterion::Direction;
 use stead_problem::problem::{Placement, Problem};
-use stead_problem::settings::TransferSettings;
 use stead_problem::setup::Setup;
-use stead_removal::outcome::RemovalForces;
-
-/// A case of a study whose files are kept.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct CaseOfStudy {
-    /// The name of the study.
-    pub study: String,
-    /// The number of the case, from 1.
-    pub number: usize,
-    /// For each axis of the study its name and the value of the case.
-    pub values: Vec<[String; 2]>,
-    /// Where the page of the study will be, from the folder of the case.
-    pub report: &'static str,
-}
 
 /// A deflection map with the placement and the setup that it is of and the name of its table.
 pub(crate) type MapOf<'a> = (Placed<'a>, &'a DeflectionMap, &'static str);
-
-/// What a run knows beside its problem.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RunOf<'a> {
-    /// Limits of its moves between segments.
-    pub transfer: &'a TransferSettings,
-    /// What its path removes of a table `[stock]`.
-    pub removal: Option<&'a RemovalForces>,
-    /// Which case of a study it is, where it is one.
-    pub study_case: Option<&'a CaseOfStudy>,
-    /// What should be known about its result.
-    pub notes: &'a [Note],
-}
 
 /// A placement with the setup of the cell.
 pub(crate) type Placed<'a> = (&'a Placement, &'a Setup);
@@ -61,7 +31,7 @@ pub(crate) type Placed<'a> = (&'a Placement, &'a Setup);
 records! {
     /// The content of `page-data.json`. Lists of numbers are in single precision, little endian, as Base64.
     pub struct PageData of (
-        command: &str, problem: &Problem, run: &RunOf<'_>, plans: &[&Case], maps: &[MapOf<'_>]
+        command: &str, problem: &Problem, run: &Context, plans: &[&Case], maps: &[MapOf<'_>]
     ) {
         let map =
             |((placement, setup), map, table): &MapOf<'_>| MapData::of(&problem.in_setup(setup), placement, map, table);
@@ -71,11 +41,9 @@ records! {
         /// The command that left it.
         command: String = command.to_owned(),
         /// Which case of a study it is, where it is one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        study_case: Option<CaseOfStudy> = run.study_case.cloned(),
+        study_case?: CaseOfStudy = run.study_case.clone(),
         /// Those of the notes that are on how it was computed, where there are any: paper leaves these to `notes.txt`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        computed_notes: Option<Vec<String>> = (!computed.is_empty()).then_some(computed),
+        computed_notes?: Vec<String> = (!computed.is_empty()).then_some(computed),
         /// The arm.
         robot: RobotData = RobotData::of(problem),
         /// The tool frame in the frame of the flange.
@@ -101,19 +69,14 @@ records! {
         part_turns: Option<Vec<[[f64; 3]; 3]>> = part_turns(problem, plans),
         /// For each plan its moves between segments, null where a move is straight in joint space; left out where no
         /// plan has a path round shapes.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        moves: Option<Vec<Vec<Option<MoveData>>>> = moves(problem, run.transfer, plans),
+        moves?: Vec<Vec<Option<MoveData>>> = moves(problem, &run.transfer, plans),
         /// For each plan its least room without the pairs whose distance does not change along it, null where no such
         /// pair has the least room; left out where that is so of all plans.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        clearances: Option<Vec<Option<ClearanceData>>> = changing(problem, plans),
+        clearances?: Vec<Option<ClearanceData>> = changing(problem, plans),
         /// What the path removes of its stock, where the run has one.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        removal: Option<RemovalData> = run.removal.map(|removal| RemovalData::of(problem, removal)),
+        removal?: RemovalData = run.removal.as_ref().map(|removal| RemovalData::of(problem, removal)),
     }
-}
 
-records! {
     /// An arm by its Denavit-Hartenberg rows.
     pub struct RobotData of (problem: &Problem) {
         let robot = &problem.robot;
@@ -123,11 +86,9 @@ records! {
         /// The rows.
         rows: Vec<RowData> = robot.joints().iter().map(RowData::of).collect(),
         /// What joins axes 2 and 3, where anything does.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        axes_2_3: Option<AxesData> = robot.axes_2_3().map(AxesData::of),
+        axes_2_3?: AxesData = robot.axes_2_3().map(AxesData::of),
         /// How its controller counts the joints, where it is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        controller: Option<ControllerData> = robot.controller().map(|controller| ControllerData::of(robot, controller)),
+        controller?: ControllerData = robot.controller().map(|controller| ControllerData::of(robot, controller)),
         /// Its base in the cell, where it is mounted.
         mount: Option<PoseData> = robot.is_mounted().then(|| (&robot.cell_from_base()).into()),
     }
@@ -230,8 +191,7 @@ records! {
         /// have fewer.
         scored: Vec<String> = (0..most).map(scored).collect(),
         /// Moments on the tool about the tool centre point, where there are any. N m
-        #[serde(skip_serializing_if = "Option::is_none")]
-        moment_nm: Option<String> = moments()
+        moment_nm?: String = moments()
             .any(|moment| moment != Vector3::zeros())
             .then(|| singles(moments().flat_map(<[f64; 3]>::from))),
         /// Time from each point to the next at the programmed feed.
@@ -240,15 +200,8 @@ records! {
 }
 
 /// The content of `page-data.json` of a problem, its maps and its plans.
-pub(crate) fn page_data(
-    document: Document,
-    command: &str,
-    problem: &Problem,
-    run: &RunOf<'_>,
-    plans: &[&Case],
-    maps: &[MapOf<'_>],
-) -> Value {
-    document.with(PageData::of(command, problem, run, plans, maps))
+pub(crate) fn page_data(run: &Context, command: &str, problem: &Problem, plans: &[&Case], maps: &[MapOf<'_>]) -> Value {
+    run.document().with(PageData::of(command, problem, run, plans, maps))
 }
 
 /// Compliances along the range of a joint that follow a curve.

@@ -2,7 +2,7 @@
 //! it is given later. Both are made of the same parts as the page of a results folder, so that its script shows them.
 
 use super::content::Thinned;
-use super::data::{RunOf, page_data};
+use super::data::page_data;
 use super::map_data::{MapColumns, columns};
 use super::moves::moves;
 use super::setup::part_turn;
@@ -10,20 +10,21 @@ use super::table::Table;
 use super::{content, html};
 use crate::document::value;
 use crate::output::ReportError;
+use crate::placement::context::Context;
 use crate::placement::evaluation::{preview_json, score_json};
-use crate::placement::{Context, tables};
+use crate::placement::tables;
 use nalgebra::Vector3;
 use serde::Serialize;
 use serde_json::Value;
 use stead_model::robot::Posture;
 use stead_numerics::mean_max::MeanAndMax;
-use stead_placement::outcome::{DeflectionFigures, Plan, PlanPoint};
+use stead_placement::outcome::PlanPoint;
 use stead_placement::place::{Preview, Score};
 use stead_planning::feasibility::MapRow;
 use stead_problem::evaluate::reference::ScoredByOrigin;
-use stead_problem::joint_travel::JointTravel;
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::sense::BySense;
+use stead_problem::setup::AxisPath;
 
 /// What the page shows of a placement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -45,7 +46,7 @@ pub struct Answer {
 }
 
 /// The best plan of a placement of which nothing is known.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct BlankPlan {
     mean_mm: f64,
     max_mm: f64,
@@ -58,7 +59,7 @@ struct BlankPlan {
 }
 
 /// Its deflection.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct BlankDeflection {
     total: MeanAndMax,
 }
@@ -104,7 +105,7 @@ impl<'a> LivePage<'a> {
             points,
             is_whole: false,
             document: preview_json(placement, problem, preview, self.context),
-            plans: vec![self.columns(problem, &preview.plan, points[0] == points[1])?],
+            plans: vec![self.columns(problem, &preview.plan.points, &preview.plan.axes, points[0] == points[1])?],
             moves: None,
             part_turn: self.part_turn(problem),
         })
@@ -116,7 +117,7 @@ impl<'a> LivePage<'a> {
     /// [`ReportError::Format`] when a table cannot be made.
     pub fn score(&self, problem: &Problem, score: &Score, context: &Context) -> Result<Answer, ReportError> {
         let BySense { best, worst } = score.cases();
-        let plans = [&best, &worst].map(|case| self.columns(problem, &case.plan, true));
+        let plans = [&best, &worst].map(|case| self.columns(problem, &case.plan.points, &case.plan.axes, true));
         let count = problem.task.points().len();
         Ok(Answer {
             points: [count, count],
@@ -133,8 +134,14 @@ impl<'a> LivePage<'a> {
     }
 
     /// The table of a plan by its columns; of a whole path the points that are drawn.
-    fn columns(&self, problem: &Problem, plan: &Plan, is_whole: bool) -> Result<Value, ReportError> {
-        let bytes = tables::plan(plan, problem.scene.as_deref())?;
+    fn columns(
+        &self,
+        problem: &Problem,
+        points: &[PlanPoint],
+        axes: &[AxisPath],
+        is_whole: bool,
+    ) -> Result<Value, ReportError> {
+        let bytes = tables::plan_points(points, axes, problem.scene.as_deref())?;
         let chosen = self.drawn.as_deref().filter(|_| is_whole);
         Ok(Table::read("plan", &bytes)?.content(&["nearest_pair"], chosen)?)
     }
@@ -144,13 +151,7 @@ impl<'a> LivePage<'a> {
     /// # Errors
     /// [`ReportError::Format`] when a table cannot be read.
     pub fn html(&self, title: &str, shown: Option<&Answer>, live: &Value) -> Result<Vec<u8>, ReportError> {
-        let run = RunOf {
-            transfer: &self.context.transfer,
-            removal: self.context.removal.as_deref(),
-            study_case: self.context.study_case.as_ref(),
-            notes: &self.context.notes,
-        };
-        let mut data = page_data(self.context.document(), content::SCORE, self.problem, &run, &[], &[]);
+        let mut data = page_data(self.context, content::SCORE, self.problem, &[], &[]);
         if let Some(chosen) = &self.drawn {
             content::keep_points(&mut data, chosen);
         }
@@ -177,27 +178,15 @@ impl<'a> LivePage<'a> {
 
     /// The document of a placement of which nothing is known.
     fn blank_document(&self, place: &Value) -> Value {
-        let best = BlankPlan {
-            mean_mm: 0.0,
-            max_mm: 0.0,
-            postures: [],
-            cutting_s: 0.0,
-            cycle_s: None,
-            transfers: [],
-            joint_travel: None,
-            deflection_mm: BlankDeflection { total: MeanAndMax { mean: 0.0, max: 0.0 } },
-        };
-        let exact = &place["placement_exact"];
-        let orientation = &place["orientation"];
+        let (exact, orientation) = (&place["placement_exact"], &place["orientation"]);
+        let best = BlankPlan::default();
         let placement = BlankPlacement { best, placement: exact, placement_exact: exact, orientation, feasible: false };
         self.context.document().with(value(&placement))
     }
 
     /// The columns of a plan that is not known: no deflection, and the arm in the middle of its ranges.
     fn blank(&self) -> Result<Value, ReportError> {
-        let (task, none) = (&self.problem.task, MeanAndMax { mean: 0.0, max: 0.0 });
-        let has_surface = task.path().surface_normals().is_some();
-        let joints = self.problem.robot.mid_range();
+        let task = &self.problem.task;
         let point = |point: usize| PlanPoint {
             point,
             segment: task.path().segment_of(point) + 1,
@@ -205,45 +194,22 @@ impl<'a> LivePage<'a> {
             beta: 0.0,
             posture: Posture::ALL[0],
             posture_words: self.problem.robot.posture_words(Posture::ALL[0]),
-            joints,
+            joints: self.problem.robot.mid_range(),
             inverse_condition: 0.0,
             force: Vector3::zeros(),
             deflection: Vector3::zeros(),
             feed_part: 0.0,
             normal_part: 0.0,
             axial_part: 0.0,
-            surface_part: has_surface.then_some(0.0),
+            surface_part: task.path().surface_normals().map(|_| 0.0),
             score: 0.0,
             deviation: self.problem.robot.uncertainty().map(|_| 0.0),
             by_origin: self.problem.yields_beside().then(ScoredByOrigin::default),
             clearance: None,
             lean: None,
         };
-        let count = task.points().len();
-        let plan = Plan {
-            points: (0..count).map(point).collect(),
-            axes: self.problem.axis_paths(),
-            postures: vec![Posture::ALL[0]; task.segments().len()],
-            posture_words: vec![self.problem.robot.posture_words(Posture::ALL[0]); task.segments().len()],
-            objective: 0.0,
-            mean: 0.0,
-            max: 0.0,
-            travel: JointTravel::of(task.path(), &vec![joints; count]),
-            percentiles: [0.0; 2],
-            deflection: DeflectionFigures {
-                wall: none,
-                surface: has_surface.then_some(none),
-                feed: none,
-                axis: none,
-                total: none,
-            },
-            held: None,
-            mean_deviation: None,
-            by_origin: None,
-            sag: None,
-            clearance: None,
-        };
-        self.columns(self.problem, &plan, true)
+        let points: Vec<PlanPoint> = (0..task.points().len()).map(point).collect();
+        self.columns(self.problem, &points, &self.problem.axis_paths(), true)
     }
 }
 

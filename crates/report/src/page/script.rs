@@ -8,75 +8,25 @@
 use std::collections::BTreeMap;
 
 macro_rules! modules {
-    ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("script/", $name)))),*]
+    ($($folder:literal: $($name:literal)*;)*) => {
+        &[$($((
+            concat!($folder, "/", $name, ".js"),
+            include_str!(concat!("script/", $folder, "/", $name, ".js")),
+        ),)*)*]
     };
 }
 
 /// All modules: their paths within `script/`, and their texts.
-const MODULES: &[(&str, &str)] = modules![
-    "draw/chart-data.js",
-    "draw/chart.js",
-    "draw/dom.js",
-    "draw/downloads.js",
-    "draw/heat-map.js",
-    "draw/plot.js",
-    "draw/scale.js",
-    "draw/theme.js",
-    "cards/main.js",
-    "cards/polar.js",
-    "cards/sheet.js",
-    "cards/table.js",
-    "live/answers.js",
-    "live/concerns.js",
-    "live/controls.js",
-    "live/drag.js",
-    "live/edits.js",
-    "live/figures.js",
-    "live/follow.js",
-    "live/jobs.js",
-    "live/main.js",
-    "live/pace.js",
-    "live/pins.js",
-    "live/place.js",
-    "live/server.js",
-    "live/tab.js",
-    "run/arrows.js",
-    "run/axis-tracks.js",
-    "run/bodies.js",
-    "run/camera.js",
-    "run/cards.js",
-    "run/cases.js",
-    "run/charts.js",
-    "run/colour.js",
-    "run/data.js",
-    "run/external-axes.js",
-    "run/gpu.js",
-    "run/header.js",
-    "run/kinematics.js",
-    "run/lean-map.js",
-    "run/linear.js",
-    "run/link.js",
-    "run/loads.js",
-    "run/main.js",
-    "run/map.js",
-    "run/mesh.js",
-    "run/origins.js",
-    "run/path-mesh.js",
-    "run/path.js",
-    "run/play.js",
-    "run/printed.js",
-    "run/readings.js",
-    "run/scene-card.js",
-    "run/scene.js",
-    "run/shaders.js",
-    "run/sheet.js",
-    "run/small-table.js",
-    "run/state.js",
-    "run/surroundings.js",
-    "run/transport.js",
-    "run/yielding.js",
-];
+const MODULES: &[(&str, &str)] = modules! {
+    "draw": "chart-data" "chart" "dom" "downloads" "heat-map" "plot" "scale" "theme";
+    "cards": "main" "polar" "sheet" "table";
+    "live": "answers" "concerns" "controls" "drag" "edits" "figures" "follow" "jobs" "main" "pace" "pins"
+        "place" "server" "tab";
+    "run": "arrows" "axis-tracks" "bodies" "camera" "cards" "cases" "charts" "colour" "data" "external-axes"
+        "gpu" "header" "kinematics" "lean-map" "linear" "link" "loads" "main" "map" "mesh" "origins" "path-mesh"
+        "path" "play" "printed" "readings" "scene-card" "scene" "shaders" "sheet" "small-table" "state"
+        "surroundings" "transport" "yielding";
+};
 
 /// Why modules are not joined.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

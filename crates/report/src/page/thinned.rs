@@ -5,7 +5,7 @@
 //! triangle is large (quadric error metrics, Garland and Heckbert 1997). The same surface gives the same triangles.
 
 use nalgebra::{Matrix3, Vector3};
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 use stead_removal::surface::Surface;
 
@@ -54,35 +54,14 @@ fn normal(corners: [Vector3<f64>; 3]) -> Vector3<f64> {
 }
 
 /// An edge that may be drawn together.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge {
-    cost: f64,
+    /// The bits of the cost, which none has below zero: they are in the order of the costs.
+    cost: u64,
     ends: [u32; 2],
     /// How often its ends had moved when it was looked at.
     moved: [u32; 2],
-    to: Vector3<f64>,
 }
-
-impl Ord for Edge {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_state = |edge: &Self| (edge.ends, edge.moved);
-        self.cost.total_cmp(&other.cost).then_with(|| by_state(self).cmp(&by_state(other)))
-    }
-}
-
-impl PartialOrd for Edge {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Edge {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Edge {}
 
 /// A surface on its way.
 struct Thinning {
@@ -103,7 +82,7 @@ pub(super) fn thinned(surface: &Surface, most: usize) -> Surface {
     let size = (high - low).norm();
     let mut thinning = Thinning::of(surface);
     while let Some(Reverse(edge)) = thinning.edges.pop() {
-        if thinning.left <= most && edge.cost > FREE * size.powi(4) {
+        if thinning.left <= most && f64::from_bits(edge.cost) > FREE * size.powi(4) {
             break;
         }
         thinning.collapse(&edge);
@@ -194,17 +173,20 @@ impl Thinning {
         self.about[corner as usize].iter().filter_map(|number| Some((*number, self.triangles[*number as usize]?)))
     }
 
-    /// Looks where an edge would go.
-    fn offer(&mut self, ends: [u32; 2]) {
+    /// What it costs to draw an edge together, and where to.
+    fn best_place(&self, ends: [u32; 2]) -> (f64, Vector3<f64>) {
         let [a, b] = ends.map(|end| self.corners[end as usize]);
         let quadric = self.quadrics[ends[0] as usize].plus(&self.quadrics[ends[1] as usize]);
         let places = [a, b, (a + b) / 2.0].map(|place| (quadric.at(&place).max(0.0), place));
         let [first, second, third] = places;
         let less = |least: (f64, _), place: (f64, _)| if place.0 < least.0 { place } else { least };
-        let least = less(less(first, second), third);
-        let cost = least.0 + LENGTH * (b - a).norm_squared() * (b - a).norm_squared();
+        let (least, place) = less(less(first, second), third);
+        (least + LENGTH * (b - a).norm_squared() * (b - a).norm_squared(), place)
+    }
+
+    fn offer(&mut self, ends: [u32; 2]) {
         let moved = ends.map(|end| self.moved[end as usize]);
-        self.edges.push(Reverse(Edge { cost, ends, moved, to: least.1 }));
+        self.edges.push(Reverse(Edge { cost: self.best_place(ends).0.to_bits(), ends, moved }));
     }
 
     /// Draws an edge together, where it is still as it was and nothing is turned over or closed by it.
@@ -213,9 +195,10 @@ impl Thinning {
         if edge.ends.map(|end| self.moved[end as usize]) != edge.moved {
             return;
         }
+        let (_, to) = self.best_place(edge.ends);
         let at_edge: Vec<u32> =
             self.around(a).filter(|(_, triangle)| triangle.contains(&b)).map(|(number, _)| number).collect();
-        if at_edge.len() != 2 || self.common_neighbours(a, b) != 2 || self.turns_over(a, b, &edge.to) {
+        if at_edge.len() != 2 || self.common_neighbours(a, b) != 2 || self.turns_over(a, b, &to) {
             return;
         }
         for number in &at_edge {
@@ -230,7 +213,7 @@ impl Thinning {
         about.extend(of_b.iter().map(|(number, _)| *number));
         self.about[b as usize].clear();
         self.about[a as usize] = about;
-        self.corners[a as usize] = edge.to;
+        self.corners[a as usize] = to;
         self.quadrics[a as usize] = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         for end in edge.ends {
             self.moved[end as usize] += 1;

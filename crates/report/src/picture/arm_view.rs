@@ -1,6 +1,6 @@
 //! An arm drawn from its rows, from the side and from above, with the cell and the tool path in the middle of it.
 
-use super::axes::{Panel, Scale, around};
+use super::axes::{Panel, square_around};
 use super::canvas::{Canvas, Pixel, Place, TextStyle, nearest, picture};
 use super::colour::{BLUE, GREY, INK, ORANGE, TEAL};
 use super::surroundings::Outline;
@@ -128,7 +128,8 @@ impl<'a> Drawn<'a> {
         });
         let outlines: Vec<Outline> = outlines.collect();
         let corners = outlines.iter().flat_map(|outline| outline.corners.iter().copied());
-        let panel = panel(self.all.iter().map(shown).chain(corners), left, labels);
+        let window = square_around(self.all.iter().map(shown).chain(corners), 0.55);
+        let panel = Panel::square(window, (left, TOP), SIDE, labels);
         let place = |point: &Vector3<f64>| {
             let [x, y] = shown(point);
             panel.place(x, y)
@@ -173,13 +174,4 @@ fn corner_of(cell: &Cell, corner: usize) -> Vector3<f64> {
         let bounds = cell.position[axis];
         if corner >> axis & 1 == 1 { bounds.max } else { bounds.min }
     })
-}
-
-/// A panel to one scale around points. mm
-fn panel(points: impl Iterator<Item = [f64; 2]>, left: i32, labels: [&'static str; 2]) -> Panel {
-    let [low, high] = around(points).unwrap_or_default();
-    let half = 0.55 * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
-    let [x, y] = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
-    let (x, y) = (Scale::new(x - half, x + half, left, left + SIDE), Scale::new(y - half, y + half, TOP + SIDE, TOP));
-    Panel::new(x, y, [8, 8], labels)
 }

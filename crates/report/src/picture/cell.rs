@@ -1,6 +1,6 @@
 //! The robot cell from above with the best and the worst placement (Caro 2013, Fig. 8).
 
-use super::axes::{Panel, Scale, around};
+use super::axes::{Panel, Window, square_around};
 use super::canvas::{BEST_LINE, Canvas, LineStyle, Pixel, TextStyle, WORST_LINE, exact, picture};
 use super::cell_view::{CellView, is_upright, middles, top_view, wrist_centre};
 use super::colour::{BLUE, GREY, INK, PALE};
@@ -49,24 +49,23 @@ fn drawn(problem: &Problem, all: &[Shown<'_>]) -> String {
     picture(SIZE, |canvas| {
         let frame = if problem.robot.is_mounted() { "cell" } else { "robot base" };
         canvas.title(&format!("The cell from above, in the {frame} frame"), (COLUMNS[0], 24));
-        let near = Region::near(problem, all);
-        overview(canvas, problem, all, &near);
+        let near = near(problem, all);
+        overview(canvas, problem, all, near);
         legend(canvas, problem, all);
         for (shown, left) in all.iter().zip(COLUMNS) {
-            placement(canvas, problem, shown, near.panel(left, ROWS[1]));
+            placement(canvas, problem, shown, panel(near, left, ROWS[1]));
         }
     })
 }
 
 /// The robot, its reach, the cell, and where the other panels are.
-fn overview(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>], near: &Region) {
-    let region = Region::whole(problem, near);
-    let view = CellView { problem, panel: region.panel(COLUMNS[0], ROWS[0]) };
+fn overview(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>], near: Window) {
+    let view = CellView { problem, panel: panel(whole(problem, near), COLUMNS[0], ROWS[0]) };
     canvas.text("Robot and cell", (COLUMNS[0], ROWS[0] - 18), TextStyle::new(13.0).bold().coloured(INK));
     view.panel.draw_grid(canvas);
     view.reach(canvas);
     let corner = |[x, y]: [f64; 2]| (view.panel.x.pixel(x), view.panel.y.pixel(y));
-    canvas.outline(corner(near.from), corner(near.to), PALE);
+    canvas.outline(corner(near[0]), corner(near[1]), PALE);
     view.limits(canvas);
     view.base(canvas);
     for shown in all.iter().rev() {
@@ -120,53 +119,34 @@ fn legend(canvas: &mut Canvas, problem: &Problem, all: &[Shown<'_>]) {
     entry("part shown below", &|canvas, y| canvas.outline((left, y - 8), (right, y + 8), PALE))
 }
 
-/// A square part of the plane, in mm.
-struct Region {
-    /// Lower ends of x and y.
-    from: [f64; 2],
-    /// Upper ends of x and y.
-    to: [f64; 2],
+/// The cell, and of each case the tool path and the wrist centres that are drawn.
+fn near(problem: &Problem, all: &[Shown<'_>]) -> Window {
+    let [x, y, _] = problem.cell.position;
+    let mut points = vec![[x.min * 1e3, y.min * 1e3], [x.max * 1e3, y.max * 1e3]];
+    for Shown { case, .. } in all {
+        points.extend(case.plan.points.iter().map(|point| top_view(&point.position)));
+        points.extend(middles(problem, case).map(|point| top_view(&wrist_centre(problem, point))));
+    }
+    square_around(points, 0.5 + 0.06)
 }
 
-impl Region {
-    /// The smallest square around points, with a margin of a given part of its side.
-    fn around(points: &[[f64; 2]], margin: f64) -> Self {
-        let [low, high] = around(points.iter().copied()).unwrap_or_default();
-        let half = (0.5 + margin) * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
-        let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
-        Self { from: middle.map(|v| v - half), to: middle.map(|v| v + half) }
+/// The base, the near region, and the reach in the direction of the cell.
+fn whole(problem: &Problem, near: Window) -> Window {
+    let mut points = vec![[-BASE, -BASE], [BASE, BASE], near[0], near[1]];
+    let stand = top_view(&problem.robot.cell_from_base::<f64>().translation);
+    points.extend([-BASE, BASE].map(|by| stand.map(|at| at + by)));
+    let [x, y, _] = problem.cell.position;
+    let root = problem.robot.geometry().root_in_base;
+    let toward = Vector3::new((x.min + x.max) / 2.0 - root.x, (y.min + y.max) / 2.0 - root.y, 0.0);
+    if let Some(direction) = toward.try_normalize(1e-6)
+        && is_upright(problem)
+    {
+        points.push(top_view(&(root + direction * problem.robot.geometry().reach())));
     }
+    square_around(points, 0.5 + 0.03)
+}
 
-    /// The cell, and of each case the tool path and the wrist centres that are drawn.
-    fn near(problem: &Problem, all: &[Shown<'_>]) -> Self {
-        let [x, y, _] = problem.cell.position;
-        let mut points = vec![[x.min * 1e3, y.min * 1e3], [x.max * 1e3, y.max * 1e3]];
-        for Shown { case, .. } in all {
-            points.extend(case.plan.points.iter().map(|point| top_view(&point.position)));
-            points.extend(middles(problem, case).map(|point| top_view(&wrist_centre(problem, point))));
-        }
-        Self::around(&points, 0.06)
-    }
-
-    /// The base, the near region, and the reach in the direction of the cell.
-    fn whole(problem: &Problem, near: &Region) -> Self {
-        let mut points = vec![[-BASE, -BASE], [BASE, BASE], near.from, near.to];
-        let stand = top_view(&problem.robot.cell_from_base::<f64>().translation);
-        points.extend([-BASE, BASE].map(|by| stand.map(|at| at + by)));
-        let [x, y, _] = problem.cell.position;
-        let root = problem.robot.geometry().root_in_base;
-        let toward = Vector3::new((x.min + x.max) / 2.0 - root.x, (y.min + y.max) / 2.0 - root.y, 0.0);
-        if let Some(direction) = toward.try_normalize(1e-6)
-            && is_upright(problem)
-        {
-            points.push(top_view(&(root + direction * problem.robot.geometry().reach())));
-        }
-        Self::around(&points, 0.03)
-    }
-
-    fn panel(&self, left: i32, top: i32) -> Panel {
-        let x = Scale::new(self.from[0], self.to[0], left, left + SIDE);
-        let y = Scale::new(self.from[1], self.to[1], top + SIDE, top);
-        Panel::new(x, y, [8, 8], ["x (mm)", "y (mm)"])
-    }
+/// A part of the plane with x and y of the base.
+fn panel(shown: Window, left: i32, top: i32) -> Panel {
+    Panel::square(shown, (left, top), SIDE, ["x (mm)", "y (mm)"])
 }

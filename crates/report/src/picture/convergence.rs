@@ -31,16 +31,11 @@ fn search(sense: Sense, generations: &[&Generation], refined: f64) -> Chart {
         let at = |of: &&Generation| [of.generation as f64, value(of).map_or(f64::NAN, |value| value * 1e3)];
         Series::curve(name, color, generations.iter().map(at))
     };
-    Chart {
-        marks: vec![Mark { is_level: true, at: refined, label: format!("after refinement: {} mm", fixed(refined, 4)) }],
-        ..Chart::new(
-            title.to_owned(),
-            "generation",
-            Axis { range: Some([(low - margin).max(0.0), high + margin]), ..Axis::new("mean deflection (mm)") },
-            vec![
-                curve("average of the feasible", 0, |generation| generation.average),
-                curve("best so far", color, |generation| generation.best),
-            ],
-        )
-    }
+    let y = Axis { range: Some([(low - margin).max(0.0), high + margin]), ..Axis::new("mean deflection (mm)") };
+    let curves = [
+        curve("average of the feasible", 0, |generation| generation.average),
+        curve("best so far", color, |generation| generation.best),
+    ];
+    Chart::new(title, "generation", y, curves)
+        .marked([Mark::level(refined, format!("after refinement: {} mm", fixed(refined, 4)))])
 }

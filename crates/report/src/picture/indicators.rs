@@ -3,8 +3,7 @@
 use super::axes::{Panel, Scale, Ticks};
 use super::canvas::{Canvas, TextStyle, picture};
 use super::colour::{Colour, INDICATORS, INK};
-use crate::units::figures;
-use crate::units::fixed;
+use crate::units::{figures, fixed};
 use stead_assessment::comparison::{Assessment, Load, RobotResult};
 
 const WIDTH: i32 = 1100;

@@ -78,7 +78,7 @@ fn draw_bars(canvas: &mut Canvas, request: &Request, plan: &Design) {
         let angle = bar.angle.map_or_else(String::new, |angle| format!(" at {}°", fixed(angle.to_degrees(), 0)));
         let name = match request.model {
             FitModel::Axes => format!("k{}{angle}", bar.joint + 1),
-            FitModel::Full => format!("{}{}{angle}", bar.joint + 1, bar.about.name()),
+            FitModel::Full => format!("{}{}{angle}", bar.joint + 1, bar.about.word()),
         };
         let size = (f64::from(to - from) / (name.chars().count() as f64 * 0.55)).min(12.0);
         canvas.text(&name, ((from + to) / 2, panel.y.start + 15), TextStyle::new(size).centred());

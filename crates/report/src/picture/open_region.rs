@@ -1,6 +1,6 @@
 //! What a certificate leaves open, over the cell.
 
-use super::axes::{Panel, Scale};
+use super::axes::Panel;
 use super::canvas::{Canvas, TextStyle, picture};
 use super::cell_view::CellView;
 use super::colour::{GREY, INK, LEVELS, ORANGE, viridis};
@@ -40,13 +40,11 @@ fn heading(canvas: &mut Canvas, proof: &Proof, count: usize) {
         Sense::Max => ("What the certificate of the worst placement leaves open, rate of beta dropped", "worse"),
     };
     canvas.title(title, (LEFT[0], 24));
+    let gap = fixed(proof.gap_percent(), 4);
     let words = if count == 0 {
-        format!("Nothing: no placement in the cell is {past} by more than {} %", fixed(proof.gap_percent(), 4))
+        format!("Nothing: no placement in the cell is {past} by more than {gap} %")
     } else {
-        format!(
-            "{count} boxes of placements, in any of them one may be {past}; by {} % at most",
-            fixed(proof.gap_percent(), 4)
-        )
+        format!("{count} boxes of placements, in any of them one may be {past}; by {gap} % at most")
     };
     canvas.text(&words, (LEFT[0], 52), TextStyle::new(13.0).coloured(INK))
 }
@@ -121,8 +119,7 @@ fn widened(from: f64, to: f64) -> [f64; 2] {
 }
 
 fn panel(left: i32, x: [f64; 2], y: [f64; 2], labels: [&'static str; 2]) -> Panel {
-    let (x, y) = (Scale::new(x[0], x[1], left, left + SIDE), Scale::new(y[0], y[1], TOP + SIDE, TOP));
-    Panel::new(x, y, [8, 8], labels)
+    Panel::square([[x[0], y[0]], [x[1], y[1]]], (left, TOP), SIDE, labels)
 }
 
 fn more_promising(sense: Sense, a: f64, b: f64) -> f64 {

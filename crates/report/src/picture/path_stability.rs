@@ -22,15 +22,10 @@ pub fn path_stability(stability: &PathStability, plans: &[&Plan], names: [&str; 
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         Series::curve(name, color, points).styled(style)
     };
-    let edges = starts.clone().map(|k| Mark { is_level: false, at: k as f64 - 0.5, label: String::new() });
-    let level = Mark { is_level: true, at: cut * 1e3, label: format!("this cut, {} mm", fixed(cut * 1e3, 2)) };
-    charts(&[Chart {
-        marks: edges.chain([level]).collect(),
-        ..Chart::new(
-            "How deep may be cut along the path",
-            "path point",
-            Axis { range: Some([0.0, highest * 1.05e3]), ..Axis::new("critical depth of cut (mm)") },
-            depths.zip(names).zip([(0, Style::Line), (2, Style::Dashed)]).map(curve).collect(),
-        )
-    }])
+    let edges = starts.clone().map(|k| Mark::across(k as f64 - 0.5, ""));
+    let level = Mark::level(cut * 1e3, format!("this cut, {} mm", fixed(cut * 1e3, 2)));
+    let y = Axis { range: Some([0.0, highest * 1.05e3]), ..Axis::new("critical depth of cut (mm)") };
+    let curves = depths.zip(names).zip([(0, Style::Line), (2, Style::Dashed)]).map(curve);
+    let chart = Chart::new("How deep may be cut along the path", "path point", y, curves);
+    charts(&[chart.marked(edges.chain([level]))])
 }

@@ -1,7 +1,7 @@
 //! The shapes of a cell with the arm among them, from above and from the side.
 
-use super::axes::{Panel, Scale, around};
-use super::canvas::{Canvas, Pixel, Place, TextStyle, picture};
+use super::axes::{Panel, square_around};
+use super::canvas::{Canvas, Place, TextStyle, picture};
 use super::cell_view::middles;
 use super::colour::{BLUE, Colour, GREY, INK, ORANGE, PALE, TEAL};
 use crate::units::fixed;
@@ -87,7 +87,7 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
         }
         let path: Vec<[f64; 2]> = case.plan.points.iter().map(|point| flat(&point.position)).collect();
         let all = outlines.iter().flat_map(|outline| &outline.corners).chain(&path).copied();
-        let panel = panel(all, (left, top), labels);
+        let panel = Panel::square(square_around(all, 0.53), (left, top), SIDE, labels);
         let place = |[x, y]: [f64; 2]| panel.place(x, y);
         canvas.text(&format!("{title}: {name}"), (left, top - 18), TextStyle::new(13.0).bold().coloured(INK));
         panel.draw_grid(canvas);
@@ -110,12 +110,8 @@ fn draw_case(canvas: &mut Canvas, problem: &Problem, scene: &Scene, (case, name)
     let words = case.plan.clearance.as_ref().map_or_else(
         || "no two shapes come nearer than 1 m to each other".to_owned(),
         |near| {
-            let [a, b] = near.names.as_ref();
-            format!(
-                "least clearance {} mm, between {a} and {b}, at point {}",
-                fixed(near.distance * 1e3, 1),
-                near.point
-            )
+            let ([a, b], distance) = (near.names.as_ref(), fixed(near.distance * 1e3, 1));
+            format!("least clearance {distance} mm, between {a} and {b}, at point {}", near.point)
         },
     );
     canvas.text(&words, (COLUMNS[0], top - 40), TextStyle::new(12.0).coloured(INK));
@@ -186,15 +182,6 @@ pub(super) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut corners = chain(&mut points.iter().copied());
     corners.extend(chain(&mut points.iter().rev().copied()));
     corners
-}
-
-/// A view to one scale around points. mm
-fn panel(points: impl Iterator<Item = [f64; 2]>, corner: Pixel, labels: [&'static str; 2]) -> Panel {
-    let ((left, top), [low, high]) = (corner, around(points).unwrap_or_default());
-    let half = 0.53 * (high[0] - low[0]).max(high[1] - low[1]).max(100.0);
-    let [x, y] = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
-    let (x, y) = (Scale::new(x - half, x + half, left, left + SIDE), Scale::new(y - half, y + half, top + SIDE, top));
-    Panel::new(x, y, [8, 8], labels)
 }
 
 #[cfg(test)]

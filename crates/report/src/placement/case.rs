@@ -6,14 +6,12 @@ use super::text::spring_name;
 use crate::document::{DeflectionByDirection, FeedFigures, JointTravelFigures, PlacementExact, PlacementFigures};
 use crate::figure::{AngleDeg, DeflectionMm, Gain, MmPerPercent, PlaceMm, Plain, TimeS, each, some};
 use crate::names;
-use schemars::JsonSchema;
-use serde::Serialize;
 use stead_model::robot::Posture;
 use stead_placement::outcome::{AtHeldFeed, Case, Cycle, Plan, PlanPoint};
 use stead_placement::sag::{Sag, SagRange};
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::transfer::Transfer;
-use stead_planning::transfer_path;
+use stead_planning::transfer_path::{self, LineEnd};
 use stead_problem::collision;
 use stead_problem::criterion::CANCELLATION;
 use stead_problem::limit::ActiveBound;
@@ -48,10 +46,6 @@ records! {
 
     /// A plan with its feeds and times.
     pub struct PlanFigures of (plan: &Plan, cycle: &Cycle) {
-        let [p50_mm, p95_mm] = each(plan.percentiles);
-        let unfollowed =
-            |(point, end): &(usize, _)| UnfollowedMove { to_point: *point, since: ToString::to_string(end) };
-    } with {
         /// What was minimised or maximised.
         objective_mm: DeflectionMm = plan.objective.into(),
         /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
@@ -59,25 +53,22 @@ records! {
         /// Largest score.
         max_mm: DeflectionMm = plan.max.into(),
         /// The score that half of the points are below.
-        p50_mm: DeflectionMm = p50_mm,
+        p50_mm: DeflectionMm = plan.percentiles[0].into(),
         /// The score that 95 % of the points are below.
-        p95_mm: DeflectionMm = p95_mm,
+        p95_mm: DeflectionMm = plan.percentiles[1].into(),
         /// What each thing that yields adds to the scored part, in the mean of the points, where more does than the
         /// joints about their axes.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        by_origin_mm: Option<OriginFigures> = plan.by_origin.as_ref().map(Into::into),
+        by_origin_mm?: OriginFigures = plan.by_origin.as_ref().map(Into::into),
         /// How far the weight of links and spindle moves the tool, which no score counts; where the mass of what the
         /// flange carries is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        sag_mm: Option<SagFigures> = plan.sag.as_ref().map(Into::into),
+        sag_mm?: SagFigures = plan.sag.as_ref().map(Into::into),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
+        mean_std_mm?: DeflectionMm = some(plan.mean_deviation),
         /// Deflections by direction.
         deflection_mm: DeflectionByDirection = (&plan.deflection).into(),
         /// The same at the feed that the arm holds, with forces of a table `[stock]`, of which a part grows with the
         /// feed: what stands above is at the programmed feed.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        at_held_feed: Option<HeldFeedFigures> = plan.held.as_ref().map(Into::into),
+        at_held_feed?: HeldFeedFigures = plan.held.as_ref().map(Into::into),
         /// The posture of each segment, 1 to 8.
         #[schemars(with = "Vec<u8>")] postures: Vec<Posture> = plan.postures.clone(),
         /// The same in words.
@@ -91,17 +82,13 @@ records! {
         /// Time with the moves between segments; null where a joint speed is not known.
         pub(super) cycle_s: Option<TimeS> = some(cycle.total()),
         /// Path points to which the arm cannot follow the straight move of the tool, or not within its joint limits.
-        unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(unfollowed).collect(),
+        unfollowed_moves: Vec<UnfollowedMove> = cycle.unfollowed.iter().map(Into::into).collect(),
         /// The least clearance at the points, among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        clearance: Option<ClearanceFigures> = plan.clearance.as_ref().map(ClearanceFigures::of),
+        clearance?: ClearanceFigures = plan.clearance.as_ref().map(ClearanceFigures::of),
     }
-}
 
-records! {
     /// A plan at the feed that the arm holds.
     pub struct HeldFeedFigures from held: &AtHeldFeed {
-    } with {
         /// Segments that are cut slower than programmed.
         slowed_segments: usize = held.slowed,
         /// Mean of the scores, every scored point alike: weights of segments count in `objective_mm` alone.
@@ -111,18 +98,15 @@ records! {
         /// Deflections by direction.
         deflection_mm: DeflectionByDirection = (&held.deflection).into(),
     }
-}
 
-/// A straight move of the tool that the arm cannot follow.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct UnfollowedMove {
-    /// The path point that it leads to, from 0.
-    to_point: usize,
-    /// Why not.
-    since: String,
-}
+    /// A straight move of the tool that the arm cannot follow.
+    pub struct UnfollowedMove from unfollowed: &(usize, LineEnd) {
+        /// The path point that it leads to, from 0.
+        to_point: usize = unfollowed.0,
+        /// Why not.
+        since: String = unfollowed.1.to_string(),
+    }
 
-records! {
     /// The least clearance at the points of a plan.
     pub struct ClearanceFigures of (of: &collision::PlanClearance) {
         /// The path point, from 0.
@@ -135,33 +119,29 @@ records! {
 
     /// What one per cent more stiffness of a joint, or of one of its springs, does to the objective.
     pub struct StiffnessSlope of (found: &SpringSlope, case: &Case) {
-        let objective = case.plan.objective;
-        let slope = found.slope;
         let is_full = case.objective_by_stiffness.as_ref().is_some_and(|all| all.len() > 6);
     } with {
         /// The joint, from 1.
         joint: usize = found.springs.first().map_or(0, |spring| spring.joint + 1),
         /// Of a full set of springs: the spring, with those that no deflection tells from it, as in `joint 5 about z
         /// with joint 4 about y`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        spring: Option<String> = is_full.then(|| spring_name(found)),
+        spring?: String = is_full.then(|| spring_name(found)),
         /// Change of the objective.
-        mm_per_percent: MmPerPercent = MmPerPercent(slope / 100.0),
+        mm_per_percent: MmPerPercent = MmPerPercent(found.slope / 100.0),
         /// The same in per cent of it; null where the objective is nothing.
-        percent_per_percent: Option<Plain> = (objective > CANCELLATION).then(|| Plain(slope / objective)),
+        percent_per_percent: Option<Plain> =
+            (case.plan.objective > CANCELLATION).then(|| Plain(found.slope / case.plan.objective)),
     }
 
     /// How far the weight moves the tool.
     pub struct SagFigures from sag: &Sag {
-        let SagRange { least, largest, spread } = sag.path;
-    } with {
         /// The smallest displacement along the path.
-        least_mm: DeflectionMm = least.into(),
+        least_mm: DeflectionMm = sag.path.least.into(),
         /// The largest.
-        largest_mm: DeflectionMm = largest.into(),
+        largest_mm: DeflectionMm = sag.path.largest.into(),
         /// The largest difference between the displacements of two points: what remains at most where the program is
         /// touched up at one of them.
-        spread_mm: DeflectionMm = spread.into(),
+        spread_mm: DeflectionMm = sag.path.spread.into(),
         /// The same of each segment.
         segments: Vec<SegmentSag> = sag.segments.iter().map(|(segment, range)| SegmentSag::of(*segment, range)).collect(),
     }
@@ -215,11 +195,11 @@ records! {
         /// The scored part of the deflection.
         score_mm: DeflectionMm = point.score.into(),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+        std_mm?: DeflectionMm = some(point.deviation),
         /// Lead of the tool from the axis of the path, where it leans.
-        #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
+        lead_deg?: AngleDeg = some(point.lean.map(|lean| lean.lead)),
         /// Its tilt.
-        #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
+        tilt_deg?: AngleDeg = some(point.lean.map(|lean| lean.tilt)),
     }
 
     /// A move between two segments.
@@ -235,8 +215,6 @@ records! {
 
     /// How a move between segments goes round the shapes of a cell.
     pub struct TransferPath from way: &transfer_path::TransferPath {
-        let [retracts, approaches] = way.along_axis;
-    } with {
         /// The pair that hits where no free path was found.
         blocked_by: Option<String> = way.blocked_by.as_deref().map(|[a, b]| format!("{a} and {b}")),
         /// Lines out of the cut and into it that are shorter than they should be.
@@ -244,9 +222,9 @@ records! {
         /// Joint angles at its corners.
         joints_deg: Vec<[AngleDeg; 6]> = way.joints.iter().map(|joints| each(*joints)).collect(),
         /// Whether it begins with a line along the tool axis.
-        retracts: bool = retracts,
+        retracts: bool = way.along_axis[0],
         /// Whether it ends with one.
-        approaches: bool = approaches,
+        approaches: bool = way.along_axis[1],
     }
 
     /// A line along the tool axis that is not as long as it should be.

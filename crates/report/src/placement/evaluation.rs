@@ -6,7 +6,7 @@ use super::setup::{SetupFigures, lines};
 use super::sheet::SheetFigures;
 use super::text::least_room;
 use super::{Context, SummaryLine, score_summary};
-use crate::columns::{aligned, line};
+use crate::columns::{line, table};
 use crate::document::{PlacementExact, PlacementFigures};
 use crate::figure::{FineAngleDeg, FineDeflectionMm, Plain, each, some};
 use crate::names;
@@ -22,6 +22,7 @@ use stead_problem::sense::BySense;
 
 records! {
     /// A placement that was evaluated.
+    #[derive(Default)]
     pub struct ScoreFigures of (problem: &Problem, score: &Score, context: &Context) {
         let BySense { best, worst } = &score.cycles;
     } with {
@@ -43,13 +44,12 @@ records! {
         #[serde(flatten)] setup: Option<SetupFigures> =
             Some(SetupFigures::of(score.orientation.as_ref(), &score.setup, &score.plans.best.axes)),
         /// What a fitter needs to set it up: the numbers of `setup.svg`, where that is written.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        setup_sheet: Option<SheetFigures> = score.sheet.as_ref().map(Into::into),
+        setup_sheet?: SheetFigures = score.sheet.as_ref().map(Into::into),
         /// Critical depths along both plans, where they were requested.
-        #[serde(skip_serializing_if = "Option::is_none")] stability: Option<PathStabilityFigures> =
+        stability?: PathStabilityFigures =
             context.stability.as_ref().map(|found| PathStabilityFigures::of(found, true)),
         /// Why nothing is feasible.
-        #[serde(skip_serializing_if = "Option::is_none")] findings: Option<Vec<FindingFigures>> = None,
+        findings?: Vec<FindingFigures> = None,
         /// Pairs of shapes that hit in all plans.
         #[serde(skip_serializing_if = "Vec::is_empty")] collisions: Vec<CollisionFigures> = Vec::new(),
     }
@@ -88,36 +88,24 @@ pub(crate) fn preview_json(placement: &Placement, problem: &Problem, preview: &P
     let mut best = PlanFigures::of(plan, cycle);
     best.cycle_s = None;
     context.document().with(ScoreFigures {
-        summary: Vec::new(),
         placement: placement.into(),
         placement_exact: placement.into(),
         feasible: true,
-        interrupted: false,
         best: Some(best),
-        worst: None,
         setup: Some(SetupFigures::of(orientation.as_ref(), &problem.setup, &plan.axes)),
-        setup_sheet: None,
-        stability: None,
-        findings: None,
-        collisions: Vec::new(),
+        ..ScoreFigures::default()
     })
 }
 
 /// What `stead score --json` and `stead place --json` print when nothing is feasible.
 pub fn infeasible_json(nothing: &Infeasible, context: &Context) -> Value {
     context.document().with(ScoreFigures {
-        summary: Vec::new(),
         placement: (&nothing.placement).into(),
         placement_exact: (&nothing.placement).into(),
-        feasible: false,
         interrupted: nothing.interrupted,
-        best: None,
-        worst: None,
-        setup: None,
-        setup_sheet: None,
-        stability: None,
         findings: Some(nothing.findings.iter().map(FindingFigures::of).collect()),
         collisions: nothing.collisions.iter().map(CollisionFigures::of).collect(),
+        ..ScoreFigures::default()
     })
 }
 
@@ -136,8 +124,7 @@ pub fn score_text(problem: &Problem, score: &Score, context: &Context) -> String
     header.extend(score.plans.best.mean_deviation.map(|_| "std mm"));
     header.push("postures");
     let last = header.len() - 1;
-    let header = header.into_iter().map(str::to_owned).collect();
-    let rows = [header, row("best", &score.plans.best), row("worst", &score.plans.worst)];
+    let rows = [row("best", &score.plans.best), row("worst", &score.plans.worst)];
     let stability = context
         .stability
         .as_ref()
@@ -163,7 +150,7 @@ pub fn score_text(problem: &Problem, score: &Score, context: &Context) -> String
         .collect();
     let setup = if setup.is_empty() { setup } else { format!("\n{setup}") };
     let (place, legend) = (place_text(&score.placement), super::text::legend(problem));
-    format!("{place}\n{setup}\n{}{legend}{postures}{feed}{stability}", aligned(&rows, &[0, last]))
+    format!("{place}\n{setup}\n{}{legend}{postures}{feed}{stability}", table(header, rows, &[0, last]))
 }
 
 records! {
@@ -198,11 +185,9 @@ records! {
         /// The scored part of the deflection.
         score_mm: Option<FineDeflectionMm> = state.map(|s| s.score().into()),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        std_mm: Option<FineDeflectionMm> = some(state.and_then(|s| s.own.deviation)),
+        std_mm?: FineDeflectionMm = some(state.and_then(|s| s.own.deviation)),
         /// What each thing that yields adds to the scored part, where more does than the joints about their axes.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        by_origin_mm: Option<OriginFigures> = explanation.by_origin.as_ref().map(Into::into),
+        by_origin_mm?: OriginFigures = explanation.by_origin.as_ref().map(Into::into),
         /// Whether the state is allowed.
         feasible: bool = explanation.is_allowed(),
         /// The constraints that it breaks.
@@ -228,7 +213,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
     header.extend(states().find_map(|s| s.own.deviation).map(|_| "std mm"));
     header.extend(["in words", ""]);
     let last = header.len() - 1;
-    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
+    let mut rows = Vec::new();
     let mut broken = String::new();
     for e in postures {
         let mut row = vec![e.posture.to_string()];
@@ -247,12 +232,9 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
             broken.push_str(&format!("  posture {}: {violation}\n", e.posture));
         }
     }
-    let mut text = format!(
-        "{}, point {point}, beta {} deg\n\n{}",
-        place_text(placement),
-        fixed(beta.to_degrees(), 3),
-        aligned(&rows, &[last - 1, last])
-    );
+    let (place, beta) = (place_text(placement), fixed(beta.to_degrees(), 3));
+    let states = table(header, rows, &[last - 1, last]);
+    let mut text = format!("{place}, point {point}, beta {beta} deg\n\n{states}");
     if let Some(origins) = origins::of_postures(postures) {
         text.push('\n');
         text.push_str(&origins);
@@ -265,12 +247,7 @@ pub fn explain_text(placement: &Placement, point: usize, beta: f64, postures: &[
 }
 
 fn place_text(placement: &Placement) -> String {
-    format!(
-        "x {} mm, y {} mm, z {} mm, yaw {} deg (Q4 {})",
-        fixed(placement.x * 1e3, 1),
-        fixed(placement.y * 1e3, 1),
-        fixed(placement.z * 1e3, 1),
-        fixed(placement.yaw.to_degrees(), 2),
-        fixed(placement.q4(), 4)
-    )
+    let [x, y, z] = [placement.x, placement.y, placement.z].map(|value| fixed(value * 1e3, 1));
+    let (yaw, q4) = (fixed(placement.yaw.to_degrees(), 2), fixed(placement.q4(), 4));
+    format!("x {x} mm, y {y} mm, z {z} mm, yaw {yaw} deg (Q4 {q4})")
 }

@@ -17,7 +17,7 @@ use serde::Serialize;
 use serde_json::Value;
 use stead_disk::input::InputFile;
 use stead_placement::outcome::{
-    ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome,
+    ForceSensitivity, LookupSummary, Outcome, PathLevels, Refinement, SetBasin, SetOutcome, SubsetAccuracy,
 };
 use stead_problem::problem::Problem;
 use stead_problem::symmetry::Unsupported;
@@ -62,8 +62,7 @@ records! {
         cases: Vec<CaseFigures> =
             outcome.cases.all().into_iter().map(|case| CaseFigures::of(case, with_points)).collect(),
         /// What a fitter needs to set the best placement up: the numbers of `setup.svg`.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        setup_sheet: Option<SheetFigures> = outcome.sheet.as_ref().map(Into::into),
+        setup_sheet?: SheetFigures = outcome.sheet.as_ref().map(Into::into),
         /// Placements evaluated.
         evaluations: usize = outcome.evaluations,
         /// States of the arm evaluated.
@@ -77,16 +76,14 @@ records! {
         /// Figures to compare with.
         reference: Option<ReferenceFigures> = context.reference.as_ref().map(ReferenceFigures::of),
         /// How a long path was searched.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        path_levels: Option<PathLevelFigures> = outcome.path_levels.as_ref().map(Into::into),
+        path_levels?: PathLevelFigures = outcome.path_levels.as_ref().map(Into::into),
         /// What each stiffness set makes of the best placement.
-        #[serde(skip_serializing_if = "Option::is_none")] stiffness_sets: Option<StiffnessSetFigures> =
+        stiffness_sets?: StiffnessSetFigures =
             (!outcome.sets.is_empty()).then(|| StiffnessSetFigures::of(outcome, context)),
         /// How far the best placement moves where scores have to cover errors of the force.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        sensitivity: Option<SensitivityFigures> = outcome.sensitivity.as_ref().map(Into::into),
+        sensitivity?: SensitivityFigures = outcome.sensitivity.as_ref().map(Into::into),
         /// Critical depths along the plans, where they were requested.
-        #[serde(skip_serializing_if = "Option::is_none")] stability: Option<PathStabilityFigures> =
+        stability?: PathStabilityFigures =
             context.stability.as_ref().map(|found| PathStabilityFigures::of(found, with_points)),
     }
 
@@ -100,35 +97,28 @@ records! {
 
     /// How a long path was searched.
     pub struct PathLevelFigures from levels: &PathLevels {
-        let [search, refinement] = [&levels.search, &levels.refinement].map(|subset| SubsetFigures {
-            points: subset.points,
-            compared_placements: subset.pairs,
-            largest_error: some(subset.error),
-        });
-    } with {
         /// Points of the path.
         points: usize = levels.points,
         /// The points of the search.
-        search: SubsetFigures = search,
+        search: SubsetFigures = (&levels.search).into(),
         /// The points of the refinement.
-        refinement: SubsetFigures = refinement,
+        refinement: SubsetFigures = (&levels.refinement).into(),
         /// Points that joined the subsets because they decide whether a placement has a plan, or as the largest what it
         /// is worth.
         deciding_points: usize = levels.deciding,
         /// Placements evaluated on all points.
         placements_on_all_points: usize = levels.whole,
     }
-}
 
-/// A subset of the points of a path.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct SubsetFigures {
-    /// How many points.
-    points: usize,
-    /// Placements compared with those on all points.
-    compared_placements: usize,
-    /// Largest relative error of an objective.
-    largest_error: Option<TableError>,
+    /// A subset of the points of a path.
+    pub struct SubsetFigures from subset: &SubsetAccuracy {
+        /// How many points.
+        points: usize = subset.points,
+        /// Placements compared with those on all points.
+        compared_placements: usize = subset.pairs,
+        /// Largest relative error of an objective.
+        largest_error: Option<TableError> = some(subset.error),
+    }
 }
 
 /// The lookup table that a search used, or why there is none.

@@ -1,6 +1,7 @@
 //! Reports of `stead place`, and in [`evaluation`] those of single evaluations, `stead score` and `stead explain`.
 
 mod case;
+pub(crate) mod context;
 pub mod evaluation;
 mod json;
 mod origins;
@@ -14,85 +15,26 @@ pub mod tables;
 mod tests;
 mod text;
 
+pub use context::{CaseOfStudy, Context};
 pub use json::{PlaceFigures, SummaryFigures, place_json, summary_json};
 pub use summary::{Summary, SummaryLine, placement_summary, score_summary, summary_line, summary_text};
 pub use text::placement_text;
 
-use crate::document::{Document, bytes};
+use crate::document::bytes;
 use crate::output::{Folder, ReportError};
 use crate::page;
 use crate::page::content::{LEAN_MAP, SETUP_SHEET};
-pub use crate::page::data::CaseOfStudy;
-use crate::page::data::{MapOf, Placed, RunOf, page_data};
+use crate::page::data::{MapOf, Placed, page_data};
 use crate::{Files, named, picture};
-use serde_json::Value;
 use std::path::PathBuf;
-use std::sync::Arc;
-use stead_disk::input::InputFile;
-use stead_model::published::Published;
-use stead_numerics::message::{Note, Warning};
 use stead_placement::outcome::{Case, Cases, Outcome};
 use stead_placement::place::Score;
 use stead_placement::setup_sheet::SetupSheet;
 use stead_planning::feasibility::DeflectionMap;
 use stead_problem::problem::Problem;
 use stead_problem::sense::BySense;
-use stead_problem::settings::SearchSettings;
-use stead_problem::settings::TransferSettings;
-use stead_removal::outcome::RemovalForces;
-use stead_runs::Run;
-use stead_study::PathStability;
-
-/// What the reports state besides the problem and its result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Context {
-    /// The files the result depends on.
-    pub inputs: Vec<InputFile>,
-    /// What the run file states, key by key.
-    pub stated: Value,
-    /// What the result rests on: assumptions made and values left at their defaults.
-    pub notes: Vec<Note>,
-    /// Why the result may not be what was wanted.
-    pub warnings: Vec<Warning>,
-    /// How hard the search was, and its seed.
-    pub search: SearchSettings,
-    /// The assumptions behind the times of the moves.
-    pub transfer: TransferSettings,
-    /// Figures to compare with, where there are any.
-    pub reference: Option<Published<[f64; 4]>>,
-    /// How deep may be cut along the path, where that was requested.
-    pub stability: Option<PathStability>,
-    /// What the path removes of a table `[stock]`.
-    pub removal: Option<Arc<RemovalForces>>,
-    /// Which case of a study the run is, where it is one.
-    pub study_case: Option<CaseOfStudy>,
-    /// Whether a page is left with the files.
-    pub page: bool,
-}
 
 impl Context {
-    /// What a run file says, with a search of this seed.
-    pub fn new(run: &Run, search: SearchSettings) -> Self {
-        Self {
-            inputs: run.inputs.clone(),
-            stated: run.stated.clone(),
-            notes: run.notes.clone(),
-            warnings: run.warnings.clone(),
-            search,
-            transfer: run.transfer,
-            reference: run.reference.clone(),
-            stability: None,
-            removal: run.removal.clone(),
-            study_case: None,
-            page: run.page,
-        }
-    }
-
-    /// A JSON document on what was computed from the run file.
-    pub fn document(&self) -> Document {
-        Document::new(&self.inputs).notes(&self.notes).warnings(&self.warnings)
-    }
-
     /// The files with a page of them, where one is wanted.
     fn with_page(
         &self,
@@ -103,13 +45,7 @@ impl Context {
         maps: &[MapOf<'_>],
     ) -> Result<Files, ReportError> {
         if self.page {
-            let run = RunOf {
-                transfer: &self.transfer,
-                removal: self.removal.as_deref(),
-                study_case: self.study_case.as_ref(),
-                notes: &self.notes,
-            };
-            let data = page_data(self.document(), command, problem, &run, plans, maps);
+            let data = page_data(self, command, problem, plans, maps);
             files.push((page::DATA.to_owned(), bytes(&data)));
             page::put_page(&mut files)?;
         }

@@ -1,7 +1,7 @@
 //! Where a deflection comes from: what each thing that yields adds to the scored part, in documents, tables and words;
 //! nothing where only the joints about their axes yield.
 
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::figure::{DeflectionMm, each, some};
 use crate::units::fixed;
 use stead_model::robot::Posture;
@@ -69,11 +69,8 @@ pub(super) fn of_plan(plan: &Plan) -> Option<String> {
     let origins = plan.by_origin?;
     let parts = named(&origins).into_iter().filter(|(_, part)| *part != 0.0);
     let parts: Vec<String> = parts.map(|(name, part)| format!("{name} {}", fixed(part * 1e3, 4))).collect();
-    Some(format!(
-        "of the scored deflection of {} mm in the mean: {}",
-        fixed(origins.total() * 1e3, 4),
-        parts.join(", ")
-    ))
+    let total = fixed(origins.total() * 1e3, 4);
+    Some(format!("of the scored deflection of {total} mm in the mean: {}", parts.join(", ")))
 }
 
 /// A table of what adds to the scored deflection of each posture, joint by joint; columns of what adds nothing are left
@@ -92,14 +89,14 @@ pub(super) fn of_postures(postures: &[Explanation; 8]) -> Option<String> {
     let count = all.first().map_or(0, |(_, columns)| columns.len());
     let shown: Vec<usize> = (0..count).filter(|k| all.iter().any(|(_, columns)| columns[*k].1 != 0.0)).collect();
     let header = all.first().map(|(_, columns)| shown.iter().map(|k| columns[*k].0.clone()).collect::<Vec<_>>());
-    let mut rows = vec![std::iter::once("posture".to_owned()).chain(header.unwrap_or_default()).collect::<Vec<_>>()];
-    rows.extend(all.iter().map(|(posture, columns)| {
+    let header = std::iter::once("posture".to_owned()).chain(header.unwrap_or_default());
+    let rows = all.iter().map(|(posture, columns)| {
         let figures = shown.iter().map(|k| fixed(columns[*k].1 * 1e3, 5));
         std::iter::once(posture.to_string()).chain(figures).collect()
-    }));
+    });
     Some(format!(
         "of the scored deflection, in mm: joints about their axes, normal to them by joint, and what else yields\n\n{}",
-        aligned(&rows, &[])
+        table(header, rows, &[])
     ))
 }
 

@@ -9,26 +9,22 @@ use serde::Serialize;
 use stead_cell::Scene;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::turns;
-use stead_placement::outcome::{Plan, PlanPoint};
+use stead_placement::outcome::PlanPoint;
+use stead_problem::setup::AxisPath;
 
 records! {
     /// A path point of a plan. Places are those of the tool centre point, and all vectors are in the robot base frame.
-    pub struct PlanRow of (point: &PlanPoint, plan: &Plan, scene: Option<&Scene>) {
-        let [x_mm, y_mm, z_mm] = each(point.position.into());
-        let [force_x_n, force_y_n, force_z_n] = each(point.force.into());
-        let [deflection_x_mm, deflection_y_mm, deflection_z_mm] = each(point.deflection.into());
-        let [turn_1, turn_4, turn_6] = [0, 3, 5].map(|joint| turns(point.joints[joint]));
-    } with {
+    pub struct PlanRow of (point: &PlanPoint, axes: &[AxisPath], scene: Option<&Scene>) {
         /// Path point, from 0.
         point: usize = point.point,
         /// Segment, from 1.
         segment: usize = point.segment,
         /// x of the tool centre point.
-        x_mm: PlaceMm = x_mm,
+        x_mm: PlaceMm = point.position.x.into(),
         /// y of the tool centre point.
-        y_mm: PlaceMm = y_mm,
+        y_mm: PlaceMm = point.position.y.into(),
         /// z of the tool centre point.
-        z_mm: PlaceMm = z_mm,
+        z_mm: PlaceMm = point.position.z.into(),
         /// Angle about the tool axis.
         beta_deg: AngleDeg = point.beta.into(),
         /// Posture, 1 to 8.
@@ -36,26 +32,26 @@ records! {
         /// The same in words: front or back; elbow up or down; flip or no flip.
         posture_words: String = names::posture_cell(point.posture_words),
         /// Full turns of joint 1 beyond (-180, 180] deg.
-        turn_1: i32 = turn_1,
+        turn_1: i32 = turns(point.joints[0]),
         /// Full turns of joint 4.
-        turn_4: i32 = turn_4,
+        turn_4: i32 = turns(point.joints[3]),
         /// Full turns of joint 6.
-        turn_6: i32 = turn_6,
+        turn_6: i32 = turns(point.joints[5]),
         #[serde(flatten)] joints: JointColumns<AngleDeg> = point.joints.into(),
         /// Inverse of the condition number of the Jacobian.
         inverse_condition: Plain = point.inverse_condition.into(),
         /// x of the force on the tool.
-        force_x_n: ForceN = force_x_n,
+        force_x_n: ForceN = point.force.x.into(),
         /// y of the force on the tool.
-        force_y_n: ForceN = force_y_n,
+        force_y_n: ForceN = point.force.y.into(),
         /// z of the force on the tool.
-        force_z_n: ForceN = force_z_n,
+        force_z_n: ForceN = point.force.z.into(),
         /// x of the deflection.
-        deflection_x_mm: DeflectionMm = deflection_x_mm,
+        deflection_x_mm: DeflectionMm = point.deflection.x.into(),
         /// y of the deflection.
-        deflection_y_mm: DeflectionMm = deflection_y_mm,
+        deflection_y_mm: DeflectionMm = point.deflection.y.into(),
         /// z of the deflection.
-        deflection_z_mm: DeflectionMm = deflection_z_mm,
+        deflection_z_mm: DeflectionMm = point.deflection.z.into(),
         /// Deflection to the left of the feed, normal to feed and tool axis.
         normal_mm: DeflectionMm = point.normal_part.into(),
         /// Deflection along the feed.
@@ -67,15 +63,15 @@ records! {
         /// Size of the deflection.
         total_mm: DeflectionMm = point.deflection.norm().into(),
         /// Deflection along the normal of the surface, where the task states it.
-        #[serde(skip_serializing_if = "Option::is_none")] surface_mm: Option<DeflectionMm> = some(point.surface_part),
+        surface_mm?: DeflectionMm = some(point.surface_part),
         /// Standard deviation of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] std_mm: Option<DeflectionMm> = some(point.deviation),
+        std_mm?: DeflectionMm = some(point.deviation),
         #[serde(flatten)] origins: Option<OriginColumns> = point.by_origin.as_ref().map(|origins| OriginColumns::of(Some(origins))),
         /// Lead of the tool from the axis of the path, above 0 with the spindle ahead of the tip; where it leans.
-        #[serde(skip_serializing_if = "Option::is_none")] lead_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.lead)),
+        lead_deg?: AngleDeg = some(point.lean.map(|lean| lean.lead)),
         /// Its tilt, above 0 with the spindle to the left of the feed.
-        #[serde(skip_serializing_if = "Option::is_none")] tilt_deg: Option<AngleDeg> = some(point.lean.map(|lean| lean.tilt)),
-        #[serde(flatten)] axes: AxisColumns = at_point(&plan.axes, point.point),
+        tilt_deg?: AngleDeg = some(point.lean.map(|lean| lean.tilt)),
+        #[serde(flatten)] axes: AxisColumns = at_point(axes, point.point),
         #[serde(flatten)] clearance: Option<ClearanceColumns> =
             scene.map(|scene: &Scene| ClearanceColumns::of(scene, point)),
     }

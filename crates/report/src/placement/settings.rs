@@ -6,8 +6,7 @@ use crate::figure::{
     WeightMmPerS, each, some,
 };
 use serde_json::Value;
-use stead_model::robot::Pose;
-use stead_model::robot::Posture;
+use stead_model::robot::{Pose, Posture};
 use stead_numerics::rotation::zyx_from_rotation;
 use stead_problem::criterion::{Criterion, Direction};
 use stead_problem::postures::PostureRules;
@@ -36,17 +35,13 @@ records! {
         /// What is chosen along the path.
         redundancy: RedundancyFigures = RedundancyFigures::of(&problem.redundancy),
         /// The path.
-        task: TaskFigures =
-            TaskFigures::of(problem),
+        task: TaskFigures = TaskFigures::of(problem),
         /// What the run file states, key by key.
         run_file: Value = context.stated.clone(),
         /// Where the robot is mounted in the cell, where that is not its origin.
-        #[serde(skip_serializing_if = "Option::is_none")] mount: Option<MountFigures> =
-            problem.robot.is_mounted().then(|| MountFigures::of(&problem.robot.cell_from_base())),
+        mount?: MountFigures = problem.robot.is_mounted().then(|| MountFigures::of(&problem.robot.cell_from_base())),
         /// Rules for postures, where there are some.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        postures: Option<PostureFigures> =
-            (problem.postures != PostureRules::NONE).then(|| PostureFigures::of(problem)),
+        postures?: PostureFigures = (problem.postures != PostureRules::NONE).then(|| PostureFigures::of(problem)),
     }
 
     /// How hard a search is.
@@ -56,18 +51,11 @@ records! {
         /// Generations.
         generations: usize = context.search.generations,
         /// How postures are chosen: `exact` or `genetic`.
-        postures: &'static str = match context.search.postures {
-            PostureSearch::Exact => "exact",
-            PostureSearch::Genetic => "genetic",
-        },
+        #[schemars(with = "String")] postures: PostureSearch = context.search.postures,
         /// Basins that are refined.
         basins: usize = context.search.basins,
         /// When a lookup table is used: `auto`, `always` or `never`.
-        tables: &'static str = match context.search.tables {
-            LookupUse::Auto => "auto",
-            LookupUse::Always => "always",
-            LookupUse::Never => "never",
-        },
+        #[schemars(with = "String")] tables: LookupUse = context.search.tables,
         /// False where the worst placement is not searched.
         #[serde(skip_serializing_if = "std::clone::Clone::clone")] worst: bool = context.search.worst,
     }
@@ -96,9 +84,7 @@ records! {
         /// Rotation about z.
         yaw_deg: [AngleDeg; 2] = each(ends(problem.cell.yaw)),
     }
-}
 
-records! {
     /// Where the robot is mounted in the cell.
     pub struct MountFigures of (mount: &Pose<f64>) {
         let [yaw, pitch, roll] = zyx_from_rotation(&mount.rotation);
@@ -108,9 +94,7 @@ records! {
         /// Roll, pitch and yaw of the base frame in the cell frame.
         rpy_deg: [AngleDeg; 3] = each([roll, pitch, yaw]),
     }
-}
 
-records! {
     /// What every state must keep.
     pub struct ConstraintFigures of (problem: &Problem) {
         /// Least inverse condition number of the Jacobian.
@@ -142,14 +126,11 @@ records! {
         /// Relative size of the force error that a score covers.
         force_uncertainty: f64 = *force_uncertainty,
         /// What a radian of joint travel in every 10 mm of the cut adds to the objective.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        joint_travel_weight_mm_per_rad: Option<WeightMmPerRad> = (travel > 0.0).then(|| travel.into()),
+        joint_travel_weight_mm_per_rad?: WeightMmPerRad = (travel > 0.0).then(|| travel.into()),
         /// How stiffness sets make one objective.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        over: Option<&'static str> = criterion.stiffness.as_ref().map(|sets| sets.over.name()),
+        over?: &'static str = criterion.stiffness.as_ref().map(|sets| sets.over.name()),
         /// How many standard deviations a score covers, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        confidence: Option<f64> = problem.robot.uncertainty().map(|_| criterion.confidence),
+        confidence?: f64 = problem.robot.uncertainty().map(|_| criterion.confidence),
     }
 
     /// Weights of the directions of a deflection.
@@ -166,28 +147,22 @@ records! {
         /// Along the normal of the surface.
         surface: f64 = weights.surface,
     }
-}
 
-records! {
     /// Rules for postures.
     pub struct PostureFigures of (problem: &Problem) {
-        let rules = &problem.postures;
-    } with {
         /// The postures allowed, 1 to 8.
-        allowed: Vec<u8> = rules.allowed().map(|posture| posture.number()).collect(),
+        allowed: Vec<u8> = problem.postures.allowed().map(|posture| posture.number()).collect(),
         /// The same in words.
         allowed_words: Vec<String> =
-            rules.allowed().map(|posture| problem.robot.posture_words(posture).to_string()).collect(),
+            problem.postures.allowed().map(|posture| problem.robot.posture_words(posture).to_string()).collect(),
         /// Whether it may change between segments: `free` or `never`.
-        changes: &'static str = if rules.may_change { "free" } else { "never" },
+        changes: &'static str = if problem.postures.may_change { "free" } else { "never" },
         /// What a second of the moves between segments counts in the choice of postures.
-        move_weight_mm_per_s: WeightMmPerS = rules.move_weight.into(),
+        move_weight_mm_per_s: WeightMmPerS = problem.postures.move_weight.into(),
         /// How much worse than its best plan that of a segment may be to make the moves shorter. %
-        tie_percent: Plain = Plain(rules.tie * 100.0),
+        tie_percent: Plain = Plain(problem.postures.tie * 100.0),
     }
-}
 
-records! {
     /// What is chosen along the path.
     pub struct RedundancyFigures of (redundancy: &Redundancy) {
         let beta = redundancy.beta;
@@ -198,16 +173,13 @@ records! {
         /// Feed where the task states none.
         feed_mm_per_s: SpeedMmPerS = redundancy.feed.into(),
         /// Largest rate of beta.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_beta_rate_deg_per_mm: Option<RateDegPerMm> = some(redundancy.max_beta_rate),
+        max_beta_rate_deg_per_mm?: RateDegPerMm = some(redundancy.max_beta_rate),
         /// Largest rate of turning of the spindle.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_spindle_turn_deg_per_mm: Option<RateDegPerMm> = some(redundancy.max_spindle_turn),
+        max_spindle_turn_deg_per_mm?: RateDegPerMm = some(redundancy.max_spindle_turn),
         /// Largest speed of turning of the spindle.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_spindle_turn_deg_per_s: Option<SpeedDegPerS> = some(redundancy.max_spindle_speed),
+        max_spindle_turn_deg_per_s?: SpeedDegPerS = some(redundancy.max_spindle_speed),
         /// Where beta is constant: along each segment, or along the path.
-        #[serde(skip_serializing_if = "Option::is_none")] beta: Option<&'static str> = is_constant.then(|| beta.name()),
+        beta?: &'static str = is_constant.then(|| beta.name()),
     }
 
     /// The path of a task.

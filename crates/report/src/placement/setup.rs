@@ -2,7 +2,7 @@
 //! nor axes.
 
 use super::PLACES;
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::csv_file::Columns;
 use crate::figure::{AngleDeg, DeflectionMm, PlaceMm, some};
 use crate::units::{Unit, fixed};
@@ -105,44 +105,37 @@ records! {
     /// How part and external axes are set up; empty where a run has neither orientations nor axes, and
     /// no tool that leans.
     pub struct SetupFigures of (orientation: Option<&String>, setup: &Setup, axes: &[AxisPath]) {
-        let exact = |position: f64, kind: AxisKind| match kind {
+        let leans = || setup.leans.iter().map(|lean| [lean.lead, lean.tilt].map(f64::to_degrees)).collect();
+    } with {
+        /// Name of the orientation of the part.
+        orientation?: String = orientation.cloned(),
+        /// External axes and their positions.
+        external_axes?: ExternalAxisFigures = (!axes.is_empty()).then(|| ExternalAxisFigures::of(setup, axes)),
+        /// Lead and tilt of the tool from the axis of the path at every point with every digit, where it leans.
+        leans_deg?: Vec<[f64; 2]> = (!setup.leans.is_empty()).then(leans),
+    }
+
+    /// Positions of external axes.
+    pub struct ExternalAxisFigures of (setup: &Setup, axes: &[AxisPath]) {
+        let exact = |(position, axis): (&f64, &AxisPath)| match axis.kind {
             AxisKind::Rail => position * 1e3,
             AxisKind::Turntable => position.to_degrees(),
         };
-        let row = |row: &Vec<f64>| row.iter().zip(axes).map(|(at, axis)| exact(*at, axis.kind)).collect::<Vec<f64>>();
-        let leans = || setup.leans.iter().map(|lean| [lean.lead, lean.tilt].map(f64::to_degrees)).collect();
-        let external_axes = || {
-            let (for_each, positions) = match &setup.positions {
-                AxisPositions::Same(one) => ("path", vec![row(one)]),
-                AxisPositions::PerSegment(all) => ("segment", all.iter().map(row).collect()),
-                AxisPositions::PerPoint(all) => ("point", all.iter().map(row).collect()),
-            };
-            ExternalAxisFigures { axes: axes.iter().map(AxisFigures::of).collect(), for_each, positions }
+        let row = |row: &Vec<f64>| row.iter().zip(axes).map(exact).collect();
+        let (for_each, positions) = match &setup.positions {
+            AxisPositions::Same(one) => ("path", vec![row(one)]),
+            AxisPositions::PerSegment(all) => ("segment", all.iter().map(row).collect()),
+            AxisPositions::PerPoint(all) => ("point", all.iter().map(row).collect()),
         };
     } with {
-        /// Name of the orientation of the part.
-        #[serde(skip_serializing_if = "Option::is_none")] orientation: Option<String> = orientation.cloned(),
-        /// External axes and their positions.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        external_axes: Option<ExternalAxisFigures> = (!axes.is_empty()).then(external_axes),
-        /// Lead and tilt of the tool from the axis of the path at every point with every digit, where it leans.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        leans_deg: Option<Vec<[f64; 2]>> = (!setup.leans.is_empty()).then(leans),
+        /// The axes.
+        axes: Vec<AxisFigures> = axes.iter().map(AxisFigures::of).collect(),
+        /// What each row of positions is for: the `path`, a `segment` or a `point`.
+        for_each: &'static str = for_each,
+        /// Rows of positions with every digit, in the units of the axes.
+        positions: Vec<Vec<f64>> = positions,
     }
-}
 
-/// Positions of external axes.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct ExternalAxisFigures {
-    /// The axes.
-    axes: Vec<AxisFigures>,
-    /// What each row of positions is for: the `path`, a `segment` or a `point`.
-    for_each: &'static str,
-    /// Rows of positions with every digit, in the units of the axes.
-    positions: Vec<Vec<f64>>,
-}
-
-records! {
     /// An external axis.
     pub struct AxisFigures of (axis: &AxisPath) {
         /// Its name.
@@ -195,19 +188,18 @@ pub(super) fn text(problem: &Problem, outcome: &Outcome) -> String {
         header.extend((!problem.orientations.is_empty()).then(|| "orientation".to_owned()));
         header.extend(problem.external_axes.iter().map(|axis| format!("{} {}", axis.name, unit_name(axis.kind))));
         header.extend(["best mm", "worst mm"].map(str::to_owned));
-        let mut rows = vec![header];
-        for (TriedSetup { setup, objectives }, number) in outcome.tried_setups.iter().zip(1..) {
+        let rows = outcome.tried_setups.iter().zip(1..).map(|(TriedSetup { setup, objectives }, number)| {
             let problem = problem.in_setup(setup);
             let mut row = vec![number.to_string()];
             row.extend(problem.orientation().map(|orientation| orientation.name.clone()));
             row.extend(standing(&problem.axis_paths()));
             let figure = |objective: Option<f64>| objective.map_or_else(|| "-".to_owned(), |of| fixed(of * 1e3, 4));
             row.extend([objectives.map(|(best, _)| best), objectives.and_then(|(_, worst)| worst)].map(figure));
-            rows.push(row);
-        }
+            row
+        });
         let names = if problem.orientations.is_empty() { vec![] } else { vec![1] };
         text.push('\n');
-        text.push_str(&aligned(&rows, &names));
+        text.push_str(&table(header, rows, &names));
     }
     text
 }

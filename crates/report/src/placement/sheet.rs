@@ -11,25 +11,6 @@ use stead_placement::setup_sheet::{
     Allowed, AxisSetup, CheckPoint, NearestLimit, RISES, Room, SetupSheet, SheetFrame, Tolerance, Tolerances, Ways,
 };
 
-/// The word for a frame in documents.
-fn frame_word(frame: SheetFrame) -> &'static str {
-    match frame {
-        SheetFrame::Root => "root",
-        SheetFrame::Base => "base",
-        SheetFrame::Cell => "cell",
-    }
-}
-
-/// The word for what is known of ways in documents.
-fn ways_word(ways: Ways) -> Option<&'static str> {
-    match ways {
-        Ways::None => None,
-        Ways::NotChecked => Some("not-checked"),
-        Ways::Free => Some("free"),
-        Ways::Blocked => Some("blocked"),
-    }
-}
-
 records! {
     /// What a fitter needs to set the best placement up and to check it. All places are in one frame.
     pub struct SheetFigures from sheet: &SetupSheet {
@@ -37,7 +18,7 @@ records! {
     } with {
         /// The frame of all places: `root`, that of the controller, which the pendant shows; `base`, that of the rows,
         /// where the robot file has no `[root]`; or `cell`, of a mounted robot, or one that external axes carry.
-        frame: &'static str = frame_word(sheet.frame),
+        #[schemars(with = "String")] frame: SheetFrame = sheet.frame,
         /// The part as its task file has it, all external axes at zero: its origin is the datum.
         part: PlacedFrame = (&sheet.part).into(),
         /// The same in the frame of placements, as page and terminal have it.
@@ -49,10 +30,9 @@ records! {
         /// The tool frame on the flange.
         tool_on_flange: PlacedFrame = (&sheet.flange_from_tool).into(),
         /// Diameter of the cutter, where the run states it among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        cutter_diameter_mm: Option<PlaceMm> = some(sheet.cutter_diameter),
+        cutter_diameter_mm?: PlaceMm = some(sheet.cutter_diameter),
         /// Height of the top of the shape named `floor`, where there is one.
-        #[serde(skip_serializing_if = "Option::is_none")] floor_mm: Option<PlaceMm> = some(sheet.floor),
+        floor_mm?: PlaceMm = some(sheet.floor),
         /// The external axes.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         axes: Vec<AxisSetupFigures> = sheet.axes.iter().map(Into::into).collect(),
@@ -60,19 +40,18 @@ records! {
         check_points: Vec<CheckFigures> = sheet.check_points.iter().map(|point| CheckFigures::of(point, sheet)).collect(),
         /// What is known of the ways from one check point to the next, out along the tool axis, by a joint move and in
         /// again: `free`, `blocked` in every order of the points, or `not-checked` without shapes; null for one point.
-        ways: Option<&'static str> = ways_word(sheet.ways),
+        #[schemars(with = "Option<String>")]
+        ways: Option<Ways> = (sheet.ways != Ways::None).then_some(sheet.ways),
         /// Whether there are shapes, by which collisions were looked for.
         collisions_checked: bool = sheet.has_shapes,
         /// The least room on the joint moves between segments, at poses 0.02 rad apart.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        room_on_moves: Option<RoomFigures> = sheet.room_on_moves.as_ref().map(Into::into),
+        room_on_moves?: RoomFigures = sheet.room_on_moves.as_ref().map(Into::into),
         /// How near the plan comes to a limit of a joint.
         nearest_limit: Option<NearestLimitFigures> = sheet.nearest_limit.as_ref().map(Into::into),
         /// By how much the part may be off; null where that is not known.
         tolerances: Option<ToleranceFigures> = tolerances.ok().map(Into::into),
         /// Why it is not known.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        no_tolerances: Option<String> = tolerances.err().cloned(),
+        no_tolerances?: String = tolerances.err().cloned(),
     }
 
     /// A frame in another.
@@ -123,10 +102,9 @@ records! {
         /// The rotation Rz(A) Ry(B) Rx(C) of the tool frame: A, B, C.
         abc_deg: [AngleDeg; 3] = each(zyx_from_rotation(&check.tool.rotation)),
         /// Both in the root of the controller as the robot stands, where that is known and another frame.
-        #[serde(skip_serializing_if = "Option::is_none")] in_root: Option<PlacedFrame> =
-            check.in_root.as_ref().map(Into::into),
+        in_root?: PlacedFrame = check.in_root.as_ref().map(Into::into),
         /// Status and turn of a KUKA controller, S and T.
-        #[serde(skip_serializing_if = "Option::is_none")] status_and_turn: Option<[u8; 2]> = check.status_and_turn,
+        status_and_turn?: [u8; 2] = check.status_and_turn,
         /// Joint angles of the rows.
         joints_deg: [AngleDeg; 6] = each(check.joints),
         /// Joint angles as the controller counts them; null without `[controller]`.
@@ -167,21 +145,25 @@ records! {
     /// How far the part may be off in a direction.
     pub struct DirectionFigures from found: &Tolerance {
         let is_turn = found.direction.is_turn();
-        let offset = |of: f64| Offset::of(of, is_turn);
-        let allowed = |of: &Allowed| AllowedFigures { offset: offset(of.offset), is_more: of.is_more };
     } with {
         /// `+x`, `-x` and so on, `+rz`, `-rz`.
         direction: String = found.direction.to_string(),
         /// `mm` or `deg`.
         unit: &'static str = if is_turn { unit_name(AxisKind::Turntable) } else { unit_name(AxisKind::Rail) },
         /// Until the objective has grown by each of the rises.
-        rises: [AllowedFigures; 2] = [allowed(&found.rises[0]), allowed(&found.rises[1])],
+        rises: [AllowedFigures; 2] = [0, 1].map(|rise| AllowedFigures::of(&found.rises[rise], is_turn)),
         /// The nearest trial at which the program cannot run, where one was met.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        blocked_at: Option<Offset> = found.blocked.as_ref().map(|of| offset(of.offset)),
+        blocked_at?: Offset = found.blocked.as_ref().map(|of| Offset::of(of.offset, is_turn)),
         /// The limit that is broken there, or the two shapes that come too near.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        blocked_by: Option<String> = found.blocked.as_ref().map(|of| of.by.clone()),
+        blocked_by?: String = found.blocked.as_ref().map(|of| of.by.clone()),
+    }
+
+    /// How far the part may be off until the objective has grown by a share.
+    pub struct AllowedFigures of (allowed: &Allowed, is_turn: bool) {
+        /// How far, to a fifth of it on the safe side.
+        offset: Offset = Offset::of(allowed.offset, is_turn),
+        /// Whether it is the farthest tried, so that the part may be off by more.
+        is_more: bool = allowed.is_more,
     }
 }
 
@@ -199,13 +181,4 @@ impl Offset {
     fn of(offset: f64, is_turn: bool) -> Self {
         if is_turn { Self::About(offset.into()) } else { Self::Along(offset.into()) }
     }
-}
-
-/// How far the part may be off until the objective has grown by a share.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub struct AllowedFigures {
-    /// How far, to a fifth of it on the safe side.
-    offset: Offset,
-    /// Whether it is the farthest tried, so that the part may be off by more.
-    is_more: bool,
 }

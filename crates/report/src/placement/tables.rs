@@ -13,10 +13,11 @@ use stead_model::published::Published;
 use stead_model::robot::{Posture, PostureWords};
 use stead_model::task::lean::Lean;
 use stead_placement::lean_map::{LeanMap, LeanReason, LeanState};
-use stead_placement::outcome::{Case, Cases, Generation, Plan, Refinement};
+use stead_placement::outcome::{Case, Cases, Generation, Plan, PlanPoint, Refinement};
 use stead_planning::feasibility::{DeflectionMap, MapReason};
 use stead_planning::transfer::Transfer;
 use stead_problem::problem::{Placement, Problem};
+use stead_problem::setup::AxisPath;
 
 /// `best.csv`, `worst.csv` and the like: one plan, a `PlanRow` per path point; behind it the positions of external
 /// axes, `e1_mm` or `e1_deg` and so on.
@@ -24,7 +25,16 @@ use stead_problem::problem::{Placement, Problem};
 /// # Errors
 /// [`ReportError::Format`] when the CSV writer fails.
 pub fn plan(plan: &Plan, scene: Option<&Scene>) -> Result<Vec<u8>, ReportError> {
-    rows("the table of a plan", plan.points.iter().map(|point| PlanRow::of(point, plan, scene)))
+    plan_points(&plan.points, &plan.axes, scene)
+}
+
+/// The same by its points and the positions of the external axes.
+pub(crate) fn plan_points(
+    points: &[PlanPoint],
+    axes: &[AxisPath],
+    scene: Option<&Scene>,
+) -> Result<Vec<u8>, ReportError> {
+    rows("the table of a plan", points.iter().map(|point| PlanRow::of(point, axes, scene)))
 }
 
 records! {
@@ -78,15 +88,13 @@ records! {
         /// The largest turn of a joint from a point to the next.
         max_joint_step_deg: AngleDeg = plan.travel.largest_step.into(),
         /// Mean deflection along the normal of the surface, where the task states it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        mean_surface_mm: Option<DeflectionMm> = some(figures.surface.map(|surface| surface.mean)),
+        mean_surface_mm?: DeflectionMm = some(figures.surface.map(|surface| surface.mean)),
         /// The largest.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        max_surface_mm: Option<DeflectionMm> = some(figures.surface.map(|surface| surface.max)),
+        max_surface_mm?: DeflectionMm = some(figures.surface.map(|surface| surface.max)),
         /// Standard deviation of the mean of the scored part, where the robot's uncertainty is known.
-        #[serde(skip_serializing_if = "Option::is_none")] mean_std_mm: Option<DeflectionMm> = some(plan.mean_deviation),
+        mean_std_mm?: DeflectionMm = some(plan.mean_deviation),
         /// Orientation of the part, where a run has several.
-        #[serde(skip_serializing_if = "Option::is_none")] orientation: Option<String> = case.orientation.clone(),
+        orientation?: String = case.orientation.clone(),
         #[serde(flatten)] axes: setup::AxisColumns = setup::fixed_positions(&plan.axes),
     }
 }
@@ -154,8 +162,7 @@ records! {
         /// Why none is allowed.
         reason: Option<String> = blocked.map(|blocked| blocked.kind.code()),
         /// The pair of shapes that hits, among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pair: Option<String> = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
+        pair?: String = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
         #[serde(flatten)] origins: Option<OriginColumns> =
             origins::of_state(at, point, problem.redundancy.beta(k), posture),
     }
@@ -196,8 +203,7 @@ records! {
         /// Why none is allowed: `lean` for `max_lean_deg`, `scallop_mm` or `step_over_mm`, or what most angles break.
         reason: Option<String> = reason.map(LeanReason::code),
         /// The pair of shapes that hits, among shapes of a cell.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        pair: Option<String> = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
+        pair?: String = problem.scene.as_deref().map(|scene| pair(scene).unwrap_or_default()),
     }
 }
 
@@ -224,9 +230,7 @@ records! {
         travel_deg: AngleDeg = transfer.travel.into(),
         #[serde(flatten)] path: Option<TransferPathColumns> = scene.map(|_| TransferPathColumns::of(transfer)),
     }
-}
 
-records! {
     /// How a move goes round the shapes of a cell.
     #[derive(Default)]
     struct TransferPathColumns of (transfer: &Transfer) {

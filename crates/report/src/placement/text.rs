@@ -1,7 +1,7 @@
 //! The short table for people.
 
 use super::{Context, origins, setup};
-use crate::columns::{aligned, line};
+use crate::columns::{line, table};
 use crate::names;
 use crate::units::{figures, fixed};
 use stead_model::published::Published;
@@ -9,8 +9,7 @@ use stead_placement::outcome::{Case, DeflectionFigures, ForceSensitivity, Outcom
 use stead_placement::sensitivity::SpringSlope;
 use stead_planning::feed::{CutFeed, FeedLimit};
 use stead_problem::collision::PlanClearance;
-use stead_problem::criterion::CANCELLATION;
-use stead_problem::criterion::Over;
+use stead_problem::criterion::{CANCELLATION, Over};
 use stead_problem::joint_travel::Swing;
 use stead_problem::problem::Problem;
 use stead_problem::symmetry::Unsupported;
@@ -27,12 +26,12 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
     let (points, segments) = (count(points, "point"), count(segments, "segment"));
     let mut text = format!("{}: {points} in {segments}\n\n", problem.robot.name());
-    text.push_str(&aligned(&placement_rows(outcome), &[1, 2, 8]));
+    text.push_str(&placements(outcome));
     let plans = outcome.cases.all().into_iter().map(|case| &case.plan);
     names::posture_lines(plans).iter().for_each(|row| line(&mut text, row));
     text.push_str(&setup::text(problem, outcome));
     text.push('\n');
-    text.push_str(&aligned(&deflection_rows(outcome, context.reference.as_ref()), &[]));
+    text.push_str(&deflections(outcome, context.reference.as_ref()));
     if let Some(reference) = &context.reference {
         line(&mut text, &format!("ref: {}", reference.source));
     }
@@ -49,7 +48,7 @@ pub fn placement_text(problem: &Problem, outcome: &Outcome, context: &Context) -
     line(&mut text, &joint_travel(&outcome.cases.best.plan));
     if let [_, ..] = &outcome.sets[..] {
         text.push('\n');
-        text.push_str(&aligned(&set_rows(outcome, context), &[0]));
+        text.push_str(&sets(outcome, context));
         choice_by_regret(problem, outcome).iter().for_each(|row| line(&mut text, row));
     }
     if let Some(found) = &outcome.sensitivity {
@@ -87,11 +86,8 @@ fn search_lines(outcome: &Outcome) -> Vec<String> {
 fn path_levels(levels: &PathLevels) -> String {
     let (search, refinement) = (levels.search, levels.refinement);
     let error = search.error.map_or(String::new(), |error| {
-        format!(
-            ": means are off by up to {} % there ({} placements planned both ways)",
-            figures(error * 100.0),
-            search.pairs
-        )
+        let (percent, pairs) = (figures(error * 100.0), search.pairs);
+        format!(": means are off by up to {percent} % there ({pairs} placements planned both ways)")
     });
     format!(
         "searched on {} and refined on {} of {} points{error}; {} placements were planned on all points",
@@ -163,10 +159,8 @@ fn stiffest(case: &Case) -> Option<String> {
 pub(super) fn least_room(plan: &Plan, name: &str) -> Option<String> {
     let PlanClearance { point, distance, names } = plan.clearance.as_ref()?;
     let [a, b] = names.as_ref();
-    Some(format!(
-        "least clearance of the {name}: {} mm between {a} and {b}, at point {point}",
-        fixed(distance * 1e3, 1)
-    ))
+    let distance = fixed(distance * 1e3, 1);
+    Some(format!("least clearance of the {name}: {distance} mm between {a} and {b}, at point {point}"))
 }
 
 /// The highest feed of a best plan and what decides it, a line each, where a limit of the joints is known.
@@ -212,16 +206,15 @@ pub(super) fn joint_travel(plan: &Plan) -> String {
 }
 
 /// What each stiffness set makes of the best placement.
-fn set_rows(outcome: &Outcome, context: &Context) -> Vec<Vec<String>> {
-    let mut rows = vec![["stiffness set", "mean mm", "best alone mm", "regret %"].map(str::to_owned).to_vec()];
+fn sets(outcome: &Outcome, context: &Context) -> String {
     let files = context.inputs.iter().filter(|input| input.role == "stiffness");
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
-    rows.extend(outcome.sets.iter().zip(files).map(|(set, file)| {
+    let rows = outcome.sets.iter().zip(files).map(|(set, file)| {
         let regret = set.regret().map(|regret| fixed(regret * 100.0, 1));
         let alone = set.alone.map(|alone| fixed(alone * 1e3, 4));
         vec![file.name.clone(), fixed(set.mean * 1e3, 4), or_dash(alone), or_dash(regret)]
-    }));
-    rows
+    });
+    table(["stiffness set", "mean mm", "best alone mm", "regret %"], rows, &[0])
 }
 
 /// Which of the refined basins was taken, where their regrets decide.
@@ -249,10 +242,8 @@ fn sensitivity(found: &ForceSensitivity) -> Vec<String> {
     ]
 }
 
-fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
-    let header = ["case", "place", "plan", "x mm", "y mm", "z mm", "yaw deg", "Q4", "postures"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for case in outcome.cases.all() {
+fn placements(outcome: &Outcome) -> String {
+    let rows = outcome.cases.all().into_iter().map(|case| {
         let [placement_word, plan_word] = [case.placement_sense, case.plan_sense].map(names::sense);
         let placement = &case.placement;
         let mut row = vec![case.number().to_string(), placement_word.to_owned(), plan_word.to_owned()];
@@ -260,9 +251,9 @@ fn placement_rows(outcome: &Outcome) -> Vec<Vec<String>> {
         row.push(fixed(placement.yaw.to_degrees(), 1));
         row.push(fixed(placement.q4(), 4));
         row.push(names::postures_within(&case.plan.postures, POSTURES_WIDTH));
-        rows.push(row);
-    }
-    rows
+        row
+    });
+    table(["case", "place", "plan", "x mm", "y mm", "z mm", "yaw deg", "Q4", "postures"], rows, &[1, 2, 8])
 }
 
 /// What the columns of deflections are, in a line.
@@ -273,7 +264,7 @@ pub(super) fn legend(problem: &Problem) -> String {
     format!("mean and max: {part} of the scored points{with}; total: their whole deflection{without}\n")
 }
 
-fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -> Vec<Vec<String>> {
+fn deflections(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -> String {
     let mut header = vec!["case", "mean mm", "max mm", "total mm", "max total"];
     header.extend(outcome.cases.best.plan.mean_deviation.map(|_| "std mm"));
     header.push("ratio");
@@ -281,8 +272,7 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -
         header.extend(["ref mm", "ref ratio"]);
     }
     header.extend(["cutting s", "moves s", "cycle s"]);
-    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for (index, case) in outcome.cases.all().into_iter().enumerate() {
+    let rows = outcome.cases.all().into_iter().enumerate().map(|(index, case)| {
         let mut row = vec![case.number().to_string()];
         let total = case.plan.deflection.total;
         row.extend([case.plan.mean, case.plan.max, total.mean, total.max].map(|value| fixed(value * 1e3, 4)));
@@ -295,7 +285,7 @@ fn deflection_rows(outcome: &Outcome, reference: Option<&Published<[f64; 4]>>) -
         let moves = total.map(|total| total - case.cycle.cutting);
         let seconds = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), |time| fixed(time, 1));
         row.extend([Some(case.cycle.cutting), moves, total].map(seconds));
-        rows.push(row);
-    }
-    rows
+        row
+    });
+    table(header, rows, &[])
 }

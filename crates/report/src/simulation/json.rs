@@ -4,21 +4,19 @@ use crate::document::Document;
 use crate::figure::{
     ForceN, FrequencyHz, HeightUm, MomentS, PlaceMm, RatePerS, Share, SpeedRpm, StepS, TimeS, each, some,
 };
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
+use stead_model::published::Published;
+
 use stead_runs::SimulationRun;
 use stead_simulation::coupled::End;
 use stead_simulation::modes::Mode;
-use stead_simulation::outcome::{Simulation, Statistics};
+use stead_simulation::outcome::{PassFigures, Simulation, Statistics};
 use stead_simulation::roughness::Roughness;
 
 records! {
     /// A simulated pass.
     pub struct SimulationFigures of (run: &SimulationRun, found: &Simulation) {
         let (end, reason) = end_words(&found.run.end);
-        let forces =
-            |forces: &Option<[Statistics; 2]>, axis: usize| forces.as_ref().map(|forces| (&forces[axis]).into());
     } with {
         /// Name of the robot.
         robot: String = run.setup.robot.name().to_owned(),
@@ -64,16 +62,11 @@ records! {
         /// The modes of the arm.
         modes: Vec<PassMode> = found.modes.iter().map(PassMode::of).collect(),
         /// Published figures.
-        published: Option<PublishedFigures> = run.published.as_ref().map(|published| PublishedFigures {
-            source: published.source.clone(),
-            force_x: forces(&published.figures.forces, 0),
-            force_y: forces(&published.figures.forces, 1),
-            profile: published.figures.roughness.as_ref().map(Into::into),
-        }),
+        published: Option<PublishedFigures> = run.published.as_ref().map(Into::into),
         /// Time on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] wall_s: Option<TimeS> = None,
+        wall_s?: TimeS = None,
         /// Time of the pass for each second on the clock.
-        #[serde(skip_serializing_if = "Option::is_none")] real_time_factor: Option<Option<TimeS>> = None,
+        real_time_factor?: Option<TimeS> = None,
     }
 
     /// What small motions do in the middle of the pass and where `stead stability` analyses it.
@@ -98,16 +91,14 @@ records! {
 
     /// A force over time.
     pub struct ForceFigures from statistics: &Statistics {
-        let Statistics { min, max, mean, root_mean_square } = *statistics;
-    } with {
         /// Least.
-        min_n: ForceN = min.into(),
+        min_n: ForceN = statistics.min.into(),
         /// Largest.
-        max_n: ForceN = max.into(),
+        max_n: ForceN = statistics.max.into(),
         /// Mean.
-        mean_n: ForceN = mean.into(),
+        mean_n: ForceN = statistics.mean.into(),
         /// Root mean square.
-        rms_n: ForceN = root_mean_square.into(),
+        rms_n: ForceN = statistics.root_mean_square.into(),
     }
 
     /// Roughness of a profile.
@@ -138,19 +129,22 @@ records! {
         /// Share of the critical damping.
         damping_ratio: Share = mode.damping_ratio.into(),
     }
+
+    /// Published figures of a pass.
+    pub struct PublishedFigures from published: &Published<PassFigures> {
+        /// Where they are from.
+        source: String = published.source.clone(),
+        /// The force along the feed.
+        force_x: Option<ForceFigures> = forces(&published.figures.forces, 0),
+        /// The force towards the wall.
+        force_y: Option<ForceFigures> = forces(&published.figures.forces, 1),
+        /// The profile of the wall.
+        profile: Option<RoughnessFigures> = published.figures.roughness.as_ref().map(Into::into),
+    }
 }
 
-/// Published figures of a pass.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct PublishedFigures {
-    /// Where they are from.
-    source: String,
-    /// The force along the feed.
-    force_x: Option<ForceFigures>,
-    /// The force towards the wall.
-    force_y: Option<ForceFigures>,
-    /// The profile of the wall.
-    profile: Option<RoughnessFigures>,
+fn forces(forces: &Option<[Statistics; 2]>, axis: usize) -> Option<ForceFigures> {
+    forces.as_ref().map(|forces| (&forces[axis]).into())
 }
 
 fn document(run: &SimulationRun, found: &Simulation, figures: SimulationFigures) -> Value {

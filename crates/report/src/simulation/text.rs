@@ -1,7 +1,7 @@
 //! The text for people.
 
 use super::json::end_words;
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::units::{figures, fixed};
 use stead_runs::SimulationRun;
 use stead_simulation::coupled::End;
@@ -37,36 +37,33 @@ fn forces(run: &SimulationRun, found: &Simulation) -> String {
         };
         return format!("no forces from {from} to {to} s: {why}\n\n");
     };
-    let header = ["", "min", "max", "mean", "rms"].map(str::to_owned).to_vec();
-    let mut rows = vec![header];
-    let row = |name: String, Statistics { min, max, mean, root_mean_square }: &Statistics| {
-        let mut row = vec![name];
-        row.extend([min, max, mean, root_mean_square].map(|force| fixed(*force, 2)));
-        row
+    let row = |name: &str, Statistics { min, max, mean, root_mean_square }: &Statistics| {
+        let cells = [min, max, mean, root_mean_square].map(|force| fixed(*force, 2));
+        std::iter::once(name.to_owned()).chain(cells).collect()
     };
+    let mut rows: Vec<Vec<String>> = Vec::new();
     let published = run.published.as_ref().and_then(|published| published.figures.forces.as_ref());
     for (axis, name) in ["along the feed", "towards the wall"].into_iter().enumerate() {
-        rows.push(row(name.to_owned(), &forces[axis]));
-        rows.extend(published.map(|published| row("  published".to_owned(), &published[axis])));
+        rows.push(row(name, &forces[axis]));
+        rows.extend(published.map(|published| row("  published", &published[axis])));
     }
-    format!("forces on the tool (N) from {from} to {to} s\n{}\n", aligned(&rows, &[0]))
+    let forces = table(["", "min", "max", "mean", "rms"], rows, &[0]);
+    format!("forces on the tool (N) from {from} to {to} s\n{forces}\n")
 }
 
 fn roughness(run: &SimulationRun, found: &Simulation) -> String {
     let Some([raw, filtered]) = &found.roughness else {
         return "no wall was made\n\n".to_owned();
     };
-    let header = ["", "Ra", "Rq", "Rt"].map(str::to_owned).to_vec();
-    let row = |name: String, Roughness { mean, root_mean_square, total }: &Roughness| {
-        let mut row = vec![name];
-        row.extend([mean, root_mean_square, total].map(|height| fixed(height * 1e6, 2)));
-        row
+    let row = |name: &str, Roughness { mean, root_mean_square, total }: &Roughness| {
+        let cells = [mean, root_mean_square, total].map(|height| fixed(height * 1e6, 2));
+        std::iter::once(name.to_owned()).chain(cells).collect()
     };
-    let mut rows = vec![header, row("wall".to_owned(), raw)];
-    rows.push(row(format!("filtered, {} mm", figures(run.evaluation.cutoff * 1e3)), filtered));
+    let mut rows: Vec<Vec<String>> = vec![row("wall", raw)];
+    rows.push(row(&format!("filtered, {} mm", figures(run.evaluation.cutoff * 1e3)), filtered));
     let published = run.published.as_ref().and_then(|published| published.figures.roughness.as_ref());
-    rows.extend(published.map(|published| row("  published".to_owned(), published)));
-    format!("roughness of the wall (um)\n{}\n", aligned(&rows, &[0]))
+    rows.extend(published.map(|published| row("  published", published)));
+    format!("roughness of the wall (um)\n{}\n", table(["", "Ra", "Rq", "Rt"], rows, &[0]))
 }
 
 /// How the pass went, what its forces show of it, and what small motions do: in the middle of the work, and where the

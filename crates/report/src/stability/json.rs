@@ -48,16 +48,14 @@ pub fn stability_json(run: &SimulationRun, analysis: &StabilityAnalysis) -> Valu
 records! {
     /// Critical depths and verdict of a cut.
     pub struct VerdictFigures from depths: &CutStability {
-        let verdict = &depths.verdict;
-    } with {
         /// Critical depths; null where all depths up to the largest are stable.
         critical_depth_mm: CriticalDepths = CriticalDepths::of(depths),
         /// Whether the cut is stable.
-        stable: bool = verdict.is_stable(),
+        stable: bool = depths.verdict.is_stable(),
         /// What small motions do.
-        kind: &'static str = verdict.kind().word(),
+        kind: &'static str = depths.verdict.kind().word(),
         /// The rate at which small motions grow.
-        growth_rate_per_s: RatePerS = verdict.growth_rate().into(),
+        growth_rate_per_s: RatePerS = depths.verdict.growth_rate().into(),
     }
 
     /// Critical depths by two methods.

@@ -1,7 +1,7 @@
 //! `report.html` of a stability analysis.
 
 use super::RPM;
-use crate::page::cards::{Axis, Card, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile, Tiles};
+use crate::page::cards::{Axis, Cell, Chart, Column, Mark, Page, Series, Style, Table, Tile};
 use crate::units::{figures, fixed};
 use stead_runs::SimulationRun;
 use stead_simulation::modes::Mode;
@@ -22,8 +22,8 @@ pub(super) fn page(run: &SimulationRun, analysis: &StabilityAnalysis) -> Page {
     Page::new(run.setup.robot.name(), subtitle, lead, &run.inputs)
         .messages(&analysis.warnings, &analysis.notes)
         .with(tiles(run, analysis))
-        .with(Card::Chart(lobes(run, analysis)))
-        .with(Card::Chart(response(analysis)))
+        .with(lobes(run, analysis))
+        .with(response(analysis))
         .with(modes(&analysis.modes))
 }
 
@@ -32,7 +32,7 @@ fn rpm(run: &SimulationRun) -> String {
     RPM.number(run.cut.spindle_speed).to_string()
 }
 
-fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
+fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Vec<Tile> {
     let found = &analysis.cut_stability;
     let verdict = &found.verdict;
     let max = format!("more than {}", fixed(run.analysis.max_depth * 1e3, 1));
@@ -40,14 +40,12 @@ fn tiles(run: &SimulationRun, analysis: &StabilityAnalysis) -> Card {
     let rate = verdict.growth_rate();
     let per_second = if rate > 0.0 { "vibrations grow" } else { "vibrations die out" };
     let at = format!("at {} rpm", rpm(run));
-    Card::Tiles(Tiles {
-        tiles: vec![
-            Tile::new("cut", if verdict.is_stable() { "stable" } else { "chatters" }, "", verdict.kind().word()),
-            Tile::new("critical depth", depth(found.semi_discretisation), "mm", format!("semi-discretisation, {at}")),
-            Tile::new("critical depth", depth(found.zero_order), "mm", format!("zero-order solution, {at}")),
-            Tile::new("growth rate", figures(rate), "1/s", per_second),
-        ],
-    })
+    vec![
+        Tile::new("cut", if verdict.is_stable() { "stable" } else { "chatters" }, "", verdict.kind().word()),
+        Tile::new("critical depth", depth(found.semi_discretisation), "mm", format!("semi-discretisation, {at}")),
+        Tile::new("critical depth", depth(found.zero_order), "mm", format!("zero-order solution, {at}")),
+        Tile::new("growth rate", figures(rate), "1/s", per_second),
+    ]
 }
 
 /// Critical depth of cut over spindle speed by both methods, and the cut at hand. No value: all depths up to the
@@ -61,21 +59,15 @@ pub(super) fn lobes(run: &SimulationRun, analysis: &StabilityAnalysis) -> Chart 
     let (speed, depth) = (run.cut.spindle_speed * RPM.factor, run.cut.section.axial_depth * 1e3);
     let verdict = if analysis.cut_stability.verdict.is_stable() { "stable" } else { "chatters" };
     let cut = Series::dots(format!("this cut, {} mm: {verdict}", fixed(depth, 2)), 3, [[speed, depth]]);
-    Chart {
-        detail: "cuts below the curve are stable; no value: all depths up to the largest asked for are".to_owned(),
-        marks: vec![Mark { is_level: true, at: depth, label: "depth of this cut".to_owned() }],
-        is_wide: true,
-        ..Chart::new(
-            "Stability lobes",
-            "spindle speed (rpm)",
-            "critical depth of cut (mm)",
-            vec![
-                curve("semi-discretisation", 0, |lobe| lobe.semi_discretisation),
-                curve("zero-order solution", 1, |lobe| lobe.zero_order).styled(Style::Dashed),
-                cut,
-            ],
-        )
-    }
+    let series = [
+        curve("semi-discretisation", 0, |lobe| lobe.semi_discretisation),
+        curve("zero-order solution", 1, |lobe| lobe.zero_order).styled(Style::Dashed),
+        cut,
+    ];
+    Chart::new("Stability lobes", "spindle speed (rpm)", "critical depth of cut (mm)", series)
+        .detailed("cuts below the curve are stable; no value: all depths up to the largest asked for are")
+        .marked([Mark::level(depth, "depth of this cut")])
+        .wide()
 }
 
 /// Decades of the response that are shown.
@@ -90,37 +82,25 @@ pub(super) fn response(analysis: &StabilityAnalysis) -> Chart {
     let all = analysis.frequency_response.iter().flat_map(|at| [at.feed, at.normal]);
     let largest = all.map(|part| part.norm() * 1e6).fold(1e-12, f64::max);
     let highest = libm::pow(10.0, libm::log10(largest).ceil());
-    Chart {
-        detail: "with the frequencies of the modes".to_owned(),
-        marks: analysis
-            .modes
-            .iter()
-            .map(|mode| mode.natural_frequency())
-            .map(|at| Mark { is_level: false, at, label: fixed(at, 1) })
-            .collect(),
-        is_wide: true,
-        ..Chart::new(
-            "Frequency response of the tip",
-            "frequency (Hz)",
-            Axis { range: Some([highest / DECADES, highest]), ..Axis::log("answer (um/N)") },
-            vec![
-                curve("along the feed", 0, |at| at.feed.norm()),
-                curve("normal to the wall", 1, |at| at.normal.norm()),
-                curve("across", 2, |at| at.cross.norm()).styled(Style::Dashed),
-            ],
-        )
-    }
+    let y = Axis { range: Some([highest / DECADES, highest]), ..Axis::log("answer (um/N)") };
+    let curves = [
+        curve("along the feed", 0, |at| at.feed.norm()),
+        curve("normal to the wall", 1, |at| at.normal.norm()),
+        curve("across", 2, |at| at.cross.norm()).styled(Style::Dashed),
+    ];
+    let frequencies = analysis.modes.iter().map(|mode| mode.natural_frequency());
+    Chart::new("Frequency response of the tip", "frequency (Hz)", y, curves)
+        .detailed("with the frequencies of the modes")
+        .marked(frequencies.map(|at| Mark::across(at, fixed(at, 1))))
+        .wide()
 }
 
 /// The modes of an arm by frequency and damping.
-pub(crate) fn modes(modes: &[Mode]) -> Card {
+pub(crate) fn modes(modes: &[Mode]) -> Table {
     let row = |(number, mode): (usize, &Mode)| {
         let numbers = [fixed(mode.natural_frequency(), 3), fixed(mode.damping_ratio, 5)];
         std::iter::once(Cell::Number((number + 1).to_string())).chain(numbers.map(Cell::Number)).collect()
     };
-    Card::Table(Table::new(
-        "Modes of the arm",
-        ["mode", "frequency Hz", "damping ratio"].map(Column::number).to_vec(),
-        modes.iter().enumerate().map(row).collect(),
-    ))
+    let columns = ["mode", "frequency Hz", "damping ratio"].map(Column::number).to_vec();
+    Table::new("Modes of the arm", columns, modes.iter().enumerate().map(row).collect())
 }

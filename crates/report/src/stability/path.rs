@@ -63,8 +63,7 @@ records! {
         /// How many points chatter.
         points_that_chatter: usize = chattering(depths),
         /// Every point.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        points: Option<Vec<VerdictFigures>> = with_points.then(|| depths.iter().map(Into::into).collect()),
+        points?: Vec<VerdictFigures> = with_points.then(|| depths.iter().map(Into::into).collect()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::super::output::ReportError;
 use super::json::LobeFigures;
 use crate::csv_file::{Columns, rows_or};
-use crate::figure::{FrequencyHz, ResponseUmPerN, Share, TipMm, each};
+use crate::figure::{FrequencyHz, ResponseUmPerN, Share, TipMm};
 use stead_simulation::stability_analysis::{FrequencyResponse, StabilityAnalysis};
 
 records! {
@@ -11,7 +11,6 @@ records! {
     #[derive(Default)]
     pub struct ModeRow of (mode: &stead_simulation::modes::Mode, number: usize) {
         let (count, joints) = (mode.joints.len(), mode.joints.iter().enumerate());
-        let [tip_x_mm_per_rad, tip_y_mm_per_rad, tip_z_mm_per_rad] = each(mode.tip.into());
     } with {
         /// Its number, from 1.
         mode: usize = number,
@@ -20,11 +19,11 @@ records! {
         /// Share of the critical damping.
         damping_ratio: Share = mode.damping_ratio.into(),
         /// x of the amplitude of the tip in the base frame, for a joint that swings by 1 rad.
-        tip_x_mm_per_rad: TipMm = tip_x_mm_per_rad,
+        tip_x_mm_per_rad: TipMm = mode.tip.x.into(),
         /// y of it.
-        tip_y_mm_per_rad: TipMm = tip_y_mm_per_rad,
+        tip_y_mm_per_rad: TipMm = mode.tip.y.into(),
         /// z of it.
-        tip_z_mm_per_rad: TipMm = tip_z_mm_per_rad,
+        tip_z_mm_per_rad: TipMm = mode.tip.z.into(),
         #[serde(flatten)] joints: Columns<Share> =
             Columns(joints.map(|(k, amplitude)| (joint_name(k, count), Share(*amplitude))).collect()),
     }

@@ -2,7 +2,7 @@
 
 use super::RPM;
 use super::tables::joint_name;
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::units::{figures, fixed};
 use stead_runs::SimulationRun;
 use stead_simulation::modes::Mode;
@@ -19,18 +19,11 @@ pub fn stability_text(run: &SimulationRun, analysis: &StabilityAnalysis) -> Stri
         text.push_str(&format!(", damping times {}", run.setup.damping_scale));
     }
     text.push_str("\n\n");
-    let header = ["mode", "frequency Hz", "damping ratio", "joints that move most"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for (mode, number) in analysis.modes.iter().zip(1..).take(MODES) {
-        let number: usize = number;
-        rows.push(vec![
-            number.to_string(),
-            fixed(mode.natural_frequency(), 2),
-            fixed(mode.damping_ratio, 4),
-            moving(mode),
-        ]);
-    }
-    text.push_str(&aligned(&rows, &[3]));
+    let rows = analysis.modes.iter().zip(1_usize..).take(MODES).map(|(mode, number)| {
+        let (frequency, damping) = (fixed(mode.natural_frequency(), 2), fixed(mode.damping_ratio, 4));
+        vec![number.to_string(), frequency, damping, moving(mode)]
+    });
+    text.push_str(&table(["mode", "frequency Hz", "damping ratio", "joints that move most"], rows, &[3]));
     if analysis.modes.len() > MODES {
         text.push_str(&format!("{} more in modes.csv\n", analysis.modes.len() - MODES));
     }

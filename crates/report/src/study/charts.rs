@@ -61,7 +61,7 @@ pub(super) fn front_chart(front: &Front, layouts: &Layouts, other: usize, pages:
         format!("Front of {} and {}", words(&front.measures[0].name).0, words(&front.measures[other].name).0),
         axis_of(&front.measures[0]),
         axis_of(&front.measures[other]),
-        series.into_iter().filter(|series| !series.x.is_empty()).collect(),
+        series.into_iter().filter(|series| !series.x.is_empty()),
     )
 }
 
@@ -147,15 +147,8 @@ pub(super) fn effect_chart(axis: &AxisEffect, measure: &Measure) -> Chart {
         None => (Axis::named(heading(&axis.name), names), (0..axis.levels.len()).map(|k| k as f64).collect()),
     };
     let points: Vec<[f64; 2]> = places.iter().zip(&axis.levels).map(|(place, level)| [*place, level.value]).collect();
-    Chart {
-        detail,
-        ..Chart::new(
-            format!("Effect of {}", words(&axis.name).0),
-            x,
-            format!("mean of {}", heading(&measure.name)),
-            vec![Series::dots("", 1, points).labelled(labels)],
-        )
-    }
+    let (title, y) = (format!("Effect of {}", words(&axis.name).0), format!("mean of {}", heading(&measure.name)));
+    Chart::new(title, x, y, [Series::dots("", 1, points).labelled(labels)]).detailed(detail)
 }
 
 /// The charts of `study-effects.svg`, the largest share of the variance first: every layout, the mean at each value of

@@ -217,22 +217,19 @@ records! {
 
     /// Values of axes under which no case has a placement.
     pub struct LostFigures of (lost: &analysis::LostLevel) {
-        let value = |[axis, value]: &[String; 2]| AxisValue { axis: axis.clone(), value: value.clone() };
-    } with {
         /// The values, axis by axis.
-        values: Vec<AxisValue> = lost.values.iter().map(value).collect(),
+        values: Vec<AxisValue> = lost.values.iter().map(Into::into).collect(),
         /// Cases with these values.
         cases: usize = lost.cases,
     }
-}
 
-/// A value of an axis.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct AxisValue {
-    /// Name of the axis.
-    axis: String,
-    /// Its value, as the study file states it.
-    value: String,
+    /// A value of an axis.
+    pub struct AxisValue from named: &[String; 2] {
+        /// Name of the axis.
+        axis: String = named[0].clone(),
+        /// Its value, as the study file states it.
+        value: String = named[1].clone(),
+    }
 }
 
 /// What `stead study report --json` prints, and the content of `study-report.json`.

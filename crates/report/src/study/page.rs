@@ -2,12 +2,11 @@
 
 use super::charts::{CasePages, effect_chart, front_chart, layout_words, map_chart, path, with_unit};
 use super::words::{cases, heading, percent, value, words};
-use crate::page::cards::{Card, Cell, Column, Page, Table, Text, Tile, Tiles};
+use crate::page::cards::{Cell, Column, Page, Table, Text, Tile};
 use crate::units::figures;
 use stead_disk::input::InputFile;
 use stead_problem::criterion::SMALL_PART;
 use stead_study::analysis::{Analysis, Layout, Layouts, Ranked};
-use stead_study::cases::TableCell;
 
 /// The column of the whole deflection.
 const WHOLE: &str = "best_mean_total_mm";
@@ -29,35 +28,26 @@ pub(super) fn page(name: &str, analysis: &Analysis, inputs: &[InputFile], pages:
     };
     let lead = if analysis.notes.is_empty() { lead } else { format!("{lead} {}.", analysis.notes.join(". ")) };
     let notes: Vec<String> = analysis.notes.iter().map(ToString::to_string).chain(cancelling(analysis)).collect();
-    let mut page = Page::new(name, subtitle, lead, inputs)
-        .messages(&none, &notes)
-        .with(tiles(analysis))
-        .with(ranking(analysis, pages));
-    if let Some(front) = &analysis.front {
-        for other in 1..front.measures.len() {
-            page = page.with(Card::Chart(front_chart(front, &analysis.layouts, other, pages)));
-        }
-    }
-    if let Some(map) = &analysis.map {
-        page = page.with(Card::HeatMap(map_chart(map).into()));
-    }
-    for axis in analysis.effects.axes.iter().filter(|axis| !axis.levels.is_empty()) {
-        page = page.with(Card::Chart(effect_chart(axis, &analysis.effects.measure)));
-    }
+    let fronts = analysis.front.iter().flat_map(|front| {
+        (1..front.measures.len()).map(move |other| front_chart(front, &analysis.layouts, other, pages))
+    });
+    let effects = analysis.effects.axes.iter().filter(|axis| !axis.levels.is_empty());
     let reasons =
         failures.reasons.iter().map(|(reason, count, first)| format!("{count} cases, the first {first}: {reason}"));
-    let sentences: Vec<String> = reasons.collect();
-    if !sentences.is_empty() {
-        page =
-            page.with(Card::Text(Text { title: "Cases without a placement".to_owned(), sentences, is_warning: true }));
-    }
-    page
+    Page::new(name, subtitle, lead, inputs)
+        .messages(&none, &notes)
+        .with(tiles(analysis))
+        .with(ranking(analysis, pages))
+        .with_all(fronts)
+        .with_all(analysis.map.as_ref().map(map_chart))
+        .with_all(effects.map(|axis| effect_chart(axis, &analysis.effects.measure)))
+        .with_all(Text::of("Cases without a placement", reasons.collect(), true))
 }
 
 /// The mean of the whole deflection of a layout.
 fn whole(layouts: &Layouts, layout: usize) -> Option<f64> {
     let column = layouts.columns.iter().position(|column| column.name == WHOLE)?;
-    if let TableCell::Number(whole) = layouts.all[layout].row[column] { Some(whole) } else { None }
+    layouts.all[layout].row[column].as_number()
 }
 
 /// A note on scores that are small beside the whole deflection.
@@ -76,7 +66,7 @@ fn cancelling(analysis: &Analysis) -> Option<String> {
     })
 }
 
-fn tiles(analysis: &Analysis) -> Card {
+fn tiles(analysis: &Analysis) -> Vec<Tile> {
     let (ranking, failures) = (&analysis.ranking, &analysis.failures);
     let (name, unit) = words(&ranking.measure.name);
     let mut tiles = Vec::new();
@@ -87,21 +77,15 @@ fn tiles(analysis: &Analysis) -> Card {
         tiles.push(Tile::new("worst", figures(last.value), unit, behind));
     }
     let ties = ranking.best().len().saturating_sub(1);
-    tiles.push(Tile::new(
-        "layouts",
-        analysis.layouts.all.len().to_string(),
-        "",
-        format!("{} with a value", ranking.ranked.len()),
-    ));
-    tiles.push(Tile::new(
-        "ties with the best",
-        ties.to_string(),
-        "",
-        format!("within {} %", figures(percent(analysis.noise))),
-    ));
-    let detail = format!("{} infeasible, {} failed", failures.infeasible, failures.failed);
-    tiles.push(Tile::new("without a placement", failures.count().to_string(), "cases", detail));
-    Card::Tiles(Tiles { tiles })
+    let valued = format!("{} with a value", ranking.ranked.len());
+    let noise = format!("within {} %", figures(percent(analysis.noise)));
+    let lost = format!("{} infeasible, {} failed", failures.infeasible, failures.failed);
+    tiles.extend([
+        Tile::new("layouts", analysis.layouts.all.len().to_string(), "", valued),
+        Tile::new("ties with the best", ties.to_string(), "", noise),
+        Tile::new("without a placement", failures.count().to_string(), "cases", lost),
+    ]);
+    tiles
 }
 
 /// The numbers of the cases of a layout, leading to their page.
@@ -113,7 +97,7 @@ fn cases_cell(layout: &Layout, pages: &CasePages) -> Cell {
     }
 }
 
-fn ranking(analysis: &Analysis, pages: &CasePages) -> Card {
+fn ranking(analysis: &Analysis, pages: &CasePages) -> Table {
     let (layouts, ranking) = (&analysis.layouts, &analysis.ranking);
     let axes = layouts.varied();
     let is_number = |axis: usize| {
@@ -144,9 +128,7 @@ fn ranking(analysis: &Analysis, pages: &CasePages) -> Card {
         row(ranked.layout, Cell::Number(ranked.rank.to_string()), [Cell::Number(figures(ranked.value)), behind])
     });
     let without = ranking.without.iter().map(|layout| row(*layout, Cell::Empty, [Cell::Empty, Cell::Empty]));
-    Card::Table(Table {
-        detail: if pages.is_empty() { String::new() } else { "a case leads to its own page".to_owned() },
-        can_filter: true,
-        ..Table::new("Ranking", columns, ranked.chain(without).collect())
-    })
+    Table::new("Ranking", columns, ranked.chain(without).collect())
+        .detailed(if pages.is_empty() { "" } else { "a case leads to its own page" })
+        .filtered()
 }

@@ -1,7 +1,7 @@
 //! What matters of a study, in words.
 
 use super::words::cases;
-use crate::columns::{aligned, line};
+use crate::columns::{line, table};
 use crate::units::{figures, fixed};
 use stead_problem::sense::Sense;
 use stead_study::analysis::{Analysis, AxisEffect, Failures, Front, Layouts, Measure, Method, Ranking};
@@ -22,18 +22,14 @@ pub fn study_text(name: &str, analysis: &Analysis) -> String {
     line(&mut text, "");
     if !analysis.layouts.tasks().is_empty() {
         let (layouts, tasks) = (analysis.layouts.all.len(), analysis.layouts.tasks().len());
-        line(
-            &mut text,
-            &format!(
-                "{layouts} layouts with {tasks} tasks each: means over the tasks by their weights, margins the smallest"
-            ),
-        );
+        let joined = "means over the tasks by their weights, margins the smallest";
+        line(&mut text, &format!("{layouts} layouts with {tasks} tasks each: {joined}"));
     }
     best(&mut text, analysis);
     analysis.notes.iter().for_each(|note| line(&mut text, &format!("  note: {note}")));
     if !analysis.tasks.is_empty() {
         line(&mut text, "\nBest for each task:");
-        text.push_str(&aligned(&task_rows(analysis), &[0, 2]));
+        text.push_str(&tasks(analysis));
     }
     effects(&mut text, analysis);
     if let Some(front) = &analysis.front {
@@ -101,13 +97,8 @@ fn best(text: &mut String, analysis: &Analysis) {
         return line(text, &format!("No case has a value of {name}."));
     };
     let noise = percent(analysis.noise);
-    line(
-        text,
-        &format!(
-            "\nBy {name} ({}; within {noise} % layouts tie, for a search is no more exact):",
-            better(&ranking.measure)
-        ),
-    );
+    let better = better(&ranking.measure);
+    line(text, &format!("\nBy {name} ({better}; within {noise} % layouts tie, for a search is no more exact):"));
     line(text, &format!("  best      {}  {}", digits(first.value), layout(layouts, first.layout)));
     let beside = beside(layouts, first.layout);
     if !beside.is_empty() {
@@ -132,22 +123,20 @@ fn best(text: &mut String, analysis: &Analysis) {
     }
 }
 
-fn task_rows(analysis: &Analysis) -> Vec<Vec<String>> {
-    let name = analysis.ranking.measure.name.clone();
-    let mut rows = vec![vec!["task".to_owned(), name, "layout".to_owned(), "next %".to_owned()]];
-    for task in &analysis.tasks {
+fn tasks(analysis: &Analysis) -> String {
+    let rows = analysis.tasks.iter().map(|task| {
         let ranking: &Ranking = &task.ranking;
         let next = ranking.next().and_then(|next| next.behind).map_or_else(|| "–".to_owned(), percent);
-        rows.push(match ranking.best() {
+        match ranking.best() {
             [] => vec![task.task.clone(), "–".to_owned(), "no placement".to_owned(), next],
             [first, ties @ ..] => {
                 let ties = if ties.is_empty() { String::new() } else { format!(" and {} ties", ties.len()) };
                 let words = format!("{}{ties}", layout(&task.layouts, first.layout));
                 vec![task.task.clone(), digits(first.value), words, next]
             }
-        });
-    }
-    rows
+        }
+    });
+    table(["task", &analysis.ranking.measure.name, "layout", "next %"], rows, &[0, 2])
 }
 
 fn effects(text: &mut String, analysis: &Analysis) {
@@ -164,9 +153,8 @@ fn effects(text: &mut String, analysis: &Analysis) {
         }
         _ => line(text, &format!("\nNo axis changes {name}.")),
     }
-    let mut rows = vec![["axis", "% of variance", "range", "per unit", "best value", "by"].map(str::to_owned).to_vec()];
-    rows.extend(effects.axes.iter().map(|axis| effect_row(axis, &effects.measure)));
-    text.push_str(&aligned(&rows, &[0, 4, 5]));
+    let rows = effects.axes.iter().map(|axis| effect_row(axis, &effects.measure));
+    text.push_str(&table(["axis", "% of variance", "range", "per unit", "best value", "by"], rows, &[0, 4, 5]));
     if let Some(rest) = effects.remainder.filter(|rest| *rest >= 0.0005) {
         line(text, &format!("{} % is what the axes do together, beyond their effects one by one", percent(rest)));
     }
@@ -202,10 +190,8 @@ fn against_the_best(analysis: &Analysis) -> String {
         let own = row[axis.axis].written();
         let other = axis.levels.iter().find(|other| other.label == own && !measure.is_tie(level.value, other.value));
         if other.is_some() {
-            line(
-                &mut text,
-                &format!("{}: {} is best on average, but the best layout has {own}", axis.name, level.label),
-            );
+            let (axis, average) = (&axis.name, &level.label);
+            line(&mut text, &format!("{axis}: {average} is best on average, but the best layout has {own}"));
         }
     }
     text
@@ -245,18 +231,18 @@ fn front_text(text: &mut String, front: &Front, layouts: &Layouts) {
     let close = if ties == 0 { String::new() } else { format!(", and {ties} behind them within the noise") };
     let clear = front.members.len() - ties;
     line(text, &format!("\nOn the front of {}: {clear} of {}{close}", names.join(" and "), front.compared.len()));
-    let mut rows = vec![vec!["cases".to_owned()]];
-    rows[0].extend(front.measures.iter().map(|measure| measure.name.clone()));
     let axes = layouts.varied();
-    rows[0].extend(axes.iter().map(|axis| layouts.columns[*axis].name.clone()));
-    for member in front.members.iter().filter(|member| !member.is_tie).take(ROWS) {
+    let measures = front.measures.iter().map(|measure| measure.name.as_str());
+    let header = std::iter::once("cases").chain(measures).chain(axes.iter().map(|axis| &*layouts.columns[*axis].name));
+    let rows = front.members.iter().filter(|member| !member.is_tie).take(ROWS).map(|member| {
         let found = &layouts.all[member.layout];
         let mut row = vec![cases(found)];
         row.extend(member.values.iter().map(|value| digits(*value)));
         row.extend(axes.iter().map(|axis| found.row[*axis].written()));
-        rows.push(row);
-    }
-    text.push_str(&aligned(&rows, &(front.measures.len() + 1..rows[0].len()).collect::<Vec<_>>()));
+        row
+    });
+    let words: Vec<usize> = (1..=axes.len()).map(|k| front.measures.len() + k).collect();
+    text.push_str(&table(header, rows, &words));
     if clear > ROWS {
         line(text, &format!("and {} more (study-front.csv)", clear - ROWS));
     }

@@ -88,9 +88,7 @@ pub enum Traced {
 }
 
 words!(Traced: "tool" => Traced::Tool, "wrist-centre" => Traced::WristCentre);
-words!(Turning);
-words!(LimitsAt);
-words!(ElbowNames);
+words!(Turning, LimitsAt, ElbowNames);
 
 /// The plane of the circle: an origin and two directions in the base frame, of length 1 and normal to each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -20,9 +20,7 @@ ranges! {
     Chord: Included(1e-4), Included(10.0);
 }
 
-words!(LengthUnit);
-words!(CamFormat);
-words!(Machine);
+words!(LengthUnit, CamFormat, Machine);
 
 /// Cutting forces from a tool path and the stock that it cuts, for `stead forces`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

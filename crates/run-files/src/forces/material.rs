@@ -1,31 +1,27 @@
 //! Published cutting coefficients by material.
 
-use stead_format::scalars::{Words, words};
+use stead_format::scalars::words;
 use stead_model::cutting::Coefficients;
 use stead_numerics::message::Note;
 
-/// A material with published coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Material {
-    /// Aluminium 6060-T6.
-    Aluminium6060,
-    /// Aluminium 6082-T6.
-    Aluminium6082,
-    /// Aluminium 7075-T6.
-    Aluminium7075,
-    /// Aluminium 7075, cut with high-speed steel.
-    Aluminium7075Hss,
-    /// Structural steel St 52-3.
-    SteelSt52,
+stead_numerics::worded! {
+    /// A material with published coefficients.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Material {
+        /// Aluminium 6060-T6.
+        Aluminium6060 = "aluminium-6060",
+        /// Aluminium 6082-T6.
+        Aluminium6082 = "aluminium-6082",
+        /// Aluminium 7075-T6.
+        Aluminium7075 = "aluminium-7075",
+        /// Aluminium 7075, cut with high-speed steel.
+        Aluminium7075Hss = "aluminium-7075-hss",
+        /// Structural steel St 52-3.
+        SteelSt52 = "steel-st52",
+    }
 }
 
-words!(Material:
-    "aluminium-6060" => Material::Aluminium6060,
-    "aluminium-6082" => Material::Aluminium6082,
-    "aluminium-7075" => Material::Aluminium7075,
-    "aluminium-7075-hss" => Material::Aluminium7075Hss,
-    "steel-st52" => Material::SteelSt52,
-);
+words!(Material);
 
 const REVIEW: &str = "Milling Force Model for Aviation Aluminum Alloy, Chinese Journal of Mechanical Engineering 34 (2021), doi \
      10.1186/s10033-021-00536-9, table 5, cemented carbide, dry";
@@ -62,7 +58,7 @@ impl Material {
     /// That the coefficients are not those of the user's cutter, and whose they are.
     pub fn note(self) -> Note {
         let ([kt, kr, ka], [kte, kre], source) = self.published();
-        let name = Self::words().into_iter().find(|(_, known)| *known == self).map_or("", |(word, _)| word);
+        let name = self.word();
         let text = format!(
             "the cutting coefficients are published ones for {name} with another cutter (K_t {kt}, K_r {kr}, K_a {ka} MPa, K_te {kte}, K_re \
              {kre} N/mm; {source}): measure your own"

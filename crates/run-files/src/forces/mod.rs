@@ -91,7 +91,8 @@ impl RemovalTables<'_> {
         if let (Some(cut), false) = (self.cut, self.is_for_stability) {
             check_cut(cut, &at.key("cut"))?;
         }
-        let (spindle_speed, of_speed) = self.spindle_speed(named.spindle_speed, &at.key("cut"))?;
+        let of_path = named.tool.and_then(|tool| tool.spindle_speed);
+        let (spindle_speed, of_speed) = self.spindle_speed(of_path, &at.key("cut"))?;
         let mill = end_mill(self.tool, self.material, at)?;
         let (path, of_feed) = self.fed(named.path, &mill, spindle_speed, &at.key("cut"))?;
         let (before, of_before): (Vec<_>, Vec<_>) =
@@ -239,11 +240,17 @@ pub(crate) struct NamedPath {
     pub file: PathBuf,
     pub path: ToolPath,
     pub rapids: Vec<Vec<AirPoint>>,
-    pub spindle_speed: Option<f64>,
     /// What a program says of its tool.
     pub tool: Option<ProgramTool>,
     pub input: InputFile,
     pub notes: Vec<Note>,
+}
+
+impl NamedPath {
+    /// A path without anything else.
+    pub fn plain(file: &Path, path: ToolPath, input: InputFile) -> Self {
+        Self { file: file.to_owned(), path, rapids: Vec::new(), tool: None, input, notes: Vec::new() }
+    }
 }
 
 /// Reads the path that is named here: a program of CAM, or a task file.
@@ -267,28 +274,17 @@ pub(crate) fn path_of(
         let notes = imported
             .wrenches
             .map(|_| format!("{name}: its forces are left aside, those of what is removed take their place").into());
-        return Ok(NamedPath {
-            file: file.to_owned(),
-            path: imported.path,
-            rapids: Vec::new(),
-            spindle_speed: None,
-            tool: None,
-            input,
-            notes: notes.into_iter().collect(),
-        });
+        return Ok(NamedPath { notes: notes.into_iter().collect(), ..NamedPath::plain(file, imported.path, input) });
     }
     let imported = import_bytes(file, bytes, &reading.settings()).map_err(by_keys)?;
     let air = |moves: &Vec<stead_format::cam::Move>| {
         moves.iter().map(|one| AirPoint { position: one.position, axis: one.axis }).collect()
     };
     Ok(NamedPath {
-        file: file.to_owned(),
-        path: imported.path(file)?,
         rapids: imported.rapids().iter().map(air).collect(),
-        spindle_speed: imported.tool().and_then(|tool| tool.spindle_speed),
-        tool: imported.tool().cloned(),
-        notes: imported.notes().iter().map(|note| format!("{name}: {}", keyed(note)).into()).collect(),
-        input,
+        notes: imported.notes.iter().map(|note| format!("{name}: {}", keyed(note)).into()).collect(),
+        tool: imported.tool.clone(),
+        ..NamedPath::plain(file, imported.path(file)?, input)
     })
 }
 

@@ -10,22 +10,20 @@ use stead_format::scalars::words;
 use stead_format::shapes::{List, Vector};
 use stead_format::units::Number;
 
-/// Directions that have a word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NamedDirections {
-    /// Any.
-    Any,
-    /// Any horizontal one.
-    Horizontal,
-    /// Down, as a weight hangs.
-    Vertical,
+stead_numerics::worded! {
+    /// Directions that have a word.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum NamedDirections {
+        /// Any.
+        Any = "any",
+        /// Any horizontal one.
+        Horizontal = "horizontal",
+        /// Down, as a weight hangs.
+        Vertical = "vertical",
+    }
 }
 
-words!(NamedDirections:
-    "any" => NamedDirections::Any,
-    "horizontal" => NamedDirections::Horizontal,
-    "vertical" => NamedDirections::Vertical,
-);
+words!(NamedDirections);
 
 /// Directions of a load: by a word, or one of a list in the base frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]

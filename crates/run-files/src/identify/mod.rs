@@ -30,8 +30,7 @@ use stead_model::robot::{Compliance, MeasuredFrom, Robot, SpringModel};
 use stead_numerics::message::Note;
 use stead_runs::IdentifyRun;
 
-words!(FitModel: "axes" => FitModel::Axes, "full" => FitModel::Full);
-words!(MeasuredFrom: "base" => MeasuredFrom::Base, "floor" => MeasuredFrom::Floor);
+words!(FitModel, MeasuredFrom);
 
 /// Reads an identification file with the robot file and the measurement sheet that it names.
 ///

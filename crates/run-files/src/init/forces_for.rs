@@ -9,9 +9,10 @@ use stead_disk::files::{
     read,
 };
 use stead_disk::input::InputError;
+use stead_disk::template::{filled, shown_if};
 use stead_format::cam::{LengthUnit, TOOL_GUESSES, guessed_keys};
 use stead_format::sources::Sources;
-use stead_format::written::{commented, filled, relative, shown_if};
+use stead_format::written::{commented, relative};
 
 /// Writes a forces file for `stead forces` that names a tool path, and a mesh of its stock where there is one. The
 /// cutter is that of the program, or that beside a task (`NAME-tool.toml`). What is not known is filled in by a guess,
@@ -30,6 +31,7 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
     let known = stated.or_else(|error| read(&in_mm).map_err(|_| error))?;
     let beside = tool_beside(path)?;
     let of_program = known.tool.as_ref();
+    let speed = of_program.and_then(|tool| tool.spindle_speed);
     let diameter = of_program.and_then(|tool| tool.diameter).map(rounded_mm);
     let diameter = diameter.or(beside.as_ref().map(|tool| tool.cutter_diameter_mm.written()));
     let corner = of_program.and_then(|tool| tool.corner_radius).map(rounded_mm);
@@ -46,7 +48,7 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
         (guess.as_ref().map_or(String::new(), |guess| format!("stock.{}", guess.key)), guess.is_some()),
         ("tool.cutter_diameter_mm".to_owned(), diameter.is_none()),
         ("tool.flute_length_mm".to_owned(), length.is_none()),
-        ("cut.spindle_rpm".to_owned(), known.spindle_speed.is_none()),
+        ("cut.spindle_rpm".to_owned(), speed.is_none()),
         ("cut.feed_per_tooth_mm".to_owned(), !has_feeds),
     ];
     let guessed = guessed.into_iter().filter(|(_, is_guess)| *is_guess).map(|(key, _)| key);
@@ -69,8 +71,8 @@ pub fn init_forces(path: &Path, stock: Option<&Path>, out: &Path, existing: Exis
             ("length", length.map(number)),
             ("guessed_length", length.is_none().then(|| number(3.0 * wide))),
             ("tool_guesses", Some(of_tool.trim_end().to_owned())),
-            ("speed", known.spindle_speed.map(|speed| number((speed * 6e4).round() / 1e3))),
-            ("no_speed", shown_if(known.spindle_speed.is_none())),
+            ("speed", speed.map(|speed| number((speed * 6e4).round() / 1e3))),
+            ("no_speed", shown_if(speed.is_none())),
             ("no_feeds", shown_if(!has_feeds)),
         ],
     );

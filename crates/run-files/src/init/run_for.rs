@@ -10,6 +10,7 @@ use stead_disk::files::{
     new::{Existing, write_all_new},
 };
 use stead_disk::input::{InputError, input_file};
+use stead_disk::template::{filled, shown_if};
 use stead_format::cam::file_beside;
 use stead_format::document::Document;
 use stead_format::robot::{read_geometry, says_stiffness};
@@ -18,7 +19,7 @@ use stead_format::surroundings::mount_of;
 use stead_format::task::read_csv;
 use stead_format::toml_file::TomlFile;
 use stead_format::tool::{CutTable, ToolTable};
-use stead_format::written::{filled, relative, shown_if};
+use stead_format::written::relative;
 use stead_model::robot::{Pose, Robot};
 use stead_model::task::ToolPath;
 

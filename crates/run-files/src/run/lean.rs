@@ -25,8 +25,7 @@ use stead_numerics::message::Note;
 use stead_problem::lean::{LeanRange, LeanSpace};
 use stead_problem::problem;
 
-words!(ContactRule: "centre" => ContactRule::Centre, "contact" => ContactRule::Contact, "plane" => ContactRule::Plane);
-words!(LeanForce: "feed" => LeanForce::Feed, "tool" => LeanForce::Tool);
+words!(ContactRule, LeanForce);
 
 ranges! {
     /// An angle by which a tool may lean. deg

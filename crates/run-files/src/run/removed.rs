@@ -109,16 +109,9 @@ pub(super) fn removed(
     }
     // With the feed of the run its task still states none.
     let is_fed = imported.path.feed(0).is_none() && tables.cut.is_none_or(|cut| cut.feed_per_tooth_mm.is_none());
-    let path = NamedPath {
-        file: file.file.clone(),
-        path: if is_fed { fed(imported.path, feed, at)? } else { imported.path },
-        rapids: Vec::new(),
-        spindle_speed: None,
-        tool: None,
-        notes: Vec::new(),
-        input: input_file("task", &file.name, &file.bytes),
-    };
-    let run = tables.run(path, reading.source, at)?;
+    let path = if is_fed { fed(imported.path, feed, at)? } else { imported.path };
+    let named = NamedPath::plain(&file.file, path, input_file("task", &file.name, &file.bytes));
+    let run = tables.run(named, reading.source, at)?;
     // Of the cut nothing else counts, such as depths for the stability.
     let cut = tables.cut.map(|cut| (cut.spindle_rpm, cut.feed_per_tooth_mm));
     let others = RemovalTables { reading: tables.reading.clone(), cut: None, is_for_stability: false, ..*tables };

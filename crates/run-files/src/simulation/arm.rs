@@ -4,7 +4,7 @@ use super::file::{PassTable, SimulationFile};
 use stead_disk::input::{InputError, InputFile};
 use stead_format::place::Place;
 use stead_format::robot::moving_robot_from;
-use stead_format::scalars::Words;
+use stead_format::scalars::words;
 use stead_model::robot::{Robot, Spindle};
 use stead_simulation::arm::Variant;
 use stead_simulation::motion::{Motion, MotionError, Pass, Ramp};
@@ -46,11 +46,7 @@ pub(super) fn setup_from(
     Ok(Setup { robot, spindle, variant, damping_scale, motion })
 }
 
-impl Words<crate::Vocabulary> for Variant {
-    fn words() -> Vec<(&'static str, Self)> {
-        Variant::ALL.map(|variant| (variant.word(), variant)).to_vec()
-    }
-}
+words!(Variant);
 
 /// The feed may be off the plane normal to the tool axis by so much. deg
 const TILT_DEG: f64 = 1.0;

@@ -22,7 +22,7 @@ pub(super) fn analysis_from(
     cutter: &Cutter,
     cut: &PassCut,
 ) -> Result<AnalysisSettings, InputError> {
-    let length_mm = setup.motion.length() * 1e3;
+    let length_mm = setup.motion.length * 1e3;
     if table.way_mm.is_some_and(|way| way.written() > length_mm) {
         let allowed = format!("a number from 0 to the length of the pass, {length_mm} mm");
         return Err(at.key("way_mm").out_of_range(allowed));

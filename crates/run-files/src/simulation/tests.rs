@@ -49,7 +49,7 @@ fn the_shipped_files_are_the_published_passes() {
         assert!((found - expected).abs() < 1e-12);
     }
     assert!((run.setup.motion.duration() - 1.85).abs() < 1e-6);
-    assert!((run.setup.motion.start().rotation - spindle_pose()).amax() < 1e-9);
+    assert!((run.setup.motion.start.rotation - spindle_pose()).amax() < 1e-9);
     assert_eq!(run.setup.spindle.payload, spindle().payload);
     assert_eq!((run.setup.variant, run.setup.damping_scale), (Variant::Springs, 1.0));
     assert_eq!(run.cut.section.direction, MillingDirection::Climb);
@@ -65,7 +65,7 @@ fn the_shipped_files_are_the_published_passes() {
     assert_eq!((steel.setup.variant, steel.setup.damping_scale), (Variant::Backlash, 10.0));
     assert_eq!(steel.cut.spindle_speed, 300.0);
     assert!((steel.cutter.teeth()[0].radius - 5.006929e-3).abs() < 1e-15);
-    assert!((steel.setup.motion.ramp().feed - 0.28 / 60.0).abs() < 1e-15);
+    assert!((steel.setup.motion.ramp.feed - 0.28 / 60.0).abs() < 1e-15);
 }
 
 /// The spindle's frame in the base frame at the start.

@@ -170,5 +170,5 @@ fn what_is_missing_is_said() {
     let robot = robot.with_dynamics(dynamics);
     assert!(AnyArm::new(&robot, &spindle, Variant::Gravity, &start()).is_ok());
     let missing = AnyArm::new(&robot, &spindle, Variant::Backlash, &start());
-    assert_eq!(missing, Err(Missing::Orthogonal { joint: 3 }));
+    assert_eq!(missing, Err(Missing::Orthogonal(3)));
 }

@@ -113,7 +113,7 @@ impl CutPlane {
         let motion = &job.setup.motion;
         let CutFrame { feed, normal, axis } = motion.cut_frame(job.cut.wall(job.cutter));
         let radius = job.cutter.radius();
-        let origin = motion.start().translation + feed * (radius + job.gap) - normal * radius;
+        let origin = motion.start.translation + feed * (radius + job.gap) - normal * radius;
         Self { feed, normal, axis, origin }
     }
 
@@ -134,7 +134,7 @@ impl CutPlane {
 
     /// Nominal place of the tool centre at a distance (m) along the pass.
     fn nominal(&self, motion: &Motion, distance: f64) -> [f64; 2] {
-        self.place(&(motion.start().translation + motion.direction() * distance))
+        self.place(&(motion.start.translation + motion.direction * distance))
     }
 }
 
@@ -196,7 +196,7 @@ impl<'a> Process<'a> {
     /// Records the end of a step, with the tool centre at a place (m), moving at a velocity (m/s).
     fn keep(&mut self, place: [f64; 2], velocity: [f64; 2], force: Force) -> Result<(), Limit> {
         let time = self.samples.len() as f64 * self.step;
-        let (distance, feed) = self.motion.ramp().at(time);
+        let (distance, feed) = self.motion.ramp.at(time);
         let nominal = self.plane.nominal(self.motion, distance);
         let deflection = [place[0] - nominal[0], place[1] - nominal[1]];
         self.samples.push(Sample { force: force.on_tool, deflection });

@@ -2,8 +2,9 @@ use super::*;
 use crate::arm::testing::{spindle, start, tx200};
 use crate::arm::{Arm, Compensation, Variant};
 use stead_model::robot::{Frames, JointDynamics, NormalSprings, Orthogonal, Robot, SpringModel};
-use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
+use stead_model::stiffness::elastic::ElasticArm;
 use stead_model::stiffness::whole::WholeArm;
+use stead_model::task::Wrench;
 
 /// The arm by itself with motors at rest, and a force on its tip that swings.
 struct Free<const N: usize> {
@@ -13,11 +14,12 @@ struct Free<const N: usize> {
     /// A force that stays. N
     constant: nalgebra::Vector3<f64>,
     kept: Vec<f64>,
+    evaluations: usize,
 }
 
 impl<const N: usize> Free<N> {
     fn new(arm: Arm<N>, reference: SVector<f64, N>) -> Self {
-        Self { arm, reference, force: 0.0, constant: nalgebra::Vector3::zeros(), kept: vec![] }
+        Self { arm, reference, force: 0.0, constant: nalgebra::Vector3::zeros(), kept: vec![], evaluations: 0 }
     }
 
     fn energy(&self, state: &MotionState<N>) -> f64 {
@@ -30,6 +32,7 @@ impl<const N: usize> Free<N> {
 
 impl<const N: usize> System<N> for Free<N> {
     fn unbalanced(&mut self, time: f64, state: &MotionState<N>) -> SVector<f64, N> {
+        self.evaluations += 1;
         let posed = self.arm.chain.at(&state.q);
         let push = self.constant + nalgebra::Vector3::new(0.0, self.force * libm::sin(400.0 * time), 0.0);
         let motion = [&state.q, &state.speed, &state.acceleration];
@@ -191,8 +194,7 @@ fn a_step_that_does_not_converge_is_halved_and_then_reported() {
     let settings = Settings { max_corrections: 40, ..Settings::default() };
     let mut wall = Wall { stiffness: 6.0, kept: vec![] };
     let mut state = start(&mut wall);
-    let effort = Newmark::new(settings).step(&mut wall, 10.0, 1.0, &mut state).unwrap();
-    assert_eq!(effort.parts, wall.kept.len());
+    Newmark::new(settings).step(&mut wall, 10.0, 1.0, &mut state).unwrap();
     assert_eq!(wall.kept, [10.5, 11.0]);
     let mut wall = Wall { stiffness: 1e7, kept: vec![] };
     let mut state = start(&mut wall);
@@ -210,11 +212,10 @@ fn a_step_takes_about_one_evaluation() {
     system.force = 50.0;
     let mut state = at_rest(SVector::from(start()));
     let mut newmark = Newmark::new(Settings::default());
-    let mut evaluations = 0;
     for k in 0..1000 {
-        evaluations += newmark.step(&mut system, 3.6e-5 * f64::from(k), 3.6e-5, &mut state).unwrap().evaluations;
+        newmark.step(&mut system, 3.6e-5 * f64::from(k), 3.6e-5, &mut state).unwrap();
     }
-    assert!(evaluations < 1100, "{evaluations}");
+    assert!(system.evaluations < 1100, "{}", system.evaluations);
 }
 
 /// What shakes out of the motion under a force that stays is what the static sum over all springs has, and with the
@@ -237,7 +238,7 @@ fn an_arm_of_eighteen_springs_comes_to_rest_where_the_static_sum_has_it() {
     let whole = WholeArm::new(&robot, &spindle, &frames, robot.compliances_at(&theta), tip(&reference));
     let sum = whole.displacement(&force, &nalgebra::Vector3::zeros()).linear;
     assert!((found - sum).norm() < 5e-4 * sum.norm() && sum.norm() > 5e-5, "{found} {sum}");
-    let load = ToolLoad { force, moment: nalgebra::Vector3::zeros() };
+    let load = Wrench { force, moment: nalgebra::Vector3::zeros() };
     let exact = ElasticArm::new(&robot, &spindle).at_rest(&theta, &load).unwrap().translation;
     assert!((tip(&settled.q) - exact).norm() < 1e-10, "{} {exact}", tip(&settled.q));
 }
@@ -250,7 +251,7 @@ fn weight_and_compensators_bend_the_arm_as_the_static_chain_has_it() {
     let tip = |q: &SVector<f64, 18>| arm.chain.at(q).tip();
     let found = tip(&arm.at_rest(&reference)) - tip(&reference);
     let elastic = ElasticArm::new(&robot, &spindle).in_gravity(*arm.chain.free_fall());
-    let load = ToolLoad::NONE;
+    let load = Wrench::default();
     let exact = elastic.at_rest(&theta, &load).unwrap().translation - tip(&reference);
     // Compensators are taken at the commanded angles there and at the deflected ones here.
     assert!((found - exact).norm() < 2e-3 * exact.norm() && exact.norm() > 1e-4, "{found} {exact}");

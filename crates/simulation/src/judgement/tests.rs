@@ -88,7 +88,7 @@ fn forces_and_small_motions_are_judged_together() {
         assert_eq!(judged(runouts, variation, rates, is_flip), expected, "{runouts:?} {variation} {rates:?} {is_flip}");
     }
     let (calm, cutter) = (verdict(-1.0, true), cutter(&even));
-    let end = End::Step(crate::integrator::StepError::Singular { time: 1.0 });
+    let end = End::Step(crate::integrator::StepError::Singular(1.0));
     let evidence = Evidence { end: &end, cutter: &cutter, variation: None, verdicts: [&calm, &calm], time: 1.0 };
     assert_eq!(evidence.judgement(), Judgement::Ended);
 }

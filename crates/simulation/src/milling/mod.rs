@@ -98,6 +98,7 @@ impl MaterialRemoval {
     ///
     /// # Errors
     /// [`CutError`] if the cutter cannot do the cut.
+    #[cfg(test)]
     pub fn new(cutter: &Cutter, cut: &PassCut) -> Result<Self, CutError> {
         Self::with_room(cutter, cut, 0)
     }
@@ -224,6 +225,7 @@ impl MaterialRemoval {
     }
 
     /// The way of the tool centre so far.
+    #[cfg(test)]
     pub fn trail(&self) -> &Trail {
         &self.trail
     }

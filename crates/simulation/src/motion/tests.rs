@@ -43,8 +43,8 @@ proptest! {
         let pose = robot.forward(&angles).then(&spindle.flange_from_tool);
         let (wanted, distance) = motion.tool(time);
         prop_assert!((pose.translation - wanted).norm() < 1e-12, "{}", (pose.translation - wanted).norm());
-        prop_assert!((pose.rotation - motion.start().rotation).amax() < 1e-12);
-        prop_assert!((wanted - motion.start().translation - direction * distance).norm() < 1e-15);
+        prop_assert!((pose.rotation - motion.start.rotation).amax() < 1e-12);
+        prop_assert!((wanted - motion.start.translation - direction * distance).norm() < 1e-15);
         let velocity = Frames::new(&robot, &angles).jacobian(&pose.translation) * Vector6::from(speeds);
         let expected = direction * RAMP.at(time).1;
         prop_assert!((velocity.fixed_rows::<3>(0) - expected).norm() < 1e-9);

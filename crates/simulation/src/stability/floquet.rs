@@ -8,25 +8,16 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use stead_model::cutting::{Cutter, EngagementError, PassCut};
 
-/// Kind of instability.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub enum Kind {
-    /// Stable.
-    None,
-    /// A motion that changes sign from period to period: each tooth cuts what the one before left (period doubling).
-    Flip,
-    /// A motion of a frequency of its own (Neimark-Sacker).
-    Hopf,
-}
-
-impl Kind {
-    /// The word for it in files.
-    pub fn word(self) -> &'static str {
-        match self {
-            Kind::None => "none",
-            Kind::Flip => "flip",
-            Kind::Hopf => "hopf",
-        }
+stead_numerics::worded! {
+    /// Kind of instability.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    pub enum Kind {
+        /// Stable.
+        None = "none",
+        /// A motion that changes sign from period to period: each tooth cuts what the one before left (period doubling).
+        Flip = "flip",
+        /// A motion of a frequency of its own (Neimark-Sacker).
+        Hopf = "hopf",
     }
 }
 

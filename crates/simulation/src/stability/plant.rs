@@ -71,6 +71,7 @@ impl Plant {
     }
 
     /// A, 1/s or of other units that go with the states.
+    #[cfg(test)]
     pub fn a(&self) -> &DMatrix<f64> {
         &self.a
     }

@@ -4,7 +4,7 @@
 //! other axes say. Where cases are missing, or the study is a Latin hypercube, such means would mix the axes; then all
 //! effects are fitted together by least squares, and the share of an axis is what the model loses without it.
 
-use super::layouts::{Layouts, text};
+use super::layouts::Layouts;
 use super::least_squares::LinearModel;
 use super::measure::Measure;
 use crate::cases::TableCell;
@@ -147,8 +147,7 @@ impl Effects {
 impl Factor {
     fn of(layouts: &Layouts, axis: usize, rows: &[usize]) -> Self {
         let cells: Vec<&TableCell> = rows.iter().map(|row| &layouts.all[*row].row[axis]).collect();
-        let numbers: Option<Vec<f64>> =
-            cells.iter().map(|cell| if let TableCell::Number(number) = cell { Some(*number) } else { None }).collect();
+        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| cell.as_number()).collect();
         let mut distinct: Vec<&TableCell> = Vec::new();
         for cell in &cells {
             if !distinct.contains(cell) {
@@ -156,14 +155,14 @@ impl Factor {
             }
         }
         if numbers.is_some() {
-            let number = |cell: &TableCell| if let TableCell::Number(number) = cell { *number } else { 0.0 };
+            let number = |cell: &TableCell| cell.as_number().unwrap_or(0.0);
             distinct.sort_by(|a, b| number(a).total_cmp(&number(b)));
         }
         let count = distinct.len();
         let is_line = numbers.is_some() && (count > MAX_NUMBERS || 3 * count > 2 * cells.len()) && count > 2;
         let level = |cell: &&TableCell| distinct.iter().position(|other| other == cell).unwrap_or(0);
         let levels = cells.iter().map(level).collect();
-        Self { axis, labels: distinct.iter().map(|cell| text(cell)).collect(), numbers, levels, is_line }
+        Self { axis, labels: distinct.iter().map(|cell| cell.written()).collect(), numbers, levels, is_line }
     }
 
     fn counts(&self) -> Vec<usize> {

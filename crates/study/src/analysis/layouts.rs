@@ -68,7 +68,7 @@ impl Layouts {
     /// The cases of one task.
     pub(super) fn of_task(table: &Table, task: &str) -> Self {
         let column = Fixed::of(&table.columns).task;
-        Self::single(table, |row| text(&row[column]) == task)
+        Self::single(table, |row| row[column].written() == task)
     }
 
     /// All cases one by one, whatever their task.
@@ -98,14 +98,14 @@ impl Layouts {
 
     /// What a layout is, in words: `robot = a.toml, pedestal = low`.
     pub fn words(&self, layout: &Layout) -> String {
-        let words = |axis: usize| format!("{} = {}", self.columns[axis].name, text(&layout.row[axis]));
+        let words = |axis: usize| format!("{} = {}", self.columns[axis].name, layout.row[axis].written());
         self.varied().into_iter().map(words).collect::<Vec<_>>().join(", ")
     }
 
     /// Whether a layout has a placement, in the word of the table, and why it has none.
     pub fn status(&self, layout: &Layout) -> [String; 2] {
         let fixed = Fixed::of(&self.columns);
-        [fixed.status, fixed.reason].map(|column| layout.row.get(column).map_or_else(String::new, text))
+        [fixed.status, fixed.reason].map(|column| layout.row.get(column).map_or_else(String::new, TableCell::written))
     }
 
     pub(super) fn measure(&self, requested: &str, noise: f64) -> Result<Measure, AnalysisError> {
@@ -116,8 +116,9 @@ impl Layouts {
     /// axis.
     pub fn valued(&self, measure: &Measure) -> impl Iterator<Item = (usize, f64)> {
         let fixed = Fixed::of(&self.columns);
-        let is_placed =
-            move |row: &[TableCell]| row.get(fixed.status).is_some_and(|cell| text(cell) == CaseStatus::Placed.word());
+        let is_placed = move |row: &[TableCell]| {
+            row.get(fixed.status).is_some_and(|cell| cell.written() == CaseStatus::Placed.word())
+        };
         let value = move |layout: &Layout| if is_placed(&layout.row) { measure.value(&layout.row) } else { None };
         self.all.iter().enumerate().filter_map(move |(index, layout)| Some((index, value(layout)?)))
     }
@@ -125,7 +126,7 @@ impl Layouts {
     /// Refuses a column that is empty, unless nothing has a placement.
     pub(super) fn check_values(&self, measure: &Measure) -> Result<(), AnalysisError> {
         let fixed = Fixed::of(&self.columns);
-        let is_placed = |layout: &Layout| text(&layout.row[fixed.status]) == CaseStatus::Placed.word();
+        let is_placed = |layout: &Layout| layout.row[fixed.status].written() == CaseStatus::Placed.word();
         if self.valued(measure).next().is_none() && self.all.iter().any(is_placed) {
             return Err(AnalysisError::NoValues(measure.name.clone()));
         }
@@ -155,11 +156,6 @@ impl Layouts {
     }
 }
 
-/// A value as it stands in `study.csv`.
-pub(super) fn text(cell: &TableCell) -> String {
-    cell.written()
-}
-
 fn case(cell: &TableCell) -> i64 {
     if let TableCell::Count(number) = cell { *number } else { 0 }
 }
@@ -167,7 +163,7 @@ fn case(cell: &TableCell) -> i64 {
 /// The tasks, in the order in which they come.
 fn tasks(table: &Table, fixed: &Fixed) -> Vec<String> {
     let mut tasks: Vec<String> = Vec::new();
-    for task in table.rows.iter().map(|row| text(&row[fixed.task])) {
+    for task in table.rows.iter().map(|row| row[fixed.task].written()) {
         if !tasks.contains(&task) {
             tasks.push(task);
         }
@@ -180,7 +176,7 @@ fn groups<'t>(table: &'t Table, axes: &[usize]) -> Vec<Vec<&'t Vec<TableCell>>> 
     let mut places: HashMap<Vec<String>, usize> = HashMap::new();
     let mut groups: Vec<Vec<&Vec<TableCell>>> = Vec::new();
     for row in &table.rows {
-        let key = axes.iter().map(|axis| text(&row[*axis])).collect();
+        let key = axes.iter().map(|axis| row[*axis].written()).collect();
         let place = *places.entry(key).or_insert(groups.len());
         if place == groups.len() {
             groups.push(Vec::new());
@@ -196,10 +192,10 @@ fn joined(table: &Table, fixed: &Fixed, rows: &[&Vec<TableCell>], tasks: usize) 
     let mut row = rows[0].clone();
     row[fixed.task] = TableCell::None;
     row[fixed.weight] = TableCell::None;
-    let failed = rows.iter().find(|row| text(&row[fixed.status]) != CaseStatus::Placed.word());
+    let failed = rows.iter().find(|row| row[fixed.status].written() != CaseStatus::Placed.word());
     let (status, reason) = match failed {
         Some(failed) => {
-            let reason = format!("{}: {}", text(&failed[fixed.task]), text(&failed[fixed.reason]));
+            let reason = format!("{}: {}", failed[fixed.task].written(), failed[fixed.reason].written());
             (failed[fixed.status].clone(), TableCell::Text(reason))
         }
         None if rows.len() < tasks => {
@@ -224,13 +220,12 @@ fn joined_cell(table: &Table, fixed: &Fixed, rows: &[&Vec<TableCell>], column: u
     if *kind != ColumnKind::Number || OF_ONE_TASK.contains(&name.as_str()) {
         return TableCell::None;
     }
-    let number = |cell: &TableCell| if let TableCell::Number(number) = cell { Some(*number) } else { None };
-    let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[column])).collect();
+    let values: Option<Vec<f64>> = rows.iter().map(|row| row[column].as_number()).collect();
     let Some(values) = values else { return TableCell::None };
     if name.starts_with("min_") || name.starts_with("max_feed") {
         return TableCell::number(values.into_iter().reduce(f64::min));
     }
-    let weights = rows.iter().map(|row| number(&row[fixed.weight]).unwrap_or(1.0));
+    let weights = rows.iter().map(|row| row[fixed.weight].as_number().unwrap_or(1.0));
     let (sum, all) = values.iter().zip(weights).fold((0.0, 0.0), |(sum, all), (v, w)| (sum + v * w, all + w));
     TableCell::number(Some(sum / all))
 }

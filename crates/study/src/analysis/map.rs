@@ -1,6 +1,6 @@
 //! A column over two axes.
 
-use super::layouts::{Layouts, text};
+use super::layouts::Layouts;
 use super::measure::Measure;
 use crate::cases::TableCell;
 
@@ -51,10 +51,9 @@ pub fn map(layouts: &Layouts, measure: &Measure, axes: [usize; 2]) -> Option<Map
 impl Side {
     fn of(layouts: &Layouts, axis: usize) -> Self {
         let cells: Vec<&TableCell> = layouts.all.iter().map(|layout| &layout.row[axis]).collect();
-        let numbers: Option<Vec<f64>> =
-            cells.iter().map(|cell| if let TableCell::Number(number) = cell { Some(*number) } else { None }).collect();
+        let numbers: Option<Vec<f64>> = cells.iter().map(|cell| cell.as_number()).collect();
         let mut labels: Vec<String> = Vec::new();
-        for label in cells.iter().map(|cell| text(cell)) {
+        for label in cells.iter().map(|cell| cell.written()) {
             if !labels.contains(&label) {
                 labels.push(label);
             }
@@ -69,7 +68,7 @@ impl Side {
     }
 
     fn by_label(labels: Vec<String>, cells: &[&TableCell]) -> Self {
-        let place = |cell: &&TableCell| labels.iter().position(|label| *label == text(cell)).unwrap_or(0);
+        let place = |cell: &&TableCell| labels.iter().position(|label| *label == cell.written()).unwrap_or(0);
         let places = cells.iter().map(place).collect();
         Self { labels, places }
     }

@@ -1,6 +1,6 @@
 //! Cases without a placement: how many, why, and the values of axes that they share.
 
-use super::layouts::{Layouts, text};
+use super::layouts::Layouts;
 use crate::cases::{CaseStatus, Table};
 use std::collections::HashMap;
 
@@ -76,7 +76,7 @@ fn lost(cases: &Layouts) -> Vec<LostLevel> {
         let mut levels: Vec<(Vec<[String; 2]>, usize, bool)> = Vec::new();
         let mut places: HashMap<Vec<String>, usize> = HashMap::new();
         for (layout, is_placed) in cases.all.iter().zip(&is_placed) {
-            let values: Vec<String> = axes.iter().map(|axis| text(&layout.row[*axis])).collect();
+            let values: Vec<String> = axes.iter().map(|axis| layout.row[*axis].written()).collect();
             let place = *places.entry(values.clone()).or_insert(levels.len());
             if place == levels.len() {
                 let names = axes.iter().map(|axis| cases.columns[*axis].name.clone());

@@ -8,7 +8,7 @@ use stead_model::robot::Posture;
 use stead_model::robot::turns::Range;
 use stead_numerics::unit::Unit;
 use stead_placement::outcome::{Case, DeflectionFigures, Plan};
-use stead_problem::limit::{ActiveBound, Limit, Side};
+use stead_problem::limit::{ActiveBound, Side};
 use stead_problem::problem::Problem;
 
 /// Whether a case has a placement.
@@ -185,27 +185,6 @@ fn number(unit: Unit, value: Option<f64>) -> TableCell {
 
 /// The name of a bound: `z_max`, `joint_2_min`.
 fn name_of(side: Side) -> String {
-    let limit = match side.limit {
-        Limit::CellX => "x".to_owned(),
-        Limit::CellY => "y".to_owned(),
-        Limit::CellZ => "z".to_owned(),
-        Limit::CellYaw => "yaw".to_owned(),
-        Limit::Joint(joint) => format!("joint_{joint}"),
-        Limit::AxesSum => "axes_2_3".to_owned(),
-        Limit::JointStep(joint) => format!("joint_{joint}_step"),
-        Limit::Conditioning => "inverse_condition".to_owned(),
-        Limit::BetaRate => "beta_rate".to_owned(),
-        Limit::SpindleTurn | Limit::SpindleSpeed => "spindle_turn".to_owned(),
-        Limit::MaxDeflection => "deflection".to_owned(),
-        Limit::BaseDistance => "base_distance".to_owned(),
-        Limit::Clearance(_) => "clearance".to_owned(),
-        Limit::KeepOut(_) => "keep_out".to_owned(),
-        Limit::Lead => "lead".to_owned(),
-        Limit::Tilt => "tilt".to_owned(),
-        Limit::MaxLean => "lean".to_owned(),
-        Limit::Scallop => "scallop".to_owned(),
-        Limit::StepOver => "step_over".to_owned(),
-        Limit::ContactTolerance => "contact_tolerance".to_owned(),
-    };
+    let [_, limit] = side.limit.names();
     format!("{limit}_{}", if side.is_upper { "max" } else { "min" })
 }

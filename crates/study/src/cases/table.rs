@@ -48,6 +48,11 @@ impl TableCell {
         value.filter(|value| value.is_finite()).map_or(Self::None, Self::Number)
     }
 
+    /// The number that it is, where it is one and no count.
+    pub fn as_number(&self) -> Option<f64> {
+        if let Self::Number(number) = self { Some(*number) } else { None }
+    }
+
     /// The value as a field of a CSV file: empty where there is none, numbers with as many digits as tell them from all
     /// others.
     pub fn written(&self) -> String {

@@ -3,7 +3,8 @@
 use super::*;
 use nalgebra::{Matrix3, Matrix6};
 use stead_model::robot::{BaseCompliance, NormalSprings, PointMass, SpringModel};
-use stead_model::stiffness::elastic::{ElasticArm, ToolLoad};
+use stead_model::stiffness::elastic::ElasticArm;
+use stead_model::task::Wrench;
 
 /// Yields alike in all directions, with turns that couple with shifts.
 fn matrix(scale: f64) -> Matrix6<f64> {
@@ -37,14 +38,14 @@ fn the_tool_comes_to_rest_at_the_target_on_the_part_with_all_that_yields() {
         let (point, target) = (&done.points[0], &job.points[0]);
         let arm = ElasticArm::new(&job.robot, &job.spindle);
         let arm = if gravity { arm.in_gravity(target.free_fall) } else { arm };
-        let rest = arm.at_rest(&point.joints, &ToolLoad { force: target.force, moment: target.moment }).unwrap();
+        let rest = arm.at_rest(&point.joints, &Wrench { force: target.force, moment: target.moment }).unwrap();
         assert!((rest.translation + target.of_part - target.base_from_tool.translation).norm() <= 1e-9);
         let turn = rotation_vector(&(rest.rotation * target.base_from_tool.rotation.transpose()));
         assert!(turn.norm() <= 1e-9 && point.iterations >= 1 && point.iterations <= 4, "{turn} {}", point.iterations);
         // The correction is the deflection the other way, the part's share among it.
         let before = point.before.unwrap().linear;
         assert!((before + point.correction.linear).norm() < 0.01 * before.norm());
-        let alone = arm.at_rest(&MIDDLE, &ToolLoad { force: target.force, moment: target.moment }).unwrap();
+        let alone = arm.at_rest(&MIDDLE, &Wrench { force: target.force, moment: target.moment }).unwrap();
         assert!((alone.translation + target.of_part - target.base_from_tool.translation - before).norm() < 1e-9);
     }
 }

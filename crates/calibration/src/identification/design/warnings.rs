@@ -84,6 +84,6 @@ fn weak_text(request: &Request, gauge: &Gauge, weak: &WeaklyObserved) -> String 
 fn axis_name(model: FitModel, spring: Spring) -> String {
     match (model, spring.about) {
         (FitModel::Axes, _) | (_, About::Z) => format!("axis {}", spring.joint + 1),
-        (FitModel::Full, about) => format!("{} of joint {}", about.name(), spring.joint + 1),
+        (FitModel::Full, about) => format!("{} of joint {}", about.word(), spring.joint + 1),
     }
 }

@@ -25,7 +25,8 @@ impl Cycle {
         let (mut last, mut of) = ("", Some(OfCycle::Depth));
         for minor in &statement.minors[1..] {
             let Some(value) = minor.number else {
-                of = Some(OF_CYCLES.iter().find(|(known, _)| known.eq_ignore_ascii_case(minor.text))?.1);
+                let is_named = |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(minor.text));
+                of = Some(OF_CYCLES.iter().find(|(_, words)| is_named(words))?.0);
                 last = minor.text;
                 continue;
             };

@@ -9,43 +9,30 @@ use Effect::{
     Refused, Section, Spindle, Tangent, Text, Tool, Unit,
 };
 
-/// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum CamFormat {
-    /// CLDATA, its dialect told from the file.
-    #[default]
-    Cldata,
-    /// That of Siemens NX.
-    Nx,
-    /// That of SolidWorks CAM and CAMWorks.
-    Solidworks,
-    /// That of PTC Creo and Pro/NC.
-    Creo,
-    /// That of Dassault CATIA.
-    Catia,
-    /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
-    Autodesk,
-    /// That of the CAMplete post of Autodesk.
-    Camplete,
-    /// Plain APT words of no system that can be told.
-    Apt,
-    /// G-code of ISO 6983.
-    Gcode,
-}
-
-impl CamFormat {
-    /// All of them with their names as options and keys have them.
-    pub const WORDS: [(&'static str, Self); 9] = [
-        ("cldata", Self::Cldata),
-        ("nx", Self::Nx),
-        ("solidworks", Self::Solidworks),
-        ("creo", Self::Creo),
-        ("catia", Self::Catia),
-        ("autodesk", Self::Autodesk),
-        ("camplete", Self::Camplete),
-        ("apt", Self::Apt),
-        ("gcode", Self::Gcode),
-    ];
+stead_numerics::worded! {
+    /// What a program is written in: G-code, or CLDATA in the dialect of a CAM system.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum CamFormat {
+        /// CLDATA, its dialect told from the file.
+        #[default]
+        Cldata = "cldata",
+        /// That of Siemens NX.
+        Nx = "nx",
+        /// That of SolidWorks CAM and CAMWorks.
+        Solidworks = "solidworks",
+        /// That of PTC Creo and Pro/NC.
+        Creo = "creo",
+        /// That of Dassault CATIA.
+        Catia = "catia",
+        /// That of the APT posts of Autodesk Fusion, HSM and Inventor CAM.
+        Autodesk = "autodesk",
+        /// That of the CAMplete post of Autodesk.
+        Camplete = "camplete",
+        /// Plain APT words of no system that can be told.
+        Apt = "apt",
+        /// G-code of ISO 6983.
+        Gcode = "gcode",
+    }
 }
 
 /// What a word does: a method of the reader each.
@@ -356,28 +343,14 @@ const ORIGIN: FrameForm = FrameForm {
 pub(super) const CYCLES: [&str; 7] = ["DRILL", "DEEP", "DEEP2", "BRKCHP", "TAP", "BORE", "REAM"];
 
 /// Words of cycles. A number without a word is the depth at first, and the clearance behind a feed.
-pub(super) const OF_CYCLES: &[(&str, OfCycle)] = &[
-    ("DEEP", OfCycle::Other),
-    ("BRKCHP", OfCycle::Other),
-    ("DEPTH", OfCycle::Depth),
-    ("FEDTO", OfCycle::To),
-    ("CLEAR", OfCycle::Clear),
-    ("RAPTO", OfCycle::RapidTo),
-    ("RTRCTO", OfCycle::Retract),
-    ("RETURN", OfCycle::Retract),
-    ("AUTO", OfCycle::Other),
-    ("DWELL", OfCycle::Other),
-    ("REV", OfCycle::Other),
-    ("STEP", OfCycle::Other),
-    ("INCR", OfCycle::Other),
-    ("1STPECK", OfCycle::Other),
-    ("SUBPECK", OfCycle::Other),
-    ("MMPM", OfCycle::Feed),
-    ("IPM", OfCycle::Feed),
-    ("PERMIN", OfCycle::Feed),
-    ("MMPR", OfCycle::Feed),
-    ("IPR", OfCycle::Feed),
-    ("PERREV", OfCycle::Feed),
+pub(super) const OF_CYCLES: &[(OfCycle, &[&str])] = &[
+    (OfCycle::Depth, &["DEPTH"]),
+    (OfCycle::To, &["FEDTO"]),
+    (OfCycle::Clear, &["CLEAR"]),
+    (OfCycle::RapidTo, &["RAPTO"]),
+    (OfCycle::Retract, &["RTRCTO", "RETURN"]),
+    (OfCycle::Feed, &["MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV"]),
+    (OfCycle::Other, &["DEEP", "BRKCHP", "AUTO", "DWELL", "REV", "STEP", "INCR", "1STPECK", "SUBPECK"]),
 ];
 
 /// The cycles that are taken, for messages.
@@ -398,138 +371,72 @@ pub(super) const FEEDS: &[(&str, Option<LengthUnit>, bool)] = &[
 pub(super) const UNITS: [(&str, LengthUnit); 3] =
     [("MM", LengthUnit::Millimetre), ("INCH", LengthUnit::Inch), ("INCHES", LengthUnit::Inch)];
 
-const SPLINE: Effect = Refused("a spline");
-const TRANSFORMATION: Effect = Refused("a transformation of what follows");
-const TURN: Effect = Refused("a turn of table or head");
-const PROGRAM: Effect = Refused("a program of its own: macro, subprogram, loop or jump");
-const GEOMETRY: Effect = Refused("a motion along geometry that is not in the file");
-const OFFSET: Effect = Refused("an offset of positions");
-
-/// Words of every dialect.
-pub(super) const COMMON: &[(&str, Effect)] = &[
-    ("GOTO", Move(Ends::To)),
-    ("FEDRAT", Feed),
-    ("RAPID", Rapid),
-    ("CIRCLE", Arc(CIRCLE)),
-    ("FROM", Move(Ends::Start)),
-    ("GOHOME", Move(Ends::Home)),
-    ("MOVARC", Arc(MOVARC)),
-    ("INDIRV", Tangent),
-    ("TLON", Arc(TLON)),
-    ("MSYS", Frame(MSYS)),
-    ("CSYS", Frame(ROWS)),
-    ("MCS", Frame(MCS)),
-    ("MCSYS", Frame(MCSYS)),
-    ("ORIGIN", Frame(ORIGIN)),
-    ("TRNTYP", NoFrame),
-    ("TLAXIS", Axis),
-    ("MULTAX", Axes),
-    ("SPINDL", Spindle),
-    ("UNIT", Unit),
-    ("UNITS", Unit),
-    ("CUTTER", Cutter(CutterForm::Apt)),
-    ("TLDATA", Cutter(CutterForm::Kind)),
-    ("CSI_SET_FLUTE_LENGTH", Cutter(CutterForm::Flutes)),
-    ("LOADTL", Tool),
-    ("LOAD", Tool),
-    ("TOOLNO", Tool),
-    ("TURRET", Tool),
-    ("UNLOAD", Tool),
-    ("TOOL PATH", Section),
-    ("CYCLE", Cycle),
-    ("CUTCOM", Compensation),
-    ("ZERO", Offset),
-    ("MODE", Mode),
-    ("SET", Mode),
-    ("FINI", End(Ending::Program)),
-    ("END-OF-PATH", End(Ending::Path)),
-    ("PARTNO", Text),
-    ("PPRINT", Text),
-    ("INSERT", Text),
-    ("REMARK", Text),
-    ("TPRINT", Text),
-    ("LETTER", Text),
-    ("OPNAME", Text),
-    ("CSI_TOOL_PATH", Text),
-    ("CSI_PROGRAM_COMMENT", Text),
-    ("AIR", Nothing),
-    ("APPLY", Nothing),
-    ("ARCSLP", Nothing),
-    ("AUTOPS", Nothing),
-    ("AUXFUN", Nothing),
-    ("BEGIN", Nothing),
-    ("BREAK", Nothing),
-    ("CLAMP", Nothing),
-    ("CLEARP", Nothing),
-    ("CLPRNT", Nothing),
-    ("COOLNT", Nothing),
-    ("CSI_*", Nothing),
-    ("DELAY", Nothing),
-    ("DISPLY", Nothing),
-    ("END", Nothing),
-    ("HEADER", Nothing),
-    ("INTOL", Nothing),
-    ("ISN", Nothing),
-    ("LEADER", Nothing),
-    ("LINTOL", Nothing),
-    ("MACHIN", Nothing),
-    ("MATERL", Nothing),
-    ("MCHTOL", Nothing),
-    ("NOPOST", Nothing),
-    ("OPSKIP", Nothing),
-    ("OPSTOP", Nothing),
-    ("OUTTOL", Nothing),
-    ("PAINT", Nothing),
-    ("PLABEL", Nothing),
-    ("PPLOT", Nothing),
-    ("PROGRM", Nothing),
-    ("REWIND", Nothing),
-    ("SELCTL", Nothing),
-    ("SELECT", Nothing),
-    ("SEQNO", Nothing),
-    ("SETUP", Nothing),
-    ("START", Nothing),
-    ("STOP", Nothing),
-    ("SWITCH", Nothing),
-    ("TCP", Nothing),
-    ("TOLER", Nothing),
-    ("GODLTA", Refused("a move that counts from the last position")),
-    ("NURBS", SPLINE),
-    ("KNOT", SPLINE),
-    ("CNTRL", SPLINE),
-    ("TRACUT", TRANSFORMATION),
-    ("COPY", TRANSFORMATION),
-    ("TRANS", TRANSFORMATION),
-    ("TRANSL", TRANSFORMATION),
-    ("MIRROR", TRANSFORMATION),
-    ("SCALE", TRANSFORMATION),
-    ("MATRIX", TRANSFORMATION),
-    ("REFSYS", TRANSFORMATION),
-    ("ROTABL", TURN),
-    ("ROTATE", TURN),
-    ("ROTHED", TURN),
-    ("CALSUB", PROGRAM),
-    ("CALL", PROGRAM),
-    ("DEFSUB", PROGRAM),
-    ("SUBRUT", PROGRAM),
-    ("MACRO", PROGRAM),
-    ("LOOPST", PROGRAM),
-    ("IF", PROGRAM),
-    ("JUMPTO", PROGRAM),
-    ("INDEX", Refused("a repetition of what stands before")),
-    ("RETRCT", Refused("a retract to where the machine says")),
-    ("GOFWD", GEOMETRY),
-    ("GOLFT", GEOMETRY),
-    ("GORGT", GEOMETRY),
-    ("GOBACK", GEOMETRY),
-    ("GOUP", GEOMETRY),
-    ("GODOWN", GEOMETRY),
-    ("PSIS", GEOMETRY),
-    ("POLAR", Refused("polar coordinates")),
-    ("OFSETL", OFFSET),
-    ("PIVOTZ", OFFSET),
-    ("THREAD", Refused("a thread")),
-    ("PROBE", Refused("a probing move")),
+/// Words of every dialect; `*` ends the beginning of a family of them.
+pub(super) const COMMON: &[(Effect, &[&str])] = &[
+    (Move(Ends::To), &["GOTO"]),
+    (Feed, &["FEDRAT"]),
+    (Rapid, &["RAPID"]),
+    (Arc(CIRCLE), &["CIRCLE"]),
+    (Move(Ends::Start), &["FROM"]),
+    (Move(Ends::Home), &["GOHOME"]),
+    (Arc(MOVARC), &["MOVARC"]),
+    (Tangent, &["INDIRV"]),
+    (Arc(TLON), &["TLON"]),
+    (Frame(MSYS), &["MSYS"]),
+    (Frame(ROWS), &["CSYS"]),
+    (Frame(MCS), &["MCS"]),
+    (Frame(MCSYS), &["MCSYS"]),
+    (Frame(ORIGIN), &["ORIGIN"]),
+    (NoFrame, &["TRNTYP"]),
+    (Axis, &["TLAXIS"]),
+    (Axes, &["MULTAX"]),
+    (Spindle, &["SPINDL"]),
+    (Unit, &["UNIT", "UNITS"]),
+    (Cutter(CutterForm::Apt), &["CUTTER"]),
+    (Cutter(CutterForm::Kind), &["TLDATA"]),
+    (Cutter(CutterForm::Flutes), &["CSI_SET_FLUTE_LENGTH"]),
+    (Tool, &["LOADTL", "LOAD", "TOOLNO", "TURRET", "UNLOAD"]),
+    (Section, &["TOOL PATH"]),
+    (Cycle, &["CYCLE"]),
+    (Compensation, &["CUTCOM"]),
+    (Offset, &["ZERO"]),
+    (Mode, &["MODE", "SET"]),
+    (End(Ending::Program), &["FINI"]),
+    (End(Ending::Path), &["END-OF-PATH"]),
+    (
+        Text,
+        &["PARTNO", "PPRINT", "INSERT", "REMARK", "TPRINT", "LETTER", "OPNAME", "CSI_TOOL_PATH", "CSI_PROGRAM_COMMENT"],
+    ),
+    (
+        Nothing,
+        &[
+            "AIR", "APPLY", "ARCSLP", "AUTOPS", "AUXFUN", "BEGIN", "BREAK", "CLAMP", "CLEARP", "CLPRNT", "COOLNT",
+            "CSI_*", "DELAY", "DISPLY", "END", "HEADER", "INTOL", "ISN", "LEADER", "LINTOL", "MACHIN", "MATERL",
+            "MCHTOL", "NOPOST", "OPSKIP", "OPSTOP", "OUTTOL", "PAINT", "PLABEL", "PPLOT", "PROGRM", "REWIND", "SELCTL",
+            "SELECT", "SEQNO", "SETUP", "START", "STOP", "SWITCH", "TCP", "TOLER",
+        ],
+    ),
+    (Refused("a move that counts from the last position"), &["GODLTA"]),
+    (Refused("a spline"), &["NURBS", "KNOT", "CNTRL"]),
+    (
+        Refused("a transformation of what follows"),
+        &["TRACUT", "COPY", "TRANS", "TRANSL", "MIRROR", "SCALE", "MATRIX", "REFSYS"],
+    ),
+    (Refused("a turn of table or head"), &["ROTABL", "ROTATE", "ROTHED"]),
+    (
+        Refused("a program of its own: macro, subprogram, loop or jump"),
+        &["CALSUB", "CALL", "DEFSUB", "SUBRUT", "MACRO", "LOOPST", "IF", "JUMPTO"],
+    ),
+    (Refused("a repetition of what stands before"), &["INDEX"]),
+    (Refused("a retract to where the machine says"), &["RETRCT"]),
+    (
+        Refused("a motion along geometry that is not in the file"),
+        &["GOFWD", "GOLFT", "GORGT", "GOBACK", "GOUP", "GODOWN", "PSIS"],
+    ),
+    (Refused("polar coordinates"), &["POLAR"]),
+    (Refused("an offset of positions"), &["OFSETL", "PIVOTZ"]),
+    (Refused("a thread"), &["THREAD"]),
+    (Refused("a probing move"), &["PROBE"]),
 ];
 
 #[cfg(test)]
@@ -539,18 +446,21 @@ mod tests {
 
     #[test]
     fn no_word_stands_twice_in_what_a_dialect_reads_and_every_format_has_one_dialect() {
-        let is_once = |words: &[(&str, Effect)]| {
-            let all: BTreeSet<&str> = words.iter().map(|(word, _)| *word).collect();
+        let is_once = |words: &[&str]| {
+            let all: BTreeSet<&str> = words.iter().copied().collect();
             assert_eq!(all.len(), words.len());
             assert!(all.iter().all(|word| *word == word.to_ascii_uppercase()));
         };
-        is_once(COMMON);
+        is_once(&COMMON.iter().flat_map(|(_, words)| *words).copied().collect::<Vec<_>>());
         for dialect in DIALECTS {
-            is_once(dialect.words);
-            assert!(dialect.words.iter().all(|row| !COMMON.contains(row)), "a row of COMMON in {:?}", dialect.format);
+            is_once(&dialect.words.iter().map(|(word, _)| *word).collect::<Vec<_>>());
+            let is_common = |(word, effect): &(&str, Effect)| {
+                COMMON.iter().any(|(known, words)| known == effect && words.contains(word))
+            };
+            assert!(!dialect.words.iter().any(is_common), "a row of COMMON in {:?}", dialect.format);
         }
         let named: Vec<CamFormat> = DIALECTS.iter().map(|dialect| dialect.format).collect();
-        for (word, format) in CamFormat::WORDS {
+        for &(word, format) in CamFormat::WORDS {
             let expected = usize::from(![CamFormat::Gcode, CamFormat::Cldata].contains(&format));
             assert_eq!(named.iter().filter(|own| **own == format).count(), expected, "{word}");
         }

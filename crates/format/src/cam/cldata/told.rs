@@ -1,24 +1,16 @@
 //! The dialect of a CLDATA file, and the rows of its words.
 
-use super::super::units::word_of;
 use super::dialect::{COMMON, CamFormat, DIALECTS, Dialect, Effect, Sign};
-
-impl CamFormat {
-    /// Its name as an option has it.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
-    }
-}
 
 impl Dialect {
     /// What a word does, if it is known.
     pub fn effect(&self, word: &str) -> Option<Effect> {
-        let is_of = |row: &&(&str, Effect)| match row.0.strip_suffix('*') {
+        let is_of = |known: &&str| match known.strip_suffix('*') {
             Some(family) => word.get(..family.len()).is_some_and(|start| start.eq_ignore_ascii_case(family)),
-            None => row.0.eq_ignore_ascii_case(word),
+            None => known.eq_ignore_ascii_case(word),
         };
-        let own = self.words.iter().find(is_of);
-        own.or_else(|| COMMON.iter().find(is_of)).map(|(_, effect)| *effect)
+        let own = self.words.iter().find(|(known, _)| is_of(known)).map(|(_, effect)| *effect);
+        own.or_else(|| COMMON.iter().find(|(_, words)| words.iter().any(&is_of)).map(|(effect, _)| *effect))
     }
 
     /// The word of a comment that means something, what it does, and what stands behind it.

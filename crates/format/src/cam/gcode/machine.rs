@@ -3,36 +3,24 @@
 //! Angles count as those of the tool against the workpiece, right-handed about the axes x (A), y (B) and z (C), as ISO
 //! 841 has it for tables too. C turns the other one: the tool axis is Rz(C) Rx(A) z, or Rz(C) Ry(B) z.
 
-use super::super::units::word_of;
 use nalgebra::{Rotation3, Vector3};
 
-/// Which rotary axes a machine has, and what they turn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Machine {
-    /// A table that turns about z (C) on one that tilts about x (A).
-    TableAc,
-    /// A table that turns about z (C) on one that tilts about y (B).
-    TableBc,
-    /// A spindle that tilts about x (A) in a head that turns about z (C).
-    HeadAc,
-    /// A spindle that tilts about y (B) in a head that turns about z (C).
-    HeadBc,
+stead_numerics::worded! {
+    /// Which rotary axes a machine has, and what they turn.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Machine {
+        /// A table that turns about z (C) on one that tilts about x (A).
+        TableAc = "table-ac",
+        /// A table that turns about z (C) on one that tilts about y (B).
+        TableBc = "table-bc",
+        /// A spindle that tilts about x (A) in a head that turns about z (C).
+        HeadAc = "head-ac",
+        /// A spindle that tilts about y (B) in a head that turns about z (C).
+        HeadBc = "head-bc",
+    }
 }
 
 impl Machine {
-    /// All of them with their names as options have them.
-    pub const WORDS: [(&'static str, Self); 4] = [
-        ("table-ac", Self::TableAc),
-        ("table-bc", Self::TableBc),
-        ("head-ac", Self::HeadAc),
-        ("head-bc", Self::HeadBc),
-    ];
-
-    /// Its name as an option has it.
-    pub fn word(self) -> &'static str {
-        word_of(&Self::WORDS, self)
-    }
-
     /// Whether it has this rotary axis, 0 for A to 2 for C.
     pub(super) fn has(self, axis: usize) -> bool {
         axis != usize::from(matches!(self, Self::TableAc | Self::HeadAc))

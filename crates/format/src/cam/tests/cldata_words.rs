@@ -221,11 +221,11 @@ fn drilling_cycles_are_plunges_that_are_not_scored_or_left_out_and_listed() {
         let (task, imported) = task(&path(cycle), &settings());
         assert_eq!(task.path.segments().len(), 3, "{cycle}");
         assert!(task.path.segments()[1..].iter().flat_map(Clone::clone).all(|point| !task.path.is_scored(point)));
-        assert!(imported.notes().iter().any(|note| note.starts_with("holes of drilling cycles")), "{imported}");
+        assert!(imported.notes.iter().any(|note| note.starts_with("holes of drilling cycles")), "{imported}");
         let skip = ReadSettings { skip_cycles: true, ..settings() };
         let (task, imported) = super::task(&path(cycle), &skip);
         assert_eq!(task.path.segments().len(), 1);
-        let said = imported.notes().join("\n");
+        let said = imported.notes.join("\n");
         assert!(
             said.contains("2 holes left out (--skip-cycles): 20, 10, 0 mm (line 9); 30, 10, 0 mm (line 10)"),
             "{said}"

@@ -215,7 +215,7 @@ fn tapers_flutes_and_other_shapes_of_cutters() {
     let tool = |words: &str, format| {
         let text = format!("UNITS/MM\n{words}\n{cut}");
         let path = import_bytes(Path::new("part.apt"), text.as_bytes(), &in_format(format)).unwrap();
-        (path.files(Path::new("p.csv")).unwrap()[1].1.clone(), path.notes().join("\n"))
+        (path.files(Path::new("p.csv")).unwrap()[1].1.clone(), path.notes.join("\n"))
     };
     for (words, format, rows) in [
         ("CUTTER/6,3,0,3,0,10,40", CamFormat::Apt, ["taper_deg = 10.0", "flute_length_mm = 40.0"]),

@@ -165,7 +165,7 @@ fn tool_changes_end_segments_block_delete_is_said_and_holes_are_left_out() {
     refused(text, &settings(), ":11: G", &["a canned cycle", "'G83'"]);
     let (read, path) = task(text, &ReadSettings { skip_cycles: true, ..settings() });
     assert_eq!(read.path.segments().len(), 2);
-    let said = path.notes().join("\n");
+    let said = path.notes.join("\n");
     for part in [
         "block delete",
         "first moves of a tool",

@@ -116,33 +116,32 @@ impl<const N: usize> Posed<N> {
         torques
     }
 
-    /// Joint torques (N m) that hold the chain against gravity at rest: the slope of the potential energy.
-    pub fn gravity(&self, chain: &Chain<N>) -> SVector<f64, N> {
+    /// The first moment about the origin of each joint of all that it carries. kg m
+    fn carried(&self, chain: &Chain<N>) -> [Vector3<f64>; N] {
         let pole = self.pole();
         let (mut mass, mut moment) = (0.0, Vector3::zeros());
-        let mut torques = SVector::zeros();
+        let mut carried = [Vector3::zeros(); N];
         for j in (0..N).rev() {
             if let Some(body) = &chain.links[j].body {
                 mass += body.mass();
                 moment += (self.origins[j] - pole + self.rotations[j] * body.centre()) * body.mass();
             }
-            let about = moment - (self.origins[j] - pole) * mass;
-            torques[j] = -self.axes[j].cross(&about).dot(&chain.gravity);
+            carried[j] = moment - (self.origins[j] - pole) * mass;
         }
-        torques
+        carried
+    }
+
+    /// Joint torques (N m) that hold the chain against gravity at rest: the slope of the potential energy.
+    pub fn gravity(&self, chain: &Chain<N>) -> SVector<f64, N> {
+        let carried = self.carried(chain);
+        SVector::from_fn(|j, _| -self.axes[j].cross(&carried[j]).dot(&chain.gravity))
     }
 
     /// How [`Posed::gravity`] changes with the angles: its Jacobian, which is symmetric. N m/rad
     pub fn gravity_stiffness(&self, chain: &Chain<N>) -> SMatrix<f64, N, N> {
-        let pole = self.pole();
-        let (mut mass, mut moment) = (0.0, Vector3::zeros());
         let mut stiffness = SMatrix::zeros();
-        for j in (0..N).rev() {
-            if let Some(body) = &chain.links[j].body {
-                mass += body.mass();
-                moment += (self.origins[j] - pole + self.rotations[j] * body.centre()) * body.mass();
-            }
-            let about = self.axes[j].cross(&(moment - (self.origins[j] - pole) * mass));
+        for (j, carried) in self.carried(chain).iter().enumerate() {
+            let about = self.axes[j].cross(carried);
             for i in 0..=j {
                 let entry = -self.axes[i].cross(&about).dot(&chain.gravity);
                 stiffness[(i, j)] = entry;

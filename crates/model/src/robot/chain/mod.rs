@@ -54,21 +54,6 @@ impl Link {
         let turn = turned.then_some(previous_from_joint.rotation);
         Self { turn, shift: previous_from_joint.translation, axis, body }
     }
-
-    /// The joint's frame at angle zero in the frame of the joint before it.
-    pub fn previous_from_joint(&self) -> Pose<f64> {
-        Pose { rotation: self.turn.unwrap_or_else(Matrix3::identity), translation: self.shift }
-    }
-
-    /// The axis about which it turns.
-    pub fn axis(&self) -> Axis {
-        self.axis
-    }
-
-    /// What is fixed behind it, in its frame.
-    pub fn body(&self) -> Option<&Inertial> {
-        self.body.as_ref()
-    }
 }
 
 /// A serial chain of `N` revolute joints, base first, and a tip fixed to the last.
@@ -94,16 +79,6 @@ impl<const N: usize> Chain<N> {
     pub fn with_gravity(mut self, gravity: Vector3<f64>) -> Self {
         self.gravity = gravity;
         self
-    }
-
-    /// The joints with their bodies, base first.
-    pub fn links(&self) -> &[Link; N] {
-        &self.links
-    }
-
-    /// The tip in the frame of the last joint.
-    pub fn last_from_tip(&self) -> &Pose<f64> {
-        &self.last_from_tip
     }
 
     /// Acceleration of free fall in base coordinates. m/s^2

@@ -41,8 +41,8 @@ pub fn motion_histories<const N: usize>(
 ) -> Vec<MotionHistory> {
     let mut course = MotionHistory([Matrix4::identity(), Matrix4::zeros(), Matrix4::zeros()]);
     let mut all = vec![];
-    for (j, joint) in chain.links().iter().enumerate() {
-        let axis = match joint.axis() {
+    for (j, joint) in chain.links.iter().enumerate() {
+        let axis = match joint.axis {
             Axis::X => Vector3::x(),
             Axis::Y => Vector3::y(),
             Axis::Z => Vector3::z(),
@@ -51,9 +51,8 @@ pub fn motion_histories<const N: usize>(
         // Rodrigues: exp(cross q), and its derivatives, which commute with it.
         let (s, c) = libm::sincos(q[j]);
         let turn = Matrix4::identity() + cross * s + cross * cross * (1.0 - c);
-        let step = joint.previous_from_joint();
-        let mut placed = step.rotation.to_homogeneous();
-        placed.fixed_view_mut::<3, 1>(0, 3).copy_from(&step.translation);
+        let mut placed = joint.turn.unwrap_or_else(nalgebra::Matrix3::identity).to_homogeneous();
+        placed.fixed_view_mut::<3, 1>(0, 3).copy_from(&joint.shift);
         let first = cross * turn * speed[j];
         let second = cross * cross * turn * speed[j] * speed[j] + cross * turn * acceleration[j];
         course = course.then(&MotionHistory([placed * turn, placed * first, placed * second]));
@@ -72,8 +71,8 @@ pub fn torques_by_bodies<const N: usize>(
     let zero = SVector::zeros();
     let motion_histories = motion_histories(chain, q, speed, acceleration);
     let mut torques = SVector::zeros();
-    for (b, joint) in chain.links().iter().enumerate() {
-        let Some(body) = joint.body() else { continue };
+    for (b, joint) in chain.links.iter().enumerate() {
+        let Some(body) = &joint.body else { continue };
         let [_, _, dd] = motion_histories[b].0;
         let [rotation, rate, rate2] = motion_histories[b].0.map(|m| m.fixed_view::<3, 3>(0, 0).into_owned());
         let centre = body.centre().push(1.0);
@@ -101,8 +100,8 @@ fn of_cross(matrix: &Matrix3<f64>) -> Vector3<f64> {
 pub fn mass_by_bodies<const N: usize>(chain: &Chain<N>, q: &SVector<f64, N>) -> SMatrix<f64, N, N> {
     let zero = SVector::zeros();
     let mut matrix = SMatrix::zeros();
-    for (b, joint) in chain.links().iter().enumerate() {
-        let Some(body) = joint.body() else { continue };
+    for (b, joint) in chain.links.iter().enumerate() {
+        let Some(body) = &joint.body else { continue };
         let (mut linear, mut angular) = (SMatrix::<f64, 3, N>::zeros(), SMatrix::<f64, 3, N>::zeros());
         let mut rotation = Matrix3::identity();
         for i in 0..=b {

@@ -50,7 +50,7 @@ proptest! {
         for q in [q, small] {
             let posed = chain.at(&q);
             let [value, rate, _] = motion_histories(&chain, &q, &speed, &SVector::zeros())[5].0;
-            let tip = chain.last_from_tip().translation.push(1.0);
+            let tip = chain.last_from_tip.translation.push(1.0);
             prop_assert!((posed.tip() - (value * tip).xyz()).norm() < 1e-12);
             prop_assert!((posed.tip_jacobian() * speed - (rate * tip).xyz()).norm() < 1e-12);
             prop_assert!((posed.tip_velocity(&speed) - (rate * tip).xyz()).norm() < 1e-12);

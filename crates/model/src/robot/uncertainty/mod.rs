@@ -144,12 +144,10 @@ pub enum UncertaintyError {
         /// The covariance over the root of both variances.
         correlation: f64,
     },
-    /// Some combination of the parameters would have a negative variance.
-    #[error("the matrix is not positive semidefinite: its correlations have an eigenvalue of {eigenvalue}")]
-    Indefinite {
-        /// The smallest eigenvalue of the correlation matrix.
-        eigenvalue: f64,
-    },
+    /// Some combination of the parameters would have a negative variance: the smallest eigenvalue of the correlation
+    /// matrix.
+    #[error("the matrix is not positive semidefinite: its correlations have an eigenvalue of {0}")]
+    Indefinite(f64),
 }
 
 /// What rounding may do to symmetry, correlations and their eigenvalues.
@@ -179,7 +177,7 @@ impl Uncertainty {
         let eigen = SymmetricEigen::new(correlations);
         let least = eigen.eigenvalues.min();
         if least < -ROUNDING {
-            return Err(UncertaintyError::Indefinite { eigenvalue: least });
+            return Err(UncertaintyError::Indefinite(least));
         }
         let directions = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
         let directions = directions.filter(|(value, _)| **value > 0.0).map(|(value, vector)| {

@@ -142,10 +142,7 @@ fn what_is_no_covariance_is_refused() {
     let three = vec![Parameter::Compliance(0), Parameter::Compliance(1), Parameter::Compliance(2)];
     let indefinite = DMatrix::from_fn(3, 3, |k, l| if k == l { 1.0 } else { -0.6 });
     let error = Uncertainty::new(three, indefinite).unwrap_err();
-    assert!(
-        matches!(error, UncertaintyError::Indefinite { eigenvalue } if (eigenvalue + 0.2).abs() < 1e-12),
-        "{error}"
-    );
+    assert!(matches!(error, UncertaintyError::Indefinite(eigenvalue) if (eigenvalue + 0.2).abs() < 1e-12), "{error}");
     let error = Uncertainty::new(two(), DMatrix::zeros(2, 3)).unwrap_err();
     assert_eq!(error, UncertaintyError::Size { parameters: 2, rows: 2, columns: 3 });
     assert!(matches!(Uncertainty::new(vec![], DMatrix::zeros(0, 0)), Err(UncertaintyError::Size { .. })));

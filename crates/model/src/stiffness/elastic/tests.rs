@@ -14,13 +14,13 @@ use stead_numerics::rotation::{rotation_from_zyx, rotation_vector};
 
 const FREE_FALL: Vector3<f64> = vector![0.0, 0.0, -9.81];
 
-fn load(wrench: [f64; 6]) -> ToolLoad {
+fn load(wrench: [f64; 6]) -> Wrench {
     let [fx, fy, fz, mx, my, mz] = wrench;
-    ToolLoad { force: vector![fx, fy, fz], moment: vector![mx, my, mz] }
+    Wrench { force: vector![fx, fy, fz], moment: vector![mx, my, mz] }
 }
 
-fn scaled(load: &ToolLoad, share: f64) -> ToolLoad {
-    ToolLoad { force: load.force * share, moment: load.moment * share }
+fn scaled(load: &Wrench, share: f64) -> Wrench {
+    Wrench { force: load.force * share, moment: load.moment * share }
 }
 
 /// Half the way from one pose to another, over a share of the load.
@@ -56,7 +56,7 @@ fn the_slope_of_the_arm_at_rest_is_what_another_program_has() {
     for Row { arm, springs, theta, force, moment, moved } in rows {
         let (robot, spindle) = arm.arm(&springs);
         let elastic = ElasticArm::new(&robot, &spindle);
-        let at = |share: f64| elastic.at_rest(&theta, &ToolLoad { force: force * share, moment: moment * share });
+        let at = |share: f64| elastic.at_rest(&theta, &Wrench { force: force * share, moment: moment * share });
         let found = slope(&at(0.002).unwrap(), &at(-0.002).unwrap(), 0.002);
         let found = micro(&(found.linear + arm.of_part(&springs, &force)), &found.angular);
         for part in 0..2 {
@@ -80,7 +80,7 @@ fn a_mounted_arm_rests_as_it_does_on_the_floor() {
         let sag = on_the_floor.sag(&theta);
         let mounted = arm.clone().mounted(&mount);
         let mounted = ElasticArm::new(&mounted, &spindle).in_gravity(FREE_FALL);
-        let pressed = ToolLoad { force: turned(&pressed.force), moment: turned(&pressed.moment) };
+        let pressed = Wrench { force: turned(&pressed.force), moment: turned(&pressed.moment) };
         let found = mounted.at_rest(&theta, &pressed).unwrap();
         assert!((found.translation - expected.translation).norm() < 1e-12);
         assert!((found.rotation - expected.rotation).norm() < 1e-12);
@@ -120,8 +120,13 @@ proptest! {
         let scale = elastic.scale_at(&robot.compliances_at(&theta));
         let pressed = load(wrench);
         let taken = elastic.taken(&theta);
-        let commanded = Commanded { arm: &elastic, theta: &theta, load: &pressed, scale, taken };
-        let rest = commanded.settle(1.0, Coordinates::zeros()).unwrap();
+        let rest = settled(&scale, Coordinates::zeros(), |deflection| {
+            let posed = elastic.posed(&theta, &(scale * deflection));
+            let applied = elastic.applied(&posed, &pressed, 1.0);
+            let inverse = inverse_tangent(&(scale.tr_mul(&posed.hessian(&applied)) * scale))?;
+            Some((inverse, posed.torques(&applied) + taken))
+        })
+        .unwrap();
         let posed = elastic.posed(&theta, &(scale * rest));
         let applied = elastic.applied(&posed, &pressed, 1.0);
         let off = rest - scale.tr_mul(&(posed.torques(&applied) + taken));
@@ -150,7 +155,7 @@ proptest! {
         let (robot, spindle) = heavy(robot, spindle);
         let at = |share: f64| {
             let elastic = ElasticArm::new(&robot, &spindle).in_gravity(FREE_FALL * share);
-            elastic.at_rest(&theta, &ToolLoad::NONE).unwrap()
+            elastic.at_rest(&theta, &Wrench::default()).unwrap()
         };
         let expected = slope(&at(0.01), &at(-0.01), 0.01);
         let found = ElasticArm::new(&robot, &spindle).in_gravity(FREE_FALL).sag(&theta);
@@ -295,8 +300,7 @@ fn a_tube_under_the_arm_buckles_at_its_hinge() {
     let height = arm.forward(&theta).then(&spindle.flange_from_tool).translation.z;
     let side = arm.forward(&theta).then(&spindle.flange_from_tool).translation.y;
     assert!(height > 0.5 && side.abs() < 0.05);
-    let pressed =
-        |share: f64| ToolLoad { force: vector![0.0, 0.0, -share / (1e-6 * height)], moment: Vector3::zeros() };
+    let pressed = |share: f64| Wrench { force: vector![0.0, 0.0, -share / (1e-6 * height)], moment: Vector3::zeros() };
     let elastic = ElasticArm::new(&arm, &spindle);
     assert!(elastic.at_rest(&theta, &pressed(0.9)).is_ok());
     let compliances = arm.compliances_at(&theta);

@@ -112,7 +112,7 @@ fn what_makes_no_forces_is_refused() {
     let mut large = slot();
     let of = |solid: Solid| Stock::Solid { solid, pose: Pose::identity() };
     large.stock = of(Solid::Box(Vector3::new(5.0, 0.1, 0.1)));
-    assert_eq!(refused(&large), ForcesError::Large { length: 5.0 });
+    assert_eq!(refused(&large), ForcesError::Large(5.0));
     let mut hull = slot();
     hull.stock = of(Solid::Capsule { radius: 0.1, length: 0.1 });
     assert_eq!(refused(&hull), ForcesError::Form);

@@ -29,7 +29,7 @@ fn of_surface(axis: &Vector3<f64>) -> [Wrench; 2] {
     let (k, teeth) = (cutter.coefficients(), cutter.teeth().len() as f64);
     // As of the operation: 20 mm/s at 100 turns per second.
     let feed_per_turn = 0.02 / 100.0;
-    let [mut chip, mut edge] = [Wrench::zero(); 2];
+    let [mut chip, mut edge] = [Wrench::default(); 2];
     let steps = 1200;
     for row in 0..steps {
         // From the lowest point of the ball up to the face, in rings of equal height.

@@ -50,7 +50,7 @@ impl Probing<'_> {
         let other = here.axis.cross(&side);
         let [slices, angles] = ELEMENTS;
         let (dl, dphi) = (self.edge / slices as f64, TAU / angles as f64);
-        let mut sum = Wrench::zero();
+        let mut sum = Wrench::default();
         let mut removed = 0.0;
         for slice in 0..slices {
             let l = (slice as f64 + 0.5) * dl;

@@ -1,7 +1,6 @@
 //! What `stead identify plan --json` prints, and `plan.json`: the same document.
 
-use super::super::json::{SharedFigures, shared};
-use super::super::json::{URAD, key, rounded};
+use super::super::json::{SharedFigures, URAD, key, rounded, shared};
 use crate::document::Document;
 use crate::figure::{AngleDeg, ForceN, PlaceMm, each};
 use serde_json::Value;
@@ -68,13 +67,11 @@ records! {
         joint: usize = spring.joint + 1,
         /// The axis of the frame of its row about which the spring turns, where those normal to the axes are sought
         /// too.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        about: Option<&'static str> = is_full.then(|| spring.about.name()),
+        about?: &'static str = is_full.then(|| spring.about.word()),
         /// Springs whose compliance is in the estimate too, since they cannot be told apart from it.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        with: Option<Vec<SharedFigures>> = gauge.and_then(|gauge| shared(gauge, spring)),
+        with?: Vec<SharedFigures> = gauge.and_then(|gauge| shared(gauge, spring)),
         /// Joint angle at which the compliance holds; only for the joint beside a compensator.
-        #[serde(skip_serializing_if = "Option::is_none")] angle_deg: Option<AngleDeg> = angle.map(Into::into),
+        angle_deg?: AngleDeg = angle.map(Into::into),
     }
 
     /// The expected error of a compliance, beside those of random sets of configurations.
@@ -132,18 +129,16 @@ records! {
 
     /// Where the candidates come from.
     pub struct CandidateFigures of (plan: &Design) {
-        let rejected = &plan.rejected;
-    } with {
         /// Candidate configurations that the limits allow.
         allowed: usize = plan.candidates,
         /// Random configurations drawn.
         drawn: usize = plan.draws,
         /// Rejected: a part would be outside the volume.
-        outside_volume: usize = rejected.volume,
+        outside_volume: usize = plan.rejected.volume,
         /// Rejected: a part would be too near to the z axis of the base.
-        too_near_base: usize = rejected.radius,
+        too_near_base: usize = plan.rejected.radius,
         /// Rejected: a reference point would deflect too far.
-        deflected_too_far: usize = rejected.deflection,
+        deflected_too_far: usize = plan.rejected.deflection,
     }
 
     /// Compliances that a plan does not show.

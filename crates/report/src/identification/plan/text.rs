@@ -1,7 +1,7 @@
 //! The table for people.
 
 use super::super::json::{URAD, key};
-use crate::columns::aligned;
+use crate::columns::table;
 use crate::units::{figures, fixed};
 use stead_calibration::identification::FitModel;
 use stead_calibration::identification::design::{Design, TestCases};
@@ -20,10 +20,10 @@ pub fn plan_text(run: &PlanRun, plan: &Design) -> String {
         figures(request.load),
         request.noise * 1e3
     );
-    text += &aligned(&bar_rows(request.model, plan), &[0]);
+    text += &bars(request.model, plan);
     if !plan.compensator.is_empty() {
         text += "\n";
-        text += &aligned(&spring_rows(plan), &[0]);
+        text += &springs(plan);
     }
     text += &errors_text(run, plan);
     let rejected = &plan.rejected;
@@ -81,14 +81,13 @@ fn errors_text(run: &PlanRun, plan: &Design) -> String {
     text
 }
 
-fn bar_rows(model: FitModel, plan: &Design) -> Vec<Vec<String>> {
+fn bars(model: FitModel, plan: &Design) -> String {
     let has_law = plan.compliances.iter().any(|bar| bar.angle.is_some());
     let first = if model == FitModel::Full { "spring" } else { "joint" };
     let mut header = vec![first, "at deg", "urad/(N m)", "std", "%"];
     header.extend(has_law.then_some("% by law"));
     header.extend(["% best random", "% median random"]);
-    let mut rows = vec![header.into_iter().map(str::to_owned).collect::<Vec<_>>()];
-    for bar in &plan.compliances {
+    let rows = plan.compliances.iter().map(|bar| {
         let percent = |deviation: Option<f64>| {
             deviation.map_or_else(|| "-".to_owned(), |deviation| fixed((100.0 * deviation / bar.value).abs(), 2))
         };
@@ -101,18 +100,16 @@ fn bar_rows(model: FitModel, plan: &Design) -> Vec<Vec<String>> {
         let mut row = vec![name, angle, fixed(bar.value * URAD, 4), deviation, percent(bar.deviation)];
         row.extend(has_law.then(|| percent(Some(bar.by_law))));
         row.extend([percent(bar.best_random), percent(bar.median_random)]);
-        rows.push(row);
-    }
-    rows
+        row
+    });
+    table(header, rows, &[0])
 }
 
-fn spring_rows(plan: &Design) -> Vec<Vec<String>> {
-    let header = ["in the robot file", "value", "std", "%"];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for bar in &plan.compensator {
+fn springs(plan: &Design) -> String {
+    let rows = plan.compensator.iter().map(|bar| {
         let (name, factor) = key(&bar.parameter);
         let percent = fixed(100.0 * (bar.deviation / bar.value).abs(), 2);
-        rows.push(vec![name, figures(bar.value * factor), figures(bar.deviation * factor), percent]);
-    }
-    rows
+        vec![name, figures(bar.value * factor), figures(bar.deviation * factor), percent]
+    });
+    table(["in the robot file", "value", "std", "%"], rows, &[0])
 }

@@ -45,6 +45,26 @@ pub enum Card {
     Polar(Polar),
 }
 
+/// What each kind of card is made of.
+macro_rules! cards {
+    ($($of:ident: $type:ty => $card:expr;)*) => {$(
+        impl From<$type> for Card {
+            fn from($of: $type) -> Self {
+                $card
+            }
+        }
+    )*};
+}
+
+cards! {
+    text: Text => Self::Text(text);
+    tiles: Vec<Tile> => Self::Tiles(Tiles { tiles });
+    table: Table => Self::Table(table);
+    chart: Chart => Self::Chart(chart);
+    map: HeatMap => Self::HeatMap(Box::new(map));
+    polar: Polar => Self::Polar(polar);
+}
+
 /// Sentences under a heading.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct Text {
@@ -54,6 +74,13 @@ pub struct Text {
     pub sentences: Vec<String>,
     /// Whether they are warnings.
     pub is_warning: bool,
+}
+
+impl Text {
+    /// Sentences, where there are any.
+    pub fn of(title: &str, sentences: Vec<String>, is_warning: bool) -> Option<Self> {
+        (!sentences.is_empty()).then(|| Self { title: title.to_owned(), sentences, is_warning })
+    }
 }
 
 /// Figures in large digits.
@@ -93,22 +120,19 @@ impl Page {
     }
 
     /// Adds warnings and notes, where there are any: they come first on every page.
-    pub fn messages(mut self, warnings: &[impl ToString], notes: &[impl ToString]) -> Self {
-        let text = |title: &str, sentences: Vec<String>, is_warning| {
-            Card::Text(Text { title: title.to_owned(), sentences, is_warning })
-        };
-        if !warnings.is_empty() {
-            self.cards.push(text("Warnings", warnings.iter().map(ToString::to_string).collect(), true));
-        }
-        if !notes.is_empty() {
-            self.cards.push(text("Notes", notes.iter().map(ToString::to_string).collect(), false));
-        }
-        self
+    pub fn messages(self, warnings: &[impl ToString], notes: &[impl ToString]) -> Self {
+        let warnings = Text::of("Warnings", warnings.iter().map(ToString::to_string).collect(), true);
+        self.with_all(warnings).with_all(Text::of("Notes", notes.iter().map(ToString::to_string).collect(), false))
     }
 
     /// Adds a card.
-    pub fn with(mut self, card: Card) -> Self {
-        self.cards.push(card);
+    pub fn with(self, card: impl Into<Card>) -> Self {
+        self.with_all([card])
+    }
+
+    /// Adds cards, or one where there is one.
+    pub fn with_all(mut self, cards: impl IntoIterator<Item = impl Into<Card>>) -> Self {
+        self.cards.extend(cards.into_iter().map(Into::into));
         self
     }
 

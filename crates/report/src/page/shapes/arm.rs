@@ -158,13 +158,8 @@ impl Arm<'_> {
         let wrist = length.abs() / size;
         [
             self.part("hub 3", 3, Paint::Dark, |solid| {
-                solid.bar(
-                    [z * (-0.155 * size), z * (0.155 * size)],
-                    [0.112 * size; 2],
-                    [0.0; 2],
-                    0.009 * size,
-                    Section::round(),
-                );
+                let ends = [z * (-0.155 * size), z * (0.155 * size)];
+                solid.bar(ends, [0.112 * size; 2], [0.0; 2], 0.009 * size, Section::round());
             }),
             self.part("forearm", 3, Paint::Body, |solid| {
                 let section = Section::squarish(4.0).flattened(0.95, z);
@@ -202,33 +197,16 @@ impl Arm<'_> {
                 solid.bar([back * 0.155, back * 0.13], [0.076 * size; 2], [0.0; 2], 0.003 * size, Section::round());
             }),
             self.part("wrist", 4, Paint::Body, |solid| {
-                let radii = [0.068 * size, 0.06 * size];
-                solid.bar(
-                    [back * 0.13, Vector3::zeros()],
-                    radii,
-                    [0.0, 0.03 * size],
-                    0.008 * size,
-                    Section::squarish(3.0),
-                );
+                let (ends, radii) = ([back * 0.13, Vector3::zeros()], [0.068 * size, 0.06 * size]);
+                solid.bar(ends, radii, [0.0, 0.03 * size], 0.008 * size, Section::squarish(3.0));
             }),
             self.part("hub 5", 5, Paint::Dark, |solid| {
-                solid.bar(
-                    [z * (-0.075 * size), z * (0.075 * size)],
-                    [0.056 * size; 2],
-                    [0.0; 2],
-                    0.006 * size,
-                    Section::round(),
-                );
+                let ends = [z * (-0.075 * size), z * (0.075 * size)];
+                solid.bar(ends, [0.056 * size; 2], [0.0; 2], 0.006 * size, Section::round());
             }),
             self.part("hand", 5, Paint::Body, |solid| {
-                let end = flange - self.axis(6) * (0.03 * size * toward);
-                solid.bar(
-                    [Vector3::zeros(), end],
-                    [0.053 * size, 0.05 * size],
-                    [0.0; 2],
-                    0.005 * size,
-                    Section::squarish(3.0),
-                );
+                let ends = [Vector3::zeros(), flange - self.axis(6) * (0.03 * size * toward)];
+                solid.bar(ends, [0.053 * size, 0.05 * size], [0.0; 2], 0.005 * size, Section::squarish(3.0));
             }),
             self.part("flange", 6, Paint::Steel, |solid| {
                 let ends = [z * (face - 0.03 * size * toward), z * face];

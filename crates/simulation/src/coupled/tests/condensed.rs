@@ -80,8 +80,8 @@ struct Frozen<'a, const N: usize> {
 
 impl<'a, const N: usize> Frozen<'a, N> {
     fn new(arm: &'a Arm<N>, motion: &Motion, plane: &CutPlane, step: f64, steps: usize) -> Self {
-        let count = (motion.length() / SPACING).ceil().max(1.0) as usize;
-        let spacing = motion.length() / count as f64;
+        let count = (motion.length / SPACING).ceil().max(1.0) as usize;
+        let spacing = motion.length / count as f64;
         let posed = |distance: f64| {
             let reference = Arm::<N>::spread(&motion.motors_at(distance, 0.0).0);
             let q = arm.at_rest(&reference);
@@ -216,8 +216,7 @@ pub(super) fn run<const N: usize>(job: &Job<'_>, arm: &Arm<N>, monitor: &Monitor
         Yielded { u: arm.at_rest(&reference) - reference, speed: SVector::zeros(), acceleration: SVector::zeros() };
     let start = process.plane.place(&arm.chain.at(&(reference + state.u)).tip());
     let mut force = process.force(0.0, start);
-    let mut end =
-        process.keep(start, [motion.ramp().at(0.0).1, 0.0], force).map_or_else(End::Limit, |()| End::Complete);
+    let mut end = process.keep(start, [motion.ramp.at(0.0).1, 0.0], force).map_or_else(End::Limit, |()| End::Complete);
     for index in 1..=steps {
         if end != End::Complete {
             break;
@@ -251,7 +250,7 @@ fn stepped<const N: usize>(
     guess: Force,
 ) -> Result<Ended, StepError> {
     let (h, arm) = (frozen.step, frozen.arm);
-    let (distance, feed) = process.motion.ramp().at(time);
+    let (distance, feed) = process.motion.ramp.at(time);
     let (index, tip) = frozen.at(distance);
     let nominal = Vector2::from(process.plane.nominal(process.motion, distance)) + tip.offset;
     let u = state.u + state.speed * h + state.acceleration * (h * h / 4.0);
@@ -280,7 +279,7 @@ fn stepped<const N: usize>(
                 torques[*joint] += stiffness * arm.drive.backlash[*joint] * sides[*joint];
             }
         }
-        let factor = intervals[index].factor(arm, loose, h, set).ok_or(StepError::Singular { time })?;
+        let factor = intervals[index].factor(arm, loose, h, set).ok_or(StepError::Singular(time))?;
         let mut assumed = Vector3::from(force.on_tool);
         torques += tip.jacobian.transpose() * assumed.xy() + tip.axial.transpose() * assumed.z;
         let mut acceleration = factor.inverse * torques;
