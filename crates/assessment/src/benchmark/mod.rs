@@ -55,8 +55,8 @@ stead_numerics::worded! {
     pub enum Turning {
         /// By the polar angle, as the tool and its feed do (eq. 34 as written).
         WithTool = "with-tool",
-        /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity is
-        /// then `|F| (lambda_max + lambda_min)` to first order.
+        /// By the negative polar angle. No cut does that, but it comes nearest to the published tables; the circularity
+        /// is then `|F| (lambda_max + lambda_min)` to first order.
         AgainstTool = "against-tool",
     }
 }

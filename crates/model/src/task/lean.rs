@@ -171,8 +171,8 @@ stead_numerics::worded! {
         Centre = "centre",
         /// The point in which the cutter touches a surface of known normal.
         Contact = "contact",
-        /// The plane that the cutter touches, normal to the surface's normal or, where that is not known, to the tool axis
-        /// of the path: the contact moves by up to the radius of the cutter towards the side to which it leans.
+        /// The plane that the cutter touches, normal to the surface's normal or, where that is not known, to the tool
+        /// axis of the path: the contact moves by up to the radius of the cutter towards the side to which it leans.
         Plane = "plane",
     }
 }

@@ -14,7 +14,8 @@ stead_numerics::worded! {
     pub enum Kind {
         /// Stable.
         None = "none",
-        /// A motion that changes sign from period to period: each tooth cuts what the one before left (period doubling).
+        /// A motion that changes sign from period to period: each tooth cuts what the one before left (period
+        /// doubling).
         Flip = "flip",
         /// A motion of a frequency of its own (Neimark-Sacker).
         Hopf = "hopf",
