@@ -97,8 +97,7 @@ pub(super) fn refine_basins(
         let chosen = compared(planner, sense, &mut estimates, monitor);
         (chosen, estimates.into_iter().map(|estimate| estimate.report).collect())
     };
-    let ((best, mut refinements), (worst, others)) =
-        rayon::join(|| refined_of(Sense::Min), || refined_of(Sense::Max));
+    let ((best, mut refinements), (worst, others)) = rayon::join(|| refined_of(Sense::Min), || refined_of(Sense::Max));
     refinements.extend(others);
     (BySense { best, worst }, refinements)
 }

@@ -16,6 +16,7 @@ use crate::transfer_path::whole_lines;
 use std::collections::{BTreeMap, BTreeSet};
 use stead_cell::PairKind;
 use stead_model::robot::Posture;
+use stead_numerics::simd::Number;
 use stead_problem::candidate::Objective;
 use stead_problem::collision::Fault;
 use stead_problem::evaluate::batch::BatchEvaluator;
@@ -140,10 +141,10 @@ enum Demand {
 }
 
 /// Plans of all segments in which more and more states are forbidden ([`Planner::collision_free_plans`]).
-struct FreePlans<'s, P> {
+struct FreePlans<'s, P, E> {
     planner: &'s Planner<'s>,
     request: Request<'s>,
-    workspace: &'s mut Workspace,
+    workspace: &'s mut Workspace<E>,
     /// What makes the plans of some segments.
     plan: P,
     /// Of every segment.
@@ -161,7 +162,7 @@ struct FreePlans<'s, P> {
     round: usize,
 }
 
-impl<P> FreePlans<'_, P> {
+impl<P, E: Number> FreePlans<'_, P, E> {
     /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
     fn lines_in_the_way(&self, none: &NoFeasiblePlan) -> Vec<usize> {
         let path = self.planner.problem.task.path();
@@ -216,9 +217,9 @@ impl<P> FreePlans<'_, P> {
     }
 }
 
-impl<P> Lazy for FreePlans<'_, P>
+impl<P, E: Number> Lazy for FreePlans<'_, P, E>
 where
-    P: FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
+    P: FnMut(&mut Workspace<E>, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
 {
     /// None where demands were given up, so that all is planned anew.
     type Plan = Option<Vec<SegmentPlan>>;
@@ -273,11 +274,11 @@ where
 impl Planner<'_> {
     /// The plans that are chosen of those that `plan` makes for the segments requested, made again without the states
     /// that hit until nothing does.
-    pub(super) fn collision_free_plans(
+    pub(super) fn collision_free_plans<E: Number>(
         &self,
         request: Request<'_>,
-        workspace: &mut Workspace,
-        plan: impl FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
+        workspace: &mut Workspace<E>,
+        plan: impl FnMut(&mut Workspace<E>, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let count = self.problem.task.segments().len();
         workspace.forbidden.clear();
@@ -307,7 +308,7 @@ impl Planner<'_> {
     }
 
     /// The mean score under the best or worst plan on the grid in which nothing hits ([`Planner::objective`]).
-    pub(super) fn free_objective(&self, request: Request<'_>, workspace: &mut Workspace) -> Objective {
+    pub(super) fn free_objective<E: Number>(&self, request: Request<'_>, workspace: &mut Workspace<E>) -> Objective {
         let plans = self.collision_free_plans(request, workspace, |workspace, requested| {
             let choices = self.choices(request, workspace, requested, 0.0)?;
             Ok(self.without_hitting_ways(request.placement, choices))

@@ -194,12 +194,8 @@ pub fn replay(problem: &Problem, placement: &Placement, sense: Sense, plan: &Seg
         replayed.joints[place] = joints;
         replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, score));
         if place > 0 {
-            let steps = joint_steps_hold(
-                &problem.robot,
-                &replayed.joints[place - 1],
-                &joints,
-                &problem.joint_steps(point),
-            );
+            let steps =
+                joint_steps_hold(&problem.robot, &replayed.joints[place - 1], &joints, &problem.joint_steps(point));
             if !problem.beta_step(point).allows(plan.betas[place] - plan.betas[place - 1]) || !steps {
                 return None;
             }
@@ -261,11 +257,7 @@ impl Around<'_> {
                 layer.values = self.values(place, spacing, plan, &layer.values, states);
             }
         };
-        layers
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(MIN_SHARE)
-            .for_each_init(BatchEvaluator::states_at, fresh);
+        layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each_init(BatchEvaluator::states_at, fresh);
     }
 
     /// The values at a place, of which some are known.

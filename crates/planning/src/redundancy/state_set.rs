@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
+use stead_numerics::simd::Number;
 use stead_problem::evaluate::batch::StateGrid;
 use stead_problem::problem::{Problem, Redundancy};
 
@@ -55,7 +56,7 @@ impl StateSet {
     }
 
     /// Takes the states of a point out of what the evaluator has written.
-    pub fn apply(&self, point: usize, states: &mut StateGrid) {
+    pub fn apply<E: Number>(&self, point: usize, states: &mut StateGrid<E>) {
         let Some(classes) = self.points.get(&point) else { return };
         for class in PostureClass::ALL {
             let bits = &classes[class.index()];

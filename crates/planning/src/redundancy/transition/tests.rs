@@ -270,10 +270,11 @@ fn every_breach_of_the_rules_is_noticed() {
 struct OneStep(JointStep, f64, f64);
 
 impl WithSimd for OneStep {
+    type Number = f64;
     type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd<Number = f64>>(self, simd: S) -> bool {
         let direction = |angle: f64| {
             let (sine, cosine) = libm::sincos(angle);
             [Lanes::splat(simd, sine), Lanes::splat(simd, cosine)]

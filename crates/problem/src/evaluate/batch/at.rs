@@ -17,7 +17,7 @@ pub struct PlacedPoint {
 }
 
 /// Values of beta that are evaluated at once, at the most.
-pub const MOST_BETAS: usize = 2 * MAX_LANES;
+pub const MOST_BETAS: usize = MAX_LANES;
 
 impl BatchEvaluator<'_> {
     /// A path point with the workpiece at a placement.
