@@ -5,9 +5,8 @@ use super::long_path::LongPath;
 use crate::coordinate_search::neighbours;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
-use crate::path_subset::PathSubset;
 use crate::refine::solver::{self, Ending};
-use crate::refine::{LENGTH_UNIT, Precision, Solution, kkt_residual, planned, refined};
+use crate::refine::{LENGTH_UNIT, Solution, planned, refine};
 use crate::search::SearchResult;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
@@ -41,18 +40,9 @@ const CLOSE_LONG: f64 = 0.01;
 /// Longer paths than this are planned whole, but not refined whole: there the gain is far below what a minute is worth.
 const MAX_REFINED: usize = 10_000;
 
-/// A basin that is so much (relative) behind the first on the whole path can still win, where refinement gains no more
-/// than usual.
-const BEHIND: BySense<f64> = BySense { best: 0.12, worst: 0.15 };
-/// One that is behind by less than so many times what the refinement of the first gained can still win.
-const GAINS: f64 = 2.0;
-
 /// A basin refined on a subset.
 struct Estimated<'c> {
     candidate: &'c Candidate,
-    subset: PathSubset,
-    /// On the subset.
-    solution: Solution,
     placement: Placement,
     /// Its objective on the whole path: that on the subset, corrected by how far the subset is off on the coarse grid.
     /// m
@@ -61,54 +51,40 @@ struct Estimated<'c> {
 }
 
 /// Refines the basins of both searches, on the problem of a planner, and returns those that can be the best of either
-/// with their plans on the whole path. The first basin of each search goes ahead: what is so far behind it on the whole
-/// path that refinement cannot make it the first is left as it is.
+/// with their plans on the whole path.
 pub(super) fn refine_basins(
     path: &LongPath,
     planner: &Planner<'_>,
     found: &BySense<SearchResult>,
     monitor: &Monitor,
 ) -> (BySense<Vec<Planned>>, Vec<Refinement>) {
+    let jobs = SearchResult::jobs(found);
     let whole = WholePath::new(planner);
-    let total: usize = found.values().map(|found| found.basins.len()).iter().sum();
     let done = AtomicUsize::new(0);
-    let report_done = || {
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        monitor.report(Progress::Steps { stage: "refining", done, total });
-    };
-    let refined_of = |sense: Sense| -> (Vec<Planned>, Vec<Refinement>) {
-        let Some((first, others)) = found[sense].basins.split_first() else { return Default::default() };
-        let estimate = |candidate| {
-            let estimated = estimated(path, &whole, sense, candidate, monitor);
-            report_done();
-            estimated
-        };
-        let first = estimate(first);
+    let estimate = |job: usize| {
+        let (sense, rank, candidate) = jobs[job];
         // Once the caller asks to stop, the first basin of each search is enough.
-        let is_wanted = |candidate: &Candidate| {
-            first.as_ref().is_none_or(|first| !monitor.should_stop() && can_win(sense, first, candidate))
-        };
-        let (wanted, left): (Vec<_>, Vec<_>) = others.iter().partition(|candidate| is_wanted(candidate));
-        left.iter().for_each(|_| report_done());
-        let others: Vec<_> = wanted.into_par_iter().filter_map(estimate).collect();
-        let mut estimates: Vec<_> = first.into_iter().chain(others).collect();
+        let is_wanted = rank == 0 || !monitor.should_stop();
+        let estimated = is_wanted.then(|| estimated(path, &whole, sense, candidate, monitor)).flatten();
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        monitor.report(Progress::Steps { stage: "refining", done, total: jobs.len() });
+        (sense, estimated)
+    };
+    let mut estimates: [Vec<Estimated<'_>>; 2] = [Vec::new(), Vec::new()];
+    for (sense, estimated) in (0..jobs.len()).into_par_iter().map(estimate).collect::<Vec<_>>() {
+        estimates[usize::from(sense == Sense::Max)].extend(estimated);
+    }
+    let choose = |sense: Sense, mut estimates: Vec<Estimated<'_>>| {
         // A stable sort: of equals the one that the search ranked higher.
         estimates.sort_by(|a, b| sense.compare(a.objective, b.objective));
         let chosen = compared(planner, sense, &mut estimates, monitor);
-        (chosen, estimates.into_iter().map(|estimate| estimate.report).collect())
+        (chosen, estimates.into_iter().map(|estimate| estimate.report).collect::<Vec<_>>())
     };
-    let ((best, mut refinements), (worst, others)) = rayon::join(|| refined_of(Sense::Min), || refined_of(Sense::Max));
+    let [best, worst] = estimates;
+    let ((best, mut refinements), (worst, others)) =
+        rayon::join(|| choose(Sense::Min, best), || choose(Sense::Max, worst));
     refinements.extend(others);
     (BySense { best, worst }, refinements)
-}
-
-/// Whether a basin may win against the refined first one of its search, by what both come to on the whole path.
-fn can_win(sense: Sense, first: &Estimated<'_>, candidate: &Candidate) -> bool {
-    let (Some(start), Some(other)) = (first.candidate.objective.mean(), candidate.objective.mean()) else {
-        return true;
-    };
-    let gained = (first.objective - start).abs();
-    (other - start) * sense.sign() <= (GAINS * gained).max(BEHIND[sense] * start)
 }
 
 /// Refines a candidate on the subset; what the whole path does not allow adds the points that decide, and begins again.
@@ -128,8 +104,7 @@ fn estimated<'c>(
         let planner = Planner::finer(&thinned);
         let coarse = Planner::new(&thinned);
         let evaluator = Evaluator::new(&planner, None).with_coarser_planner(&coarse);
-        let precision = Precision::OF_SUBSET;
-        let (solution, report) = refined(&evaluator, &candidate.placement, sense, scheme, precision, monitor)?;
+        let (solution, report) = refine(&evaluator, &candidate.placement, sense, scheme, monitor)?;
         let placement = solution.placement;
         let on_subset =
             |placement: &Placement| coarse.objective(placement, Sense::Min, scheme, &mut coarse.workspace()).mean();
@@ -163,7 +138,7 @@ fn estimated<'c>(
             _ => on_whole.mean,
         };
         let report = Refinement { end, end_mean: objective, ..report };
-        return Some(Estimated { candidate, subset, solution, placement: end, objective, report });
+        return Some(Estimated { candidate, placement: end, objective, report });
     }
 }
 
@@ -211,19 +186,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
             })
             .collect();
     }
-    if let Some((rank, _)) = planned.first() {
-        estimates[*rank].state_residual(planner.problem(), sense, monitor);
-    }
     planned.into_iter().map(|(_, basin)| basin).collect()
-}
-
-impl Estimated<'_> {
-    /// States the KKT residual of its end on the subset.
-    fn state_residual(&mut self, problem: &Problem, sense: Sense, monitor: &Monitor) {
-        let thinned = self.subset.of(problem);
-        let (planner, scheme) = (Planner::finer(&thinned), self.candidate.scheme.as_deref());
-        self.report.kkt_residual = kkt_residual(&planner, &self.solution, sense, scheme, monitor);
-    }
 }
 
 /// Whether two basins have come to the same end: in the same postures to the same place, but for a turn about axis 1.

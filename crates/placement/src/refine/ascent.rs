@@ -8,7 +8,7 @@ use super::super::outcome::RefinementStatus;
 use super::linearise::{Curvature, linearise};
 use super::programme::{pose_bounds, pose_step, shortest};
 use super::slacks::{NEAR_STAYING, Slack, placement_rooms};
-use super::solver::{Ending, SolverRun};
+use super::solver::SolverRun;
 use super::subproblem::{StepRequest, solve};
 use super::{Solution, UNITS, planned};
 use nalgebra::{Matrix4, Vector4};
@@ -18,18 +18,20 @@ use stead_numerics::monitor::Monitor;
 use stead_planning::redundancy::{Planner, Workspace};
 use stead_problem::problem::{Placement, Problem};
 
-/// The trust region at the start and at the most, in scaled variables.
-const TRUST: (f64, f64) = (0.2, 1.0);
+/// The trust region at the start, at the most and at the end, in scaled variables.
+const TRUST: (f64, f64, f64) = (0.2, 1.0, 1e-4);
+/// Iterations at the most.
+const MAX_ITERATIONS: usize = 40;
 /// A step has to gain this share of what the model promises.
 const ARMIJO: f64 = 0.05;
+/// A promised gain of less than this share of the mean ends it.
+const MIN_PROMISE: f64 = 1e-6;
 
-/// Climbs from a solution until it is at the top or the caller asks to stop; never returns a lower one. Where the model
-/// promises less than [`Ending::min_gain`], it is at its end.
+/// Climbs from a solution until it is at the top or the caller asks to stop; never returns a lower one.
 pub fn run(
     planner: &Planner<'_>,
     start: &Solution,
     scheme: Option<&[Posture]>,
-    ending: Ending,
     workspace: &mut Workspace,
     monitor: &Monitor,
 ) -> SolverRun {
@@ -42,8 +44,8 @@ pub fn run(
     };
     let mut trust = TRUST.0;
     let mut curvature = Matrix4::identity() * (gradient.norm() / trust);
-    while trust >= ending.last_trust {
-        if iterations as u64 == ending.max_iterations {
+    while trust >= TRUST.2 {
+        if iterations == MAX_ITERATIONS {
             return ended(best, iterations, RefinementStatus::MaxIterations);
         }
         if monitor.should_stop() {
@@ -54,7 +56,7 @@ pub fn run(
             return ended(best, iterations, RefinementStatus::SubproblemFailed);
         };
         let promised = gradient.dot(&step) - 0.5 * step.dot(&(curvature * step));
-        if promised < ending.min_gain * best.objective {
+        if promised < MIN_PROMISE * best.objective {
             return ended(best, iterations, RefinementStatus::NoFirstOrderGain);
         }
         let placement = Placement::from(std::array::from_fn(|k| best.placement[k] + step[k] * UNITS[k]));

@@ -41,7 +41,6 @@ pub use agreement::found_again;
 pub(crate) use solution::neighbours;
 pub use solution::{LENGTH_UNIT, LOCAL, Solution, UNITS, planned};
 use solution::{NEAR, is_near};
-use solver::Ending;
 
 use super::evaluator::{self, Evaluator};
 use super::lookup::CollisionEffort;
@@ -54,65 +53,18 @@ use stead_problem::criterion::CANCELLATION;
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
 
-/// How exactly a refinement goes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Precision {
-    /// Where the steps towards a best placement end.
-    pub descent: Ending,
-    /// Where the steps towards a worst one end.
-    pub ascent: Ending,
-    /// Rounds of refining and planning anew, at the most.
-    pub rounds: usize,
-    /// A round that gains less than this share of the mean ends the refinement.
-    pub gain: f64,
-}
-
-impl Precision {
-    /// To a local optimum.
-    pub const FULL: Self = Self {
-        descent: Ending::TIGHT,
-        ascent: Ending { last_trust: 1e-4, min_gain: 1e-6, max_iterations: 40 },
-        rounds: 12,
-        gain: GAIN,
-    };
-
-    /// On a subset of a path, whose means are off by more than what this leaves.
-    pub const OF_SUBSET: Self = Self {
-        descent: Ending { max_iterations: 30, ..Ending::LOOSE },
-        ascent: Ending { last_trust: 3e-3, min_gain: 3e-5, max_iterations: 40 },
-        rounds: 4,
-        gain: 2e-5,
-    };
-}
-
-/// A round of a full refinement gains at least this share of the mean.
+/// Rounds of refining and planning anew, at the most.
+const ROUNDS: usize = 12;
+/// A round that gains less than this share of the mean ends the refinement.
 const GAIN: f64 = 1e-5;
 
-/// Refines from one placement to a local optimum, with the posture scheme found anew in every round or kept as given,
-/// and states the KKT residual. `None` when the placement has no plan to start from. Once the caller asks to stop, it
-/// ends with what it has.
+/// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the
+/// placement has no plan to start from. Once the caller asks to stop, it ends with what it has.
 pub fn refine(
     evaluator: &Evaluator<'_>,
     start: &Placement,
     sense: Sense,
     scheme: Option<&[Posture]>,
-    monitor: &Monitor,
-) -> Option<(Solution, Refinement)> {
-    let (best, mut report) = refined(evaluator, start, sense, scheme, Precision::FULL, monitor)?;
-    report.kkt_residual = kkt_residual(evaluator.planner(), &best, sense, scheme, monitor);
-    if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
-        report.statuses.push(RefinementStatus::Interrupted);
-    }
-    Some((best, report))
-}
-
-/// The same as exactly as requested, without the KKT residual.
-pub fn refined(
-    evaluator: &Evaluator<'_>,
-    start: &Placement,
-    sense: Sense,
-    scheme: Option<&[Posture]>,
-    precision: Precision,
     monitor: &Monitor,
 ) -> Option<(Solution, Refinement)> {
     let planner = evaluator.planner();
@@ -123,17 +75,17 @@ pub fn refined(
     if is_cancelled(&best) {
         report.statuses.push(RefinementStatus::Cancelled);
     }
-    while report.rounds < precision.rounds && !is_cancelled(&best) && !monitor.should_stop() {
+    while report.rounds < ROUNDS && !is_cancelled(&best) && !monitor.should_stop() {
         report.rounds += 1;
         let (before, signature) = (best.objective, signature(&best));
         let (status, iterations);
         (best, status, iterations) = match sense {
             Sense::Min => {
-                let run = solver::run(problem, &best, precision.descent, monitor);
+                let run = solver::run(problem, &best, solver::Ending::TIGHT, monitor);
                 (run.solution, run.status, run.iterations)
             }
             Sense::Max => {
-                let run = ascent::run(planner, &best, scheme, precision.ascent, &mut workspace, monitor);
+                let run = ascent::run(planner, &best, scheme, &mut workspace, monitor);
                 (run.solution, run.status, run.iterations)
             }
         };
@@ -149,13 +101,17 @@ pub fn refined(
             best = anew;
         }
         let gained = (before - best.objective).abs();
-        if self::signature(&best) == signature && gained < precision.gain * before {
+        if self::signature(&best) == signature && gained < GAIN * before {
             // The model knows one plan; a neighbour may have another, better one.
             match poll(evaluator, &best, sense, scheme, monitor) {
                 Some(better) => best = better,
                 None => break,
             }
         }
+    }
+    report.kkt_residual = kkt_residual(planner, &best, sense, scheme, monitor);
+    if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
+        report.statuses.push(RefinementStatus::Interrupted);
     }
     report.end = best.placement;
     report.end_mean = best.objective;
@@ -183,7 +139,7 @@ fn is_cancelled(solution: &Solution) -> bool {
 }
 
 /// The KKT residual of a solution, zero by definition where the deflection is; none once the caller asks to stop.
-pub fn kkt_residual(
+fn kkt_residual(
     planner: &Planner<'_>,
     solution: &Solution,
     sense: Sense,
