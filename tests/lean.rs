@@ -4,6 +4,7 @@
 use crate::common::{Bench, Ended};
 use serde_json::Value;
 use stead::{Monitor, Run};
+use stead_model::testing::{is_all, some};
 
 const RUN: &str = "configs/leaning-tool.toml";
 
@@ -129,9 +130,8 @@ fn no_neighbour_is_better(bench: &Bench, found: &Value) {
     let best = &found["cases"][0]["placement"];
     let at = |key: &str| best[key].as_f64().unwrap();
     let mut tried = 0;
-    for (moved, shift) in
-        [("x_mm", -3.0), ("y_mm", -3.0), ("y_mm", 3.0), ("z_mm", -3.0), ("yaw_deg", 1.7), ("yaw_deg", -1.7)]
-    {
+    let all = [("y_mm", -3.0), ("x_mm", -3.0), ("yaw_deg", 1.7), ("y_mm", 3.0), ("z_mm", -3.0), ("yaw_deg", -1.7)];
+    for (moved, shift) in some(2, all) {
         let value = |key: &str| (at(key) + if key == moved { shift } else { 0.0 }).to_string();
         let [x, y, z, yaw] = ["x_mm", "y_mm", "z_mm", "yaw_deg"].map(value);
         let place = ["score", RUN, "--x-mm", &x, "--y-mm", &y, "--z-mm", &z, "--yaw-deg", &yaw, "--json"];
@@ -142,7 +142,7 @@ fn no_neighbour_is_better(bench: &Bench, found: &Value) {
             assert!(there > objective(found) * (1.0 - 1e-3), "{moved} {shift}: {there} {}", objective(found));
         }
     }
-    assert!(tried > 2, "{tried}");
+    assert!(tried > if is_all() { 2 } else { 1 }, "{tried}");
 }
 
 /// The contact is rebuilt from the program alone: one whose tips are all moved is refused for it.

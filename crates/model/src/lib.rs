@@ -42,3 +42,5 @@ pub mod published;
 pub mod robot;
 pub mod stiffness;
 pub mod task;
+#[cfg(any(test, feature = "testing"))]
+pub mod testing;

@@ -152,7 +152,9 @@ mod tests {
     use super::Reader;
     use rand::{Rng, RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
+    use rayon::prelude::*;
     use std::time::{Duration, Instant};
+    use stead_model::testing::tried;
 
     const URDF: [&[u8]; 2] = [
         include_bytes!("../../format/src/urdf/fixtures/kuka.urdf"),
@@ -265,7 +267,7 @@ mod tests {
         };
         let (cldata, gcode) = (with(&CLDATA, &cldata), with(&GCODE, &gcode));
         let [cldata, gcode] = [&cldata, &gcode].map(|files| files.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        for (reader, fixtures) in [
+        let readers = [
             (Reader::Urdf, &URDF[..]),
             (Reader::Cldata, &cldata),
             (Reader::Gcode, &gcode),
@@ -276,16 +278,17 @@ mod tests {
             (Reader::Robot, &ROBOT),
             (Reader::Run, &RUN),
             (Reader::Forces, &FORCES),
-        ] {
+        ];
+        readers.into_par_iter().for_each(|(reader, fixtures)| {
             if requested.is_none_or(|name| name == format!("{reader:?}").to_lowercase()) {
                 run(reader, fixtures, runs);
             }
-        }
+        });
     }
 
     #[test]
     fn every_reader_keeps_its_promises_on_fixtures_with_mutations() {
-        run_all(20_000, None);
+        run_all(tried(20_000), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::relaxed::relaxed_value;
 use nalgebra::{Matrix3, Vector3};
 use stead_model::external_axis::{AxisKind, Carried, ExternalAxis};
 use stead_model::task::{Task, ToolPath, Wrench};
+use stead_model::testing::some;
 use stead_numerics::rotation::rotation_from_vector;
 use stead_problem::constraints::ConstraintKind;
 use stead_problem::criterion::{Aggregate, Weights};
@@ -138,7 +139,7 @@ fn value_at(problem: &Problem, at: &Placement, shares: [f64; 5]) -> f64 {
 
 #[test]
 fn no_places_of_an_axis_for_the_segments_are_better_than_their_bounds_together() {
-    for (kind, aggregate) in [(AxisKind::Rail, Aggregate::Mean), (AxisKind::Turntable, Aggregate::Max)] {
+    for (kind, aggregate) in some(2, [(AxisKind::Turntable, Aggregate::Max), (AxisKind::Rail, Aggregate::Mean)]) {
         let (problem, at) = indexed(kind, aggregate);
         assert_eq!(certifiable(&problem, u64::MAX), Ok(()));
         let ends = (0..32).map(|k| std::array::from_fn(|s| f64::from(k >> s & 1)));

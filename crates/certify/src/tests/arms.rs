@@ -5,6 +5,7 @@ use super::super::certifiable;
 use super::*;
 use nalgebra::{Rotation3, Unit};
 use stead_model::robot::Spindle;
+use stead_model::testing::tried;
 
 fn arm(random: &mut ChaCha8Rng) -> Robot {
     let mut joints = stead_model::robot::testing::kr270().joints().clone();
@@ -64,7 +65,8 @@ fn problem(random: &mut ChaCha8Rng) -> Setting {
 fn layers_hold_for_arms_of_every_build() {
     let mut random = seeded(71);
     let (mut sides, mut seen) = ([0; 2], [0; 4]);
-    for k in 0..8 {
+    let count = tried(16).min(8);
+    for k in 0..count {
         let setting = problem(&mut random);
         let told = format!("arm {k}: {:?} {:?}", setting.problem.robot.geometry(), setting.problem.robot.joints());
         sides[usize::from(setting.side() < 0.0)] += 1;
@@ -82,5 +84,6 @@ fn layers_hold_for_arms_of_every_build() {
         seen[3] += compared;
     }
     assert!(sides.iter().all(|count| *count > 0), "{sides:?}");
-    assert!(seen[0] > 1000 && seen[1] > 10_000 && seen[2] > 30_000 && seen[3] > 10_000, "{seen:?}");
+    let least = [125, 1250, 3750, 1250].map(|of_one| count * of_one);
+    assert!(seen.iter().zip(least).all(|(seen, least)| *seen > least), "{seen:?}");
 }

@@ -8,6 +8,7 @@ use super::super::moment::MomentModel;
 use super::super::region::PolarModel;
 use super::*;
 use stead_model::robot::NormalSprings;
+use stead_model::testing::some;
 
 /// A placement in a box, by its shares of the half widths.
 fn inside(region: &Region, s: [f64; 3]) -> [f64; 3] {
@@ -147,7 +148,7 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
 
 #[test]
 fn points_cost_at_least_what_is_said_anywhere_in_the_box() {
-    for (name, setting) in Setting::all().into_iter().chain(Setting::criteria()) {
+    for (name, setting) in some(3, Setting::all().into_iter().chain(Setting::criteria())) {
         let [wrong, compared] = violations(&setting, &SOUND);
         assert!(wrong == 0 && compared > 3000, "{name}: {wrong} of {compared}");
     }

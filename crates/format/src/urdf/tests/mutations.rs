@@ -3,6 +3,7 @@
 use super::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use stead_model::testing::tried;
 
 /// What stands in place of a piece of the text.
 const PIECES: [&str; 20] = [
@@ -57,7 +58,8 @@ fn mutated(text: &str, random: &mut ChaCha8Rng) -> String {
 fn mutated_files_are_imported_or_refused() {
     let mut random = ChaCha8Rng::seed_from_u64(2013);
     let (mut taken, mut refused) = (0, 0);
-    for case in 0..20_000 {
+    let all = tried(20_000);
+    for case in 0..all {
         let text = mutated(FIXTURES[case % FIXTURES.len()].1, &mut random);
         match import(&text) {
             Ok(imported) => {
@@ -75,5 +77,5 @@ fn mutated_files_are_imported_or_refused() {
             }
         }
     }
-    assert!(taken > 2_000 && refused > 5_000, "{taken} taken, {refused} refused");
+    assert!(taken > all / 10 && refused > all / 4, "{taken} taken, {refused} refused");
 }

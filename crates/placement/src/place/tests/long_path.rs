@@ -6,6 +6,7 @@ use crate::place::{place, score};
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stead_model::task::{PathPoint, Task, ToolPath, Wrench};
+use stead_model::testing::{is_all, some};
 use stead_numerics::monitor::{Monitor, Progress};
 use stead_problem::criterion::{Aggregate, Weights};
 use stead_problem::problem::{Cell, Interval, Placement, Problem};
@@ -107,6 +108,9 @@ fn subsets_cost_less_than_half_a_per_cent_and_what_is_stated_covers_the_whole_pa
     assert!(outcome.cases.best.plan.objective < outcome.cases.optima()[1].plan.objective);
     assert_whole(&problem, &outcome);
     assert_as_good_as_without_subsets(&problem, &outcome);
+    if !is_all() {
+        return;
+    }
     assert_whole(&problem, &placed(&problem, &SearchSettings { tables: LookupUse::Auto, ..settings() }));
     let alone = placed(&problem, &SearchSettings { worst: false, ..settings() });
     assert!(alone.cases.worst.is_none());
@@ -115,7 +119,7 @@ fn subsets_cost_less_than_half_a_per_cent_and_what_is_stated_covers_the_whole_pa
 
 #[test]
 fn other_figures_of_a_long_path_are_searched_on_subsets_too() {
-    for (aggregate, weights) in [(Aggregate::Max, Weights::WALL), (Aggregate::Rms, Weights::TOTAL)] {
+    for (aggregate, weights) in some(2, [(Aggregate::Rms, Weights::TOTAL), (Aggregate::Max, Weights::WALL)]) {
         let mut problem = dense();
         problem.criterion.aggregate = aggregate;
         problem.criterion.weights = weights;
@@ -179,7 +183,7 @@ fn ten_points_that_no_subset_has_cost_more_than_all_others() {
 fn a_long_path_that_is_stopped_is_planned_whole() {
     let problem = dense();
     // While the subsets are measured, in the search, and while basins are refined.
-    for stage in ["long path", "best placement", "worst placement", "refining"] {
+    for stage in some(2, ["long path", "best placement", "refining", "worst placement"]) {
         let seen = std::sync::Arc::new(AtomicUsize::new(0));
         let silent = Monitor::silent();
         let (stop, counted) = (silent.stop_handle(), seen.clone());

@@ -5,6 +5,7 @@ use super::*;
 use oracles::{Knot, line, operation, stock};
 use std::f64::consts::TAU;
 use stead_model::cutting::{Coefficients, Tooth};
+use stead_model::testing::some;
 
 /// A straight row along x with the tip at the origin, in a solid below a top, beside an earlier row of the same cutter.
 struct Row {
@@ -149,7 +150,7 @@ fn leaning_corners_have_the_forces_of_their_surface() {
         translation: Vector3::new(0.0137, -0.0071, 0.0043),
     };
     let mut wrong = Vec::new();
-    for row in &ROWS {
+    for row in some(2, &ROWS) {
         let [chip, edge, moment] = [row.chip, row.edge, row.moment].map(Vector3::from);
         for pose in [Pose::identity(), turned] {
             let start = std::time::Instant::now();
