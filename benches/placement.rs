@@ -68,7 +68,7 @@ fn full(problem: Problem, are_pairs: bool) -> Problem {
 fn evaluate(bencher: Bencher, instructions: usize, problem: &Problem) {
     let evaluator = BatchEvaluator::new(problem, &problem.redundancy, Flips::Both)
         .with_instructions(Instructions::all()[instructions]);
-    let mut states = StateGrid::new(problem.redundancy.beta_count, 3);
+    let mut states = StateGrid::<f64>::new(problem.redundancy.beta_count, 3);
     let points = problem.task.points().len();
     let poses = poses(20);
     bencher.counter(ItemsCount::new(poses.len() * points * problem.redundancy.beta_count)).bench_local(|| {
@@ -98,7 +98,7 @@ fn planner(bencher: Bencher, instructions: usize) {
     let span = problem.task.segments()[2].clone();
     let mut segment: Vec<(Step, StateGrid)> = span
         .map(|point| {
-            let mut states = StateGrid::new(count, planner.pad());
+            let mut states = StateGrid::<f64>::new(count, planner.pad());
             evaluator.evaluate(point, &pose, &mut states);
             PostureClass::ALL.into_iter().for_each(|class| states.wrap_around(class));
             (step(point), states)

@@ -1,13 +1,41 @@
 //! Several numbers worked on at once, by the widest vectors that the processor has.
 //!
-//! Every operation is exactly the one of `f64` in each lane, nothing is fused and nothing is summed across lanes, so
-//! results do not depend on the width of the vectors. Choices are made with masks, never with branches.
+//! Every operation is exactly the one of `f64` (or of `f32`: [`LaneNumber`]) in each lane, nothing is fused and nothing
+//! is summed across lanes, so results do not depend on the width of the vectors. Choices are made with masks, never
+//! with branches.
 
-use pulp::{Arch, Scalar256b, Simd, WithSimd, bytemuck};
+mod number;
+
+pub use number::{LaneNumber, LaneRows, Simd};
+
+use pulp::{Arch, Scalar256b, bytemuck};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 /// Most lanes that any processor has here: rows that are read in lanes go on this far beyond their end.
-pub const MAX_LANES: usize = 4;
+pub const MAX_LANES: usize = 8;
+
+/// Work in lanes, for any instructions of the processor.
+pub trait WithSimd {
+    /// What it works with.
+    type Number: LaneNumber;
+    /// What it gives.
+    type Output;
+
+    /// The work, where `simd` says with which instructions.
+    fn with_simd<S: Simd<Number = Self::Number>>(self, simd: S) -> Self::Output;
+}
+
+/// Work for the instructions of `pulp`.
+struct Work<W>(W);
+
+impl<W: WithSimd> pulp::WithSimd for Work<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<P: pulp::Simd>(self, simd: P) -> W::Output {
+        self.0.with_simd(W::Number::vectors(simd))
+    }
+}
 
 /// Which instructions of the processor are used: chosen once, the same results for all.
 #[derive(Debug, Clone, Copy)]
@@ -37,9 +65,9 @@ impl Instructions {
     pub fn run<W: WithSimd>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Some(Arch::V3(simd)) => Simd::vectorize(simd, work),
+            Some(Arch::V3(simd)) => pulp::Simd::vectorize(simd, Work(work)),
             #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-            Some(arch) => arch.dispatch(work),
+            Some(arch) => arch.dispatch(Work(work)),
             _ => plain(work),
         }
     }
@@ -49,21 +77,21 @@ impl Instructions {
 /// would add its stack to theirs in builds without optimisation, megabytes of it.
 #[inline(never)]
 fn plain<W: WithSimd>(work: W) -> W::Output {
-    work.with_simd(Scalar256b)
+    pulp::WithSimd::with_simd(Work(work), Scalar256b)
 }
 
 /// Some numbers, as many as `S` has lanes.
 #[derive(Debug, Clone, Copy)]
 pub struct Lanes<S: Simd> {
     simd: S,
-    values: S::f64s,
+    values: S::Values,
 }
 
 /// As many yes or no answers.
 #[derive(Debug, Clone, Copy)]
 pub struct Mask<S: Simd> {
     simd: S,
-    bits: S::m64s,
+    bits: S::Answers,
 }
 
 macro_rules! lanewise {
@@ -85,27 +113,27 @@ macro_rules! lanewise {
     };
 }
 
-lanewise!(Add, add, add_f64s);
-lanewise!(Sub, sub, sub_f64s);
-lanewise!(Mul, mul, mul_f64s);
-lanewise!(Div, div, div_f64s);
+lanewise!(Add, add, add);
+lanewise!(Sub, sub, sub);
+lanewise!(Mul, mul, mul);
+lanewise!(Div, div, div);
 
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { values: self.simd.neg_f64s(self.values), ..self }
+        Self { values: self.simd.neg(self.values), ..self }
     }
 }
 
 impl<S: Simd> Lanes<S> {
     /// Number of lanes.
-    pub const COUNT: usize = S::F64_LANES;
+    pub const COUNT: usize = S::COUNT;
 
     /// The same number in every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
-        Self { simd, values: simd.splat_f64s(value) }
+        Self { simd, values: simd.splat(S::Number::of(value)) }
     }
 
     /// The same number in every lane, as many as here.
@@ -114,24 +142,34 @@ impl<S: Simd> Lanes<S> {
         Self::splat(self.simd, value)
     }
 
+    /// The same number of the lanes' kind in every lane, as many as here.
+    #[inline(always)]
+    pub fn all_of(self, value: S::Number) -> Self {
+        Self { values: self.simd.splat(value), ..self }
+    }
+
+    /// The product with a number of the lanes' kind.
+    #[inline(always)]
+    pub fn times(self, factor: S::Number) -> Self {
+        self * self.all_of(factor)
+    }
+
     /// Neighbours in a slice, from `start`.
     #[inline(always)]
-    pub fn load(simd: S, values: &[f64], start: usize) -> Self {
-        let (whole, _) = S::as_simd_f64s(&values[start..start + Self::COUNT]);
-        Self { simd, values: whole[0] }
+    pub fn load(simd: S, values: &[S::Number], start: usize) -> Self {
+        Self { simd, values: S::from_slice(&values[start..start + Self::COUNT]) }
     }
 
     /// Writes to neighbours in a slice, from `start`.
     #[inline(always)]
-    pub fn store(self, values: &mut [f64], start: usize) {
-        let (whole, _) = S::as_mut_simd_f64s(&mut values[start..start + Self::COUNT]);
-        whole[0] = self.values;
+    pub fn store(self, values: &mut [S::Number], start: usize) {
+        S::to_slice(self.values, &mut values[start..start + Self::COUNT]);
     }
 
     /// The numbers, and zeros after the last lane.
     #[inline(always)]
-    pub fn to_array(self) -> [f64; MAX_LANES] {
-        let mut array = [0.0; MAX_LANES];
+    pub fn to_array(self) -> [S::Number; MAX_LANES] {
+        let mut array = [S::Number::of(0.0); MAX_LANES];
         self.store(&mut array, 0);
         array
     }
@@ -139,20 +177,20 @@ impl<S: Simd> Lanes<S> {
     /// Small whole numbers, and zeros after the last lane.
     #[inline(always)]
     pub fn to_whole(self) -> [i16; MAX_LANES] {
-        let shifted = (self + SHIFT).to_array();
+        let shifted = (self + S::Number::SHIFT).to_array();
         let mut whole = [0; MAX_LANES];
         for (whole, shifted) in whole.iter_mut().zip(shifted) {
-            *whole = shifted.to_bits() as i16;
+            *whole = shifted.low_bits();
         }
         whole
     }
 
-    /// A function of `f64` in every lane.
+    /// A function of the number in every lane.
     #[inline(always)]
     pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
         let mut array = self.to_array();
         for value in &mut array[..Self::COUNT] {
-            *value = function(*value);
+            *value = S::Number::of(function(value.get()));
         }
         Self::load(self.simd, &array, 0)
     }
@@ -160,19 +198,19 @@ impl<S: Simd> Lanes<S> {
     /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
-        Self { values: self.simd.sqrt_f64s(self.values), ..self }
+        Self { values: self.simd.sqrt(self.values), ..self }
     }
 
     /// Absolute value.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        Self { values: self.simd.abs_f64s(self.values), ..self }
+        Self { values: self.simd.abs(self.values), ..self }
     }
 
-    /// The nearest whole number, for magnitudes below 2^51.
+    /// The nearest whole number, for magnitudes below 2^51 (2^22 of `f32`).
     #[inline(always)]
     pub fn round(self) -> Self {
-        (self + SHIFT) - SHIFT
+        (self + S::Number::SHIFT) - S::Number::SHIFT
     }
 
     /// The smallest whole number not below, for magnitudes below 2^51.
@@ -185,19 +223,19 @@ impl<S: Simd> Lanes<S> {
     /// Which lanes are below the other's; none that is NaN.
     #[inline(always)]
     pub fn less(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, bits: self.simd.less_than_f64s(self.values, other.values) }
+        Mask { simd: self.simd, bits: self.simd.less(self.values, other.values) }
     }
 
     /// Which lanes are below or equal to the other's; none that is NaN.
     #[inline(always)]
     pub fn at_most(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, bits: self.simd.less_than_or_equal_f64s(self.values, other.values) }
+        Mask { simd: self.simd, bits: self.simd.at_most(self.values, other.values) }
     }
 
     /// Which lanes are equal to the other's; none that is NaN.
     #[inline(always)]
     pub fn equal(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, bits: self.simd.equal_f64s(self.values, other.values) }
+        Mask { simd: self.simd, bits: self.simd.equal(self.values, other.values) }
     }
 
     /// The larger of two, lane by lane.
@@ -215,13 +253,10 @@ impl<S: Simd> Lanes<S> {
     /// The magnitude with the sign of `sign`.
     #[inline(always)]
     pub fn with_sign_of(self, sign: Self) -> Self {
-        let simd = self.simd;
-        let bit = simd.splat_f64s(-0.0);
-        let magnitude = simd.and_f64s(self.values, simd.not_f64s(bit));
-        Self { values: simd.or_f64s(magnitude, simd.and_f64s(sign.values, bit)), ..self }
+        Self { values: self.simd.with_sign_of(self.values, sign.values), ..self }
     }
 
-    /// Angle of the vector (x, self) in [-pi, pi], to 4e-16 relative; zero for the zero vector.
+    /// Angle of the vector (x, self) in [-pi, pi], to 4e-16 relative (2e-7 of `f32`); zero for the zero vector.
     #[inline(always)]
     pub fn atan2(self, x: Self) -> Self {
         use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -247,9 +282,6 @@ impl<S: Simd> Lanes<S> {
         angle.with_sign_of(self)
     }
 }
-
-/// Added to a number of magnitude below 2^51 this leaves a whole number in the last bits: 1.5 * 2^52.
-const SHIFT: f64 = 6_755_399_441_055_744.0;
 
 /// Coefficients of [`Lanes::atan2`].
 const ATAN: [f64; 12] = [
@@ -278,7 +310,7 @@ impl<S: Simd> Mask<S> {
     /// Where yes `yes`, elsewhere `no`.
     #[inline(always)]
     pub fn select(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
-        Lanes { simd: self.simd, values: self.simd.select_f64s(self.bits, yes.values, no.values) }
+        Lanes { simd: self.simd, values: self.simd.select(self.bits, yes.values, no.values) }
     }
 
     /// Whether any lane says yes.
@@ -292,16 +324,16 @@ impl<S: Simd> Mask<S> {
     pub fn first(self) -> usize {
         let bytes = bytemuck::bytes_of(&self.bits);
         let mut mask = 0;
-        for k in 0..S::F64_LANES {
-            mask |= (u32::from(bytes[8 * k]) & 1) << k;
+        for k in 0..S::COUNT {
+            mask |= (u32::from(bytes[size_of::<S::Number>() * k]) & 1) << k;
         }
-        if mask == 0 { S::F64_LANES } else { mask.trailing_zeros() as usize }
+        if mask == 0 { S::COUNT } else { mask.trailing_zeros() as usize }
     }
 
     /// Yes here but not there.
     #[inline(always)]
     pub fn and_not(self, other: Self) -> Self {
-        Self { bits: self.simd.and_m64s(self.bits, self.simd.not_m64s(other.bits)), ..self }
+        Self { bits: self.simd.and(self.bits, self.simd.not(other.bits)), ..self }
     }
 }
 
@@ -309,7 +341,7 @@ impl<S: Simd> BitAnd for Mask<S> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Self { bits: self.simd.and_m64s(self.bits, other.bits), ..self }
+        Self { bits: self.simd.and(self.bits, other.bits), ..self }
     }
 }
 
@@ -317,7 +349,7 @@ impl<S: Simd> BitOr for Mask<S> {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Self { bits: self.simd.or_m64s(self.bits, other.bits), ..self }
+        Self { bits: self.simd.or(self.bits, other.bits), ..self }
     }
 }
 

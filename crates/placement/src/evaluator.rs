@@ -8,6 +8,7 @@ use super::outcome::Generation;
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
+use stead_numerics::simd::LaneNumber;
 use stead_planning::redundancy::{self, Planner};
 use stead_problem::candidate::{Candidate, Objective, rank};
 use stead_problem::problem::Placement;
@@ -29,10 +30,23 @@ pub struct Evaluator<'a> {
 /// Scratch space of one thread.
 #[derive(Debug)]
 pub struct Workspace {
-    planner: Option<redundancy::Workspace>,
-    finer: Option<redundancy::Workspace>,
-    coarser: Option<redundancy::Workspace>,
+    exact: PlannerSpace<f64>,
+    rough: PlannerSpace<f32>,
+    coarser: Option<redundancy::Workspace<f32>>,
     table: Option<lookup::Workspace>,
+}
+
+/// Scratch space of the planners, with numbers of some kind.
+#[derive(Debug)]
+struct PlannerSpace<E> {
+    planner: Option<redundancy::Workspace<E>>,
+    finer: Option<redundancy::Workspace<E>>,
+}
+
+impl<E> PlannerSpace<E> {
+    fn new() -> Self {
+        Self { planner: None, finer: None }
+    }
 }
 
 /// What goes on from a search.
@@ -114,7 +128,7 @@ impl<'a> Evaluator<'a> {
     ) -> Option<f64> {
         match self.coarser {
             Some(coarser) => {
-                let space = workspace.coarser.get_or_insert_with(|| coarser.workspace());
+                let space = workspace.coarser.get_or_insert_with(|| coarser.workspace_of());
                 coarser.objective(placement, Sense::Min, scheme, space).mean()
             }
             None => {
@@ -136,16 +150,13 @@ impl<'a> Evaluator<'a> {
 
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
-        match self.table {
-            Some(table) => {
-                Workspace { planner: None, finer: None, coarser: None, table: Some(table.workspace(&self.grid)) }
-            }
-            None => Workspace { planner: Some(self.planner.workspace()), finer: None, coarser: None, table: None },
-        }
+        let table = self.table.map(|table| table.workspace(&self.grid));
+        Workspace { exact: PlannerSpace::new(), rough: PlannerSpace::new(), coarser: None, table }
     }
 
     /// The mean score of the workpiece at a placement under its best plan on the planner's grid, with the posture
-    /// scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one.
+    /// scheme found exactly or given (one posture per segment): by the table to its accuracy, where there is one, else
+    /// in single precision.
     pub fn objective(&self, placement: &Placement, scheme: Option<&[Posture]>, workspace: &mut Workspace) -> Objective {
         self.looked_objective(placement, scheme, CollisionEffort::ALL, workspace)
     }
@@ -172,7 +183,7 @@ impl<'a> Evaluator<'a> {
     ) -> Objective {
         match (self.table, &mut workspace.table) {
             (Some(table), Some(space)) => table.objective(placement, &self.grid, scheme, effort, space),
-            _ => self.planned_objective(placement, scheme, workspace),
+            _ => self.planned_with(placement, scheme, &mut workspace.rough),
         }
     }
 
@@ -183,10 +194,19 @@ impl<'a> Evaluator<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace,
     ) -> Objective {
-        let space = workspace.planner.get_or_insert_with(|| self.planner.workspace());
+        self.planned_with(placement, scheme, &mut workspace.exact)
+    }
+
+    fn planned_with<E: LaneNumber>(
+        &self,
+        placement: &Placement,
+        scheme: Option<&[Posture]>,
+        workspace: &mut PlannerSpace<E>,
+    ) -> Objective {
+        let space = workspace.planner.get_or_insert_with(|| self.planner.workspace_of());
         match (self.planner.objective(placement, Sense::Min, scheme, space), self.finer) {
             (Objective::Infeasible { points: 0, .. }, Some(finer)) => {
-                let space = workspace.finer.get_or_insert_with(|| finer.workspace());
+                let space = workspace.finer.get_or_insert_with(|| finer.workspace_of());
                 finer.objective(placement, Sense::Min, scheme, space)
             }
             (objective, _) => objective,
@@ -208,6 +228,9 @@ impl<'a> Evaluator<'a> {
             let mut basins = sorted;
             if basins.first().is_some_and(|best| best.objective.mean().is_some()) {
                 basins.truncate(max_count);
+            }
+            if self.table.is_none() {
+                self.state_exactly(&mut basins, sense);
             }
             return SelectedBasins { basins, evaluations: 0, lookup_rejected: false };
         };
@@ -239,6 +262,19 @@ impl<'a> Evaluator<'a> {
             _ => true,
         };
         SelectedBasins { basins: selected, evaluations, lookup_rejected }
+    }
+
+    /// Plans candidates in double precision that were compared in single precision, and sorts them anew.
+    fn state_exactly(&self, candidates: &mut [Candidate], sense: Sense) {
+        let feasible = candidates.par_iter_mut().filter(|candidate| candidate.objective.mean().is_some());
+        feasible.for_each_init(
+            || self.workspace(),
+            |workspace, candidate| {
+                let scheme = candidate.scheme.as_deref();
+                candidate.objective = self.planned_objective(&candidate.placement, scheme, workspace);
+            },
+        );
+        candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
     }
 
     /// An improved candidate as the planner finds it, or where that is not what the table promised, and it is better,
@@ -296,12 +332,9 @@ impl<'a> Evaluator<'a> {
         (Candidate { placement, objective, ..start.clone() }, evaluations)
     }
 
-    /// States what the planner says of the best of every generation in place of what the table said of it, unless the
-    /// caller asks to stop before that.
+    /// States what the planner says of the best of every generation in place of what the table, or the planner in
+    /// single precision, said of it, unless the caller asks to stop before that.
     pub fn check(&self, history: &mut [Generation], best: &[Candidate], sense: Sense, monitor: &Monitor) {
-        if self.table.is_none() {
-            return;
-        }
         let is_new = |k: &usize| *k == 0 || best[*k].placement != best[*k - 1].placement;
         let new: Vec<usize> = (0..best.len()).filter(is_new).collect();
         let planned: Option<Vec<Objective>> = new

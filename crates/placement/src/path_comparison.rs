@@ -108,8 +108,8 @@ impl SubsetAccuracy {
     }
 }
 
-/// The objectives of placements on a planner's grid.
+/// The objectives of placements on a planner's grid, in single precision.
 fn objectives(planner: &Planner<'_>, placements: &[Placement]) -> Vec<Objective> {
     let of = |workspace: &mut _, placement: &Placement| planner.objective(placement, Sense::Min, None, workspace);
-    placements.par_iter().map_init(|| planner.workspace(), of).collect()
+    placements.par_iter().map_init(|| planner.workspace_of::<f32>(), of).collect()
 }

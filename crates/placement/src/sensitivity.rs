@@ -8,6 +8,7 @@ use stead_model::robot::{Compliance, Robot};
 use stead_planning::redundancy::off_grid::Spacing;
 use stead_planning::redundancy::{Kept, SegmentPlan, settled_among_free};
 use stead_planning::transfer_path::whole_lines;
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::problem::{Placement, Problem, ProblemParts};
 use stead_problem::sense::Sense;
 
@@ -109,11 +110,13 @@ fn held_objective(problem: &Problem, placement: &Placement, plans: &[SegmentPlan
 /// The objective of the best plans around them.
 fn followed_objective(problem: &Problem, placement: &Placement, plans: &[SegmentPlan]) -> Option<f64> {
     let plans = recosted(problem, placement, plans)?;
+    let evaluators = BatchEvaluator::all(problem, &problem.redundancy);
     let followed = |plan: &SegmentPlan| {
+        let evaluator = BatchEvaluator::of_posture(&evaluators, plan.posture)?;
         let kept = Kept { lines: whole_lines(problem, placement, plan), moves: false };
-        settled_among_free(problem, placement, Sense::Min, FOLLOWING, kept, plan).cost
+        Some(settled_among_free(evaluator, placement, Sense::Min, FOLLOWING, kept, plan).cost)
     };
-    Some(problem.objective(plans.iter().map(followed)))
+    Some(problem.objective(plans.iter().map(followed).collect::<Option<Vec<_>>>()?))
 }
 
 /// The problem with the stiffness of some springs multiplied, in all sets of compliances.

@@ -5,9 +5,9 @@ use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// A function of two numbers, worked out in lanes with the second number and others around it.
-struct InLanes<F> {
-    a: f64,
-    b: f64,
+struct InLanes<F, E> {
+    a: E,
+    b: E,
     function: F,
 }
 
@@ -16,26 +16,27 @@ trait Function {
     fn of<S: Simd>(&self, a: Lanes<S>, b: Lanes<S>) -> Lanes<S>;
 }
 
-impl<F: Function> WithSimd for InLanes<F> {
-    type Output = f64;
+impl<F: Function, E: LaneNumber> WithSimd for InLanes<F, E> {
+    type Number = E;
+    type Output = E;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+    fn with_simd<S: Simd<Number = E>>(self, simd: S) -> E {
         // The last lane of other numbers.
-        let mut a = [0.3; MAX_LANES];
-        let mut b = [-0.7; MAX_LANES];
-        (a[S::F64_LANES - 1], b[S::F64_LANES - 1]) = (self.a, self.b);
+        let mut a = [E::of(0.3); MAX_LANES];
+        let mut b = [E::of(-0.7); MAX_LANES];
+        (a[S::COUNT - 1], b[S::COUNT - 1]) = (self.a, self.b);
         let found = self.function.of(Lanes::load(simd, &a, 0), Lanes::load(simd, &b, 0));
-        found.to_array()[S::F64_LANES - 1]
+        found.to_array()[S::COUNT - 1]
     }
 }
 
 /// One result, and that all instructions give its bits.
-fn in_lanes<F: Function + Copy>(function: F, a: f64, b: f64) -> f64 {
-    let results = Instructions::all().into_iter().map(|way| way.run(InLanes { a, b, function }));
-    let results: Vec<u64> = results.map(f64::to_bits).collect();
-    assert!(results.iter().all(|bits| *bits == results[0]), "{results:x?} {a} {b}");
-    f64::from_bits(results[0])
+fn in_lanes<F: Function + Copy, E: LaneNumber>(function: F, a: E, b: E) -> E {
+    let results = Instructions::all().map(|way| way.run(InLanes { a, b, function }));
+    let bits = results.map(|result| result.get().to_bits());
+    assert!(bits.iter().all(|one| *one == bits[0]), "{results:?} {a:?} {b:?}");
+    results[0]
 }
 
 macro_rules! function {
@@ -110,6 +111,32 @@ proptest! {
         }
         prop_assert_eq!(in_lanes(Between, a, b), if a < b { 2.0 * a } else { b });
     }
+
+    #[test]
+    fn every_operation_is_that_of_a_number_in_single_precision(a in -1e6..1e6_f32, b in -1e6..1e6_f32) {
+        prop_assert_eq!(in_lanes(Ceil, a, b), a.ceil());
+        prop_assert!((in_lanes(Round, a, b) - a).abs() <= 0.5);
+        prop_assert_eq!(in_lanes(Max, a, b), a.max(b));
+        prop_assert_eq!(in_lanes(Min, a, b), a.min(b));
+        prop_assert_eq!(in_lanes(Abs, a, b), a.abs());
+        prop_assert_eq!(in_lanes(Negative, a, b), -a);
+        prop_assert_eq!(in_lanes(Root, a.abs(), b), a.abs().sqrt());
+        prop_assert_eq!(in_lanes(WithSign, a, b), a.copysign(b));
+        prop_assert_eq!(in_lanes(ProductAndSum, a, b), a * b + a);
+        prop_assert_eq!(in_lanes(Quotient, a, b), a / b - b);
+        let of = |yes: bool| if yes { 1.0 } else { 0.0 };
+        for (a, b) in [(a, b), (a, a), (a, f32::NAN), (f32::NAN, b), (f32::INFINITY, a), (-f32::INFINITY, a)] {
+            prop_assert_eq!(in_lanes(Less, a, b), of(a < b));
+            prop_assert_eq!(in_lanes(AtMost, a, b), of(a <= b));
+            prop_assert_eq!(in_lanes(Equal, a, b), of(a == b));
+            // The other lanes say no.
+            prop_assert_eq!(in_lanes(AnyLess, a, b), of(a < b));
+            prop_assert_eq!(in_lanes(FirstLess, a, b), of(a < b));
+        }
+        prop_assert_eq!(in_lanes(Between, a, b), if a < b { 2.0 * a } else { b });
+        let (found, expected) = (in_lanes(Atan2, a, b).get(), libm::atan2(a.get(), b.get()));
+        prop_assert!((found - expected).abs() <= 3e-7 * expected.abs(), "{} {}", found, expected);
+    }
 }
 
 #[test]
@@ -146,7 +173,7 @@ fn arctangent_at_its_edges() {
     assert_eq!(in_lanes(Atan2, 0.0, 0.0), 0.0);
     // What comes out NaN must never pass a comparison.
     assert!(in_lanes(Atan2, f64::NAN, 1.0).is_nan());
-    assert!(in_lanes(Root, -1.0, 0.0).is_nan());
+    assert!(in_lanes(Root, -1.0_f64, 0.0).is_nan());
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! A placement with its plan, and what a step makes of it.
 
+use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_planning::redundancy::{
     Kept, Planner, SegmentPlan, Workspace, off_grid, settled_among_free, settled_together,
 };
 use stead_planning::transfer_path::whole_lines;
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::problem::{BetaPlan, Placement, Problem};
 use stead_problem::sense::Sense;
 
@@ -69,7 +71,6 @@ pub(super) fn is_near(a: &Placement, b: &Placement, distance: f64) -> bool {
 /// Where many |c_i| are held at zero, a straight step leaves them by its square; so at the new placement the betas
 /// settle in a narrow spacing around their step (a second-order correction).
 pub(super) fn moved(problem: &Problem, solution: &Solution, placement: Placement, betas: &[f64]) -> Option<Solution> {
-    let mut plans = Vec::with_capacity(solution.plans.len());
     let stepped = |plan: &SegmentPlan| {
         let betas = betas[plan.points.clone()].to_vec();
         SegmentPlan { betas, cost: f64::INFINITY, ..plan.clone() }
@@ -79,15 +80,14 @@ pub(super) fn moved(problem: &Problem, solution: &Solution, placement: Placement
         let plans = settled_together(problem, &placement, Sense::Min, SETTLING, &stepped)?;
         return problem.is_free(&placement, &plans).then(|| Solution::new(problem, placement, plans));
     }
-    for plan in &solution.plans {
-        let shifted = stepped(plan);
+    let evaluators = BatchEvaluator::all(problem, &problem.redundancy);
+    let settled = |plan: &SegmentPlan| {
+        let evaluator = BatchEvaluator::of_posture(&evaluators, plan.posture)?;
         let kept = Kept { lines: whole_lines(problem, &solution.placement, plan), moves: false };
-        let shifted = settled_among_free(problem, &placement, Sense::Min, SETTLING, kept, &shifted);
-        if !shifted.cost.is_finite() {
-            return None;
-        }
-        plans.push(shifted);
-    }
+        let settled = settled_among_free(evaluator, &placement, Sense::Min, SETTLING, kept, &stepped(plan));
+        settled.cost.is_finite().then_some(settled)
+    };
+    let plans = solution.plans.par_iter().map(settled).collect::<Option<Vec<_>>>()?;
     problem.is_free(&placement, &plans).then(|| Solution::new(problem, placement, plans))
 }
 

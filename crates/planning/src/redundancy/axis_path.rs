@@ -15,6 +15,7 @@ use std::ops::Range as Span;
 use stead_model::robot::Posture;
 use stead_model::robot::turns::real_configurations;
 use stead_problem::constraints::joint_steps_hold;
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::evaluate::reference::State;
 use stead_problem::joint_travel::joint_distance;
 use stead_problem::problem::{Placement, Problem};
@@ -178,7 +179,7 @@ impl Steps for AxisSteps<'_, '_> {
         let (point, class) = (self.span.start + place, self.posture.class());
         let mut states = Vec::new();
         for (position, planner) in self.search.planners.iter().enumerate() {
-            let Some(evaluator) = planner.evaluators.iter().find(|one| one.flips().contains(self.posture)) else {
+            let Some(evaluator) = BatchEvaluator::of_posture(&planner.evaluators, self.posture) else {
                 continue;
             };
             evaluator.evaluate(point, self.search.placement, &mut self.workspace.now);

@@ -3,9 +3,8 @@
 //! Scores between values of the grid are interpolated linearly; a value beside a state that is not allowed is not
 //! allowed.
 
-use pulp::{Simd, WithSimd};
 use stead_model::robot::PostureClass;
-use stead_numerics::simd::{Instructions, Lanes};
+use stead_numerics::simd::{Instructions, LaneNumber, Lanes, Simd, WithSimd};
 use stead_problem::criterion::Aggregate;
 use stead_problem::sense::Sense;
 
@@ -38,18 +37,18 @@ impl Joining {
 
 /// The costs of one posture class over the run so far: a row over beta at its end for each change.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Between<'s> {
-    costs: &'s [f64],
+pub(super) struct Between<'s, E> {
+    costs: &'s [E],
     stride: usize,
     /// The smallest change.
     min: i32,
     joining: Joining,
 }
 
-impl<'s> Between<'s> {
+impl<'s, E> Between<'s, E> {
     /// The row for the shift to a predecessor.
     #[inline(always)]
-    pub fn row(&self, shift: isize) -> &'s [f64] {
+    pub fn row(&self, shift: isize) -> &'s [E] {
         let number = (-shift - self.min as isize) as usize;
         &self.costs[number * self.stride..][..self.stride]
     }
@@ -63,21 +62,21 @@ impl<'s> Between<'s> {
 
 /// Room for the costs of four posture classes.
 #[derive(Debug, Clone)]
-pub(super) struct RunCosts {
-    data: Vec<f64>,
+pub(super) struct RunCosts<E> {
+    data: Vec<E>,
     changes: usize,
     stride: usize,
     instructions: Instructions,
 }
 
-impl RunCosts {
+impl<E: LaneNumber> RunCosts<E> {
     /// For so many changes, and rows as long as those of the states.
     pub fn new(changes: usize, stride: usize, instructions: Instructions) -> Self {
-        Self { data: vec![0.0; 4 * changes * stride], changes, stride, instructions }
+        Self { data: vec![E::of(0.0); 4 * changes * stride], changes, stride, instructions }
     }
 
     /// The costs of a class for changes from `min` upwards.
-    pub fn of(&self, class: PostureClass, min: i32, joining: Joining) -> Between<'_> {
+    pub fn of(&self, class: PostureClass, min: i32, joining: Joining) -> Between<'_, E> {
         let size = self.changes * self.stride;
         Between { costs: &self.data[class.index() * size..][..size], stride: self.stride, min, joining }
     }
@@ -86,7 +85,7 @@ impl RunCosts {
     pub fn add(
         &mut self,
         class: PostureClass,
-        row: CyclicRow<'_>,
+        row: CyclicRow<'_, E>,
         offsets: impl Iterator<Item = f64>,
         is_first: bool,
         joining: Joining,
@@ -101,24 +100,25 @@ impl RunCosts {
 
 /// Scores over beta, continued cyclically by `pad` values on both sides.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct CyclicRow<'s> {
-    pub scores: &'s [f64],
+pub(super) struct CyclicRow<'s, E> {
+    pub scores: &'s [E],
     pub pad: usize,
 }
 
-struct Add<'s> {
-    costs: &'s mut [f64],
-    row: CyclicRow<'s>,
+struct Add<'s, E> {
+    costs: &'s mut [E],
+    row: CyclicRow<'s, E>,
     offset: f64,
     is_first: bool,
     joining: Joining,
 }
 
-impl WithSimd for Add<'_> {
+impl<E: LaneNumber> WithSimd for Add<'_, E> {
+    type Number = E;
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
+    fn with_simd<S: Simd<Number = E>>(self, simd: S) {
         let Self { costs, row: CyclicRow { scores, pad }, offset, is_first, joining } = self;
         let floor = (offset + ON_GRID).floor();
         let part = offset - floor;

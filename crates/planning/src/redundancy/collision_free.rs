@@ -16,9 +16,11 @@ use crate::transfer_path::whole_lines;
 use std::collections::{BTreeMap, BTreeSet};
 use stead_cell::PairKind;
 use stead_model::robot::Posture;
+use stead_numerics::simd::LaneNumber;
 use stead_problem::candidate::Objective;
 use stead_problem::collision::Fault;
-use stead_problem::problem::{Placement, Problem};
+use stead_problem::evaluate::batch::BatchEvaluator;
+use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
 
 /// Plans made for one placement, at the most; one that still hits after that counts as none.
@@ -46,7 +48,7 @@ pub struct Kept {
 /// Where it would hit at some points, the states of these are looked at one by one, at last those of all; what is kept
 /// of the plan stays as it was, with beta held at the ends of moves that would not.
 pub fn settled_among_free(
-    problem: &Problem,
+    evaluator: &BatchEvaluator<'_>,
     placement: &Placement,
     sense: Sense,
     spacing: off_grid::Spacing,
@@ -54,7 +56,7 @@ pub fn settled_among_free(
     plan: &SegmentPlan,
 ) -> SegmentPlan {
     let watched = vec![off_grid::Watch::default(); plan.points.len()];
-    let mut settling = Settling { problem, placement, sense, spacing, kept, plan, watched, round: 0 };
+    let mut settling = Settling { evaluator, placement, sense, spacing, kept, plan, watched, round: 0 };
     match until_free(&mut settling, WATCHES + 1) {
         Ok((settled, is_free)) if is_free || !kept.moves => settled,
         Ok(_) => plan.clone(),
@@ -64,7 +66,7 @@ pub fn settled_among_free(
 
 /// A plan that is taken off the grid with more and more of its states watched.
 struct Settling<'a> {
-    problem: &'a Problem,
+    evaluator: &'a BatchEvaluator<'a>,
     placement: &'a Placement,
     sense: Sense,
     spacing: off_grid::Spacing,
@@ -93,7 +95,7 @@ impl Lazy for Settling<'_> {
 
     fn plan(&mut self) -> Result<SegmentPlan, Self::Refused> {
         let mut refined = self.plan.clone();
-        off_grid::refine(self.problem, self.placement, self.sense, self.spacing, &self.watched, &mut refined);
+        off_grid::refine(self.evaluator, self.placement, self.sense, self.spacing, &self.watched, &mut refined);
         Ok(refined)
     }
 
@@ -102,12 +104,13 @@ impl Lazy for Settling<'_> {
         // Places of the plan where something is wrong, and whether beta is held there for that.
         let mut places: Vec<(usize, bool)> = Vec::new();
         if refined.cost.is_finite() {
-            for fault in self.problem.plan_faults(self.placement, refined, kept.moves) {
+            let problem = self.evaluator.problem();
+            for fault in problem.plan_faults(self.placement, refined, kept.moves) {
                 let place = fault.point - self.plan.points.start;
                 places.push((place, fault.is_between));
                 places.extend(fault.is_between.then(|| (place - 1, true)));
             }
-            let whole = whole_lines(self.problem, self.placement, refined);
+            let whole = whole_lines(problem, self.placement, refined);
             places.extend((kept.lines[0] && !whole[0]).then_some((0, false)));
             places.extend((kept.lines[1] && !whole[1]).then_some((count - 1, false)));
         }
@@ -138,10 +141,10 @@ enum Demand {
 }
 
 /// Plans of all segments in which more and more states are forbidden ([`Planner::collision_free_plans`]).
-struct FreePlans<'s, P> {
+struct FreePlans<'s, P, E> {
     planner: &'s Planner<'s>,
     request: Request<'s>,
-    workspace: &'s mut Workspace,
+    workspace: &'s mut Workspace<E>,
     /// What makes the plans of some segments.
     plan: P,
     /// Of every segment.
@@ -159,7 +162,7 @@ struct FreePlans<'s, P> {
     round: usize,
 }
 
-impl<P> FreePlans<'_, P> {
+impl<P, E: LaneNumber> FreePlans<'_, P, E> {
     /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
     fn lines_in_the_way(&self, none: &NoFeasiblePlan) -> Vec<usize> {
         let path = self.planner.problem.task.path();
@@ -214,9 +217,9 @@ impl<P> FreePlans<'_, P> {
     }
 }
 
-impl<P> Lazy for FreePlans<'_, P>
+impl<P, E: LaneNumber> Lazy for FreePlans<'_, P, E>
 where
-    P: FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
+    P: FnMut(&mut Workspace<E>, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
 {
     /// None where demands were given up, so that all is planned anew.
     type Plan = Option<Vec<SegmentPlan>>;
@@ -271,11 +274,11 @@ where
 impl Planner<'_> {
     /// The plans that are chosen of those that `plan` makes for the segments requested, made again without the states
     /// that hit until nothing does.
-    pub(super) fn collision_free_plans(
+    pub(super) fn collision_free_plans<E: LaneNumber>(
         &self,
         request: Request<'_>,
-        workspace: &mut Workspace,
-        plan: impl FnMut(&mut Workspace, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
+        workspace: &mut Workspace<E>,
+        plan: impl FnMut(&mut Workspace<E>, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let count = self.problem.task.segments().len();
         workspace.forbidden.clear();
@@ -305,7 +308,11 @@ impl Planner<'_> {
     }
 
     /// The mean score under the best or worst plan on the grid in which nothing hits ([`Planner::objective`]).
-    pub(super) fn free_objective(&self, request: Request<'_>, workspace: &mut Workspace) -> Objective {
+    pub(super) fn free_objective<E: LaneNumber>(
+        &self,
+        request: Request<'_>,
+        workspace: &mut Workspace<E>,
+    ) -> Objective {
         let plans = self.collision_free_plans(request, workspace, |workspace, requested| {
             let choices = self.choices(request, workspace, requested, 0.0)?;
             Ok(self.without_hitting_ways(request.placement, choices))
@@ -336,7 +343,8 @@ impl Planner<'_> {
         }
         let lines = if self.segments.checks_moves() { whole_lines(problem, placement, plan) } else { [false; 2] };
         let kept = Kept { lines, moves: self.segments.checks_moves() && faults.is_empty() };
-        *plan = settled_among_free(problem, placement, sense, spacing, kept, plan);
+        let Some(evaluator) = BatchEvaluator::of_posture(&self.segments.evaluators, plan.posture) else { return };
+        *plan = settled_among_free(evaluator, placement, sense, spacing, kept, plan);
     }
 
     /// Plans of segments without the ways of driving them (flips of the wrist) in which something hits, where others

@@ -11,6 +11,7 @@ use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace};
 use crate::compass::CompassSteps;
 use stead_model::robot::{Posture, PostureClass};
 use stead_numerics::monitor::Monitor;
+use stead_numerics::simd::LaneNumber;
 use stead_problem::candidate::Objective;
 use stead_problem::problem::{BetaPlan, Placement, Problem};
 use stead_problem::sense::Sense;
@@ -27,12 +28,16 @@ struct Bound {
 
 impl Planner<'_> {
     /// Whether one beta for the whole path is still to be chosen.
-    pub(super) fn chooses_common_beta(&self, workspace: &Workspace) -> bool {
+    pub(super) fn chooses_common_beta<E: LaneNumber>(&self, workspace: &Workspace<E>) -> bool {
         self.problem.redundancy.beta == BetaPlan::Constant && workspace.only_beta.is_none()
     }
 
     /// [`Planner::objective`] where one beta stays all along the path.
-    pub(super) fn common_objective(&self, request: Request<'_>, workspace: &mut Workspace) -> Objective {
+    pub(super) fn common_objective<E: LaneNumber>(
+        &self,
+        request: Request<'_>,
+        workspace: &mut Workspace<E>,
+    ) -> Objective {
         let sign = request.sense.sign();
         let bounds = self.bounds(request, workspace);
         let mut best: Option<f64> = None;
@@ -60,11 +65,11 @@ impl Planner<'_> {
     }
 
     /// What `plan` finds, or where one beta stays all along the path, the best of what it finds for each.
-    pub(super) fn with_common_beta(
+    pub(super) fn with_common_beta<E: LaneNumber>(
         &self,
         request: Request<'_>,
-        workspace: &mut Workspace,
-        mut plan: impl FnMut(&mut Workspace) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
+        workspace: &mut Workspace<E>,
+        mut plan: impl FnMut(&mut Workspace<E>) -> Result<Vec<SegmentPlan>, NoFeasiblePlan>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         if !self.chooses_common_beta(workspace) {
             return plan(workspace);
@@ -114,7 +119,7 @@ impl Planner<'_> {
     }
 
     /// All betas of the grid: those by which the most segments can be gone through first, and of these the cheapest.
-    fn bounds(&self, request: Request<'_>, workspace: &mut Workspace) -> Vec<Bound> {
+    fn bounds<E: LaneNumber>(&self, request: Request<'_>, workspace: &mut Workspace<E>) -> Vec<Bound> {
         let Request { placement, sense, .. } = request;
         workspace.forbidden.clear();
         let spans = self.problem.task.segments();
@@ -128,7 +133,7 @@ impl Planner<'_> {
                 let found = self.segments.forward_pass(pass, workspace, false);
                 for class in PostureClass::ALL.into_iter().filter(|class| found.ends[class.index()].is_some()) {
                     let ends = workspace.before.inner_scores(class);
-                    costs[index].iter_mut().zip(ends).for_each(|(known, cost)| *known = known.min(*cost));
+                    costs[index].iter_mut().zip(ends).for_each(|(known, cost)| *known = known.min(cost.get()));
                 }
             }
         }

@@ -12,10 +12,11 @@ use super::between::{CyclicRow, Joining};
 use super::knots::{Knot, Place};
 use super::rate_limit::BetaChange;
 use super::record::{MAX_REACHED, Record};
-use super::transition::{JointStep, Step, advance, advance_over, begin};
+use super::transition::{Step, advance, advance_over, begin};
 use super::{SegmentPlanner, Sense, Workspace};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
+use stead_numerics::simd::LaneNumber;
 use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::problem::{MAX_JOINT_STEP, Placement};
 
@@ -59,7 +60,7 @@ pub(super) struct Pass<'p> {
 impl SegmentPlanner<'_> {
     /// What bounds the step to path point `point` from the one before.
     pub fn step(&self, point: usize, sense: Sense) -> Step {
-        self.step_over(point, self.changes[point], 1, sense)
+        self.step_over::<f64>(point, self.changes[point], false, sense)
     }
 
     /// By how much each joint may step to a path point from the one so many points before. rad
@@ -71,12 +72,11 @@ impl SegmentPlanner<'_> {
         limits
     }
 
-    /// What bounds the step to a path point from the one so many points before.
-    fn step_over(&self, point: usize, change: BetaChange, points: usize, sense: Sense) -> Step {
-        let limits = self.joint_limits(point, points);
+    /// What bounds the step to a path point from the one before, or from the knot before.
+    fn step_over<E: LaneNumber>(&self, point: usize, change: BetaChange, is_by_knots: bool, sense: Sense) -> Step {
         Step {
             change,
-            joints: std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j])),
+            joints: self.kernel_steps::<E>(point, is_by_knots),
             sense,
             aggregate: self.problem.criterion.aggregate,
             fold: self.problem.robot.has_linkage().then_some(self.problem.robot.geometry().fold),
@@ -109,12 +109,12 @@ impl SegmentPlanner<'_> {
     }
 
     /// Adds the scores of a point between knots to the costs of the run; false when no state is left.
-    pub(super) fn add_between(
+    pub(super) fn add_between<E: LaneNumber>(
         &self,
         pass: Pass<'_>,
         point: usize,
         class: PostureClass,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> bool {
         let Place::Between { knot, middle, share, is_first } = self.knots.at(point) else { return true };
         let Place::Knot(end) = self.knots.at(knot) else { return true };
@@ -134,9 +134,16 @@ impl SegmentPlanner<'_> {
     }
 
     /// Takes the cheapest predecessors of a knot's states; false when no state is reached.
-    fn reach(&self, pass: Pass<'_>, point: usize, knot: Knot, class: PostureClass, workspace: &mut Workspace) -> bool {
+    fn reach<E: LaneNumber>(
+        &self,
+        pass: Pass<'_>,
+        point: usize,
+        knot: Knot,
+        class: PostureClass,
+        workspace: &mut Workspace<E>,
+    ) -> bool {
         let Workspace { before, now, record, run_costs, .. } = workspace;
-        let step = self.step_over(point, knot.change, knot.points, pass.sense);
+        let step = self.step_over::<E>(point, knot.change, pass.is_by_knots, pass.sense);
         let way = record.way(knot.number, class);
         if knot.points == 1 {
             return advance(before, now, class, &step, way);
@@ -146,7 +153,13 @@ impl SegmentPlanner<'_> {
     }
 
     /// Evaluates a path point in some posture classes, without the states in which something hits.
-    pub(super) fn evaluate(&self, pass: Pass<'_>, point: usize, classes: [bool; 4], workspace: &mut Workspace) {
+    pub(super) fn evaluate<E: LaneNumber>(
+        &self,
+        pass: Pass<'_>,
+        point: usize,
+        classes: [bool; 4],
+        workspace: &mut Workspace<E>,
+    ) {
         let Workspace { now, forbidden, only_beta, .. } = workspace;
         pass.evaluator.evaluate_some(point, pass.placement, classes, *only_beta, now);
         if let Some(hits) = &self.tool_hits {
@@ -163,7 +176,12 @@ impl SegmentPlanner<'_> {
 
     /// Passes over the points of a segment, in every posture class or in that of the posture given. With `count_only`,
     /// only the blocked points are found.
-    pub(super) fn forward_pass(&self, pass: Pass<'_>, workspace: &mut Workspace, count_only: bool) -> ForwardPass {
+    pub(super) fn forward_pass<E: LaneNumber>(
+        &self,
+        pass: Pass<'_>,
+        workspace: &mut Workspace<E>,
+        count_only: bool,
+    ) -> ForwardPass {
         let mut forward_pass = ForwardPass { ends: [None; 4], stuck: [None; 4], blocked: Vec::new() };
         let rules = &self.problem.postures;
         let requested = PostureClass::ALL
@@ -204,21 +222,21 @@ impl SegmentPlanner<'_> {
         if !count_only {
             for class in PostureClass::ALL.into_iter().filter(|class| before.is_alive(*class)) {
                 let costs = before.inner_scores(class);
-                let end = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
-                forward_pass.ends[class.index()] = Some((costs[end], end));
+                let end = (0..costs.len()).min_by(|a, b| costs[*a].get().total_cmp(&costs[*b].get())).unwrap_or(0);
+                forward_pass.ends[class.index()] = Some((costs[end].get(), end));
             }
         }
         forward_pass
     }
 
     /// Continues a class to a point. Returns whether a state is reached, and the point that is not where none is.
-    fn continue_to(
+    fn continue_to<E: LaneNumber>(
         &self,
         pass: Pass<'_>,
         point: usize,
         place: Place,
         class: PostureClass,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> (bool, usize) {
         match place {
             Place::Between { .. } => {
@@ -248,12 +266,12 @@ impl SegmentPlanner<'_> {
     }
 
     /// The beta numbers of the plan that a class ended with, along the segment last swept, in a pass like that.
-    pub(super) fn trace(
+    pub(super) fn trace<E: LaneNumber>(
         &self,
         pass: Pass<'_>,
         class: PostureClass,
         forward_pass: &ForwardPass,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> Vec<usize> {
         let count = self.grid.beta_count as isize;
         let mut beta = forward_pass.ends[class.index()].map_or(0, |(_, end)| end);
@@ -273,7 +291,13 @@ impl SegmentPlanner<'_> {
     }
 
     /// Finds the ways of one class in one block again.
-    fn repeat_block(&self, pass: Pass<'_>, class: PostureClass, block: usize, workspace: &mut Workspace) {
+    fn repeat_block<E: LaneNumber>(
+        &self,
+        pass: Pass<'_>,
+        class: PostureClass,
+        block: usize,
+        workspace: &mut Workspace<E>,
+    ) {
         let mut requested = [false; 4];
         requested[class.index()] = true;
         let first = block * workspace.record.block;

@@ -66,6 +66,7 @@ use segment_planner::{Request, Resolution, SegmentPlanner};
 use std::sync::Arc;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::StopHandle;
+use stead_numerics::simd::LaneNumber;
 use stead_problem::candidate::{Objective, best_of};
 use stead_problem::problem::{BetaPlan, Placement, Problem, Redundancy};
 pub use stead_problem::segment_plan::SegmentPlan;
@@ -156,9 +157,18 @@ impl<'a> Planner<'a> {
         self.segments.workspace()
     }
 
+    /// The same with numbers of some kind: with `f32` objectives are told to some 1e-6 of them, in half of the time.
+    pub fn workspace_of<E: LaneNumber>(&self) -> Workspace<E> {
+        self.segments.workspace()
+    }
+
     /// What the best plan of each segment on the grid adds to the objective at a placement: one row where the posture
     /// may change from segment to segment, else one for each allowed posture; `None` where there is no plan.
-    pub fn segment_costs(&self, placement: &Placement, workspace: &mut Workspace) -> Vec<Vec<Option<f64>>> {
+    pub fn segment_costs<E: LaneNumber>(
+        &self,
+        placement: &Placement,
+        workspace: &mut Workspace<E>,
+    ) -> Vec<Vec<Option<f64>>> {
         let (rules, count) = (&self.problem.postures, self.problem.task.segments().len());
         let schemes: Vec<Option<Vec<Posture>>> = match rules.may_change {
             true => vec![None],
@@ -187,12 +197,12 @@ impl<'a> Planner<'a> {
 
     /// The mean score of the workpiece at a placement under the best or worst plan on the grid, with
     /// the posture scheme found exactly or given (one posture per segment).
-    pub fn objective(
+    pub fn objective<E: LaneNumber>(
         &self,
         placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> Objective {
         let schemes = self.problem.unchanging_schemes(scheme);
         if !schemes.is_empty() {
@@ -233,12 +243,12 @@ impl<'a> Planner<'a> {
     ///
     /// # Errors
     /// [`NoFeasiblePlan`] when some point or segment has none.
-    pub fn plan(
+    pub fn plan<E: LaneNumber>(
         &self,
         placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let rules = &self.problem.postures;
         let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
@@ -261,12 +271,12 @@ impl<'a> Planner<'a> {
     /// # Errors
     /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
     #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
-    pub fn plan_fine(
+    pub fn plan_fine<E: LaneNumber>(
         &self,
         placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         if self.problem.redundancy.beta == BetaPlan::Constant {
             let plans = self.plan(placement, sense, scheme, workspace)?;
@@ -330,21 +340,22 @@ impl<'a> Planner<'a> {
 
     /// For each segment requested, the plans of its posture classes on the grid that cost at most `margin` (relative)
     /// more than the cheapest, cheapest first.
-    fn choices(
+    fn choices<E: LaneNumber>(
         &self,
         request: Request<'_>,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
         requested: &[usize],
         margin: f64,
     ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
         let mut failure = NoFeasiblePlan::empty();
         let mut all = Vec::new();
-        let of =
-            |workspace: &mut Workspace, index: &usize| self.segments.segment(*index, request, workspace, Some(margin));
+        let of = |workspace: &mut Workspace<E>, index: &usize| {
+            self.segments.segment(*index, request, workspace, Some(margin))
+        };
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
             true => {
                 let (forbidden, only_beta) = (workspace.forbidden.clone(), workspace.only_beta);
-                let space = || Workspace { forbidden: forbidden.clone(), only_beta, ..self.workspace() };
+                let space = || Workspace { forbidden: forbidden.clone(), only_beta, ..self.segments.workspace() };
                 requested.par_iter().map_init(space, of).collect()
             }
             false => requested.iter().map(|index| of(workspace, index)).collect(),

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use stead_model::robot::angles::nearest_turns;
 use stead_problem::beta_step::BetaStep;
 use stead_problem::constraints::joint_steps_hold;
-use stead_problem::evaluate::point_evaluator::PointEvaluator;
+use stead_problem::evaluate::batch::{BatchEvaluator, PlacedPoint, StateGrid};
 use stead_problem::joint_travel::joint_distance;
 use stead_problem::problem::{Placement, Problem, Redundancy};
 
@@ -65,7 +65,8 @@ struct Value {
 struct Allowed {
     /// Joint angles modulo a turn. rad
     joints: [f64; 6],
-    score: f64,
+    /// What it adds to the cost of a plan.
+    cost: f64,
 }
 
 /// An allowed state with its turns.
@@ -73,7 +74,8 @@ struct Allowed {
 struct Node {
     /// Real joint angles. rad
     joints: [f64; 6],
-    score: f64,
+    /// As that of the state.
+    cost: f64,
 }
 
 /// What is looked at in the states of a path point.
@@ -93,31 +95,16 @@ pub struct Watch {
 /// the grid is laid, and the first feasible path through it is taken. Where there is none the plan stays as it is and
 /// false is returned. In the states at the points of the plan holds what is `watched` there.
 pub fn refine(
-    problem: &Problem,
+    evaluator: &BatchEvaluator<'_>,
     placement: &Placement,
     sense: Sense,
     range: Spacing,
     watched: &[Watch],
     plan: &mut SegmentPlan,
 ) -> bool {
-    let first = plan.points.start;
-    let at: Vec<PointEvaluator<'_>> = plan.points.clone().map(|point| problem.at(placement).evaluator(point)).collect();
-    let allowed = |place: usize, beta: f64, plan: &SegmentPlan| {
-        if watched[place].held && beta != plan.betas[place] {
-            return None;
-        }
-        let state = allowed(&at[place], beta, plan)?;
-        let (point, joints) = (first + place, state.joints);
-        let is_free = || problem.state_hit(point, placement, &joints).is_none();
-        let is_whole = || {
-            // In the turns of the plan.
-            let joints = nearest_turns(&joints, &plan.joints[place]);
-            let at = AtPoint { point, beta, posture: plan.posture, joints };
-            Space::new(problem, placement).line_end(at, problem.segment_moves.retract).is_none()
-        };
-        let Watch { collisions, line, .. } = watched[place];
-        ((!collisions || is_free()) && (!line || is_whole())).then_some(state)
-    };
+    let (problem, first) = (evaluator.problem(), plan.points.start);
+    let at = plan.points.clone().map(|point| evaluator.placed(point, placement)).collect();
+    let grid = Around { evaluator, placement, watched, at };
     let mut better = false;
     let (travel, limits) = (problem.travel_cost(sense), BetaStep::ANY);
     let mut steps = LevelSteps { problem, sense, travel, point: first, limits, joint_steps: [f64::INFINITY; 6] };
@@ -129,7 +116,7 @@ pub fn refine(
     while spacing >= range.last {
         layers.iter_mut().for_each(|layer| layer.is_fresh = false);
         for _ in 0..REPEATS {
-            lay(problem, &allowed, spacing, plan, &mut layers);
+            grid.lay(spacing, plan, &mut layers);
             if !level(&mut steps, plan, &mut layers) {
                 break;
             }
@@ -183,11 +170,12 @@ impl Steps for LevelSteps<'_> {
         let (old, new) = (from.node.as_ref()?, to.node.as_ref()?);
         let is_allowed = self.limits.allows(to.beta - from.beta)
             && joint_steps_hold(&self.problem.robot, &old.joints, &new.joints, &self.joint_steps);
-        is_allowed.then(|| self.travel * joint_distance(&old.joints, &new.joints))
+        let travel = || if self.travel > 0.0 { self.travel * joint_distance(&old.joints, &new.joints) } else { 0.0 };
+        is_allowed.then(travel)
     }
 
-    fn own(&self, point: usize, value: &Value) -> f64 {
-        value.node.map_or(f64::INFINITY, |node| self.sense.sign() * self.problem.point_cost(point, node.score))
+    fn own(&self, _: usize, value: &Value) -> f64 {
+        value.node.map_or(f64::INFINITY, |node| self.sense.sign() * node.cost)
     }
 
     fn join(&self, way: f64, own: f64) -> f64 {
@@ -202,21 +190,16 @@ pub fn replay(problem: &Problem, placement: &Placement, sense: Sense, plan: &Seg
     let aggregate = problem.criterion.aggregate;
     replayed.cost = 0.0;
     for (place, point) in plan.points.clone().enumerate() {
-        let state = allowed(&problem.at(placement).evaluator(point), plan.betas[place], plan)?;
-        let node = turned(problem, &state, &plan.joints[place])?;
-        replayed.joints[place] = node.joints;
-        replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, node.score));
+        let (joints, score) = allowed(problem, placement, point, plan.betas[place], plan, &plan.joints[place])?;
+        replayed.joints[place] = joints;
+        replayed.cost = aggregate.join(replayed.cost, problem.point_cost(point, score));
         if place > 0 {
-            let steps = joint_steps_hold(
-                &problem.robot,
-                &replayed.joints[place - 1],
-                &node.joints,
-                &problem.joint_steps(point),
-            );
+            let steps =
+                joint_steps_hold(&problem.robot, &replayed.joints[place - 1], &joints, &problem.joint_steps(point));
             if !problem.beta_step(point).allows(plan.betas[place] - plan.betas[place - 1]) || !steps {
                 return None;
             }
-            replayed.cost += travel * joint_distance(&replayed.joints[place - 1], &node.joints);
+            replayed.cost += travel * joint_distance(&replayed.joints[place - 1], &joints);
         }
     }
     Some(replayed)
@@ -232,47 +215,99 @@ pub fn score(
     plan: &SegmentPlan,
     near: &[f64; 6],
 ) -> Option<f64> {
-    let state = allowed(&problem.at(placement).evaluator(point), beta, plan)?;
-    turned(problem, &state, near).map(|node| node.score)
+    allowed(problem, placement, point, beta, plan, near).map(|(_, score)| score)
 }
 
-/// The state of a path point in the posture of a plan, if it satisfies everything but the limits of the joints.
-fn allowed(at: &PointEvaluator<'_>, beta: f64, plan: &SegmentPlan) -> Option<Allowed> {
-    let state = at.state(beta, plan.posture).ok()?;
-    is_allowed(at.problem(), &state).then(|| Allowed { joints: state.joints, score: state.score() })
+/// The joint angles nearest to given ones (rad) and the score (m) of a path point in the posture of a plan, where all
+/// constraints on the state hold.
+fn allowed(
+    problem: &Problem,
+    placement: &Placement,
+    point: usize,
+    beta: f64,
+    plan: &SegmentPlan,
+    near: &[f64; 6],
+) -> Option<([f64; 6], f64)> {
+    let state = problem.at(placement).state(point, beta, plan.posture).ok()?;
+    let joints = nearest_turns(&state.joints, near);
+    (is_allowed(problem, &state) && inside_limits(problem, &joints)).then(|| (joints, state.score()))
 }
 
 /// A state with the turns nearest to given joint angles (rad), if they are inside the limits.
 fn turned(problem: &Problem, state: &Allowed, near: &[f64; 6]) -> Option<Node> {
     let joints = nearest_turns(&state.joints, near);
-    inside_limits(problem, &joints).then_some(Node { joints, score: state.score })
+    inside_limits(problem, &joints).then_some(Node { joints, cost: state.cost })
 }
 
-/// Lays values of beta around the plan, where that moved since.
-fn lay(
-    problem: &Problem,
-    allowed: &(impl Fn(usize, f64, &SegmentPlan) -> Option<Allowed> + Sync),
-    spacing: f64,
-    plan: &SegmentPlan,
-    layers: &mut [Layer],
-) {
-    let middle = VALUES / 2;
-    layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each(|(place, layer)| {
-        if layer.is_fresh {
-            return;
+/// Where values of beta are laid around a plan.
+struct Around<'a> {
+    evaluator: &'a BatchEvaluator<'a>,
+    placement: &'a Placement,
+    /// By the places of the plan, as what follows.
+    watched: &'a [Watch],
+    at: Vec<PlacedPoint>,
+}
+
+impl Around<'_> {
+    /// Lays values of beta around the plan, where that moved since.
+    fn lay(&self, spacing: f64, plan: &SegmentPlan, layers: &mut [Layer]) {
+        let fresh = |states: &mut StateGrid, (place, layer): (usize, &mut Layer)| {
+            if !layer.is_fresh {
+                layer.is_fresh = true;
+                layer.values = self.values(place, spacing, plan, &layer.values, states);
+            }
+        };
+        layers.par_iter_mut().enumerate().with_min_len(MIN_SHARE).for_each_init(BatchEvaluator::states_at, fresh);
+    }
+
+    /// The values at a place, of which some are known.
+    fn values(
+        &self,
+        place: usize,
+        spacing: f64,
+        plan: &SegmentPlan,
+        known: &[Value; VALUES],
+        states: &mut StateGrid,
+    ) -> [Value; VALUES] {
+        let (middle, joints) = (VALUES / 2, &plan.joints[place]);
+        let betas: [f64; VALUES] = std::array::from_fn(|k| plan.betas[place] + (k as f64 - middle as f64) * spacing);
+        // Every second value was met before, at the latest spacing.
+        let met = betas.map(|beta: f64| known.iter().find(|value| value.beta == beta));
+        let (mut open, mut count) = ([0.0; VALUES], 0);
+        for (beta, _) in betas.iter().zip(&met).filter(|(_, met)| met.is_none()) {
+            open[count] = *beta;
+            count += 1;
         }
-        layer.is_fresh = true;
-        let known = layer.values;
-        layer.values = std::array::from_fn(|k| {
-            let beta = plan.betas[place] + (k as f64 - middle as f64) * spacing;
-            // Every second value was met before, at the latest spacing.
-            let met = known.iter().find(|value| value.beta == beta);
-            let own = met.and_then(|value| value.node).filter(|node| k == middle && node.joints == plan.joints[place]);
-            let state = met.map_or_else(|| allowed(place, beta, plan), |value| value.state);
-            let turned = |state: &Allowed| turned(problem, state, &plan.joints[place]);
+        let found = self.evaluator.evaluate_at(&self.at[place], plan.posture, &open[..count], states);
+        let mut next = 0..count;
+        std::array::from_fn(|k| {
+            let beta = betas[k];
+            let state = match met[k] {
+                Some(value) => value.state,
+                None => next.next().and_then(&found).map(|(cost, joints)| Allowed { joints, cost }),
+            };
+            let state = state.filter(|state| met[k].is_some() || self.is_free(place, beta, state, plan));
+            let own = met[k].and_then(|value| value.node).filter(|node| k == middle && node.joints == *joints);
+            let turned = |state: &Allowed| turned(self.evaluator.problem(), state, joints);
             Value { beta, state, node: own.or_else(|| state.as_ref().and_then(turned)) }
-        });
-    });
+        })
+    }
+
+    /// Whether what is watched at a place holds in a state.
+    fn is_free(&self, place: usize, beta: f64, state: &Allowed, plan: &SegmentPlan) -> bool {
+        let (problem, placement) = (self.evaluator.problem(), self.placement);
+        let Watch { collisions, line, held } = self.watched[place];
+        let (point, posture) = (plan.points.start + place, plan.posture);
+        let is_whole = || {
+            // In the turns of the plan.
+            let joints = nearest_turns(&state.joints, &plan.joints[place]);
+            let at = AtPoint { point, beta, posture, joints };
+            Space::new(problem, placement).line_end(at, problem.segment_moves.retract).is_none()
+        };
+        (!held || beta == plan.betas[place])
+            && (!collisions || problem.state_hit(point, placement, &state.joints).is_none())
+            && (!line || is_whole())
+    }
 }
 
 /// One pass over what was laid; whether the plan got better by more than rounding.

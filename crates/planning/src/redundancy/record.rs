@@ -1,21 +1,22 @@
 //! What a pass remembers of the ways to its states.
 
 use stead_model::robot::PostureClass;
+use stead_numerics::simd::LaneNumber;
 use stead_problem::evaluate::batch::StateGrid;
 
 /// The ways by which states were reached, and the costs from which they can be found again.
 #[derive(Debug, Clone)]
-pub(super) struct Record {
+pub(super) struct Record<E = f64> {
     pub count: usize,
     /// Number of steps whose ways are kept.
     pub block: usize,
     /// For each step of a block and each class the shifts to the predecessors, over beta.
     pub ways: Vec<i16>,
     /// For the first point of each block and each class the costs over beta; nothing of segments of one block.
-    pub costs: Vec<f64>,
+    pub costs: Vec<E>,
     /// For each knot of the segment last gone through and each class the costs over beta up to there; nothing of long
     /// segments.
-    pub reached: Vec<f64>,
+    pub reached: Vec<E>,
 }
 
 /// Costs of all knots are kept of segments with no more numbers than this.
@@ -24,7 +25,7 @@ pub(super) const MAX_REACHED: usize = 1 << 21;
 /// Segments whose ways take no more numbers than this are kept whole.
 const MAX_WAYS: usize = 1 << 25;
 
-impl Record {
+impl<E: LaneNumber> Record<E> {
     /// For segments of up to `longest` points with `count` values of beta.
     pub fn new(longest: usize, count: usize) -> Self {
         Self::with_capacity_of(longest, count, MAX_WAYS)
@@ -48,24 +49,24 @@ impl Record {
     }
 
     /// Adds the costs of all classes at a knot.
-    pub fn keep(costs: &mut Vec<f64>, states: &StateGrid) {
+    pub fn keep(costs: &mut Vec<E>, states: &StateGrid<E>) {
         for class in PostureClass::ALL {
             if states.is_alive(class) {
                 costs.extend_from_slice(states.inner_scores(class));
             } else {
-                costs.resize(costs.len() + states.count(), f64::INFINITY);
+                costs.resize(costs.len() + states.count(), E::of(f64::INFINITY));
             }
         }
     }
 
     /// The costs over beta of a class up to a knot, without regard to flips and turns, where they are kept: signed,
     /// infinite where a state is not reached.
-    pub fn reached(&self, knot: usize, class: PostureClass) -> Option<&[f64]> {
+    pub fn reached(&self, knot: usize, class: PostureClass) -> Option<&[E]> {
         self.reached.get((knot * 4 + class.index()) * self.count..)?.get(..self.count)
     }
 
     /// The costs at the beginning of a block.
-    pub fn kept(&self, block: usize, class: PostureClass) -> &[f64] {
+    pub fn kept(&self, block: usize, class: PostureClass) -> &[E] {
         &self.costs[(block * 4 + class.index()) * self.count..][..self.count]
     }
 }

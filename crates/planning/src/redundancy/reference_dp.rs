@@ -10,6 +10,7 @@ use std::ops::Range as Span;
 use stead_model::robot::turns::real_configurations;
 use stead_model::robot::{Posture, PostureClass};
 use stead_problem::constraints::joint_steps_hold;
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::joint_travel::joint_distance;
 use stead_problem::problem::Placement;
 
@@ -149,7 +150,7 @@ fn nodes(
 ) -> Vec<Node> {
     let problem = planner.problem;
     // The batch evaluator says which grid values are worth a closer look.
-    let Some(evaluator) = planner.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture)) else {
+    let Some(evaluator) = BatchEvaluator::of_posture(&planner.evaluators, posture) else {
         return Vec::new();
     };
     evaluator.evaluate(point, placement, &mut space.now);

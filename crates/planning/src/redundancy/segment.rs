@@ -7,6 +7,8 @@ use super::segment_planner::Request;
 use super::{SegmentPlanner, StateSet, Workspace};
 use std::borrow::Cow;
 use stead_model::robot::{Posture, PostureClass};
+use stead_numerics::simd::LaneNumber;
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::joint_travel::joint_travel;
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
@@ -97,7 +99,7 @@ impl ClassDrive<'_> {
     }
 
     /// The cheapest path with flips and turns.
-    fn with_turns(&self, cost: f64, workspace: &mut Workspace) -> Option<CostedPath> {
+    fn with_turns<E: LaneNumber>(&self, cost: f64, workspace: &mut Workspace<E>) -> Option<CostedPath> {
         let flips = [false, true].map(|flip| self.postures.iter().any(|posture| posture.is_flipped() == flip));
         let found = self.planner.path_with_turns(self.pass, self.class, flips, cost, workspace)?;
         Some((self.path(&found.betas), found.cost))
@@ -122,7 +124,7 @@ impl ClassDrive<'_> {
     }
 
     /// The plan by the first way that leads to one.
-    fn choice(&self, relaxed: CostedPath, workspace: &mut Workspace) -> Option<SegmentChoice> {
+    fn choice<E: LaneNumber>(&self, relaxed: CostedPath, workspace: &mut Workspace<E>) -> Option<SegmentChoice> {
         let mut turns = None;
         let is_tried = |attempt: &Attempt| attempt.is_tried(self.pass.is_by_knots, self.planner.checks_moves());
         Attempt::IN_ORDER.into_iter().filter(is_tried).find_map(|attempt| {
@@ -138,11 +140,11 @@ impl ClassDrive<'_> {
 impl SegmentPlanner<'_> {
     /// Sweeps one segment with every evaluator that evaluates a posture requested, and takes from all together the
     /// cheapest plans; with no `margin`, only the blocked points are found.
-    pub(super) fn segment(
+    pub(super) fn segment<E: LaneNumber>(
         &self,
         segment: usize,
         request: Request<'_>,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
         margin: Option<f64>,
     ) -> SegmentOptions {
         let span = &self.problem.task.segments()[segment];
@@ -182,7 +184,7 @@ impl SegmentPlanner<'_> {
 
     /// The postures of a class that yield like the given one, itself among them.
     pub(super) fn equivalent_postures(&self, posture: Posture) -> Vec<Posture> {
-        let evaluator = self.evaluators.iter().find(|evaluator| evaluator.flips().contains(posture));
+        let evaluator = BatchEvaluator::of_posture(&self.evaluators, posture);
         let postures = posture.class().postures().into_iter();
         let is_like = |p: &Posture| evaluator.is_some_and(|evaluator| evaluator.flips().contains(*p));
         postures.filter(|p| is_like(p) && self.problem.postures.allows(*p)).collect()
@@ -191,11 +193,11 @@ impl SegmentPlanner<'_> {
     /// Adds the plans of one segment, in the postures of a pass, whose classes and turns keep every joint inside
     /// its limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first.
     /// Returns whether every class that can be cheaper has a plan.
-    fn choose(
+    fn choose<E: LaneNumber>(
         &self,
         pass: Pass<'_>,
         outcome: &ForwardPass,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
         margin: f64,
         found: &mut Vec<SegmentChoice>,
     ) -> bool {

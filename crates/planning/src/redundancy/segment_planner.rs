@@ -1,14 +1,15 @@
 //! The planning of segments: what does not change from one placement, segment and posture to the next.
 
-use super::knots::{Knots, StepBudget};
+use super::knots::{Knots, Place, StepBudget};
 use super::rate_limit::{BetaChange, direct_changes};
 use super::record::Record;
+use super::transition::JointStep;
 use super::{StateSet, between};
 use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::monitor::StopHandle;
-use stead_numerics::simd::Instructions;
-use stead_problem::evaluate::batch::{BatchEvaluator, Flips, StateGrid};
+use stead_numerics::simd::{Instructions, LaneNumber};
+use stead_problem::evaluate::batch::{BatchEvaluator, StateGrid};
 use stead_problem::problem::{Placement, Problem, Redundancy};
 use stead_problem::sense::Sense;
 
@@ -62,6 +63,8 @@ pub(super) struct SegmentPlanner<'a> {
     pub resolution: Resolution,
     /// By how much each joint may step from the point before. rad
     pub steps: Vec<[f64; 6]>,
+    /// The same as the kernel takes it, for numbers of double and of single precision.
+    joint_steps: [JointSteps; 2],
     /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     pub ranges: [Option<Range>; 6],
     pub instructions: Instructions,
@@ -73,13 +76,20 @@ pub(super) struct SegmentPlanner<'a> {
     pub unwanted: StopHandle,
 }
 
+/// What bounds the steps of the joints to each path point: from the point before, and from the knot before.
+#[derive(Debug, Clone, Default)]
+struct JointSteps {
+    direct: Vec<[JointStep; 6]>,
+    to_knots: Vec<[JointStep; 6]>,
+}
+
 /// Space of one thread to plan in.
 #[derive(Debug, Clone)]
-pub struct Workspace {
-    pub(super) before: StateGrid,
-    pub(super) now: StateGrid,
-    pub(super) record: Record,
-    pub(super) run_costs: between::RunCosts,
+pub struct Workspace<E = f64> {
+    pub(super) before: StateGrid<E>,
+    pub(super) now: StateGrid<E>,
+    pub(super) record: Record<E>,
+    pub(super) run_costs: between::RunCosts<E>,
     /// States that hit, of the placement that is planned.
     pub(super) forbidden: StateSet,
     /// The number of beta that is planned with, where one for the whole path has been chosen.
@@ -121,14 +131,15 @@ impl<'a> SegmentPlanner<'a> {
         let changes = direct_changes(problem, &grid);
         let step = |p: usize| if is_start(&p) { [f64::INFINITY; 6] } else { problem.joint_steps(p) };
         let steps: Vec<_> = (0..problem.task.points().len()).map(step).collect();
-        Self {
+        let planner = Self {
             problem,
             grid,
-            evaluators: Flips::of(problem).iter().map(|flips| BatchEvaluator::new(problem, &grid, *flips)).collect(),
+            evaluators: BatchEvaluator::all(problem, &grid),
             knots: Knots::new(problem, &grid, &steps, &changes, budget),
             resolution,
             changes,
             steps,
+            joint_steps: Default::default(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
@@ -136,14 +147,41 @@ impl<'a> SegmentPlanner<'a> {
             tool_hits,
             travel: problem.travel_cost(Sense::Min),
             unwanted: StopHandle::default(),
-        }
+        };
+        planner.with_kernel_steps()
+    }
+
+    fn with_kernel_steps(mut self) -> Self {
+        self.joint_steps = [f64::ROUNDING, f32::ROUNDING].map(|rounding| {
+            let to = |point: usize, points: usize| {
+                let limits = self.joint_limits(point, points);
+                std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j]).with_rounding(rounding))
+            };
+            let to_knot = |point: usize| match self.knots.at(point) {
+                Place::Knot(knot) => to(point, knot.points),
+                Place::Between { .. } => [JointStep::Any; 6],
+            };
+            let points = 0..self.steps.len();
+            JointSteps {
+                direct: points.clone().map(|point| to(point, 1)).collect(),
+                to_knots: points.map(to_knot).collect(),
+            }
+        });
+        self
+    }
+
+    /// What bounds the steps of the joints to a path point from the one before, or from the knot before, for numbers
+    /// of some kind.
+    pub fn kernel_steps<E: LaneNumber>(&self, point: usize, is_by_knots: bool) -> [JointStep; 6] {
+        let of_kind = &self.joint_steps[usize::from(E::ROUNDING > 0.0)];
+        if is_by_knots { of_kind.to_knots[point] } else { of_kind.direct[point] }
     }
 
     /// The same with steps of the joints that may be at least so large. rad
     pub fn with_joint_steps(mut self, least: f64) -> Self {
         self.steps.iter_mut().flatten().for_each(|limit| *limit = limit.max(least));
         self.knots = Knots::new(self.problem, &self.grid, &self.steps, &self.changes, self.resolution.budget());
-        self
+        self.with_kernel_steps()
     }
 
     /// What a radian of joint travel costs in the plans of a sense.
@@ -161,8 +199,8 @@ impl<'a> SegmentPlanner<'a> {
         self.changes.iter().copied().map(BetaChange::widest).max().unwrap_or(0).max(self.knots.widest())
     }
 
-    /// Space for one thread.
-    pub fn workspace(&self) -> Workspace {
+    /// Space for one thread, whose numbers are of some kind.
+    pub fn workspace<E: LaneNumber>(&self) -> Workspace<E> {
         let count = self.grid.beta_count;
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         let before = StateGrid::new(count, self.pad()).with_angles(self.travel > 0.0);

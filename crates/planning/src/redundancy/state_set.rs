@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
+use stead_numerics::simd::LaneNumber;
 use stead_problem::evaluate::batch::StateGrid;
 use stead_problem::problem::{Problem, Redundancy};
 
@@ -55,7 +56,7 @@ impl StateSet {
     }
 
     /// Takes the states of a point out of what the evaluator has written.
-    pub fn apply(&self, point: usize, states: &mut StateGrid) {
+    pub fn apply<E: LaneNumber>(&self, point: usize, states: &mut StateGrid<E>) {
         let Some(classes) = self.points.get(&point) else { return };
         for class in PostureClass::ALL {
             let bits = &classes[class.index()];
@@ -119,7 +120,7 @@ mod tests {
         assert!(forbidden.add(7, class, 70) && !forbidden.add(7, class, 70) && forbidden.add(7, class, 3));
         assert!(forbidden.contains(7, class, 70) && !forbidden.contains(7, class, 71));
         assert!(!forbidden.contains(6, class, 70) && !forbidden.contains(7, PostureClass::ALL[1], 70));
-        let mut states = StateGrid::new(80, 4);
+        let mut states = StateGrid::<f64>::new(80, 4);
         for beta in [3, 70] {
             states.set(class, beta, 1.0, [0.1; 6]);
         }

@@ -6,6 +6,7 @@ use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_problem::criterion::{Aggregate, Weights};
+use stead_problem::evaluate::batch::BatchEvaluator;
 use stead_problem::testing::{
     assert_sound, compensated, five_segments, with_axes_2_3, with_beta_rate, with_laws, with_prototype_steps,
 };
@@ -33,6 +34,54 @@ fn agrees_with_the_prototype_at_the_published_optimum() {
     // Printed with four and three digits.
     assert!((best * 1e3 - 0.5357).abs() < 1e-3 * 0.5357, "{best}");
     assert!((worst * 1e3 - 0.594).abs() < 1e-3 * 0.594, "{worst}");
+}
+
+/// What a search compares by: in single precision the same placements have a plan, but for some at a limit, and their
+/// objectives are the same to the digits that it has.
+#[test]
+fn objectives_in_single_precision_are_those_in_double() {
+    let limited = |sense: Sense, mut problem: Problem| {
+        problem.redundancy.beta_count = 60;
+        (sense, problem)
+    };
+    let mut weighed = five_segments();
+    (weighed.criterion.weights, weighed.criterion.force_uncertainty) = (Weights::TOTAL, 0.1);
+    let mut largest = with_prototype_steps(five_segments());
+    largest.criterion.aggregate = Aggregate::Max;
+    let mut calm = with_axes_2_3(five_segments(), true, [-150.0, 0.0]);
+    calm.criterion.joint_travel_weight = 1e-5;
+    for (number, (sense, problem)) in [
+        limited(Sense::Min, with_prototype_steps(five_segments())),
+        limited(Sense::Max, weighed),
+        limited(Sense::Min, largest),
+        limited(Sense::Min, calm),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let planner = Planner::new(&problem);
+        let (mut exact, mut rough) = (planner.workspace(), planner.workspace_of::<f32>());
+        let (mut feasible, mut differ, mut errors) = (0, 0, Vec::new());
+        for k in 0..60 {
+            let share = |step: f64| (f64::from(k) * step).fract();
+            let placement =
+                [-0.3 + 0.6 * share(0.618), -2.0 + 0.6 * share(0.414), -0.8 + 0.5 * share(0.732), 6.0 * share(0.236)];
+            let of = |found: Objective| found.mean();
+            let expected = of(planner.objective(&placement.into(), sense, None, &mut exact));
+            let found = of(planner.objective(&placement.into(), sense, None, &mut rough));
+            feasible += usize::from(expected.is_some());
+            match (expected, found) {
+                (Some(expected), Some(found)) => errors.push((found / expected - 1.0).abs()),
+                (None, None) => {}
+                _ => differ += 1,
+            }
+        }
+        // A state or a step at a limit may be allowed in one and not in the other.
+        errors.sort_by(f64::total_cmp);
+        let [middle, last] = [errors.len() / 2, errors.len() - 1].map(|k| errors[k]);
+        assert!(feasible > 5 && differ <= 1, "{number}: {feasible} {differ}");
+        assert!(middle < 2e-6 && last < 1e-3, "{number}: {errors:?}");
+    }
 }
 
 /// The same arm with other ranges of joints 4, 5 and 6, in degrees.
@@ -193,7 +242,9 @@ fn refining_beta_keeps_every_rule_and_comes_near_to_a_fine_grid() {
         for plan in &mut plans {
             let (full, unwatched) =
                 (off_grid::Spacing::full(&problem.redundancy), vec![off_grid::Watch::default(); plan.points.len()]);
-            off_grid::refine(&problem, &placement, sense, full, &unwatched, plan);
+            let evaluators = BatchEvaluator::all(&problem, &problem.redundancy);
+            let evaluator = BatchEvaluator::of_posture(&evaluators, plan.posture).unwrap();
+            off_grid::refine(evaluator, &placement, sense, full, &unwatched, plan);
             let replayed = off_grid::replay(&problem, &placement, sense, plan).unwrap();
             assert!((replayed.cost - plan.cost).abs() < 1e-12 * plan.cost);
         }

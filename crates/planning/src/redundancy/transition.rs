@@ -7,11 +7,10 @@
 
 use super::between::Between;
 use super::rate_limit::BetaChange;
-use pulp::{Simd, WithSimd};
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
-use stead_numerics::simd::{Instructions, Lanes, MAX_LANES, Mask};
+use stead_numerics::simd::{Instructions, LaneNumber, Lanes, MAX_LANES, Mask, Simd, WithSimd};
 use stead_problem::constraints::STEP_ROUNDING;
 use stead_problem::criterion::Aggregate;
 use stead_problem::evaluate::batch::StateGrid;
@@ -79,6 +78,19 @@ impl JointStep {
         }
     }
 
+    /// The same where chords may be longer by so much, the rounding of what they are made of.
+    pub(super) fn with_rounding(self, rounding: f64) -> Self {
+        let wider = |max: f64| {
+            let chord = libm::sqrt(max) + rounding;
+            chord * chord
+        };
+        match self {
+            Self::Chord(max) if rounding > 0.0 => Self::Chord(wider(max)),
+            Self::Around { max, min, middle } if rounding > 0.0 => Self::Around { max: wider(max), min, middle },
+            step => step,
+        }
+    }
+
     /// Where the step from one direction (sine, cosine) to another is small enough.
     #[inline(always)]
     fn allows<S: Simd>(&self, simd: S, old: [Lanes<S>; 2], new: [Lanes<S>; 2]) -> Mask<S> {
@@ -104,10 +116,10 @@ impl JointStep {
 }
 
 /// Turns the scores of a segment's first point into costs.
-pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
+pub fn begin<E: LaneNumber>(now: &mut StateGrid<E>, class: PostureClass, sign: f64) {
     for score in now.scores_mut(class).iter_mut() {
-        if score.is_finite() {
-            *score *= sign;
+        if score.get().is_finite() {
+            *score = E::of(score.get() * sign);
         }
     }
 }
@@ -117,32 +129,38 @@ pub fn begin(now: &mut StateGrid, class: PostureClass, sign: f64) {
 ///
 /// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`],
 /// and where joint travel counts, both must keep angles (see [`StateGrid::with_angles`]).
-pub fn advance(before: &StateGrid, now: &mut StateGrid, class: PostureClass, step: &Step, way: &mut [i16]) -> bool {
-    advance_by::<Right>(before, now, class, step, None, way)
+pub fn advance<E: LaneNumber>(
+    before: &StateGrid<E>,
+    now: &mut StateGrid<E>,
+    class: PostureClass,
+    step: &Step,
+    way: &mut [i16],
+) -> bool {
+    advance_by::<Right, E>(before, now, class, step, None, way)
 }
 
 /// The same over a run of points, with what the points between cost.
-pub(super) fn advance_over(
-    before: &StateGrid,
-    now: &mut StateGrid,
+pub(super) fn advance_over<E: LaneNumber>(
+    before: &StateGrid<E>,
+    now: &mut StateGrid<E>,
     class: PostureClass,
     step: &Step,
-    between: Between<'_>,
+    between: Between<'_, E>,
     way: &mut [i16],
 ) -> bool {
-    advance_by::<Right>(before, now, class, step, Some(between), way)
+    advance_by::<Right, E>(before, now, class, step, Some(between), way)
 }
 
 #[inline]
-fn advance_by<R: Rules>(
-    before: &StateGrid,
-    now: &mut StateGrid,
+fn advance_by<R: Rules, E: LaneNumber>(
+    before: &StateGrid<E>,
+    now: &mut StateGrid<E>,
     class: PostureClass,
     step: &Step,
-    between: Option<Between<'_>>,
+    between: Option<Between<'_, E>>,
     way: &mut [i16],
 ) -> bool {
-    step.instructions.run(Advance::<R> { before, now, class, step, between, way, rules: PhantomData })
+    step.instructions.run(Advance::<R, E> { before, now, class, step, between, way, rules: PhantomData })
 }
 
 /// The rules of a step; the tests break them one by one, to see that each breach is noticed.
@@ -166,38 +184,39 @@ struct Right;
 
 impl Rules for Right {}
 
-struct Advance<'s, R> {
-    before: &'s StateGrid,
-    now: &'s mut StateGrid,
+struct Advance<'s, R, E> {
+    before: &'s StateGrid<E>,
+    now: &'s mut StateGrid<E>,
     class: PostureClass,
     step: &'s Step,
-    between: Option<Between<'s>>,
+    between: Option<Between<'s, E>>,
     way: &'s mut [i16],
     rules: PhantomData<R>,
 }
 
-impl<R: Rules> WithSimd for Advance<'_, R> {
+impl<R: Rules, E: LaneNumber> WithSimd for Advance<'_, R, E> {
+    type Number = E;
     type Output = bool;
 
     #[inline(always)]
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd<Number = E>>(self, simd: S) -> bool {
         let Self { before, now, class, step, between, way, .. } = self;
         let (count, pad) = (now.count(), now.pad());
         let lanes = Lanes::<S>::COUNT;
         let infinity = Lanes::splat(simd, f64::INFINITY);
-        let numbers = Lanes::load(simd, &NUMBERS, 0);
+        let numbers = Lanes::load(simd, &NUMBERS.map(E::of), 0);
         let sign = if R::SIGNED { step.sense.sign() } else { 1.0 };
         let BetaChange { min, max } = step.change;
         let change = BetaChange { min: min - R::WIDER, max: max + R::WIDER };
         if change.is_none() {
-            now.scores_mut(class).fill(f64::INFINITY);
+            now.scores_mut(class).fill(E::of(f64::INFINITY));
             return false;
         }
-        let band = Band::<R>::new(before.scores(class), change, between);
+        let band = Band::<R, E>::new(before.scores(class), change, between);
         let stride = band.costs.len();
         let (scores, now_joints) = now.scores_and_joints(class);
-        let joints = Joints::<R>::new(before.all_joints(class), now_joints, stride, step);
+        let joints = Joints::<R, E>::new(before.all_joints(class), now_joints, stride, step);
         let mut reached = false;
         for (start, way) in (0..count).step_by(lanes).zip(way.chunks_mut(lanes)) {
             let here = pad + start;
@@ -238,23 +257,23 @@ impl<R: Rules> WithSimd for Advance<'_, R> {
     }
 }
 
-const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0];
+const NUMBERS: [f64; MAX_LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// The costs of the point before, and how far to look.
-struct Band<'s, R> {
-    costs: &'s [f64],
+struct Band<'s, R, E> {
+    costs: &'s [E],
     change: BetaChange,
     /// The shift in the middle, how many there are to either side of it, and whether there is one more below.
     middle: isize,
     half: usize,
     is_even: bool,
-    between: Option<Between<'s>>,
+    between: Option<Between<'s, E>>,
     rules: PhantomData<R>,
 }
 
-impl<'s, R: Rules> Band<'s, R> {
+impl<'s, R: Rules, E: LaneNumber> Band<'s, R, E> {
     #[inline(always)]
-    fn new(costs: &'s [f64], change: BetaChange, between: Option<Between<'s>>) -> Self {
+    fn new(costs: &'s [E], change: BetaChange, between: Option<Between<'s, E>>) -> Self {
         Self {
             costs,
             change,
@@ -268,7 +287,7 @@ impl<'s, R: Rules> Band<'s, R> {
 
     /// The costs of neighbouring states from `here` up to the points between, by the predecessors beside them.
     #[inline(always)]
-    fn cost<S: Simd>(&self, simd: S, here: usize, shift: isize) -> Lanes<S> {
+    fn cost<S: Simd<Number = E>>(&self, simd: S, here: usize, shift: isize) -> Lanes<S> {
         let cost = Lanes::load(simd, self.costs, here.wrapping_add_signed(shift));
         match &self.between {
             None => cost,
@@ -279,7 +298,7 @@ impl<'s, R: Rules> Band<'s, R> {
     /// For neighbouring states from `here` the smallest cost of a predecessor, joint steps not checked, and the shift
     /// to it. Small shifts come first, so that of equal predecessors the nearest is taken.
     #[inline(always)]
-    fn cheapest<S: Simd>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
+    fn cheapest<S: Simd<Number = E>>(&self, simd: S, here: usize) -> (Lanes<S>, Lanes<S>) {
         let middle = self.middle;
         let mut best = self.cost(simd, here, middle);
         let mut from = Lanes::splat(simd, middle as f64);
@@ -306,7 +325,12 @@ impl<'s, R: Rules> Band<'s, R> {
 
     /// The same among predecessors that are within every joint's step.
     #[inline(always)]
-    fn cheapest_within<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>) -> (Lanes<S>, Lanes<S>) {
+    fn cheapest_within<S: Simd<Number = E>>(
+        &self,
+        simd: S,
+        here: usize,
+        joints: &Joints<'_, R, E>,
+    ) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::splat(simd, f64::INFINITY);
         let mut from = Lanes::splat(simd, 0.0);
         for shift in self.change.shifts() {
@@ -323,10 +347,16 @@ impl<'s, R: Rules> Band<'s, R> {
     }
 }
 
-impl<R: Rules> Band<'_, R> {
+impl<R: Rules, E: LaneNumber> Band<'_, R, E> {
     /// The same with the joint travel from each predecessor.
     #[inline(always)]
-    fn calmest<S: Simd>(&self, simd: S, here: usize, joints: &Joints<'_, R>, travel: f64) -> (Lanes<S>, Lanes<S>) {
+    fn calmest<S: Simd<Number = E>>(
+        &self,
+        simd: S,
+        here: usize,
+        joints: &Joints<'_, R, E>,
+        travel: f64,
+    ) -> (Lanes<S>, Lanes<S>) {
         let mut best = Lanes::splat(simd, f64::INFINITY);
         let mut from = Lanes::splat(simd, 0.0);
         let angles = joints.angles(simd, here);
@@ -350,12 +380,12 @@ impl<R: Rules> Band<'_, R> {
 }
 
 /// Joint angles at the point before and at this one, and how far each joint may step.
-struct Joints<'s, R> {
+struct Joints<'s, R, E> {
     /// See [`StateGrid::all_joints`].
-    old: &'s [f64],
-    new: &'s [f64],
-    old_angles: &'s [f64],
-    new_angles: &'s [f64],
+    old: &'s [E],
+    new: &'s [E],
+    old_angles: &'s [E],
+    new_angles: &'s [E],
     stride: usize,
     limits: [JointStep; 6],
     fold: Option<f64>,
@@ -364,9 +394,9 @@ struct Joints<'s, R> {
     rules: PhantomData<R>,
 }
 
-impl<'s, R: Rules> Joints<'s, R> {
+impl<'s, R: Rules, E: LaneNumber> Joints<'s, R, E> {
     #[inline(always)]
-    fn new(before: [&'s [f64]; 2], now: [&'s [f64]; 2], stride: usize, step: &Step) -> Self {
+    fn new(before: [&'s [E]; 2], now: [&'s [E]; 2], stride: usize, step: &Step) -> Self {
         let ([old, old_angles], [new, new_angles]) = (before, now);
         let joints = &step.joints;
         let (mut limits, mut chords, mut are_all) = (*joints, [0.0; 6], true);
@@ -384,7 +414,7 @@ impl<'s, R: Rules> Joints<'s, R> {
 
     /// Which of the `requested` states from `here` are too far for some joint from the predecessors `from` beside them.
     #[inline(always)]
-    fn too_far<S: Simd>(&self, simd: S, here: usize, requested: Mask<S>, from: Lanes<S>) -> Mask<S> {
+    fn too_far<S: Simd<Number = E>>(&self, simd: S, here: usize, requested: Mask<S>, from: Lanes<S>) -> Mask<S> {
         // Neighbours mostly come by the same shift: all that do are checked at once.
         let shifts = from.to_whole();
         let (mut open, mut far) = (requested, Mask::splat(simd, false));
@@ -402,13 +432,13 @@ impl<'s, R: Rules> Joints<'s, R> {
 
     /// The joint angles of the states from `here`. rad
     #[inline(always)]
-    fn angles<S: Simd>(&self, simd: S, here: usize) -> [Lanes<S>; 6] {
+    fn angles<S: Simd<Number = E>>(&self, simd: S, here: usize) -> [Lanes<S>; 6] {
         std::array::from_fn(|j| Lanes::load(simd, self.new_angles, j * self.stride + here))
     }
 
     /// The joint travel to states of these angles from those from `there`. rad
     #[inline(always)]
-    fn distance<S: Simd>(&self, simd: S, angles: &[Lanes<S>; 6], there: usize) -> Lanes<S> {
+    fn distance<S: Simd<Number = E>>(&self, simd: S, angles: &[Lanes<S>; 6], there: usize) -> Lanes<S> {
         let turn = Lanes::splat(simd, TAU);
         let travels = angles.iter().enumerate().map(|(j, angle)| {
             let turned = (*angle - Lanes::load(simd, self.old_angles, j * self.stride + there)).abs();
@@ -419,7 +449,7 @@ impl<'s, R: Rules> Joints<'s, R> {
 
     /// Which of the states from `here` are within every joint's step of those from `there`.
     #[inline(always)]
-    fn within<S: Simd>(&self, simd: S, here: usize, there: usize) -> Mask<S> {
+    fn within<S: Simd<Number = E>>(&self, simd: S, here: usize, there: usize) -> Mask<S> {
         let stride = self.stride;
         let rows = self.old.chunks_exact(2 * stride).zip(self.new.chunks_exact(2 * stride));
         let mut within = Mask::splat(simd, true);

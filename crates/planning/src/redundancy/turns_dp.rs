@@ -21,6 +21,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::{PostureClass, Robot, turns};
+use stead_numerics::simd::LaneNumber;
 use stead_problem::constraints::STEP_ROUNDING;
 use stead_problem::evaluate::batch::StateGrid;
 
@@ -119,9 +120,9 @@ impl Ways {
 
 impl Layer {
     /// Fills in what is allowed of a posture class in the states requested, without costs.
-    fn fill(
+    fn fill<E: LaneNumber>(
         &mut self,
-        states: &StateGrid,
+        states: &StateGrid<E>,
         is_requested: impl Fn(usize) -> bool,
         class: PostureClass,
         flips: [bool; 2],
@@ -133,12 +134,12 @@ impl Layer {
         let (scores, pad) = (states.inner_scores(class), states.pad());
         for beta in 0..states.count() {
             self.ways.starts.push(self.numbers.len() as u32);
-            if !scores[beta].is_finite() || !is_requested(beta) {
+            if !scores[beta].get().is_finite() || !is_requested(beta) {
                 continue;
             }
             for j in 0..6 {
                 let [sines, cosines] = states.directions(class, j);
-                self.angles[beta][j] = libm::atan2(sines[pad + beta], cosines[pad + beta]);
+                self.angles[beta][j] = libm::atan2(sines[pad + beta].get(), cosines[pad + beta].get());
             }
             numbering.allowed(&self.angles[beta], flips, &mut self.numbers);
         }
@@ -184,16 +185,16 @@ struct Search<'s> {
 }
 
 /// The knots of a pass as stages, from the last to the first.
-struct Backward<'s> {
+struct Backward<'s, E> {
     search: &'s Search<'s>,
-    workspace: &'s mut Workspace,
+    workspace: &'s mut Workspace<E>,
     /// Room for the layer that comes next.
     spare: Layer,
     /// The number of the last knot.
     last: usize,
 }
 
-impl Stages for Backward<'_> {
+impl<E: LaneNumber> Stages for Backward<'_, E> {
     type Layer = Layer;
     type Links = Ways;
 
@@ -221,13 +222,13 @@ impl Stages for Backward<'_> {
 impl SegmentPlanner<'_> {
     /// The cheapest path of a posture class in the flips requested, with every joint inside its limits at the knots of
     /// a pass, which has just been made and found one of this cost without regard to flips and turns.
-    pub(super) fn path_with_turns(
+    pub(super) fn path_with_turns<E: LaneNumber>(
         &self,
         pass: Pass<'_>,
         class: PostureClass,
         flips: [bool; 2],
         cost: f64,
-        workspace: &mut Workspace,
+        workspace: &mut Workspace<E>,
     ) -> Option<TurnsPath> {
         let numbering = Numbering::new(&self.problem.robot);
         let nodes = self.grid.beta_count * numbering.most();
@@ -235,17 +236,18 @@ impl SegmentPlanner<'_> {
         let block = (MAX_NODES / nodes).max(knots.isqrt()).max(1);
         let mut search = Search { planner: self, pass, class, flips, numbering, most: f64::INFINITY };
         let is_bounded = workspace.record.reached(0, class).is_some();
+        let rounding = SUM_ROUNDING.max(64.0 * E::EPSILON);
         MARGINS.into_iter().filter(|margin| is_bounded || margin.is_infinite()).find_map(|margin| {
             let above = if margin.is_finite() { margin * cost.abs() } else { f64::INFINITY };
             search.most = cost + above;
-            search.path(block, workspace).filter(|found| found.cost <= search.most - SUM_ROUNDING * found.cost.abs())
+            search.path(block, workspace).filter(|found| found.cost <= search.most - rounding * found.cost.abs())
         })
     }
 }
 
 impl Search<'_> {
     /// The path, with the links of so many knots kept at a time.
-    fn path(&self, block: usize, workspace: &mut Workspace) -> Option<TurnsPath> {
+    fn path<E: LaneNumber>(&self, block: usize, workspace: &mut Workspace<E>) -> Option<TurnsPath> {
         let (planner, pass) = (self.planner, self.pass);
         let knots = planner.knot_count(pass);
         let mut betas = vec![0; pass.span.len()];
@@ -257,7 +259,7 @@ impl Search<'_> {
     }
 
     /// Evaluates a path point in the posture class alone.
-    fn evaluate(&self, point: usize, workspace: &mut Workspace) {
+    fn evaluate<E: LaneNumber>(&self, point: usize, workspace: &mut Workspace<E>) {
         let requested = PostureClass::ALL.map(|class| class == self.class);
         self.planner.evaluate(self.pass, point, requested, workspace);
     }
@@ -268,29 +270,37 @@ impl Search<'_> {
 
     /// Fills the layer of a knot that has just been evaluated with the nodes from which the start may be reached, where
     /// what follows costs `rest` at the least.
-    fn fill(&self, layer: &mut Layer, knot: usize, rest: Option<f64>, workspace: &Workspace) {
+    fn fill<E: LaneNumber>(&self, layer: &mut Layer, knot: usize, rest: Option<f64>, workspace: &Workspace<E>) {
         let reached = workspace.record.reached(knot, self.class);
         let is_requested = |beta: usize| {
-            reached.is_none_or(|costs| rest.map_or(costs[beta], |rest| self.join(costs[beta], rest)) <= self.most)
+            reached.is_none_or(|costs| {
+                rest.map_or(costs[beta].get(), |rest| self.join(costs[beta].get(), rest)) <= self.most
+            })
         };
         layer.fill(&workspace.now, is_requested, self.class, self.flips, &self.numbering);
     }
 
     /// The layer of the last point, where it has states.
-    fn last(&self, workspace: &mut Workspace) -> Option<Layer> {
+    fn last<E: LaneNumber>(&self, workspace: &mut Workspace<E>) -> Option<Layer> {
         let knot = self.planner.knot_count(self.pass) - 1;
         self.evaluate(self.planner.knot(self.pass, knot), workspace);
         let mut layer = Layer::default();
         self.fill(&mut layer, knot, None, workspace);
         let scores = workspace.now.inner_scores(self.class);
         for (beta, score) in scores.iter().enumerate() {
-            layer.costs[layer.ways.of(beta)].fill(score * self.pass.sense.sign());
+            layer.costs[layer.ways.of(beta)].fill(score.get() * self.pass.sense.sign());
         }
         Some(layer).filter(|layer| layer.least().is_finite())
     }
 
     /// Goes back to a knot from the next one, where some of its states go on; `before` is room for its layer.
-    fn go_back(&self, layer: &mut Layer, before: &mut Layer, number: usize, workspace: &mut Workspace) -> Option<()> {
+    fn go_back<E: LaneNumber>(
+        &self,
+        layer: &mut Layer,
+        before: &mut Layer,
+        number: usize,
+        workspace: &mut Workspace<E>,
+    ) -> Option<()> {
         let (planner, pass) = (self.planner, self.pass);
         let [point, next] = [number, number + 1].map(|number| planner.knot(pass, number));
         for between in point + 1..next {
@@ -309,7 +319,14 @@ impl Search<'_> {
 
     /// Gives each node its cheapest successor. Of equal ones the nearest in beta is taken.
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
-    fn connect(&self, layer: &mut Layer, after: &Layer, number: usize, knot: Knot, workspace: &Workspace) {
+    fn connect<E: LaneNumber>(
+        &self,
+        layer: &mut Layer,
+        after: &Layer,
+        number: usize,
+        knot: Knot,
+        workspace: &Workspace<E>,
+    ) {
         let (planner, sign) = (self.planner, self.pass.sense.sign());
         let count = planner.grid.beta_count;
         let next = planner.knot(self.pass, number + 1);
@@ -326,19 +343,17 @@ impl Search<'_> {
             if own.is_empty() {
                 continue;
             }
-            let numbers = &layer.numbers[own.clone()];
-            let (costs, to) = (&mut layer.costs[own.clone()], &mut layer.ways.to[own]);
+            let (numbers, costs) = (&layer.numbers[own.clone()], &mut layer.costs[own.clone()]);
+            let to = &mut layer.ways.to[own];
             // The largest of its nodes' costs so far: what costs as much or more is not looked at.
             let mut most = f64::INFINITY;
             for shift in knot.change.shifts() {
                 let later = (beta as isize - shift).rem_euclid(count as isize) as usize;
-                let cost_between = between.map(|between| between.row(shift)[pad + later]);
+                let cost_between = between.map(|between| between.row(shift)[pad + later].get());
                 let join = |rest: f64| cost_between.map_or(rest, |between| self.join(between, rest));
                 let is_open = cheapest[later].is_finite() && cost_between.is_none_or(f64::is_finite);
-                if !is_open || join(cheapest[later]) >= most {
-                    continue;
-                }
-                if reached.is_some_and(|reached| self.join(reached[beta], join(cheapest[later])) > self.most) {
+                let is_too_dear = |costs: &[E]| self.join(costs[beta].get(), join(cheapest[later])) > self.most;
+                if !is_open || join(cheapest[later]) >= most || reached.is_some_and(is_too_dear) {
                     continue;
                 }
                 let Some((turns, distance)) =
@@ -358,7 +373,7 @@ impl Search<'_> {
                 same_numbers(numbers, known_numbers, self.numbering.rise(&turns), take);
                 most = costs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             }
-            let score = scores[beta] * sign;
+            let score = scores[beta].get() * sign;
             for cost in costs.iter_mut().filter(|cost| cost.is_finite()) {
                 *cost = self.join(score, *cost);
             }

@@ -7,8 +7,7 @@
 //! `|d|^2 + lambda r^2 + b . (lambda I - B)^-1 b` is not below it.
 
 use nalgebra::{Matrix3, Vector3};
-use pulp::Simd;
-use stead_numerics::simd::{Lanes, Mask};
+use stead_numerics::simd::{LaneNumber, Lanes, Mask, Simd};
 
 /// The error of the force, of size `size` (N), under which the parts `parts` (m) of a deflection along the scored
 /// directions become largest together, where they change by `gain` (m/N, a row for each direction) times the error.
@@ -130,7 +129,9 @@ pub(crate) fn worst_gains<S: Simd>(simd: S, curvature: [Lanes<S>; 6], slope: [La
     let length2 = dot(b, b);
     let has_slope = zero.less(length2);
     let along = has_slope.select(dot(b, times(curvature, b)) / has_slope.select(length2, one), zero);
-    let mut multiplier = (largest_eigenvalues(simd, curvature) + NEAREST).max(length2.sqrt() + along);
+    // No nearer than numbers of this kind tell.
+    let [nearest, last_step] = [NEAREST, LAST_STEP].map(|least| least.max(32.0 * S::Number::EPSILON));
+    let mut multiplier = (largest_eigenvalues(simd, curvature) + nearest).max(length2.sqrt() + along);
     let mut open = Mask::splat(simd, true);
     for _ in 0..MAX_STEPS {
         let (adjugate, inverse) = shifted(curvature, multiplier);
@@ -139,7 +140,7 @@ pub(crate) fn worst_gains<S: Simd>(simd: S, curvature: [Lanes<S>; 6], slope: [La
         let slope = dot(error, times(adjugate, error)) * inverse;
         let step = (size2.sqrt() - 1.0) * size2 / slope;
         // Of steps that are no number none is taken; at the floor the error can be too short at once.
-        open = open & (multiplier * LAST_STEP).less(step);
+        open = open & (multiplier * last_step).less(step);
         if !open.any() {
             break;
         }

@@ -17,10 +17,9 @@ mod tests;
 pub use limit::{Limit, Limits};
 
 use super::surface::{LANES, Node, Passes, Predecessor, Rays, Stock, ToothQuery, Trail, starts};
-use pulp::{Simd, WithSimd};
 use std::f64::consts::TAU;
 use stead_model::cutting::{Coefficients, CutError, Cutter, PassCut};
-use stead_numerics::simd::{Instructions, Lanes};
+use stead_numerics::simd::{Instructions, Lanes, Simd, WithSimd};
 
 /// Turns in a stretch of the trail.
 const STRETCH: usize = 6;
@@ -57,10 +56,11 @@ struct Moment<'a> {
 }
 
 impl WithSimd for Moment<'_> {
+    type Number = f64;
     type Output = Chips;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Chips {
+    fn with_simd<S: Simd<Number = f64>>(self, simd: S) -> Chips {
         self.removal.chips(simd, self.time, self.centre)
     }
 }
@@ -158,7 +158,7 @@ impl MaterialRemoval {
     /// The chips of all teeth: the same to the last bit with any instructions of the processor, since nothing is fused
     /// or reordered.
     #[inline(always)]
-    fn chips<S: Simd>(&mut self, simd: S, time: f64, centre: [f64; 2]) -> Chips {
+    fn chips<S: Simd<Number = f64>>(&mut self, simd: S, time: f64, centre: [f64; 2]) -> Chips {
         let mut chips = Chips::default();
         let ledge = self.ledge();
         let last = self.lags.len() - 1;
@@ -268,7 +268,7 @@ impl Edge {
 
 impl Chips {
     #[inline(always)]
-    fn add<S: Simd>(&mut self, simd: S, rays: &Rays) {
+    fn add<S: Simd<Number = f64>>(&mut self, simd: S, rays: &Rays) {
         for start in starts::<S>() {
             let chip = Lanes::load(simd, &rays.to, start) - Lanes::load(simd, &rays.from, start);
             let chip = chip.max(chip.all(0.0));
@@ -281,6 +281,6 @@ impl Chips {
 }
 
 #[inline(always)]
-fn add<S: Simd>(simd: S, parts: Lanes<S>, sums: &mut [f64; LANES], start: usize) {
+fn add<S: Simd<Number = f64>>(simd: S, parts: Lanes<S>, sums: &mut [f64; LANES], start: usize) {
     (Lanes::load(simd, sums, start) + parts).store(sums, start);
 }

@@ -2,8 +2,7 @@
 
 use super::rays::{LANES, Rays, starts};
 use super::trail::{Extent, Extents, Node, Trail};
-use pulp::Simd;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// A tooth that passed before the present one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +83,7 @@ impl Passes {
     /// Moves the beginning of each ray to where earlier teeth have cleared it: as far as need be, to the end of the ray
     /// at most. m
     #[inline(always)]
-    pub fn clear<S: Simd>(&mut self, simd: S, query: &ToothQuery<'_>, rays: &mut Rays) {
+    pub fn clear<S: Simd<Number = f64>>(&mut self, simd: S, query: &ToothQuery<'_>, rays: &mut Rays) {
         let mut index = 0;
         while let Some(met) = self.get(query, index) {
             let centres = centres(simd, query, &met, rays);
@@ -111,7 +110,7 @@ const STRAY: f64 = 2e-5;
 /// `(c(t') - c) x e + R' sin(delta) = 0`. One step of Newton's method finds that, since the centre moves much slower
 /// than the edge, unless it is swift or just now on the turn.
 #[inline(always)]
-fn centres<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, rays: &Rays) -> [[f64; LANES]; 2] {
+fn centres<S: Simd<Number = f64>>(simd: S, query: &ToothQuery<'_>, met: &Met, rays: &Rays) -> [[f64; LANES]; 2] {
     let [vx, vy] = met.centre.motion.map(|motion| motion * query.steps_per_radian / met.radius);
     let [x, y] = met.centre.place;
     let first = times(simd, query, met, rays, &[[x; LANES], [y; LANES]], [vx, vy]);
@@ -142,7 +141,7 @@ fn centres<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, rays: &Rays) -> 
 /// the radius for each radian that the tooth turned: `1 / (1 + v)` as `1 - v + v^2`, and the series of the arcsine,
 /// since the centre comes less far than a radius between passes.
 #[inline(always)]
-fn times<S: Simd>(
+fn times<S: Simd<Number = f64>>(
     simd: S,
     query: &ToothQuery<'_>,
     met: &Met,
@@ -168,7 +167,12 @@ fn times<S: Simd>(
 
 /// Where the centre was at times after that of an earlier tooth: x and y. m
 #[inline(always)]
-fn places<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, times: &[f64; LANES]) -> [[f64; LANES]; 2] {
+fn places<S: Simd<Number = f64>>(
+    simd: S,
+    query: &ToothQuery<'_>,
+    met: &Met,
+    times: &[f64; LANES],
+) -> [[f64; LANES]; 2] {
     let [mut xs, mut ys] = [[0.0; LANES]; 2];
     let [first, last] = [times[0], times[LANES - 1]];
     let middle = (first + last) / 2.0;
@@ -196,7 +200,13 @@ fn places<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, times: &[f64; LAN
 
 /// Moves the beginning of each ray to the arc of an earlier tooth, where that is farther.
 #[inline(always)]
-fn advance<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, centres: &[[f64; LANES]; 2], rays: &mut Rays) {
+fn advance<S: Simd<Number = f64>>(
+    simd: S,
+    query: &ToothQuery<'_>,
+    met: &Met,
+    centres: &[[f64; LANES]; 2],
+    rays: &mut Rays,
+) {
     let ([xs, ys], square) = (centres, met.radius * met.radius);
     for start in starts::<S>() {
         let (sine, cosine) = (Lanes::load(simd, &rays.sine, start), Lanes::load(simd, &rays.cosine, start));
@@ -217,7 +227,7 @@ fn advance<S: Simd>(simd: S, query: &ToothQuery<'_>, met: &Met, centres: &[[f64;
 /// by a centre farther back, unless that is as near as they come. A ray far astern is only known to be no further
 /// cleared than any edge came down.
 #[inline(always)]
-fn may_reach<S: Simd>(simd: S, older: &Extent, query: &ToothQuery<'_>, rays: &Rays) -> bool {
+fn may_reach<S: Simd<Number = f64>>(simd: S, older: &Extent, query: &ToothQuery<'_>, rays: &Rays) -> bool {
     let ([x, y], radius) = (query.centre, query.largest);
     let behind = x - older.front;
     if behind > 2.0 * radius {

@@ -1,14 +1,13 @@
 //! Rays from the tool centre, several at once, and the part of them that lies in the block.
 
-use pulp::Simd;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// Rays in one bundle: the same for every processor, so that what is decided for a bundle does not depend on it.
 pub const LANES: usize = 8;
 
 /// Where in a bundle each of the processor's vectors starts.
 #[inline(always)]
-pub(crate) fn starts<S: Simd>() -> impl Iterator<Item = usize> {
+pub(crate) fn starts<S: Simd<Number = f64>>() -> impl Iterator<Item = usize> {
     (0..LANES).step_by(Lanes::<S>::COUNT)
 }
 
@@ -38,7 +37,7 @@ pub struct Rays {
 impl Rays {
     /// Rays that lag behind a first one, given by its sine and cosine.
     #[inline(always)]
-    pub fn lagging<S: Simd>(simd: S, first: [f64; 2], lags: &[[f64; LANES]; 2]) -> Self {
+    pub fn lagging<S: Simd<Number = f64>>(simd: S, first: [f64; 2], lags: &[[f64; LANES]; 2]) -> Self {
         let [sine, cosine] = first;
         let zero = [0.0; LANES];
         let mut rays = Self { sine: zero, cosine: zero, from: zero, to: zero };
@@ -53,7 +52,14 @@ impl Rays {
     /// Limits the rays to the block, from a centre to a radius (m). `ledge` is a height above which nothing is left
     /// behind the centre (m). Whether there is anything left to cut.
     #[inline(always)]
-    pub fn enter<S: Simd>(&mut self, simd: S, stock: &Stock, centre: [f64; 2], radius: f64, ledge: f64) -> bool {
+    pub fn enter<S: Simd<Number = f64>>(
+        &mut self,
+        simd: S,
+        stock: &Stock,
+        centre: [f64; 2],
+        radius: f64,
+        ledge: f64,
+    ) -> bool {
         let ([x, y], zero) = (centre, Lanes::splat(simd, 0.0));
         let mut any = false;
         for start in starts::<S>() {
@@ -79,7 +85,7 @@ impl Rays {
 
 /// Leaves of spans (from and to) what has `inside + distance slope >= 0`.
 #[inline(always)]
-fn limit<S: Simd>(span: &mut [Lanes<S>; 2], inside: f64, slope: Lanes<S>, radius: f64) {
+fn limit<S: Simd<Number = f64>>(span: &mut [Lanes<S>; 2], inside: f64, slope: Lanes<S>, radius: f64) {
     let zero = slope.all(0.0);
     let end = slope * radius + inside;
     if inside < 0.0 {

@@ -127,7 +127,7 @@ impl Case {
         let before = self.states(0, wrap_around);
         let mut now = self.states(1, wrap_around);
         let mut way = vec![0; self.count];
-        let reached = advance_by::<R>(&before, &mut now, CLASS, &step, None, &mut way);
+        let reached = advance_by::<R, f64>(&before, &mut now, CLASS, &step, None, &mut way);
         let expected: Vec<f64> = (0..self.count).map(|here| self.expected(here)).collect();
         if reached != expected.iter().any(|cost| cost.is_finite()) {
             return Some(format!("reached: {reached}"));
@@ -270,10 +270,11 @@ fn every_breach_of_the_rules_is_noticed() {
 struct OneStep(JointStep, f64, f64);
 
 impl WithSimd for OneStep {
+    type Number = f64;
     type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd<Number = f64>>(self, simd: S) -> bool {
         let direction = |angle: f64| {
             let (sine, cosine) = libm::sincos(angle);
             [Lanes::splat(simd, sine), Lanes::splat(simd, cosine)]

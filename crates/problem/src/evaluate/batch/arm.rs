@@ -1,8 +1,8 @@
 //! The first half of the batch evaluator: joints 1 to 3, which bring the wrist centre to its place.
 
-use super::{BatchEvaluator, PointGeometry};
-use pulp::Simd;
-use stead_numerics::simd::{Lanes, Mask};
+use super::limit::Limit;
+use super::{BatchEvaluator, Constants};
+use stead_numerics::simd::{Lanes, Mask, Simd};
 
 /// Wrist centres of neighbouring values of beta.
 #[derive(Clone, Copy)]
@@ -46,14 +46,15 @@ impl BatchEvaluator<'_> {
     pub(super) fn centre<S: Simd>(
         &self,
         simd: S,
-        geometry: &PointGeometry,
+        constants: &Constants<'_, S::Number>,
         cosine: Lanes<S>,
         sine: Lanes<S>,
     ) -> Centre<S> {
         let g = self.problem.robot.geometry();
-        let x = Lanes::splat(simd, geometry.tip.x) - geometry.lever.at(0, cosine, sine);
-        let y = Lanes::splat(simd, geometry.tip.y) - geometry.lever.at(1, cosine, sine);
-        let z = Lanes::splat(simd, geometry.tip.z) - geometry.lever.at(2, cosine, sine);
+        let Constants { tip, flange: [.., lever], .. } = constants;
+        let x = cosine.all_of(tip[0]) - lever.at(0, cosine, sine);
+        let y = cosine.all_of(tip[1]) - lever.at(1, cosine, sine);
+        let z = cosine.all_of(tip[2]) - lever.at(2, cosine, sine);
         let radius2 = x * x + y * y;
         let forward2 = radius2 - g.lateral * g.lateral;
         Centre {
@@ -67,7 +68,13 @@ impl BatchEvaluator<'_> {
 
     /// The first three joints, wrist centre in front (or back) of joint 1, both elbows.
     #[inline(always)]
-    pub(super) fn arm<S: Simd>(&self, simd: S, centre: &Centre<S>, back: bool) -> Arm<S> {
+    pub(super) fn arm<S: Simd>(
+        &self,
+        simd: S,
+        limits: &[Limit<S::Number>; 6],
+        centre: &Centre<S>,
+        back: bool,
+    ) -> Arm<S> {
         let g = self.problem.robot.geometry();
         let sign = if back { -1.0 } else { 1.0 };
         let product = 1.0 / (2.0 * g.upper_arm * g.forearm);
@@ -89,15 +96,14 @@ impl BatchEvaluator<'_> {
         let sin1 = (centre.y * forward - centre.x * g.lateral) * centre.inverse_radius2;
         let cos1 = (centre.x * forward + centre.y * g.lateral) * centre.inverse_radius2;
         // Out of reach the sine is NaN, and so is everything made of it.
-        let exists = sine.at_most(one) & self.limits[0].allows(simd, [sin1, cos1]);
+        let exists = sine.at_most(one) & limits[0].allows(simd, [sin1, cos1]);
         let none = Elbow { sin2: sine, cos2: sine, third: [sine; 2], allowed: exists };
         let mut elbows = [none; 2];
         for (elbow, e) in elbows.iter_mut().zip([1.0, -1.0]) {
             let sine2 = v_along - u_across * e;
             let cosine2 = u_along + v_across * e;
             let third = [sine * (e * cos_bar) - cosine * sin_bar, cosine * cos_bar + sine * (e * sin_bar)];
-            let mut allowed =
-                exists & self.limits[1].allows(simd, [sine2, cosine2]) & self.limits[2].allows(simd, third);
+            let mut allowed = exists & limits[1].allows(simd, [sine2, cosine2]) & limits[2].allows(simd, third);
             if let Some(sum) = &self.sum {
                 allowed = allowed & sum.allows([sine2, cosine2], third);
             }

@@ -2,9 +2,8 @@
 //! [`State::margin`](super::super::evaluate::reference::State), several states at a time.
 
 use super::limit::Limit;
-use pulp::Simd;
 use stead_model::robot::{Compensator, Compliance, Parameter, Robot, Uncertainty};
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// The uncertainty of an arm's compliances, ready for lanes.
 #[derive(Debug, Clone)]

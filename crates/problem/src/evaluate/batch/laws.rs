@@ -1,9 +1,8 @@
 //! Joint compliances in lanes: the same as [`Robot::compliances_at`], several states at a time.
 
 use super::limit::Limit;
-use pulp::Simd;
 use stead_model::robot::{Compensator, Compliance, Robot};
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// The compliance laws of an arm, ready for lanes.
 #[derive(Debug, Clone)]

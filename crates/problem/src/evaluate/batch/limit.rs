@@ -1,18 +1,17 @@
 //! One joint's limits, ready for lanes.
 
-use pulp::Simd;
 use std::f64::consts::{PI, TAU};
 use stead_model::robot::{Robot, angles::ANGLE_ROUNDING, turns::Range};
-use stead_numerics::simd::{Lanes, Mask};
+use stead_numerics::simd::{LaneNumber, Lanes, Mask, Simd};
 
 /// One joint's limits, ready for lanes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Limit {
+pub(super) struct Limit<E = f64> {
     min: f64,
     max: f64,
     has_turns: bool,
     /// Sine and cosine of both limits.
-    ends: [(f64, f64); 2],
+    ends: [(E, E); 2],
 }
 
 impl Limit {
@@ -21,19 +20,30 @@ impl Limit {
         Self { min, max, has_turns: range.has_turns(), ends: [libm::sincos(min), libm::sincos(max)] }
     }
 
+    /// The same in numbers of some kind.
+    #[inline(always)]
+    pub fn with<E: LaneNumber>(self) -> Limit<E> {
+        let ends = self.ends.map(|(sine, cosine)| (E::of(sine), E::of(cosine)));
+        Limit { min: self.min, max: self.max, has_turns: self.has_turns, ends }
+    }
+}
+
+impl<E: LaneNumber> Limit<E> {
     /// Where the angle of a vector (sine, cosine), of any length, is allowed: found without the angle.
     #[inline(always)]
-    pub fn allows<S: Simd>(self, simd: S, [sine, cosine]: [Lanes<S>; 2]) -> Mask<S> {
+    pub fn allows<S: Simd<Number = E>>(self, simd: S, [sine, cosine]: [Lanes<S>; 2]) -> Mask<S> {
         if self.has_turns {
             return Mask::splat(simd, true);
         }
         let [(s0, c0), (s1, c1)] = self.ends;
         let zero = Lanes::splat(simd, 0.0);
-        let after_min = zero.at_most(sine * c0 - cosine * s0);
-        let before_max = zero.at_most(cosine * s1 - sine * c1);
+        let after_min = zero.at_most(sine.times(c0) - cosine.times(s0));
+        let before_max = zero.at_most(cosine.times(s1) - sine.times(c1));
         if self.max - self.min <= PI { after_min & before_max } else { after_min | before_max }
     }
+}
 
+impl<E> Limit<E> {
     /// The real angle of a vector (sine, cosine), or any one where the joint has several; rad
     #[inline(always)]
     pub fn angle<S: Simd>(self, direction: [Lanes<S>; 2]) -> Lanes<S> {

@@ -12,6 +12,7 @@
 //! with each.
 
 mod arm;
+mod at;
 mod deviation;
 mod laws;
 mod limit;
@@ -20,6 +21,7 @@ mod states;
 mod whole;
 mod wrist;
 
+pub use at::PlacedPoint;
 pub use states::StateGrid;
 
 use crate::constraints::{ConstraintKind, relaxed};
@@ -29,11 +31,10 @@ use deviation::Deviation;
 use laws::Laws;
 use limit::{Limit, SumLimit};
 use nalgebra::{Matrix3, Vector3};
-use pulp::{Simd, WithSimd};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
 use stead_model::task::PathPoint;
-use stead_numerics::simd::{Instructions, Lanes, MAX_LANES};
+use stead_numerics::simd::{Instructions, LaneNumber, LaneRows, Lanes, MAX_LANES, Simd, WithSimd};
 use whole::{Fixed, FixedParts, Normal, PlacedLoad};
 use wrist::Demand;
 
@@ -50,8 +51,8 @@ struct Set {
 pub struct BatchEvaluator<'a> {
     problem: &'a Problem,
     count: usize,
-    cosine: Vec<f64>,
-    sine: Vec<f64>,
+    cosine: LaneRows,
+    sine: LaneRows,
     limits: [Limit; 6],
     /// The range of the sum of joints 2 and 3, where it says more than theirs.
     sum: Option<SumLimit>,
@@ -105,22 +106,60 @@ impl Flips {
 
 /// A direction or vector of the flange as it turns with beta, in the root frame: `a + b cos(beta) + c sin(beta)`.
 #[derive(Debug, Clone, Copy)]
-struct Turning {
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-    c: Vector3<f64>,
+struct Turning<E = f64> {
+    a: [E; 3],
+    b: [E; 3],
+    c: [E; 3],
 }
 
 impl Turning {
     /// A vector given in the tool frame, on point axes given as columns in the root frame (Caro 2013, eq. 7 and 10).
     fn new(axes: &Matrix3<f64>, v: &Vector3<f64>) -> Self {
         let (x, y, z) = (axes.column(0), axes.column(1), axes.column(2));
-        Self { a: -z * v.z, b: x * v.x - y * v.y, c: x * v.y + y * v.x }
+        Self { a: (-z * v.z).into(), b: (x * v.x - y * v.y).into(), c: (x * v.y + y * v.x).into() }
     }
 
     #[inline(always)]
-    fn at<S: Simd>(&self, k: usize, cosine: Lanes<S>, sine: Lanes<S>) -> Lanes<S> {
-        cosine * self.b[k] + sine * self.c[k] + self.a[k]
+    fn with<E: LaneNumber>(self) -> Turning<E> {
+        Turning { a: self.a.map(E::of), b: self.b.map(E::of), c: self.c.map(E::of) }
+    }
+}
+
+impl<E: LaneNumber> Turning<E> {
+    #[inline(always)]
+    fn at<S: Simd<Number = E>>(&self, k: usize, cosine: Lanes<S>, sine: Lanes<S>) -> Lanes<S> {
+        cosine.times(self.b[k]) + sine.times(self.c[k]) + cosine.all_of(self.a[k])
+    }
+}
+
+/// What the kernel takes of a point and of the arm, in its own numbers, made once for all values of beta.
+struct Constants<'k, E> {
+    tip: [E; 3],
+    /// x6, y6, z6 and the lever of [`PointGeometry`].
+    flange: [Turning<E>; 4],
+    directions: [[E; 3]; 3],
+    force: [E; 3],
+    moment: [E; 3],
+    uncertainty: f64,
+    fixed: &'k FixedParts,
+    limits: [Limit<E>; 6],
+}
+
+impl<'k, E: LaneNumber> Constants<'k, E> {
+    #[inline(always)]
+    fn new(geometry: &'k PointGeometry, limits: &[Limit; 6]) -> Self {
+        let own = |v: &Vector3<f64>| [E::of(v.x), E::of(v.y), E::of(v.z)];
+        let PointGeometry { tip, x6, y6, z6, lever, directions, force, moment, uncertainty, fixed, .. } = geometry;
+        Self {
+            tip: own(tip),
+            flange: [x6.with(), y6.with(), z6.with(), lever.with()],
+            directions: [own(&directions[0]), own(&directions[1]), own(&directions[2])],
+            force: own(force),
+            moment: own(moment),
+            uncertainty: *uncertainty,
+            fixed,
+            limits: limits.map(Limit::with),
+        }
     }
 }
 
@@ -156,8 +195,8 @@ impl<'a> BatchEvaluator<'a> {
         Self {
             problem,
             count,
-            cosine: (0..padded).map(|k| angle(k).1).collect(),
-            sine: (0..padded).map(|k| angle(k).0).collect(),
+            cosine: LaneRows::new((0..padded).map(|k| angle(k).1)),
+            sine: LaneRows::new((0..padded).map(|k| angle(k).0)),
             limits,
             sum: SumLimit::new(&problem.robot),
             sets: problem
@@ -180,6 +219,16 @@ impl<'a> BatchEvaluator<'a> {
         }
     }
 
+    /// The evaluators that a problem needs ([`Flips::of`]).
+    pub fn all(problem: &'a Problem, grid: &Redundancy) -> Vec<Self> {
+        Flips::of(problem).iter().map(|flips| Self::new(problem, grid, *flips)).collect()
+    }
+
+    /// The one of a posture.
+    pub fn of_posture(all: &[Self], posture: Posture) -> Option<&Self> {
+        all.iter().find(|evaluator| evaluator.flips.contains(posture))
+    }
+
     /// The constraints in force that it does not evaluate: all that bind neighbouring points, and the cell. Joint
     /// limits are seen joint by joint, in either flip of the wrist; that of the sum of joints 2 and 3 as it is.
     pub fn relaxed(&self) -> Vec<ConstraintKind> {
@@ -187,6 +236,11 @@ impl<'a> BatchEvaluator<'a> {
         let mut evaluated = vec![Reach, AxesSum, BaseDistance, Conditioning, MaxDeflection];
         evaluated.extend((1..=6).map(JointLimit));
         relaxed(self.problem, &evaluated)
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
     }
 
     /// Which of the two postures of a class are evaluated.
@@ -205,43 +259,55 @@ impl<'a> BatchEvaluator<'a> {
     /// the sines and cosines of their joint angles (theta_5 not negative), all others an infinite score. A state is
     /// allowed when one of the postures requested is inside the limits of every joint by itself; turns, and limits that
     /// tell two postures apart, are checked by the planner.
-    pub fn evaluate(&self, point: usize, placement: &Placement, states: &mut StateGrid) {
+    pub fn evaluate<E: LaneNumber>(&self, point: usize, placement: &Placement, states: &mut StateGrid<E>) {
         self.evaluate_some(point, placement, [true; 4], None, states);
     }
 
     /// The same with states of some posture classes only, by their [`PostureClass::index`], and on request of one
     /// number of beta.
-    pub fn evaluate_some(
+    pub fn evaluate_some<E: LaneNumber>(
         &self,
         point: usize,
         placement: &Placement,
         classes: [bool; 4],
         only_beta: Option<usize>,
-        states: &mut StateGrid,
+        states: &mut StateGrid<E>,
     ) {
-        let geometry = self.point_geometry(point, placement);
+        let placed = self.placed(point, placement);
+        let betas = only_beta.map_or(0..self.count, |only| only..only + 1);
+        self.run(&placed, classes, [&self.sine, &self.cosine].map(E::row), betas, states);
+        if let Some(only) = only_beta {
+            states.keep_beta(only);
+        }
+    }
+
+    /// Evaluates the values of beta with these sines and cosines, and their neighbours in the same lanes.
+    fn run<E: LaneNumber>(
+        &self,
+        placed: &PlacedPoint,
+        classes: [bool; 4],
+        rows: [&[E]; 2],
+        betas: Span<usize>,
+        states: &mut StateGrid<E>,
+    ) {
+        let [sine, cosine] = rows;
         for class in PostureClass::ALL {
             states.clear(class);
         }
-        let min_distance = self.problem.constraints.min_base_distance;
-        if min_distance > 0.0 && libm::hypot(geometry.tip.x, geometry.tip.y) < min_distance {
+        if placed.is_near {
             return;
         }
-        let betas = only_beta.map_or(0..self.count, |only| only..only + 1);
-        let evaluation = Evaluation { evaluator: self, geometry: &geometry, classes, betas, states };
-        let is_single = self.problem.criterion.weights.is_single();
-        match (self.fixed.is_some(), is_single, self.is_plain(point)) {
-            (false, true, true) => self.instructions.run(Variant::<true, false, 1>(evaluation)),
-            (false, true, false) => self.instructions.run(Variant::<false, false, 1>(evaluation)),
-            (false, false, true) => self.instructions.run(Variant::<true, false, 3>(evaluation)),
-            (false, false, false) => self.instructions.run(Variant::<false, false, 3>(evaluation)),
-            (true, true, true) => self.instructions.run(Variant::<true, true, 1>(evaluation)),
-            (true, true, false) => self.instructions.run(Variant::<false, true, 1>(evaluation)),
-            (true, false, true) => self.instructions.run(Variant::<true, true, 3>(evaluation)),
-            (true, false, false) => self.instructions.run(Variant::<false, true, 3>(evaluation)),
-        }
-        if let Some(only) = only_beta {
-            states.keep_beta(only);
+        let evaluation =
+            Evaluation { evaluator: self, geometry: &placed.geometry, classes, sine, cosine, betas, states };
+        match (self.fixed.is_some(), self.problem.criterion.weights.is_single(), placed.is_plain) {
+            (false, true, true) => self.instructions.run(Variant::<E, true, false, 1>(evaluation)),
+            (false, true, false) => self.instructions.run(Variant::<E, false, false, 1>(evaluation)),
+            (false, false, true) => self.instructions.run(Variant::<E, true, false, 3>(evaluation)),
+            (false, false, false) => self.instructions.run(Variant::<E, false, false, 3>(evaluation)),
+            (true, true, true) => self.instructions.run(Variant::<E, true, true, 1>(evaluation)),
+            (true, true, false) => self.instructions.run(Variant::<E, false, true, 1>(evaluation)),
+            (true, false, true) => self.instructions.run(Variant::<E, true, true, 3>(evaluation)),
+            (true, false, false) => self.instructions.run(Variant::<E, false, true, 3>(evaluation)),
         }
     }
 
@@ -294,54 +360,59 @@ impl<'a> BatchEvaluator<'a> {
 }
 
 /// The evaluation of one point, for any instructions of the processor.
-struct Evaluation<'k> {
+struct Evaluation<'k, E> {
     evaluator: &'k BatchEvaluator<'k>,
     geometry: &'k PointGeometry,
     classes: [bool; 4],
+    /// Of all values of beta.
+    sine: &'k [E],
+    cosine: &'k [E],
     /// Numbers of beta; their neighbours in the same lanes are evaluated too.
     betas: Span<usize>,
-    states: &'k mut StateGrid,
+    states: &'k mut StateGrid<E>,
 }
 
 /// The evaluation with `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of
 /// compliances, and scores cover no errors; `WHOLE` where more than the joints about their axes yields. Each is a
 /// function of its own: what one needs costs the others nothing, and without optimisation none needs the stack of all.
-struct Variant<'k, const PLAIN: bool, const WHOLE: bool, const N: usize>(Evaluation<'k>);
+struct Variant<'k, E, const PLAIN: bool, const WHOLE: bool, const N: usize>(Evaluation<'k, E>);
 
-impl<const PLAIN: bool, const WHOLE: bool, const N: usize> WithSimd for Variant<'_, PLAIN, WHOLE, N> {
+impl<E: LaneNumber, const PLAIN: bool, const WHOLE: bool, const N: usize> WithSimd for Variant<'_, E, PLAIN, WHOLE, N> {
+    type Number = E;
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
+    fn with_simd<S: Simd<Number = E>>(self, simd: S) {
         self.0.batches::<S, PLAIN, WHOLE, N>(simd);
     }
 }
 
-impl Evaluation<'_> {
+impl<E: LaneNumber> Evaluation<'_, E> {
     /// As [`Variant`].
     #[inline(always)]
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
-    fn batches<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
-        let Self { evaluator, geometry, classes, betas, states } = self;
+    fn batches<S: Simd<Number = E>, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
+        let Self { evaluator, geometry, classes, sine: sines, cosine: cosines, betas, states } = self;
+        let constants = Constants::<E>::new(geometry, &evaluator.limits);
         let infinity = Lanes::splat(simd, f64::INFINITY);
         let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
         let first = betas.start - betas.start % Lanes::<S>::COUNT;
         for start in (first..betas.end).step_by(Lanes::<S>::COUNT) {
-            let cosine = Lanes::load(simd, &evaluator.cosine, start);
-            let sine = Lanes::load(simd, &evaluator.sine, start);
-            let centre = evaluator.centre(simd, geometry, cosine, sine);
+            let cosine = Lanes::load(simd, cosines, start);
+            let sine = Lanes::load(simd, sines, start);
+            let centre = evaluator.centre(simd, &constants, cosine, sine);
             for back in [false, true] {
-                let arm = evaluator.arm(simd, &centre, back);
+                let arm = evaluator.arm(simd, &constants.limits, &centre, back);
                 if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
                     continue;
                 }
-                let demand = Demand::<S, N>::new::<WHOLE>(simd, geometry, &arm, cosine, sine);
+                let demand = Demand::<S, N>::new::<WHOLE>(simd, &constants, &arm, cosine, sine);
                 for (negative, elbow) in arm.elbows.iter().enumerate() {
                     let class = PostureClass::ALL[2 * usize::from(back) + negative];
                     if !classes[class.index()] || !elbow.allowed.any() {
                         continue;
                     }
-                    let found = evaluator.wrist::<S, PLAIN, WHOLE, N>(simd, geometry.uncertainty, &demand, &arm, elbow);
+                    let found = evaluator.wrist::<S, PLAIN, WHOLE, N>(simd, &constants, &demand, &arm, elbow);
                     if let Some((score, directions)) = found {
                         let cost = if is_squared { score * score } else { score };
                         // A point of no weight has forbidden states too.

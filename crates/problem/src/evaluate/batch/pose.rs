@@ -2,8 +2,7 @@
 //! 1: x along the arm, y to its left, z along axis 1.
 
 use crate::criterion::worst_gains;
-use pulp::Simd;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// Vectors in the frame of joint 1.
 #[derive(Clone, Copy)]

@@ -22,9 +22,8 @@ pub(super) use fixed::{Fixed, FixedParts, PlacedLoad};
 
 use super::pose::{Load, Pose, Vector, worst};
 use nalgebra::{Matrix3, Vector3};
-use pulp::Simd;
 use stead_model::robot::Robot;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// Springs normal to the axes of an arm, ready for lanes; all zero where it has none.
 #[derive(Debug, Clone, Copy)]

@@ -119,7 +119,7 @@ fn agrees_beside_compliances_that_change_with_the_joint_angle() {
 /// All scores of a problem, in one row.
 fn scores(problem: &Problem) -> Vec<f64> {
     let evaluator = BatchEvaluator::new(problem, &problem.redundancy, Flips::Both);
-    let mut states = StateGrid::new(problem.redundancy.beta_count, 0);
+    let mut states = StateGrid::<f64>::new(problem.redundancy.beta_count, 0);
     let mut all = Vec::new();
     for point in (0..105).step_by(5) {
         evaluator.evaluate(point, &placements()[0], &mut states);
@@ -177,7 +177,7 @@ fn turning_about_axis_1_changes_no_score_but_on_an_unlike_base() {
         let (sine, cosine) = libm::sincos(turn);
         let placement = Placement::from([x * cosine - y * sine, x * sine + y * cosine, z, yaw + turn]);
         let evaluator = BatchEvaluator::new(problem, &problem.redundancy, Flips::Plain);
-        let mut states = StateGrid::new(problem.redundancy.beta_count, 0);
+        let mut states = StateGrid::<f64>::new(problem.redundancy.beta_count, 0);
         evaluator.evaluate(30, &placement, &mut states);
         let class = PostureClass::ALL.into_iter().find(|class| states.is_alive(*class)).unwrap();
         states.inner_scores(class).iter().copied().filter(|score| score.is_finite()).collect::<Vec<_>>()

@@ -2,12 +2,11 @@
 //! allow.
 
 use super::arm::{Arm, Elbow};
+use super::limit::Limit;
 use super::pose::{Directions, Load, Pose, Vector, turned};
 use super::whole::{Beside, Planar, WholeState};
-use super::{BatchEvaluator, Flips, PointGeometry, Set, Turning};
-use nalgebra::Vector3;
-use pulp::Simd;
-use stead_numerics::simd::{Lanes, Mask};
+use super::{BatchEvaluator, Constants, Flips, Set, Turning};
+use stead_numerics::simd::{LaneNumber, Lanes, Mask, Simd};
 
 /// A state that is scored: the same for every set of compliances.
 struct ScoredState<'a, S: Simd, const N: usize> {
@@ -31,46 +30,48 @@ impl<S: Simd, const N: usize> Demand<S, N> {
     #[inline(always)]
     pub fn new<const WHOLE: bool>(
         simd: S,
-        geometry: &PointGeometry,
+        constants: &Constants<'_, S::Number>,
         arm: &Arm<S>,
         cosine: Lanes<S>,
         sine: Lanes<S>,
     ) -> Self {
-        let force = Self::constant(simd, &geometry.force, arm);
+        let Constants { flange: [x6, y6, z6, lever], fixed, .. } = constants;
+        let force = Self::constant(&constants.force, arm);
         // A loop and not a closure, which would be compiled without the processor's wide instructions.
         let mut directions = [force; N];
-        for (turned, direction) in directions.iter_mut().zip(&geometry.directions) {
-            *turned = Self::constant(simd, direction, arm);
+        for (turned, direction) in directions.iter_mut().zip(&constants.directions) {
+            *turned = Self::constant(direction, arm);
         }
-        let x6 = Self::turning(&geometry.x6, arm, cosine, sine);
-        let y6 = Self::turning(&geometry.y6, arm, cosine, sine);
-        let z6 = Self::turning(&geometry.z6, arm, cosine, sine);
+        let x6 = Self::turning(x6, arm, cosine, sine);
+        let y6 = Self::turning(y6, arm, cosine, sine);
+        let z6 = Self::turning(z6, arm, cosine, sine);
         let zero = Lanes::splat(simd, 0.0);
         let mut beside = Beside { parts: [zero; N], responses: [force; N], flange: [x6, y6, z6] };
         if WHOLE {
-            beside.parts = geometry.fixed.at(simd, cosine, sine);
-            for (turned, response) in beside.responses.iter_mut().zip(&geometry.fixed.responses) {
-                *turned = Self::constant(simd, response, arm);
+            beside.parts = fixed.at(simd, cosine, sine);
+            for (turned, response) in beside.responses.iter_mut().zip(&fixed.responses) {
+                let response = [response.x, response.y, response.z].map(S::Number::of);
+                *turned = Self::constant(&response, arm);
             }
         }
         Self {
             x6,
             y6,
             z6,
-            lever: Self::turning(&geometry.lever, arm, cosine, sine),
-            load: Load { directions, force, moment: Self::constant(simd, &geometry.moment, arm) },
+            lever: Self::turning(lever, arm, cosine, sine),
+            load: Load { directions, force, moment: Self::constant(&constants.moment, arm) },
             beside,
         }
     }
 
     #[inline(always)]
-    fn turning(v: &Turning, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Vector<S> {
+    fn turning(v: &Turning<S::Number>, arm: &Arm<S>, cosine: Lanes<S>, sine: Lanes<S>) -> Vector<S> {
         turned([v.at(0, cosine, sine), v.at(1, cosine, sine), v.at(2, cosine, sine)], arm.sin1, arm.cos1)
     }
 
     #[inline(always)]
-    fn constant(simd: S, v: &Vector3<f64>, arm: &Arm<S>) -> Vector<S> {
-        turned([Lanes::splat(simd, v.x), Lanes::splat(simd, v.y), Lanes::splat(simd, v.z)], arm.sin1, arm.cos1)
+    fn constant(v: &[S::Number; 3], arm: &Arm<S>) -> Vector<S> {
+        turned([arm.sin1.all_of(v[0]), arm.sin1.all_of(v[1]), arm.sin1.all_of(v[2])], arm.sin1, arm.cos1)
     }
 }
 
@@ -129,8 +130,8 @@ impl BatchEvaluator<'_> {
 
     /// Whether the limits of joints 4 to 6 allow a wrist, by their sines and cosines of any length.
     #[inline(always)]
-    fn allows_wrist<S: Simd>(&self, simd: S, joints: [[Lanes<S>; 2]; 3]) -> Mask<S> {
-        let [l4, l5, l6] = [self.limits[3], self.limits[4], self.limits[5]];
+    fn allows_wrist<S: Simd>(simd: S, limits: &[Limit<S::Number>; 6], joints: [[Lanes<S>; 2]; 3]) -> Mask<S> {
+        let [_, _, _, l4, l5, l6] = *limits;
         l4.allows(simd, joints[0]) & l5.allows(simd, joints[1]) & l6.allows(simd, joints[2])
     }
 
@@ -141,7 +142,7 @@ impl BatchEvaluator<'_> {
     pub(super) fn wrist<S: Simd, const PLAIN: bool, const WHOLE: bool, const N: usize>(
         &self,
         simd: S,
-        uncertainty: f64,
+        constants: &Constants<'_, S::Number>,
         demand: &Demand<S, N>,
         arm: &Arm<S>,
         elbow: &Elbow<S>,
@@ -150,7 +151,9 @@ impl BatchEvaluator<'_> {
         let lateral = self.problem.robot.geometry().lateral;
         let inverse_condition = pose.inverse_condition(simd, lateral, self.problem.constraints.characteristic_length);
         let conditioned = Lanes::splat(simd, self.problem.constraints.min_inverse_condition).at_most(inverse_condition);
-        let (plain, turned) = (self.allows_wrist(simd, joints), self.allows_wrist(simd, flipped(joints)));
+        let Constants { limits, uncertainty, .. } = constants;
+        let plain = Self::allows_wrist(simd, limits, joints);
+        let turned = Self::allows_wrist(simd, limits, flipped(joints));
         let mut allowed = elbow.allowed
             & conditioned
             & match self.flips {
@@ -171,7 +174,7 @@ impl BatchEvaluator<'_> {
             [turned[3], turned[4], turned[5]] = flipped([fourth, fifth, sixth]);
         }
         let state = ScoredState { pose: &pose, demand, directions: &turned, planar };
-        let score = self.score::<S, PLAIN, WHOLE, N>(simd, &state, uncertainty);
+        let score = self.score::<S, PLAIN, WHOLE, N>(simd, &state, *uncertainty);
         if let Some(limit) = self.problem.constraints.max_deflection {
             allowed = allowed & score.at_most(Lanes::splat(simd, limit));
             if !allowed.any() {

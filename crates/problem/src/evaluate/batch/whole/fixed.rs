@@ -3,8 +3,7 @@
 use super::Normal;
 use crate::problem::Problem;
 use nalgebra::{Matrix3, Matrix6, Vector3};
-use pulp::Simd;
-use stead_numerics::simd::Lanes;
+use stead_numerics::simd::{Lanes, Simd};
 
 /// What is the same in all states of a problem: matrices, where it has any.
 #[derive(Debug, Clone)]
