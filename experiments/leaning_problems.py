@@ -73,6 +73,14 @@ def path(kind, draw):
         [-s * a, b, c * a]
 
 
+def write_task(folder, points):
+    """A task file of points: number of the segment, position (mm), feed, tool axis, force (N)."""
+    rows = ["segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n"]
+    for segment, place, feed, axis, force in points:
+        rows.append(",".join(str(round(v, 9)) for v in [segment, *place, *feed, *axis, *force]))
+    (folder / "task.csv").write_text("\n".join(rows) + "\n")
+
+
 def problem(number, folder):
     """Writes a problem; returns its run file as a text without `[lean]` and `[search]`, and what it is."""
     draw = random.Random(number)
@@ -81,11 +89,7 @@ def problem(number, folder):
     cutter, cone = ["ball", "bull"][number // 4 % 2], draw.choice([10, 15])
     segments, axis = path(kind, draw)
     force = [draw.uniform(-150, 150), draw.uniform(-150, 150), draw.uniform(-80, -20)]
-    rows = ["segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n"]
-    for index, points in enumerate(segments):
-        for place, feed in points:
-            rows.append(",".join(str(round(v, 9)) for v in [index + 1, *place, *feed, *axis, *force]))
-    (folder / "task.csv").write_text("\n".join(rows) + "\n")
+    write_task(folder, ((index + 1, *point, axis, force) for index, points in enumerate(segments) for point in points))
     radius = draw.choice([5.0, 8.0]) if cutter == "ball" else draw.choice([10.0, 12.5])
     corner = radius if cutter == "ball" else draw.choice([2.0, 4.0])
     rotation, tip = MOUNTS[mount]

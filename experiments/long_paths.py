@@ -18,7 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from leaning_problems import ARMS, MOUNTS, ROOT
+from leaning_problems import ARMS, MOUNTS, ROOT, write_task
 
 KINDS = ["raster", "contour", "freeform", "spiral"]
 UP = [0.0, 0.0, 1.0]
@@ -99,14 +99,14 @@ def problem(number, folder):
     count = draw.randint(1000, 5000)
     segments = path(kind, draw, count)
     tangential, radial, axial = draw.uniform(60, 400), draw.uniform(-250, 250), draw.uniform(-150, -20)
-    rows = ["segment,x_mm,y_mm,z_mm,feed_x,feed_y,feed_z,axis_x,axis_y,axis_z,force_x_n,force_y_n,force_z_n"]
+    task = []
     for index, points in enumerate(segments):
         for k, (place, feed, axis) in enumerate(points):
             side = cross(axis, feed)
             swing = 1.0 + 0.4 * math.sin(9.0 * k / len(points) + index)
             force = [swing * (-tangential * f + radial * s) + axial * a for f, s, a in zip(feed, side, axis)]
-            rows.append(",".join(str(round(v, 9)) for v in [index + 1, *place, *feed, *axis, *force]))
-    (folder / "task.csv").write_text("\n".join(rows) + "\n")
+            task.append((index + 1, place, feed, axis, force))
+    write_task(folder, task)
     rotation, tip = MOUNTS[mount]
     x, z = ARMS[arm]
     x, z = x + draw.uniform(-150, 150), z + draw.uniform(-150, 250)

@@ -95,12 +95,12 @@ pub struct Mask<S: Simd> {
 }
 
 macro_rules! lanewise {
-    ($trait:ident, $method:ident, $op:ident) => {
+    ($trait:ident, $method:ident) => {
         impl<S: Simd> $trait for Lanes<S> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self { values: self.simd.$op(self.values, other.values), ..self }
+                Self { values: self.simd.$method(self.values, other.values), ..self }
             }
         }
         impl<S: Simd> $trait<f64> for Lanes<S> {
@@ -113,10 +113,10 @@ macro_rules! lanewise {
     };
 }
 
-lanewise!(Add, add, add);
-lanewise!(Sub, sub, sub);
-lanewise!(Mul, mul, mul);
-lanewise!(Div, div, div);
+lanewise!(Add, add);
+lanewise!(Sub, sub);
+lanewise!(Mul, mul);
+lanewise!(Div, div);
 
 impl<S: Simd> Neg for Lanes<S> {
     type Output = Self;

@@ -28,7 +28,7 @@ pub struct Evaluator<'a> {
 }
 
 /// Scratch space of one thread.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Workspace {
     exact: PlannerSpace<f64>,
     rough: PlannerSpace<f32>,
@@ -37,16 +37,10 @@ pub struct Workspace {
 }
 
 /// Scratch space of the planners, with numbers of some kind.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct PlannerSpace<E> {
     planner: Option<redundancy::Workspace<E>>,
     finer: Option<redundancy::Workspace<E>>,
-}
-
-impl<E> PlannerSpace<E> {
-    fn new() -> Self {
-        Self { planner: None, finer: None }
-    }
 }
 
 /// What goes on from a search.
@@ -150,8 +144,7 @@ impl<'a> Evaluator<'a> {
 
     /// Space for one thread.
     pub fn workspace(&self) -> Workspace {
-        let table = self.table.map(|table| table.workspace(&self.grid));
-        Workspace { exact: PlannerSpace::new(), rough: PlannerSpace::new(), coarser: None, table }
+        Workspace { table: self.table.map(|table| table.workspace(&self.grid)), ..Workspace::default() }
     }
 
     /// The mean score of the workpiece at a placement under its best plan on the planner's grid, with the posture
@@ -229,7 +222,7 @@ impl<'a> Evaluator<'a> {
             if basins.first().is_some_and(|best| best.objective.mean().is_some()) {
                 basins.truncate(max_count);
             }
-            if self.table.is_none() {
+            if !monitor.should_stop() {
                 self.state_exactly(&mut basins, sense);
             }
             return SelectedBasins { basins, evaluations: 0, lookup_rejected: false };

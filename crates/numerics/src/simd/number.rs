@@ -11,8 +11,7 @@ pub trait LaneNumber: Copy + PartialOrd + Debug + Send + Sync + 'static {
     /// The step from 1 to the next number.
     const EPSILON: f64;
 
-    /// By how much the length of the difference of two directions is off where it has to be looked at; none where this
-    /// is far below what counts.
+    /// Rounding error of the distance between two unit vectors in these numbers; zero where it is negligible.
     const ROUNDING: f64;
 
     /// Added to a number of small magnitude this leaves a whole number in the last bits.

@@ -81,6 +81,35 @@ fn assert_arctangent(y: f64, x: f64) {
     assert!((found - expected).abs() <= ATAN_ERROR * expected.abs(), "{y:e} {x:e}: {found:e} {expected:e}");
 }
 
+/// That every operation gives, to the last bit, what a kind of numbers gives by itself.
+macro_rules! operations {
+    ($number:ident, $a:ident, $b:ident) => {
+        let (a, b) = ($a, $b);
+        prop_assert_eq!(in_lanes(Ceil, a, b), a.ceil());
+        prop_assert!((in_lanes(Round, a, b) - a).abs() <= 0.5);
+        prop_assert_eq!(in_lanes(Max, a, b), a.max(b));
+        prop_assert_eq!(in_lanes(Min, a, b), a.min(b));
+        prop_assert_eq!(in_lanes(Abs, a, b), a.abs());
+        prop_assert_eq!(in_lanes(Negative, a, b), -a);
+        prop_assert_eq!(in_lanes(Root, a.abs(), b), a.abs().sqrt());
+        prop_assert_eq!(in_lanes(WithSign, a, b), a.copysign(b));
+        prop_assert_eq!(in_lanes(ProductAndSum, a, b), a * b + a);
+        prop_assert_eq!(in_lanes(Quotient, a, b), a / b - b);
+        let of = |yes: bool| if yes { 1.0 } else { 0.0 };
+        for (a, b) in
+            [(a, b), (a, a), (a, $number::NAN), ($number::NAN, b), ($number::INFINITY, a), (-$number::INFINITY, a)]
+        {
+            prop_assert_eq!(in_lanes(Less, a, b), of(a < b));
+            prop_assert_eq!(in_lanes(AtMost, a, b), of(a <= b));
+            prop_assert_eq!(in_lanes(Equal, a, b), of(a == b));
+            // The other lanes say no.
+            prop_assert_eq!(in_lanes(AnyLess, a, b), of(a < b));
+            prop_assert_eq!(in_lanes(FirstLess, a, b), of(a < b));
+        }
+        prop_assert_eq!(in_lanes(Between, a, b), if a < b { 2.0 * a } else { b });
+    };
+}
+
 proptest! {
     #[test]
     fn arctangent_agrees_with_libm(angle in -PI..PI, scale in -12.0..12.0_f64) {
@@ -90,50 +119,12 @@ proptest! {
 
     #[test]
     fn every_operation_is_that_of_a_number(a in -1e6..1e6_f64, b in -1e6..1e6_f64) {
-        prop_assert_eq!(in_lanes(Ceil, a, b), a.ceil());
-        prop_assert!((in_lanes(Round, a, b) - a).abs() <= 0.5);
-        prop_assert_eq!(in_lanes(Max, a, b), a.max(b));
-        prop_assert_eq!(in_lanes(Min, a, b), a.min(b));
-        prop_assert_eq!(in_lanes(Abs, a, b), a.abs());
-        prop_assert_eq!(in_lanes(Negative, a, b), -a);
-        prop_assert_eq!(in_lanes(Root, a.abs(), b), a.abs().sqrt());
-        prop_assert_eq!(in_lanes(WithSign, a, b), a.copysign(b));
-        prop_assert_eq!(in_lanes(ProductAndSum, a, b), a * b + a);
-        prop_assert_eq!(in_lanes(Quotient, a, b), a / b - b);
-        let of = |yes: bool| if yes { 1.0 } else { 0.0 };
-        for (a, b) in [(a, b), (a, a), (a, f64::NAN), (f64::NAN, b), (f64::INFINITY, a), (-f64::INFINITY, a)] {
-            prop_assert_eq!(in_lanes(Less, a, b), of(a < b));
-            prop_assert_eq!(in_lanes(AtMost, a, b), of(a <= b));
-            prop_assert_eq!(in_lanes(Equal, a, b), of(a == b));
-            // The other lanes say no.
-            prop_assert_eq!(in_lanes(AnyLess, a, b), of(a < b));
-            prop_assert_eq!(in_lanes(FirstLess, a, b), of(a < b));
-        }
-        prop_assert_eq!(in_lanes(Between, a, b), if a < b { 2.0 * a } else { b });
+        operations!(f64, a, b);
     }
 
     #[test]
     fn every_operation_is_that_of_a_number_in_single_precision(a in -1e6..1e6_f32, b in -1e6..1e6_f32) {
-        prop_assert_eq!(in_lanes(Ceil, a, b), a.ceil());
-        prop_assert!((in_lanes(Round, a, b) - a).abs() <= 0.5);
-        prop_assert_eq!(in_lanes(Max, a, b), a.max(b));
-        prop_assert_eq!(in_lanes(Min, a, b), a.min(b));
-        prop_assert_eq!(in_lanes(Abs, a, b), a.abs());
-        prop_assert_eq!(in_lanes(Negative, a, b), -a);
-        prop_assert_eq!(in_lanes(Root, a.abs(), b), a.abs().sqrt());
-        prop_assert_eq!(in_lanes(WithSign, a, b), a.copysign(b));
-        prop_assert_eq!(in_lanes(ProductAndSum, a, b), a * b + a);
-        prop_assert_eq!(in_lanes(Quotient, a, b), a / b - b);
-        let of = |yes: bool| if yes { 1.0 } else { 0.0 };
-        for (a, b) in [(a, b), (a, a), (a, f32::NAN), (f32::NAN, b), (f32::INFINITY, a), (-f32::INFINITY, a)] {
-            prop_assert_eq!(in_lanes(Less, a, b), of(a < b));
-            prop_assert_eq!(in_lanes(AtMost, a, b), of(a <= b));
-            prop_assert_eq!(in_lanes(Equal, a, b), of(a == b));
-            // The other lanes say no.
-            prop_assert_eq!(in_lanes(AnyLess, a, b), of(a < b));
-            prop_assert_eq!(in_lanes(FirstLess, a, b), of(a < b));
-        }
-        prop_assert_eq!(in_lanes(Between, a, b), if a < b { 2.0 * a } else { b });
+        operations!(f32, a, b);
         let (found, expected) = (in_lanes(Atan2, a, b).get(), libm::atan2(a.get(), b.get()));
         prop_assert!((found - expected).abs() <= 3e-7 * expected.abs(), "{} {}", found, expected);
     }

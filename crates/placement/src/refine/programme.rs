@@ -27,8 +27,8 @@ pub(super) fn programme(
     cones: &[SupportedConeT<f64>],
 ) -> Result<DefaultSolution<f64>, Unsolved> {
     let solved = |iterative_refinement_enable: bool| {
-        let quiet = DefaultSettings { verbose: false, max_threads: 1, ..DefaultSettings::default() };
-        let settings = DefaultSettings { iterative_refinement_enable, ..quiet };
+        let settings =
+            DefaultSettings { verbose: false, max_threads: 1, iterative_refinement_enable, ..Default::default() };
         let mut solver = DefaultSolver::new(quadratic, linear, matrix, bound, cones, settings).ok()?;
         solver.solve();
         let is_solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);

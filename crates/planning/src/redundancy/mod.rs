@@ -157,7 +157,7 @@ impl<'a> Planner<'a> {
         self.segments.workspace()
     }
 
-    /// The same with numbers of some kind: with `f32` objectives are told to some 1e-6 of them, in half of the time.
+    /// The same with numbers of some kind: with `f32` objectives are exact to some 1e-6 of them.
     pub fn workspace_of<E: LaneNumber>(&self) -> Workspace<E> {
         self.segments.workspace()
     }

@@ -63,8 +63,8 @@ pub(super) struct SegmentPlanner<'a> {
     pub resolution: Resolution,
     /// By how much each joint may step from the point before. rad
     pub steps: Vec<[f64; 6]>,
-    /// The same as the kernel takes it, for numbers of double and of single precision.
-    joint_steps: [JointSteps; 2],
+    /// The same as the kernel takes it.
+    joint_steps: JointSteps,
     /// Ranges of joints with less than a turn; none for joints treated modulo a turn.
     pub ranges: [Option<Range>; 6],
     pub instructions: Instructions,
@@ -139,7 +139,7 @@ impl<'a> SegmentPlanner<'a> {
             resolution,
             changes,
             steps,
-            joint_steps: Default::default(),
+            joint_steps: JointSteps::default(),
             // Joints 4 and 6 differ by half a turn between the flips of a class, so within a class only their
             // difference modulo a turn means anything; theta_5, taken as not negative, is never half a turn off.
             ranges: std::array::from_fn(|j| Some(ranges[j]).filter(|range| j < 3 && !range.has_turns())),
@@ -152,29 +152,26 @@ impl<'a> SegmentPlanner<'a> {
     }
 
     fn with_kernel_steps(mut self) -> Self {
-        self.joint_steps = [f64::ROUNDING, f32::ROUNDING].map(|rounding| {
-            let to = |point: usize, points: usize| {
-                let limits = self.joint_limits(point, points);
-                std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j]).with_rounding(rounding))
-            };
-            let to_knot = |point: usize| match self.knots.at(point) {
-                Place::Knot(knot) => to(point, knot.points),
-                Place::Between { .. } => [JointStep::Any; 6],
-            };
-            let points = 0..self.steps.len();
-            JointSteps {
-                direct: points.clone().map(|point| to(point, 1)).collect(),
-                to_knots: points.map(to_knot).collect(),
-            }
-        });
+        let to = |point: usize, points: usize| {
+            let limits = self.joint_limits(point, points);
+            std::array::from_fn(|j| JointStep::new(limits[j], self.ranges[j]))
+        };
+        let to_knot = |point: usize| match self.knots.at(point) {
+            Place::Knot(knot) => to(point, knot.points),
+            Place::Between { .. } => [JointStep::Any; 6],
+        };
+        let points = 0..self.steps.len();
+        let direct = points.clone().map(|point| to(point, 1)).collect();
+        self.joint_steps = JointSteps { direct, to_knots: points.map(to_knot).collect() };
         self
     }
 
     /// What bounds the steps of the joints to a path point from the one before, or from the knot before, for numbers
     /// of some kind.
     pub fn kernel_steps<E: LaneNumber>(&self, point: usize, is_by_knots: bool) -> [JointStep; 6] {
-        let of_kind = &self.joint_steps[usize::from(E::ROUNDING > 0.0)];
-        if is_by_knots { of_kind.to_knots[point] } else { of_kind.direct[point] }
+        let JointSteps { direct, to_knots } = &self.joint_steps;
+        let steps = if is_by_knots { to_knots[point] } else { direct[point] };
+        steps.map(|step| step.with_rounding(E::ROUNDING))
     }
 
     /// The same with steps of the joints that may be at least so large. rad

@@ -40,7 +40,7 @@ fn agrees_with_the_prototype_at_the_published_optimum() {
 /// objectives are the same to the digits that it has.
 #[test]
 fn objectives_in_single_precision_are_those_in_double() {
-    let limited = |sense: Sense, mut problem: Problem| {
+    let coarse = |sense: Sense, mut problem: Problem| {
         problem.redundancy.beta_count = 60;
         (sense, problem)
     };
@@ -51,10 +51,10 @@ fn objectives_in_single_precision_are_those_in_double() {
     let mut calm = with_axes_2_3(five_segments(), true, [-150.0, 0.0]);
     calm.criterion.joint_travel_weight = 1e-5;
     for (number, (sense, problem)) in [
-        limited(Sense::Min, with_prototype_steps(five_segments())),
-        limited(Sense::Max, weighed),
-        limited(Sense::Min, largest),
-        limited(Sense::Min, calm),
+        coarse(Sense::Min, with_prototype_steps(five_segments())),
+        coarse(Sense::Max, weighed),
+        coarse(Sense::Min, largest),
+        coarse(Sense::Min, calm),
     ]
     .into_iter()
     .enumerate()

@@ -28,7 +28,7 @@ impl BatchEvaluator<'_> {
         PlacedPoint { geometry, is_near, is_plain: self.is_plain(point) }
     }
 
-    /// Room for the states of [`BatchEvaluator::evaluate_at`].
+    /// Space for the states of [`BatchEvaluator::evaluate_at`].
     pub fn states_at() -> StateGrid {
         StateGrid::new(MOST_BETAS, 0).with_angles(true)
     }
