@@ -1,7 +1,8 @@
 // The page in Debian's Chromium: the suite on the shipped page, on one without WebGL, with names that look like markup, in several widths;
 // and on three pages broken on purpose, which must fail.
 //
-// With ONLY in the environment the suite runs the tests alone whose names contain it.
+// With ONLY in the environment the suite runs the tests alone whose names contain it. Of a broken page the test that is about it is run; with
+// STEAD_TESTS=all also those before it.
 //
 //   node run.mjs [FOLDER [OTHER ..]]     FOLDER has report.html; the others further plans of the same arm and spindle
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -22,12 +23,12 @@ const scratch = mkdtempSync(join(tmpdir(), 'stead-page-'));
 const html = readFileSync(file, 'utf8');
 let failures = 0;
 
-/** The suite on a page; returns what failed. With `firstOnly` it stops there. */
-async function suite(address, { firstOnly = false } = {}) {
+/** The suite on a page, the tests whose names contain `only`; returns what failed. With `firstOnly` it stops there. */
+async function suite(address, { firstOnly = false, only = process.env.ONLY ?? '' } = {}) {
   const failed = [];
   const { page, seen, close } = await open(browser, address);
   for (const [name, test] of Object.entries(tests(folder, others))) {
-    if (process.env.ONLY && !name.includes(process.env.ONLY)) continue;
+    if (!name.includes(only)) continue;
     const begun = Date.now();
     try {
       const said = await test(page);
@@ -191,7 +192,7 @@ await check('printed it is two pages', {}, address, async (page) => {
   assert.equal(pdf.match(/\/Type\s*\/Page[^s]/g).length, 2);
 });
 
-// Each part broken, with the test that is about it: that one must fail, and none before it.
+// Each part broken, with the test that is about it: that one must fail, and with all tests none before it.
 const broken = [
   {
     part: 'robot',
@@ -210,7 +211,8 @@ const broken = [
   },
 ];
 for (const { part, test, change } of broken) {
-  const [first] = await suite(saved(`${part}.html`, withScript(html, change)), { firstOnly: true });
+  const only = process.env.STEAD_TESTS === 'all' ? '' : test;
+  const [first] = await suite(saved(`${part}.html`, withScript(html, change)), { firstOnly: true, only });
   const isOwn = first?.startsWith(`${test}: `);
   console.log(`${isOwn ? 'ok   ' : 'FAIL '} with the ${part} broken its own test fails first: ${first ?? 'nothing fails'}`);
   failures += isOwn ? 0 : 1;

@@ -8,8 +8,7 @@ use super::outcome::Generation;
 use rayon::prelude::*;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::Monitor;
-use stead_numerics::simd::LaneNumber;
-use stead_planning::redundancy::{self, Planner};
+use stead_planning::redundancy::{self, PlanNumber, Planner};
 use stead_problem::candidate::{Candidate, Objective, rank};
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
@@ -190,7 +189,7 @@ impl<'a> Evaluator<'a> {
         self.planned_with(placement, scheme, &mut workspace.exact)
     }
 
-    fn planned_with<E: LaneNumber>(
+    fn planned_with<E: PlanNumber>(
         &self,
         placement: &Placement,
         scheme: Option<&[Posture]>,

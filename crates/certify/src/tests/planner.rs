@@ -240,7 +240,7 @@ fn sums_of_every_criterion_are_below_plans_and_close() {
         ("points that are not scored", partly_scored, 0.97),
     ];
     let mut last = None;
-    for (name, change, close) in some(3, all) {
+    for (name, change, close) in some(4, all) {
         let mut setting = with_criterion(&change);
         setting.take_table(last);
         let (bound, value, _) = bound_and_value(&setting, [1e-4; 3]);
@@ -270,7 +270,7 @@ fn a_broken_criterion_is_seen() {
         }),
     ];
     let mut last = None;
-    for (name, change, broken) in some(2, mutations) {
+    for (name, change, broken) in some(4, mutations) {
         let mut setting = with_criterion(&change);
         setting.take_table(last);
         let truth = bound_and_value(&setting, [1e-4; 3]).1;

@@ -4,8 +4,9 @@
 //! allowed.
 
 use stead_model::robot::PostureClass;
-use stead_numerics::simd::{Instructions, LaneNumber, Lanes, Simd, WithSimd};
+use stead_numerics::simd::{Instructions, Lanes, Simd, WithSimd};
 use stead_problem::criterion::Aggregate;
+use stead_problem::evaluate::batch::KernelNumber;
 use stead_problem::sense::Sense;
 
 /// Beta values nearer to the grid than this are on it. Steps of the grid
@@ -69,7 +70,7 @@ pub(super) struct RunCosts<E> {
     instructions: Instructions,
 }
 
-impl<E: LaneNumber> RunCosts<E> {
+impl<E: KernelNumber> RunCosts<E> {
     /// For so many changes, and rows as long as those of the states.
     pub fn new(changes: usize, stride: usize, instructions: Instructions) -> Self {
         Self { data: vec![E::of(0.0); 4 * changes * stride], changes, stride, instructions }
@@ -113,7 +114,7 @@ struct Add<'s, E> {
     joining: Joining,
 }
 
-impl<E: LaneNumber> WithSimd for Add<'_, E> {
+impl<E: KernelNumber> WithSimd for Add<'_, E> {
     type Number = E;
     type Output = ();
 

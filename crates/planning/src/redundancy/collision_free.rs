@@ -16,10 +16,9 @@ use crate::transfer_path::whole_lines;
 use std::collections::{BTreeMap, BTreeSet};
 use stead_cell::PairKind;
 use stead_model::robot::Posture;
-use stead_numerics::simd::LaneNumber;
 use stead_problem::candidate::Objective;
 use stead_problem::collision::Fault;
-use stead_problem::evaluate::batch::BatchEvaluator;
+use stead_problem::evaluate::batch::{BatchEvaluator, KernelNumber};
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
 
@@ -162,7 +161,7 @@ struct FreePlans<'s, P, E> {
     round: usize,
 }
 
-impl<P, E: LaneNumber> FreePlans<'_, P, E> {
+impl<P, E: KernelNumber> FreePlans<'_, P, E> {
     /// The ends of the segments that have no plan, of those at which states were forbidden for their lines.
     fn lines_in_the_way(&self, none: &NoFeasiblePlan) -> Vec<usize> {
         let path = self.planner.problem.task.path();
@@ -217,7 +216,7 @@ impl<P, E: LaneNumber> FreePlans<'_, P, E> {
     }
 }
 
-impl<P, E: LaneNumber> Lazy for FreePlans<'_, P, E>
+impl<P, E: KernelNumber> Lazy for FreePlans<'_, P, E>
 where
     P: FnMut(&mut Workspace<E>, &[usize]) -> Result<Vec<Vec<SegmentChoice>>, NoFeasiblePlan>,
 {
@@ -274,7 +273,7 @@ where
 impl Planner<'_> {
     /// The plans that are chosen of those that `plan` makes for the segments requested, made again without the states
     /// that hit until nothing does.
-    pub(super) fn collision_free_plans<E: LaneNumber>(
+    pub(super) fn collision_free_plans<E: KernelNumber>(
         &self,
         request: Request<'_>,
         workspace: &mut Workspace<E>,
@@ -308,7 +307,7 @@ impl Planner<'_> {
     }
 
     /// The mean score under the best or worst plan on the grid in which nothing hits ([`Planner::objective`]).
-    pub(super) fn free_objective<E: LaneNumber>(
+    pub(super) fn free_objective<E: KernelNumber>(
         &self,
         request: Request<'_>,
         workspace: &mut Workspace<E>,

@@ -11,8 +11,8 @@ use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace};
 use crate::compass::CompassSteps;
 use stead_model::robot::{Posture, PostureClass};
 use stead_numerics::monitor::Monitor;
-use stead_numerics::simd::LaneNumber;
 use stead_problem::candidate::Objective;
+use stead_problem::evaluate::batch::KernelNumber;
 use stead_problem::problem::{BetaPlan, Placement, Problem};
 use stead_problem::sense::Sense;
 
@@ -28,12 +28,12 @@ struct Bound {
 
 impl Planner<'_> {
     /// Whether one beta for the whole path is still to be chosen.
-    pub(super) fn chooses_common_beta<E: LaneNumber>(&self, workspace: &Workspace<E>) -> bool {
+    pub(super) fn chooses_common_beta<E: KernelNumber>(&self, workspace: &Workspace<E>) -> bool {
         self.problem.redundancy.beta == BetaPlan::Constant && workspace.only_beta.is_none()
     }
 
     /// [`Planner::objective`] where one beta stays all along the path.
-    pub(super) fn common_objective<E: LaneNumber>(
+    pub(super) fn common_objective<E: KernelNumber>(
         &self,
         request: Request<'_>,
         workspace: &mut Workspace<E>,
@@ -46,7 +46,7 @@ impl Planner<'_> {
                 break;
             }
             workspace.only_beta = Some(bound.beta);
-            let found = self.objective(request.placement, request.sense, request.scheme, workspace).mean();
+            let found = self.objective_in(request.placement, request.sense, request.scheme, workspace).mean();
             best = best.into_iter().chain(found).min_by(|a, b| (a * sign).total_cmp(&(b * sign)));
         }
         workspace.only_beta = None;
@@ -65,7 +65,7 @@ impl Planner<'_> {
     }
 
     /// What `plan` finds, or where one beta stays all along the path, the best of what it finds for each.
-    pub(super) fn with_common_beta<E: LaneNumber>(
+    pub(super) fn with_common_beta<E: KernelNumber>(
         &self,
         request: Request<'_>,
         workspace: &mut Workspace<E>,
@@ -119,7 +119,7 @@ impl Planner<'_> {
     }
 
     /// All betas of the grid: those by which the most segments can be gone through first, and of these the cheapest.
-    fn bounds<E: LaneNumber>(&self, request: Request<'_>, workspace: &mut Workspace<E>) -> Vec<Bound> {
+    fn bounds<E: KernelNumber>(&self, request: Request<'_>, workspace: &mut Workspace<E>) -> Vec<Bound> {
         let Request { placement, sense, .. } = request;
         workspace.forbidden.clear();
         let spans = self.problem.task.segments();

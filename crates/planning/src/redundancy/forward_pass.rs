@@ -16,8 +16,7 @@ use super::transition::{Step, advance, advance_over, begin};
 use super::{SegmentPlanner, Sense, Workspace};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
-use stead_numerics::simd::LaneNumber;
-use stead_problem::evaluate::batch::BatchEvaluator;
+use stead_problem::evaluate::batch::{BatchEvaluator, KernelNumber};
 use stead_problem::problem::{MAX_JOINT_STEP, Placement};
 
 /// What one pass over a segment found.
@@ -73,7 +72,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// What bounds the step to a path point from the one before, or from the knot before.
-    fn step_over<E: LaneNumber>(&self, point: usize, change: BetaChange, is_by_knots: bool, sense: Sense) -> Step {
+    fn step_over<E: KernelNumber>(&self, point: usize, change: BetaChange, is_by_knots: bool, sense: Sense) -> Step {
         Step {
             change,
             joints: self.kernel_steps::<E>(point, is_by_knots),
@@ -109,7 +108,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// Adds the scores of a point between knots to the costs of the run; false when no state is left.
-    pub(super) fn add_between<E: LaneNumber>(
+    pub(super) fn add_between<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         point: usize,
@@ -134,7 +133,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// Takes the cheapest predecessors of a knot's states; false when no state is reached.
-    fn reach<E: LaneNumber>(
+    fn reach<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         point: usize,
@@ -153,7 +152,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// Evaluates a path point in some posture classes, without the states in which something hits.
-    pub(super) fn evaluate<E: LaneNumber>(
+    pub(super) fn evaluate<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         point: usize,
@@ -176,7 +175,7 @@ impl SegmentPlanner<'_> {
 
     /// Passes over the points of a segment, in every posture class or in that of the posture given. With `count_only`,
     /// only the blocked points are found.
-    pub(super) fn forward_pass<E: LaneNumber>(
+    pub(super) fn forward_pass<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         workspace: &mut Workspace<E>,
@@ -230,7 +229,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// Continues a class to a point. Returns whether a state is reached, and the point that is not where none is.
-    fn continue_to<E: LaneNumber>(
+    fn continue_to<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         point: usize,
@@ -266,7 +265,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// The beta numbers of the plan that a class ended with, along the segment last swept, in a pass like that.
-    pub(super) fn trace<E: LaneNumber>(
+    pub(super) fn trace<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         class: PostureClass,
@@ -291,7 +290,7 @@ impl SegmentPlanner<'_> {
     }
 
     /// Finds the ways of one class in one block again.
-    fn repeat_block<E: LaneNumber>(
+    fn repeat_block<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         class: PostureClass,

@@ -66,8 +66,8 @@ use segment_planner::{Request, Resolution, SegmentPlanner};
 use std::sync::Arc;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::StopHandle;
-use stead_numerics::simd::LaneNumber;
 use stead_problem::candidate::{Objective, best_of};
+use stead_problem::evaluate::batch::KernelNumber;
 use stead_problem::problem::{BetaPlan, Placement, Problem, Redundancy};
 pub use stead_problem::segment_plan::SegmentPlan;
 use stead_problem::sense::Sense;
@@ -91,6 +91,36 @@ impl NoFeasiblePlan {
         Self { blocked_points: Vec::new(), broken_segments: Vec::new(), collisions: Collisions::new() }
     }
 }
+
+/// Numbers that plans are compared in: for each the planner is compiled in this crate, and not again in those that use
+/// it.
+pub trait PlanNumber: KernelNumber {
+    /// [`Planner::objective`].
+    fn objective(
+        planner: &Planner<'_>,
+        placement: &Placement,
+        sense: Sense,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace<Self>,
+    ) -> Objective;
+}
+
+macro_rules! compiled_here {
+    ($($number:ty),+) => {
+        $(impl PlanNumber for $number {
+            fn objective(
+                planner: &Planner<'_>,
+                placement: &Placement,
+                sense: Sense,
+                scheme: Option<&[Posture]>,
+                workspace: &mut Workspace<Self>,
+            ) -> Objective {
+                planner.objective_in(placement, sense, scheme, workspace)
+            }
+        })+
+    };
+}
+compiled_here!(f64, f32);
 
 /// The planner of one problem: what does not change from one placement to the next.
 #[derive(Debug, Clone)]
@@ -158,17 +188,13 @@ impl<'a> Planner<'a> {
     }
 
     /// The same with numbers of some kind: with `f32` objectives are exact to some 1e-6 of them.
-    pub fn workspace_of<E: LaneNumber>(&self) -> Workspace<E> {
+    pub fn workspace_of<E: KernelNumber>(&self) -> Workspace<E> {
         self.segments.workspace()
     }
 
     /// What the best plan of each segment on the grid adds to the objective at a placement: one row where the posture
     /// may change from segment to segment, else one for each allowed posture; `None` where there is no plan.
-    pub fn segment_costs<E: LaneNumber>(
-        &self,
-        placement: &Placement,
-        workspace: &mut Workspace<E>,
-    ) -> Vec<Vec<Option<f64>>> {
+    pub fn segment_costs(&self, placement: &Placement, workspace: &mut Workspace) -> Vec<Vec<Option<f64>>> {
         let (rules, count) = (&self.problem.postures, self.problem.task.segments().len());
         let schemes: Vec<Option<Vec<Posture>>> = match rules.may_change {
             true => vec![None],
@@ -197,7 +223,17 @@ impl<'a> Planner<'a> {
 
     /// The mean score of the workpiece at a placement under the best or worst plan on the grid, with
     /// the posture scheme found exactly or given (one posture per segment).
-    pub fn objective<E: LaneNumber>(
+    pub fn objective<E: PlanNumber>(
+        &self,
+        placement: &Placement,
+        sense: Sense,
+        scheme: Option<&[Posture]>,
+        workspace: &mut Workspace<E>,
+    ) -> Objective {
+        E::objective(self, placement, sense, scheme, workspace)
+    }
+
+    fn objective_in<E: KernelNumber>(
         &self,
         placement: &Placement,
         sense: Sense,
@@ -206,7 +242,7 @@ impl<'a> Planner<'a> {
     ) -> Objective {
         let schemes = self.problem.unchanging_schemes(scheme);
         if !schemes.is_empty() {
-            let of = |scheme: Vec<Posture>| self.objective(placement, sense, Some(&scheme), workspace);
+            let of = |scheme: Vec<Posture>| self.objective_in(placement, sense, Some(&scheme), workspace);
             return best_of(sense, schemes.into_iter().map(of));
         }
         let request = Request { placement, sense, scheme };
@@ -243,12 +279,12 @@ impl<'a> Planner<'a> {
     ///
     /// # Errors
     /// [`NoFeasiblePlan`] when some point or segment has none.
-    pub fn plan<E: LaneNumber>(
+    pub fn plan(
         &self,
         placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
-        workspace: &mut Workspace<E>,
+        workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         let rules = &self.problem.postures;
         let margin = if sense == Sense::Min && rules.move_weight > 0.0 { f64::INFINITY } else { rules.tie };
@@ -271,12 +307,12 @@ impl<'a> Planner<'a> {
     /// # Errors
     /// [`NoFeasiblePlan`] when some point or segment has no plan on the grid.
     #[expect(clippy::excessive_nesting, reason = "steps of one search that share what it keeps")]
-    pub fn plan_fine<E: LaneNumber>(
+    pub fn plan_fine(
         &self,
         placement: &Placement,
         sense: Sense,
         scheme: Option<&[Posture]>,
-        workspace: &mut Workspace<E>,
+        workspace: &mut Workspace,
     ) -> Result<Vec<SegmentPlan>, NoFeasiblePlan> {
         if self.problem.redundancy.beta == BetaPlan::Constant {
             let plans = self.plan(placement, sense, scheme, workspace)?;
@@ -340,7 +376,7 @@ impl<'a> Planner<'a> {
 
     /// For each segment requested, the plans of its posture classes on the grid that cost at most `margin` (relative)
     /// more than the cheapest, cheapest first.
-    fn choices<E: LaneNumber>(
+    fn choices<E: KernelNumber>(
         &self,
         request: Request<'_>,
         workspace: &mut Workspace<E>,

@@ -1,8 +1,7 @@
 //! What a pass remembers of the ways to its states.
 
 use stead_model::robot::PostureClass;
-use stead_numerics::simd::LaneNumber;
-use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::evaluate::batch::{KernelNumber, StateGrid};
 
 /// The ways by which states were reached, and the costs from which they can be found again.
 #[derive(Debug, Clone)]
@@ -25,7 +24,7 @@ pub(super) const MAX_REACHED: usize = 1 << 21;
 /// Segments whose ways take no more numbers than this are kept whole.
 const MAX_WAYS: usize = 1 << 25;
 
-impl<E: LaneNumber> Record<E> {
+impl<E: KernelNumber> Record<E> {
     /// For segments of up to `longest` points with `count` values of beta.
     pub fn new(longest: usize, count: usize) -> Self {
         Self::with_capacity_of(longest, count, MAX_WAYS)

@@ -7,8 +7,7 @@ use super::segment_planner::Request;
 use super::{SegmentPlanner, StateSet, Workspace};
 use std::borrow::Cow;
 use stead_model::robot::{Posture, PostureClass};
-use stead_numerics::simd::LaneNumber;
-use stead_problem::evaluate::batch::BatchEvaluator;
+use stead_problem::evaluate::batch::{BatchEvaluator, KernelNumber};
 use stead_problem::joint_travel::joint_travel;
 use stead_problem::problem::Placement;
 use stead_problem::sense::Sense;
@@ -99,7 +98,7 @@ impl ClassDrive<'_> {
     }
 
     /// The cheapest path with flips and turns.
-    fn with_turns<E: LaneNumber>(&self, cost: f64, workspace: &mut Workspace<E>) -> Option<CostedPath> {
+    fn with_turns<E: KernelNumber>(&self, cost: f64, workspace: &mut Workspace<E>) -> Option<CostedPath> {
         let flips = [false, true].map(|flip| self.postures.iter().any(|posture| posture.is_flipped() == flip));
         let found = self.planner.path_with_turns(self.pass, self.class, flips, cost, workspace)?;
         Some((self.path(&found.betas), found.cost))
@@ -124,7 +123,7 @@ impl ClassDrive<'_> {
     }
 
     /// The plan by the first way that leads to one.
-    fn choice<E: LaneNumber>(&self, relaxed: CostedPath, workspace: &mut Workspace<E>) -> Option<SegmentChoice> {
+    fn choice<E: KernelNumber>(&self, relaxed: CostedPath, workspace: &mut Workspace<E>) -> Option<SegmentChoice> {
         let mut turns = None;
         let is_tried = |attempt: &Attempt| attempt.is_tried(self.pass.is_by_knots, self.planner.checks_moves());
         Attempt::IN_ORDER.into_iter().filter(is_tried).find_map(|attempt| {
@@ -140,7 +139,7 @@ impl ClassDrive<'_> {
 impl SegmentPlanner<'_> {
     /// Sweeps one segment with every evaluator that evaluates a posture requested, and takes from all together the
     /// cheapest plans; with no `margin`, only the blocked points are found.
-    pub(super) fn segment<E: LaneNumber>(
+    pub(super) fn segment<E: KernelNumber>(
         &self,
         segment: usize,
         request: Request<'_>,
@@ -193,7 +192,7 @@ impl SegmentPlanner<'_> {
     /// Adds the plans of one segment, in the postures of a pass, whose classes and turns keep every joint inside
     /// its limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first.
     /// Returns whether every class that can be cheaper has a plan.
-    fn choose<E: LaneNumber>(
+    fn choose<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         outcome: &ForwardPass,

@@ -8,8 +8,8 @@ use super::{StateSet, between};
 use std::sync::Arc;
 use stead_model::robot::{Posture, PostureClass, turns::Range};
 use stead_numerics::monitor::StopHandle;
-use stead_numerics::simd::{Instructions, LaneNumber};
-use stead_problem::evaluate::batch::{BatchEvaluator, StateGrid};
+use stead_numerics::simd::Instructions;
+use stead_problem::evaluate::batch::{BatchEvaluator, KernelNumber, StateGrid};
 use stead_problem::problem::{Placement, Problem, Redundancy};
 use stead_problem::sense::Sense;
 
@@ -168,7 +168,7 @@ impl<'a> SegmentPlanner<'a> {
 
     /// What bounds the steps of the joints to a path point from the one before, or from the knot before, for numbers
     /// of some kind.
-    pub fn kernel_steps<E: LaneNumber>(&self, point: usize, is_by_knots: bool) -> [JointStep; 6] {
+    pub fn kernel_steps<E: KernelNumber>(&self, point: usize, is_by_knots: bool) -> [JointStep; 6] {
         let JointSteps { direct, to_knots } = &self.joint_steps;
         let steps = if is_by_knots { to_knots[point] } else { direct[point] };
         steps.map(|step| step.with_rounding(E::ROUNDING))
@@ -197,7 +197,7 @@ impl<'a> SegmentPlanner<'a> {
     }
 
     /// Space for one thread, whose numbers are of some kind.
-    pub fn workspace<E: LaneNumber>(&self) -> Workspace<E> {
+    pub fn workspace<E: KernelNumber>(&self) -> Workspace<E> {
         let count = self.grid.beta_count;
         let longest = self.problem.task.segments().iter().map(|s| s.len()).max().unwrap_or(0);
         let before = StateGrid::new(count, self.pad()).with_angles(self.travel > 0.0);

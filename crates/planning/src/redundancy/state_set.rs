@@ -4,8 +4,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use stead_cell::{PairKind, Proximity};
 use stead_model::robot::PostureClass;
-use stead_numerics::simd::LaneNumber;
-use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::evaluate::batch::{KernelNumber, StateGrid};
 use stead_problem::problem::{Problem, Redundancy};
 
 /// A set of states: path point, posture class, number of beta.
@@ -56,7 +55,7 @@ impl StateSet {
     }
 
     /// Takes the states of a point out of what the evaluator has written.
-    pub fn apply<E: LaneNumber>(&self, point: usize, states: &mut StateGrid<E>) {
+    pub fn apply<E: KernelNumber>(&self, point: usize, states: &mut StateGrid<E>) {
         let Some(classes) = self.points.get(&point) else { return };
         for class in PostureClass::ALL {
             let bits = &classes[class.index()];

@@ -10,10 +10,10 @@ use super::rate_limit::BetaChange;
 use std::f64::consts::{PI, TAU};
 use std::marker::PhantomData;
 use stead_model::robot::{PostureClass, angles::ANGLE_ROUNDING, turns::Range};
-use stead_numerics::simd::{Instructions, LaneNumber, Lanes, MAX_LANES, Mask, Simd, WithSimd};
+use stead_numerics::simd::{Instructions, Lanes, MAX_LANES, Mask, Simd, WithSimd};
 use stead_problem::constraints::STEP_ROUNDING;
 use stead_problem::criterion::Aggregate;
-use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::evaluate::batch::{KernelNumber, StateGrid};
 use stead_problem::sense::Sense;
 
 /// What bounds a step from one point to the next.
@@ -116,7 +116,7 @@ impl JointStep {
 }
 
 /// Turns the scores of a segment's first point into costs.
-pub fn begin<E: LaneNumber>(now: &mut StateGrid<E>, class: PostureClass, sign: f64) {
+pub fn begin<E: KernelNumber>(now: &mut StateGrid<E>, class: PostureClass, sign: f64) {
     for score in now.scores_mut(class).iter_mut() {
         if score.get().is_finite() {
             *score = E::of(score.get() * sign);
@@ -129,7 +129,7 @@ pub fn begin<E: LaneNumber>(now: &mut StateGrid<E>, class: PostureClass, sign: f
 ///
 /// Rows of `before` must be continued cyclically (see [`StateGrid::wrap_around`]) by at least [`BetaChange::widest`],
 /// and where joint travel counts, both must keep angles (see [`StateGrid::with_angles`]).
-pub fn advance<E: LaneNumber>(
+pub fn advance<E: KernelNumber>(
     before: &StateGrid<E>,
     now: &mut StateGrid<E>,
     class: PostureClass,
@@ -140,7 +140,7 @@ pub fn advance<E: LaneNumber>(
 }
 
 /// The same over a run of points, with what the points between cost.
-pub(super) fn advance_over<E: LaneNumber>(
+pub(super) fn advance_over<E: KernelNumber>(
     before: &StateGrid<E>,
     now: &mut StateGrid<E>,
     class: PostureClass,
@@ -152,7 +152,7 @@ pub(super) fn advance_over<E: LaneNumber>(
 }
 
 #[inline]
-fn advance_by<R: Rules, E: LaneNumber>(
+fn advance_by<R: Rules, E: KernelNumber>(
     before: &StateGrid<E>,
     now: &mut StateGrid<E>,
     class: PostureClass,
@@ -194,7 +194,7 @@ struct Advance<'s, R, E> {
     rules: PhantomData<R>,
 }
 
-impl<R: Rules, E: LaneNumber> WithSimd for Advance<'_, R, E> {
+impl<R: Rules, E: KernelNumber> WithSimd for Advance<'_, R, E> {
     type Number = E;
     type Output = bool;
 
@@ -271,7 +271,7 @@ struct Band<'s, R, E> {
     rules: PhantomData<R>,
 }
 
-impl<'s, R: Rules, E: LaneNumber> Band<'s, R, E> {
+impl<'s, R: Rules, E: KernelNumber> Band<'s, R, E> {
     #[inline(always)]
     fn new(costs: &'s [E], change: BetaChange, between: Option<Between<'s, E>>) -> Self {
         Self {
@@ -347,7 +347,7 @@ impl<'s, R: Rules, E: LaneNumber> Band<'s, R, E> {
     }
 }
 
-impl<R: Rules, E: LaneNumber> Band<'_, R, E> {
+impl<R: Rules, E: KernelNumber> Band<'_, R, E> {
     /// The same with the joint travel from each predecessor.
     #[inline(always)]
     fn calmest<S: Simd<Number = E>>(
@@ -394,7 +394,7 @@ struct Joints<'s, R, E> {
     rules: PhantomData<R>,
 }
 
-impl<'s, R: Rules, E: LaneNumber> Joints<'s, R, E> {
+impl<'s, R: Rules, E: KernelNumber> Joints<'s, R, E> {
     #[inline(always)]
     fn new(before: [&'s [E]; 2], now: [&'s [E]; 2], stride: usize, step: &Step) -> Self {
         let ([old, old_angles], [new, new_angles]) = (before, now);

@@ -21,9 +21,8 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 use stead_model::robot::angles::ANGLE_ROUNDING;
 use stead_model::robot::{PostureClass, Robot, turns};
-use stead_numerics::simd::LaneNumber;
 use stead_problem::constraints::STEP_ROUNDING;
-use stead_problem::evaluate::batch::StateGrid;
+use stead_problem::evaluate::batch::{KernelNumber, StateGrid};
 
 /// Nodes whose predecessors are kept at the most; longer segments are gone through in blocks.
 const MAX_NODES: usize = 1 << 22;
@@ -120,7 +119,7 @@ impl Ways {
 
 impl Layer {
     /// Fills in what is allowed of a posture class in the states requested, without costs.
-    fn fill<E: LaneNumber>(
+    fn fill<E: KernelNumber>(
         &mut self,
         states: &StateGrid<E>,
         is_requested: impl Fn(usize) -> bool,
@@ -194,7 +193,7 @@ struct Backward<'s, E> {
     last: usize,
 }
 
-impl<E: LaneNumber> Stages for Backward<'_, E> {
+impl<E: KernelNumber> Stages for Backward<'_, E> {
     type Layer = Layer;
     type Links = Ways;
 
@@ -222,7 +221,7 @@ impl<E: LaneNumber> Stages for Backward<'_, E> {
 impl SegmentPlanner<'_> {
     /// The cheapest path of a posture class in the flips requested, with every joint inside its limits at the knots of
     /// a pass, which has just been made and found one of this cost without regard to flips and turns.
-    pub(super) fn path_with_turns<E: LaneNumber>(
+    pub(super) fn path_with_turns<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         class: PostureClass,
@@ -247,7 +246,7 @@ impl SegmentPlanner<'_> {
 
 impl Search<'_> {
     /// The path, with the links of so many knots kept at a time.
-    fn path<E: LaneNumber>(&self, block: usize, workspace: &mut Workspace<E>) -> Option<TurnsPath> {
+    fn path<E: KernelNumber>(&self, block: usize, workspace: &mut Workspace<E>) -> Option<TurnsPath> {
         let (planner, pass) = (self.planner, self.pass);
         let knots = planner.knot_count(pass);
         let mut betas = vec![0; pass.span.len()];
@@ -259,7 +258,7 @@ impl Search<'_> {
     }
 
     /// Evaluates a path point in the posture class alone.
-    fn evaluate<E: LaneNumber>(&self, point: usize, workspace: &mut Workspace<E>) {
+    fn evaluate<E: KernelNumber>(&self, point: usize, workspace: &mut Workspace<E>) {
         let requested = PostureClass::ALL.map(|class| class == self.class);
         self.planner.evaluate(self.pass, point, requested, workspace);
     }
@@ -270,7 +269,7 @@ impl Search<'_> {
 
     /// Fills the layer of a knot that has just been evaluated with the nodes from which the start may be reached, where
     /// what follows costs `rest` at the least.
-    fn fill<E: LaneNumber>(&self, layer: &mut Layer, knot: usize, rest: Option<f64>, workspace: &Workspace<E>) {
+    fn fill<E: KernelNumber>(&self, layer: &mut Layer, knot: usize, rest: Option<f64>, workspace: &Workspace<E>) {
         let reached = workspace.record.reached(knot, self.class);
         let is_requested = |beta: usize| {
             reached.is_none_or(|costs| {
@@ -281,7 +280,7 @@ impl Search<'_> {
     }
 
     /// The layer of the last point, where it has states.
-    fn last<E: LaneNumber>(&self, workspace: &mut Workspace<E>) -> Option<Layer> {
+    fn last<E: KernelNumber>(&self, workspace: &mut Workspace<E>) -> Option<Layer> {
         let knot = self.planner.knot_count(self.pass) - 1;
         self.evaluate(self.planner.knot(self.pass, knot), workspace);
         let mut layer = Layer::default();
@@ -294,7 +293,7 @@ impl Search<'_> {
     }
 
     /// Goes back to a knot from the next one, where some of its states go on; `before` is room for its layer.
-    fn go_back<E: LaneNumber>(
+    fn go_back<E: KernelNumber>(
         &self,
         layer: &mut Layer,
         before: &mut Layer,
@@ -319,7 +318,7 @@ impl Search<'_> {
 
     /// Gives each node its cheapest successor. Of equal ones the nearest in beta is taken.
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
-    fn connect<E: LaneNumber>(
+    fn connect<E: KernelNumber>(
         &self,
         layer: &mut Layer,
         after: &Layer,

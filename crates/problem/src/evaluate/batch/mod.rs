@@ -46,6 +46,37 @@ struct Set {
     normal: Normal,
 }
 
+/// Numbers that the evaluator works in: for each it is compiled in this crate, and not again in those that use it.
+pub trait KernelNumber: LaneNumber {
+    /// [`BatchEvaluator::evaluate_some`].
+    fn evaluate_some(
+        evaluator: &BatchEvaluator<'_>,
+        point: usize,
+        placement: &Placement,
+        classes: [bool; 4],
+        only_beta: Option<usize>,
+        states: &mut StateGrid<Self>,
+    );
+}
+
+macro_rules! compiled_here {
+    ($($number:ty),+) => {
+        $(impl KernelNumber for $number {
+            fn evaluate_some(
+                evaluator: &BatchEvaluator<'_>,
+                point: usize,
+                placement: &Placement,
+                classes: [bool; 4],
+                only_beta: Option<usize>,
+                states: &mut StateGrid<Self>,
+            ) {
+                evaluator.evaluate_some_in(point, placement, classes, only_beta, states);
+            }
+        })+
+    };
+}
+compiled_here!(f64, f32);
+
 /// What does not change from one placement to the next.
 #[derive(Debug, Clone)]
 pub struct BatchEvaluator<'a> {
@@ -259,13 +290,24 @@ impl<'a> BatchEvaluator<'a> {
     /// the sines and cosines of their joint angles (theta_5 not negative), all others an infinite score. A state is
     /// allowed when one of the postures requested is inside the limits of every joint by itself; turns, and limits that
     /// tell two postures apart, are checked by the planner.
-    pub fn evaluate<E: LaneNumber>(&self, point: usize, placement: &Placement, states: &mut StateGrid<E>) {
+    pub fn evaluate<E: KernelNumber>(&self, point: usize, placement: &Placement, states: &mut StateGrid<E>) {
         self.evaluate_some(point, placement, [true; 4], None, states);
     }
 
     /// The same with states of some posture classes only, by their [`PostureClass::index`], and on request of one
     /// number of beta.
-    pub fn evaluate_some<E: LaneNumber>(
+    pub fn evaluate_some<E: KernelNumber>(
+        &self,
+        point: usize,
+        placement: &Placement,
+        classes: [bool; 4],
+        only_beta: Option<usize>,
+        states: &mut StateGrid<E>,
+    ) {
+        E::evaluate_some(self, point, placement, classes, only_beta, states);
+    }
+
+    fn evaluate_some_in<E: LaneNumber>(
         &self,
         point: usize,
         placement: &Placement,

@@ -105,7 +105,7 @@ fn what_makes_no_forces_is_refused() {
     far.stock = stock([[0.0, -30.0, 980.0], [80.0, 30.0, 1000.0]], &Pose::identity());
     assert_eq!(refused(&far), ForcesError::Untouched);
     let mut small = slot();
-    (small.cell, small.memory) = (Some(1e-5), 1e7);
+    (small.cell, small.memory) = (Some(1e-5), 2e6);
     let ForcesError::Memory { fits: Some(fits), .. } = refused(&small) else { panic!("not refused") };
     small.cell = Some(fits);
     assert!(forces(&small, &Monitor::silent()).is_ok());
