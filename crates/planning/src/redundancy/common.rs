@@ -6,6 +6,7 @@
 
 use super::forward_pass::Pass;
 use super::off_grid::{MIN_GAIN, Spacing, replay};
+use super::segment::Sought;
 use super::segment_planner::Request;
 use super::{NoFeasiblePlan, Planner, SegmentPlan, Workspace};
 use crate::compass::CompassSteps;
@@ -53,7 +54,8 @@ impl Planner<'_> {
         if let Some(best) = best {
             return Objective::Feasible(best);
         }
-        let mut blocked = |segment: usize| self.segments.segment(segment, request, workspace, None).blocked.len();
+        let mut blocked =
+            |segment: usize| self.segments.segment(segment, request, workspace, Sought::Blocked).blocked.len();
         match (0..self.problem.task.segments().len()).map(&mut blocked).sum() {
             // Where no beta does, the one with the fewest failed segments gives their number.
             0 => {

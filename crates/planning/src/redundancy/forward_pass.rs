@@ -192,8 +192,16 @@ impl SegmentPlanner<'_> {
             if self.unwanted.is_set() {
                 return forward_pass;
             }
-            self.evaluate(pass, point, requested, workspace);
-            if PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class)) {
+            // A class that is stuck is evaluated only where that tells whether the point is blocked.
+            let live =
+                PostureClass::ALL.map(PostureClass::index).map(|k| requested[k] && forward_pass.stuck[k].is_none());
+            let is_blocked =
+                |workspace: &Workspace<E>| PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class));
+            self.evaluate(pass, point, live, workspace);
+            if live != requested && is_blocked(workspace) {
+                self.evaluate(pass, point, requested, workspace);
+            }
+            if is_blocked(workspace) {
                 forward_pass.blocked.push(point);
             }
             if count_only {

@@ -61,6 +61,7 @@ pub use until_free::{Lazy, until_free};
 use grid::finer;
 use off_grid::Spacing;
 use rayon::prelude::*;
+use segment::Sought;
 pub use segment_planner::Workspace;
 use segment_planner::{Request, Resolution, SegmentPlanner};
 use std::sync::Arc;
@@ -203,7 +204,7 @@ impl<'a> Planner<'a> {
         let mut costs = |scheme: Option<Vec<Posture>>| {
             let request = Request { placement, sense: Sense::Min, scheme: scheme.as_deref() };
             let cost = |segment: usize| {
-                let found = self.segments.segment(segment, request, workspace, Some(0.0));
+                let found = self.segments.segment(segment, request, workspace, Sought::Cost);
                 found.choices.first().map(|choice| choice.cost)
             };
             (0..count).map(cost).collect()
@@ -255,8 +256,8 @@ impl<'a> Planner<'a> {
         let mut costs = Vec::with_capacity(self.problem.task.segments().len());
         let (mut points, mut segments) = (0, 0);
         for segment in 0..self.problem.task.segments().len() {
-            let margin = if points > 0 { None } else { Some(0.0) };
-            let found = self.segments.segment(segment, request, workspace, margin);
+            let sought = if points > 0 { Sought::Blocked } else { Sought::Cost };
+            let found = self.segments.segment(segment, request, workspace, sought);
             points += found.blocked.len();
             if points > 0 {
                 continue;
@@ -386,7 +387,7 @@ impl<'a> Planner<'a> {
         let mut failure = NoFeasiblePlan::empty();
         let mut all = Vec::new();
         let of = |workspace: &mut Workspace<E>, index: &usize| {
-            self.segments.segment(*index, request, workspace, Some(margin))
+            self.segments.segment(*index, request, workspace, Sought::Plans(margin))
         };
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
             true => {

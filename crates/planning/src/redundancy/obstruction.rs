@@ -4,6 +4,7 @@
 //! the point that none gets to is what stops it.
 
 use super::grid::finer;
+use super::segment::Sought;
 use super::segment_planner::Request;
 use super::{Resolution, SegmentPlanner};
 use stead_model::robot::Posture;
@@ -59,7 +60,7 @@ impl<'a> Obstruction<'a> {
                 break;
             }
             let gets_past = |planner: &SegmentPlanner<'_>| {
-                let options = planner.segment(segment, request, &mut planner.workspace::<f64>(), Some(0.0));
+                let options = planner.segment(segment, request, &mut planner.workspace::<f64>(), Sought::Plans(0.0));
                 !options.choices.is_empty() || options.farthest > point
             };
             if planners.iter().any(gets_past) {

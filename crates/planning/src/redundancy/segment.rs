@@ -22,6 +22,17 @@ pub(super) struct SegmentOptions {
     pub farthest: usize,
 }
 
+/// What is sought of a segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sought {
+    /// The blocked points alone.
+    Blocked,
+    /// The cost of the cheapest plan: one way to drive it is enough.
+    Cost,
+    /// All plans that cost at most so much (relative) more than the cheapest.
+    Plans(f64),
+}
+
 /// How a segment is gone through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Strategy {
@@ -83,6 +94,7 @@ struct ClassDrive<'s> {
     pass: Pass<'s>,
     class: PostureClass,
     postures: Vec<Posture>,
+    sought: Sought,
     /// States that hit.
     forbidden: &'s StateSet,
 }
@@ -118,7 +130,11 @@ impl ClassDrive<'_> {
                 Cow::Owned(self.planner.followed(span, placement, posture, path)?)
             }
         };
-        let choice = self.planner.unwind(span, placement, &made, &self.postures, cost * sense.sign())?;
+        let unwound = |postures: &[Posture]| self.planner.unwind(span, placement, &made, postures, cost * sense.sign());
+        let choice = match self.sought {
+            Sought::Cost => self.postures.chunks(1).find_map(unwound)?,
+            _ => unwound(&self.postures)?,
+        };
         if is_by_knots { self.planner.recosted(placement, sense, choice) } else { Some(choice) }
     }
 
@@ -138,17 +154,17 @@ impl ClassDrive<'_> {
 
 impl SegmentPlanner<'_> {
     /// Sweeps one segment with every evaluator that evaluates a posture requested, and takes from all together the
-    /// cheapest plans; with no `margin`, only the blocked points are found.
+    /// cheapest plans.
     pub(super) fn segment<E: KernelNumber>(
         &self,
         segment: usize,
         request: Request<'_>,
         workspace: &mut Workspace<E>,
-        margin: Option<f64>,
+        sought: Sought,
     ) -> SegmentOptions {
         let span = &self.problem.task.segments()[segment];
         let mut found = SegmentOptions { choices: Vec::new(), blocked: span.clone().collect(), farthest: span.start };
-        let is_spread = margin.is_some() && self.knots.is_spread(span);
+        let is_spread = sought != Sought::Blocked && self.knots.is_spread(span);
         for evaluator in &self.evaluators {
             let Request { placement, sense, .. } = request;
             let of = Pass { evaluator, span, placement, sense, only: request.posture(segment), is_by_knots: false };
@@ -163,12 +179,14 @@ impl SegmentPlanner<'_> {
                     continue;
                 }
                 let pass = Pass { sense: if is_of_other_sense { sense.other() } else { sense }, is_by_knots, ..of };
-                let forward_pass = self.forward_pass(pass, workspace, margin.is_none());
+                let forward_pass = self.forward_pass(pass, workspace, sought == Sought::Blocked);
                 found.blocked.retain(|point| forward_pass.blocked.binary_search(point).is_ok());
-                let Some(margin) = margin else { break };
+                if sought == Sought::Blocked {
+                    break;
+                }
                 found.farthest = found.farthest.max(forward_pass.farthest(span));
                 has_knots &= !is_by_knots || forward_pass.ends.iter().any(Option::is_some);
-                let has_all = self.choose(pass, &forward_pass, workspace, margin, &mut found.choices);
+                let has_all = self.choose(pass, &forward_pass, workspace, sought, &mut found.choices);
                 let travel = self.travel_cost(sense) - self.travel_cost(pass.sense);
                 if is_of_other_sense && travel != 0.0 {
                     found.choices.iter_mut().for_each(|choice| choice.cost += travel * travelled(choice));
@@ -190,18 +208,19 @@ impl SegmentPlanner<'_> {
     }
 
     /// Adds the plans of one segment, in the postures of a pass, whose classes and turns keep every joint inside
-    /// its limits, and keeps of all the cheapest, and those that cost at most `margin` (relative) more, cheapest first.
+    /// its limits, and keeps of all the cheapest, and those that are sought beside it, cheapest first.
     /// Returns whether every class that can be cheaper has a plan.
     fn choose<E: KernelNumber>(
         &self,
         pass: Pass<'_>,
         outcome: &ForwardPass,
         workspace: &mut Workspace<E>,
-        margin: f64,
+        sought: Sought,
         found: &mut Vec<SegmentChoice>,
     ) -> bool {
         let forbidden = workspace.forbidden.clone();
         let mut has_all = outcome.ends.iter().any(Option::is_some);
+        let margin = if let Sought::Plans(margin) = sought { margin } else { 0.0 };
         // The classes by rising cost; what flips and turns allow of a class can only cost more than its relaxation.
         let mut order: Vec<(f64, PostureClass)> = PostureClass::ALL
             .into_iter()
@@ -216,7 +235,7 @@ impl SegmentPlanner<'_> {
             }
             let postures: Vec<Posture> =
                 class.postures().into_iter().filter(|posture| self.is_requested(pass, *posture)).collect();
-            let drive = ClassDrive { planner: self, pass, class, postures, forbidden: &forbidden };
+            let drive = ClassDrive { planner: self, pass, class, postures, sought, forbidden: &forbidden };
             let relaxed = drive.path(&self.trace(pass, class, outcome, workspace));
             let choice = drive.choice((relaxed, cost), workspace);
             has_all &= choice.is_some();

@@ -6,7 +6,7 @@ use stead_model::robot::angles::yaw_from_q4;
 use stead_model::robot::{Compliance, Joint, PostureClass, Robot};
 use stead_model::task::{PathPoint, Task, ToolPath};
 use stead_problem::criterion::{Aggregate, Weights};
-use stead_problem::evaluate::batch::BatchEvaluator;
+use stead_problem::evaluate::batch::{BatchEvaluator, StateGrid};
 use stead_problem::testing::{
     assert_sound, compensated, five_segments, with_axes_2_3, with_beta_rate, with_laws, with_prototype_steps,
 };
@@ -277,6 +277,40 @@ fn says_which_points_and_segments_have_no_plan() {
     let none = planner.plan(&published_optimum(), Sense::Min, None, &mut planner.workspace()).unwrap_err();
     assert!(none.blocked_points.is_empty());
     assert_eq!(none.broken_segments, [(0, 1), (1, 22), (2, 43), (3, 64), (4, 85)]);
+}
+
+/// A class that is stuck is evaluated no further; blocked points are those without a state in any class all the same.
+#[test]
+fn blocked_points_are_those_without_a_state_where_classes_were_stuck_before() {
+    let problem = with_prototype_steps(five_segments());
+    let planner = Planner::new(&problem);
+    let (mut space, mut states) = (planner.workspace(), StateGrid::<f64>::new(planner.grid().beta_count, 0));
+    let (mut free, mut blocked) = (0, 0);
+    for k in 0..600 {
+        let [x, y, z] = [k % 5, k / 5 % 10, k / 50].map(f64::from);
+        let placement = Placement::from([0.3 * x - 0.6, -2.9 + 0.2 * y, -1.4 + 0.2 * z, 0.7 * f64::from(k)]);
+        let is_blocked = |point: &usize| {
+            planner.segments.evaluators.iter().all(|evaluator| {
+                evaluator.evaluate(*point, &placement, &mut states);
+                PostureClass::ALL.into_iter().all(|class| !states.is_alive(class))
+            })
+        };
+        let expected: Vec<usize> = (0..problem.task.points().len()).filter(is_blocked).collect();
+        let found = planner.objective(&placement, Sense::Min, None, &mut space);
+        match planner.plan(&placement, Sense::Min, None, &mut space) {
+            Ok(_) => {
+                assert!(expected.is_empty() && found.mean().is_some());
+                free += 1;
+            }
+            Err(none) => {
+                assert_eq!(none.blocked_points, expected, "{placement:?}");
+                let points = expected.len();
+                assert!(matches!(found, Objective::Infeasible { points: said, .. } if said == points), "{found:?}");
+                blocked += usize::from(points > 0);
+            }
+        }
+    }
+    assert!(free > 100 && blocked > 100, "{free} {blocked}");
 }
 
 #[test]

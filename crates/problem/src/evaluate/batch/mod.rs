@@ -444,13 +444,17 @@ impl<E: LaneNumber> Evaluation<'_, E> {
             let sine = Lanes::load(simd, sines, start);
             let centre = evaluator.centre(simd, &constants, cosine, sine);
             for back in [false, true] {
+                let both = 2 * usize::from(back);
+                if !(classes[both] || classes[both + 1]) {
+                    continue;
+                }
                 let arm = evaluator.arm(simd, &constants.limits, &centre, back);
                 if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
                     continue;
                 }
                 let demand = Demand::<S, N>::new::<WHOLE>(simd, &constants, &arm, cosine, sine);
                 for (negative, elbow) in arm.elbows.iter().enumerate() {
-                    let class = PostureClass::ALL[2 * usize::from(back) + negative];
+                    let class = PostureClass::ALL[both + negative];
                     if !classes[class.index()] || !elbow.allowed.any() {
                         continue;
                     }
