@@ -193,12 +193,12 @@ impl SegmentPlanner<'_> {
                 return forward_pass;
             }
             // A class that is stuck is evaluated only where that tells whether the point is blocked.
-            let live =
-                PostureClass::ALL.map(PostureClass::index).map(|k| requested[k] && forward_pass.stuck[k].is_none());
+            let live: [bool; 4] = std::array::from_fn(|k| requested[k] && forward_pass.stuck[k].is_none());
+            let classes = if live.contains(&true) { live } else { requested };
             let is_blocked =
                 |workspace: &Workspace<E>| PostureClass::ALL.iter().all(|class| !workspace.now.is_alive(*class));
-            self.evaluate(pass, point, live, workspace);
-            if live != requested && is_blocked(workspace) {
+            self.evaluate(pass, point, classes, workspace);
+            if classes != requested && is_blocked(workspace) {
                 self.evaluate(pass, point, requested, workspace);
             }
             if is_blocked(workspace) {

@@ -97,26 +97,14 @@ impl NoFeasiblePlan {
 /// it.
 pub trait PlanNumber: KernelNumber {
     /// [`Planner::objective`].
-    fn objective(
-        planner: &Planner<'_>,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
-        workspace: &mut Workspace<Self>,
-    ) -> Objective;
+    fn objective(planner: &Planner<'_>, request: Request<'_>, workspace: &mut Workspace<Self>) -> Objective;
 }
 
 macro_rules! compiled_here {
     ($($number:ty),+) => {
         $(impl PlanNumber for $number {
-            fn objective(
-                planner: &Planner<'_>,
-                placement: &Placement,
-                sense: Sense,
-                scheme: Option<&[Posture]>,
-                workspace: &mut Workspace<Self>,
-            ) -> Objective {
-                planner.objective_in(placement, sense, scheme, workspace)
+            fn objective(planner: &Planner<'_>, request: Request<'_>, workspace: &mut Workspace<Self>) -> Objective {
+                planner.objective_of(request, workspace)
             }
         })+
     };
@@ -231,22 +219,15 @@ impl<'a> Planner<'a> {
         scheme: Option<&[Posture]>,
         workspace: &mut Workspace<E>,
     ) -> Objective {
-        E::objective(self, placement, sense, scheme, workspace)
+        E::objective(self, Request { placement, sense, scheme }, workspace)
     }
 
-    fn objective_in<E: KernelNumber>(
-        &self,
-        placement: &Placement,
-        sense: Sense,
-        scheme: Option<&[Posture]>,
-        workspace: &mut Workspace<E>,
-    ) -> Objective {
-        let schemes = self.problem.unchanging_schemes(scheme);
+    fn objective_of<E: KernelNumber>(&self, request: Request<'_>, workspace: &mut Workspace<E>) -> Objective {
+        let schemes = self.problem.unchanging_schemes(request.scheme);
         if !schemes.is_empty() {
-            let of = |scheme: Vec<Posture>| self.objective_in(placement, sense, Some(&scheme), workspace);
-            return best_of(sense, schemes.into_iter().map(of));
+            let of = |scheme: Vec<Posture>| self.objective_of(Request { scheme: Some(&scheme), ..request }, workspace);
+            return best_of(request.sense, schemes.into_iter().map(of));
         }
-        let request = Request { placement, sense, scheme };
         if self.chooses_common_beta(workspace) {
             return self.common_objective(request, workspace);
         }

@@ -60,7 +60,7 @@ impl<'a> Obstruction<'a> {
                 break;
             }
             let gets_past = |planner: &SegmentPlanner<'_>| {
-                let options = planner.segment(segment, request, &mut planner.workspace::<f64>(), Sought::Plans(0.0));
+                let options = planner.segment(segment, request, &mut planner.workspace::<f64>(), Sought::Cost);
                 !options.choices.is_empty() || options.farthest > point
             };
             if planners.iter().any(gets_past) {

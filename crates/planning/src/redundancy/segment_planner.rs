@@ -38,7 +38,7 @@ impl Resolution {
 /// What is planned: the workpiece at a placement, the best or the worst plan, with one posture for each segment where
 /// they are given.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Request<'a> {
+pub struct Request<'a> {
     pub placement: &'a Placement,
     pub sense: Sense,
     pub scheme: Option<&'a [Posture]>,

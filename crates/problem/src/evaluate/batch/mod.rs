@@ -18,14 +18,15 @@ mod laws;
 mod limit;
 mod pose;
 mod states;
+mod variants;
 mod whole;
 mod wrist;
 
 pub use at::PlacedPoint;
 pub use states::StateGrid;
+pub use variants::KernelNumber;
 
 use crate::constraints::{ConstraintKind, relaxed};
-use crate::criterion::Aggregate;
 use crate::problem::{Placement, Problem, Redundancy};
 use deviation::Deviation;
 use laws::Laws;
@@ -34,9 +35,9 @@ use nalgebra::{Matrix3, Vector3};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass, Robot, turns::Range};
 use stead_model::task::PathPoint;
-use stead_numerics::simd::{Instructions, LaneNumber, LaneRows, Lanes, MAX_LANES, Simd, WithSimd};
+use stead_numerics::simd::{Instructions, LaneNumber, LaneRows, Lanes, MAX_LANES, Simd};
+use variants::Evaluation;
 use whole::{Fixed, FixedParts, Normal, PlacedLoad};
-use wrist::Demand;
 
 /// A set of compliances.
 #[derive(Debug, Clone)]
@@ -45,37 +46,6 @@ struct Set {
     deviation: Option<Deviation>,
     normal: Normal,
 }
-
-/// Numbers that the evaluator works in: for each it is compiled in this crate, and not again in those that use it.
-pub trait KernelNumber: LaneNumber {
-    /// [`BatchEvaluator::evaluate_some`].
-    fn evaluate_some(
-        evaluator: &BatchEvaluator<'_>,
-        point: usize,
-        placement: &Placement,
-        classes: [bool; 4],
-        only_beta: Option<usize>,
-        states: &mut StateGrid<Self>,
-    );
-}
-
-macro_rules! compiled_here {
-    ($($number:ty),+) => {
-        $(impl KernelNumber for $number {
-            fn evaluate_some(
-                evaluator: &BatchEvaluator<'_>,
-                point: usize,
-                placement: &Placement,
-                classes: [bool; 4],
-                only_beta: Option<usize>,
-                states: &mut StateGrid<Self>,
-            ) {
-                evaluator.evaluate_some_in(point, placement, classes, only_beta, states);
-            }
-        })+
-    };
-}
-compiled_here!(f64, f32);
 
 /// What does not change from one placement to the next.
 #[derive(Debug, Clone)]
@@ -304,17 +274,6 @@ impl<'a> BatchEvaluator<'a> {
         only_beta: Option<usize>,
         states: &mut StateGrid<E>,
     ) {
-        E::evaluate_some(self, point, placement, classes, only_beta, states);
-    }
-
-    fn evaluate_some_in<E: LaneNumber>(
-        &self,
-        point: usize,
-        placement: &Placement,
-        classes: [bool; 4],
-        only_beta: Option<usize>,
-        states: &mut StateGrid<E>,
-    ) {
         let placed = self.placed(point, placement);
         let betas = only_beta.map_or(0..self.count, |only| only..only + 1);
         self.run(&placed, classes, [&self.sine, &self.cosine].map(E::row), betas, states);
@@ -324,7 +283,7 @@ impl<'a> BatchEvaluator<'a> {
     }
 
     /// Evaluates the values of beta with these sines and cosines, and their neighbours in the same lanes.
-    fn run<E: LaneNumber>(
+    fn run<E: KernelNumber>(
         &self,
         placed: &PlacedPoint,
         classes: [bool; 4],
@@ -341,16 +300,7 @@ impl<'a> BatchEvaluator<'a> {
         }
         let evaluation =
             Evaluation { evaluator: self, geometry: &placed.geometry, classes, sine, cosine, betas, states };
-        match (self.fixed.is_some(), self.problem.criterion.weights.is_single(), placed.is_plain) {
-            (false, true, true) => self.instructions.run(Variant::<E, true, false, 1>(evaluation)),
-            (false, true, false) => self.instructions.run(Variant::<E, false, false, 1>(evaluation)),
-            (false, false, true) => self.instructions.run(Variant::<E, true, false, 3>(evaluation)),
-            (false, false, false) => self.instructions.run(Variant::<E, false, false, 3>(evaluation)),
-            (true, true, true) => self.instructions.run(Variant::<E, true, true, 1>(evaluation)),
-            (true, true, false) => self.instructions.run(Variant::<E, false, true, 1>(evaluation)),
-            (true, false, true) => self.instructions.run(Variant::<E, true, true, 3>(evaluation)),
-            (true, false, false) => self.instructions.run(Variant::<E, false, true, 3>(evaluation)),
-        }
+        E::evaluate(evaluation, placed.is_plain);
     }
 
     fn point_geometry(&self, point: usize, placement: &Placement) -> PointGeometry {
@@ -398,76 +348,6 @@ impl<'a> BatchEvaluator<'a> {
         let uncertainty =
             self.problem.criterion.force_uncertainty * self.problem.task.loads()[point].wrench.force.norm();
         uncertainty == 0.0 && matches!(self.sets[..], [Set { deviation: None, .. }])
-    }
-}
-
-/// The evaluation of one point, for any instructions of the processor.
-struct Evaluation<'k, E> {
-    evaluator: &'k BatchEvaluator<'k>,
-    geometry: &'k PointGeometry,
-    classes: [bool; 4],
-    /// Of all values of beta.
-    sine: &'k [E],
-    cosine: &'k [E],
-    /// Numbers of beta; their neighbours in the same lanes are evaluated too.
-    betas: Span<usize>,
-    states: &'k mut StateGrid<E>,
-}
-
-/// The evaluation with `N` scored directions, 1 or 3 (see [`Load`](pose::Load)); `PLAIN` where there is one set of
-/// compliances, and scores cover no errors; `WHOLE` where more than the joints about their axes yields. Each is a
-/// function of its own: what one needs costs the others nothing, and without optimisation none needs the stack of all.
-struct Variant<'k, E, const PLAIN: bool, const WHOLE: bool, const N: usize>(Evaluation<'k, E>);
-
-impl<E: LaneNumber, const PLAIN: bool, const WHOLE: bool, const N: usize> WithSimd for Variant<'_, E, PLAIN, WHOLE, N> {
-    type Number = E;
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd<Number = E>>(self, simd: S) {
-        self.0.batches::<S, PLAIN, WHOLE, N>(simd);
-    }
-}
-
-impl<E: LaneNumber> Evaluation<'_, E> {
-    /// As [`Variant`].
-    #[inline(always)]
-    #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
-    fn batches<S: Simd<Number = E>, const PLAIN: bool, const WHOLE: bool, const N: usize>(self, simd: S) {
-        let Self { evaluator, geometry, classes, sine: sines, cosine: cosines, betas, states } = self;
-        let constants = Constants::<E>::new(geometry, &evaluator.limits);
-        let infinity = Lanes::splat(simd, f64::INFINITY);
-        let is_squared = evaluator.problem.criterion.aggregate == Aggregate::Rms;
-        let first = betas.start - betas.start % Lanes::<S>::COUNT;
-        for start in (first..betas.end).step_by(Lanes::<S>::COUNT) {
-            let cosine = Lanes::load(simd, cosines, start);
-            let sine = Lanes::load(simd, sines, start);
-            let centre = evaluator.centre(simd, &constants, cosine, sine);
-            for back in [false, true] {
-                let both = 2 * usize::from(back);
-                if !(classes[both] || classes[both + 1]) {
-                    continue;
-                }
-                let arm = evaluator.arm(simd, &constants.limits, &centre, back);
-                if !(arm.elbows[0].allowed | arm.elbows[1].allowed).any() {
-                    continue;
-                }
-                let demand = Demand::<S, N>::new::<WHOLE>(simd, &constants, &arm, cosine, sine);
-                for (negative, elbow) in arm.elbows.iter().enumerate() {
-                    let class = PostureClass::ALL[both + negative];
-                    if !classes[class.index()] || !elbow.allowed.any() {
-                        continue;
-                    }
-                    let found = evaluator.wrist::<S, PLAIN, WHOLE, N>(simd, &constants, &demand, &arm, elbow);
-                    if let Some((score, directions)) = found {
-                        let cost = if is_squared { score * score } else { score };
-                        // A point of no weight has forbidden states too.
-                        let cost = score.less(infinity).select(cost * geometry.weight, infinity);
-                        states.set_lanes(class, start, cost, &directions);
-                    }
-                }
-            }
-        }
     }
 }
 
