@@ -18,8 +18,6 @@ use stead_problem::symmetry::apart_about_axis_1;
 #[derive(Debug, Clone)]
 pub struct Evaluator<'a> {
     planner: &'a Planner<'a>,
-    /// Decides where the grid of the planner is too coarse to get through a segment.
-    finer: Option<&'a Planner<'a>>,
     table: Option<&'a LookupTable<'a>>,
     /// Tells neighbours of a refined placement apart before they are planned.
     coarser: Option<&'a Planner<'a>>,
@@ -29,17 +27,10 @@ pub struct Evaluator<'a> {
 /// Scratch space of one thread.
 #[derive(Debug, Default)]
 pub struct Workspace {
-    exact: PlannerSpace<f64>,
-    rough: PlannerSpace<f32>,
+    exact: Option<redundancy::Workspace<f64>>,
+    rough: Option<redundancy::Workspace<f32>>,
     coarser: Option<redundancy::Workspace<f32>>,
     table: Option<lookup::Workspace>,
-}
-
-/// Scratch space of the planners, with numbers of some kind.
-#[derive(Debug, Default)]
-struct PlannerSpace<E> {
-    planner: Option<redundancy::Workspace<E>>,
-    finer: Option<redundancy::Workspace<E>>,
 }
 
 /// What goes on from a search.
@@ -87,19 +78,12 @@ const CANDIDATES: usize = 3;
 impl<'a> Evaluator<'a> {
     /// Scores candidates by the table, if there is one; it must be for the planner's problem.
     pub fn new(planner: &'a Planner<'a>, table: Option<&'a LookupTable<'a>>) -> Self {
-        Self { planner, finer: None, table, coarser: None, grid: BetaGrid::of(planner) }
+        Self { planner, table, coarser: None, grid: BetaGrid::of(planner) }
     }
 
     /// The same, reading the table on a grid of beta that many times finer than the planner's.
     pub fn with_finer_lookup(mut self, parts: usize) -> Self {
         self.grid = BetaGrid::new(self.planner.problem(), self.planner.grid().beta_count * parts);
-        self
-    }
-
-    /// The same with a planner on a finer grid, for placements whose every point is allowed but that the coarse grid
-    /// does not get through: a coarse plan may propose a placement, but not refuse it.
-    pub fn with_finer_planner(mut self, finer: &'a Planner<'a>) -> Self {
-        self.finer = Some(finer).filter(|finer| finer.grid().beta_count > self.planner.grid().beta_count);
         self
     }
 
@@ -193,16 +177,10 @@ impl<'a> Evaluator<'a> {
         &self,
         placement: &Placement,
         scheme: Option<&[Posture]>,
-        workspace: &mut PlannerSpace<E>,
+        space: &mut Option<redundancy::Workspace<E>>,
     ) -> Objective {
-        let space = workspace.planner.get_or_insert_with(|| self.planner.workspace_of());
-        match (self.planner.objective(placement, Sense::Min, scheme, space), self.finer) {
-            (Objective::Infeasible { points: 0, .. }, Some(finer)) => {
-                let space = workspace.finer.get_or_insert_with(|| finer.workspace_of());
-                finer.objective(placement, Sense::Min, scheme, space)
-            }
-            (objective, _) => objective,
-        }
+        let space = space.get_or_insert_with(|| self.planner.workspace_of());
+        self.planner.objective(placement, Sense::Min, scheme, space)
     }
 
     /// Of candidates sorted from the best, at most `max_count` that go on, ranked by the planner. With a table, more of

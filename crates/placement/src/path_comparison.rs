@@ -53,7 +53,7 @@ impl PathComparison {
             let likely =
                 drawn.into_iter().zip(allowed).map(of).filter(|candidate| candidate.objective.mean().is_some());
             let likely: Vec<Candidate> = likely.take(missing).collect();
-            let checked: Vec<_> = likely.par_iter().map(|candidate| whole.check(candidate)).collect();
+            let checked: Vec<_> = likely.par_iter().map(|candidate| whole.check_coarsely(candidate)).collect();
             comparison.planned += checked.len();
             for (candidate, (mean, deciding)) in likely.into_iter().zip(checked) {
                 comparison.add_deciding(&deciding);

@@ -215,8 +215,8 @@ pub fn drawn(problem: &Problem, settings: &SearchSettings, draw: u64) -> Vec<Pla
     initial(problem, &settings, Sense::Min).into_iter().map(|candidate| candidate.placement).collect()
 }
 
-/// A Latin hypercube: along every gene, one candidate in each of equal slices.
-fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Candidate> {
+/// A first population, a Latin hypercube: along every gene, one candidate in each of equal slices.
+pub fn initial(problem: &Problem, settings: &SearchSettings, sense: Sense) -> Vec<Candidate> {
     let size = settings.population;
     let mut random = stream(settings.seed, sense, 0, size);
     let slices: [Vec<usize>; 4] = std::array::from_fn(|_| {

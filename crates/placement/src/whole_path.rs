@@ -49,22 +49,36 @@ impl<'a, 'p> WholePath<'a, 'p> {
         scheme: Option<&[Posture]>,
         expected: Option<f64>,
     ) -> Result<OnWhole, Vec<usize>> {
+        self.objective_by(placement, scheme, expected, self.finer)
+    }
+
+    /// The same, where a planner has the last word on what has no plan on the coarse grid though every point is
+    /// allowed.
+    fn objective_by(
+        &self,
+        placement: &Placement,
+        scheme: Option<&[Posture]>,
+        expected: Option<f64>,
+        last: &Planner<'_>,
+    ) -> Result<OnWhole, Vec<usize>> {
         let on = |planner: &Planner<'_>| planner.objective(placement, Sense::Min, scheme, &mut planner.workspace());
-        let coarse = on(&self.coarse);
-        if let Objective::Feasible(mean) = coarse
-            && expected.is_none_or(|expected| (mean - expected).abs() <= AGREEMENT * mean)
-        {
-            return Ok(OnWhole { mean, is_fine: false });
-        }
-        let is_blocked = matches!(coarse, Objective::Infeasible { points: 1.., .. });
-        let fine = if is_blocked { None } else { on(self.finer).mean() };
-        match (fine, coarse) {
-            (Some(mean), _) => Ok(OnWhole { mean, is_fine: true }),
-            (None, Objective::Feasible(mean)) => Ok(OnWhole { mean, is_fine: false }),
-            (None, Objective::Infeasible { .. }) => {
-                let plan = self.finer.plan(placement, Sense::Min, scheme, &mut self.finer.workspace());
-                Err(plan.err().map(|none| deciding(self.problem(), &none)).unwrap_or_default())
+        let last = match on(&self.coarse) {
+            Objective::Feasible(mean)
+                if expected.is_some_and(|expected| (mean - expected).abs() > AGREEMENT * mean) =>
+            {
+                let fine = on(self.finer).mean();
+                return Ok(OnWhole { mean: fine.unwrap_or(mean), is_fine: fine.is_some() });
             }
+            Objective::Feasible(mean) => return Ok(OnWhole { mean, is_fine: false }),
+            Objective::Infeasible { points: 0, .. } => last,
+            Objective::Infeasible { .. } => &self.coarse,
+        };
+        match last.plan(placement, Sense::Min, scheme, &mut last.workspace()) {
+            Ok(plans) => {
+                let mean = self.problem().objective(plans.iter().map(|plan| plan.cost));
+                Ok(OnWhole { mean, is_fine: last.grid().beta_count > self.coarse.grid().beta_count })
+            }
+            Err(none) => Err(deciding(self.problem(), &none)),
         }
     }
 
@@ -123,9 +137,19 @@ impl<'a, 'p> WholePath<'a, 'p> {
 
     /// The objective of a candidate of a subset, none where it has no plan, and the points that decide that.
     pub fn check(&self, candidate: &Candidate) -> (Option<f64>, Vec<usize>) {
+        self.check_by(candidate, self.finer)
+    }
+
+    /// The same of one of many, which is given up where the coarse grid does not get through: that a finer one does not
+    /// either takes long to find out.
+    pub fn check_coarsely(&self, candidate: &Candidate) -> (Option<f64>, Vec<usize>) {
+        self.check_by(candidate, &self.coarse)
+    }
+
+    fn check_by(&self, candidate: &Candidate, last: &Planner<'_>) -> (Option<f64>, Vec<usize>) {
         let (placement, scheme) = (&candidate.placement, candidate.scheme.as_deref());
         let largest = self.largest(placement, scheme);
-        match self.objective(placement, scheme, candidate.objective.mean()) {
+        match self.objective_by(placement, scheme, candidate.objective.mean(), last) {
             Ok(whole) => (Some(whole.mean), largest.into_iter().collect()),
             Err(points) => (None, points),
         }

@@ -2,8 +2,8 @@
 //! can win is planned on the whole path.
 //!
 //! A subset ([`PathSubset`]) leaves points out, and with them what they forbid: a placement that it allows may have no
-//! plan. Such a placement names the points that decide; they join the subsets, and the search or the refinement is
-//! repeated. How far the means on a subset are off is measured ([`SubsetAccuracy`]).
+//! plan. Such a placement names the points that decide; they join the subsets, and the search continues from what it
+//! found, or the refinement is repeated. How far the means on a subset are off is measured ([`SubsetAccuracy`]).
 
 use super::infeasible::{Infeasible, infeasible};
 use super::searched::{Searched, search_cell};
@@ -33,7 +33,7 @@ const PAIRS: usize = 39;
 const TOLERANCES: [f64; 2] = [0.05, 0.015];
 /// The share of the placements drawn at which they have to be kept.
 const WITHIN: f64 = 0.8;
-/// How often a search is repeated with more points at the most.
+/// How often a search continues with more points at the most.
 const REPEATS: usize = 4;
 /// Of the generations of a search one in so many is repeated on the subset for the refinement,
 const LAST_GENERATIONS: usize = 5;
@@ -47,6 +47,14 @@ const PROMOTED: usize = 3;
 const REPAIRED: f64 = 0.08;
 /// How often candidates that the whole path finds worse are improved with the points in their way.
 const REPAIRS: usize = 3;
+
+/// How candidates are planned on the whole path.
+struct Promotion<'a, 'p> {
+    whole: WholePath<'a, 'p>,
+    /// As many basins are refined.
+    basins: usize,
+    monitor: &'a Monitor,
+}
 
 /// The subsets of a long path.
 #[derive(Debug, Clone)]
@@ -105,9 +113,9 @@ impl LongPath {
     }
 
     /// Searches the cell on the subset, and ranks what comes out on the whole path. Where a candidate that would win
-    /// has no plan there, the points that decide join the subsets, and the search is repeated. Where none has one even
-    /// then, those by which the subsets were measured take their place, and where there are none of these, the whole
-    /// path is searched: a subset never refuses.
+    /// has no plan there, the points that decide join the subsets, and the search continues from what it found. Where
+    /// none has one even then, those by which the subsets were measured take their place, and where there are none of
+    /// these, the whole path is searched: a subset never refuses.
     ///
     /// # Errors
     /// [`Infeasible`] when nothing is met that has a plan on the whole path.
@@ -118,54 +126,51 @@ impl LongPath {
         monitor: &Monitor,
     ) -> Result<Searched<'a>, Infeasible> {
         let problem = full.problem();
-        let wider = SearchSettings { basins: PROMOTED * settings.basins, ..*settings };
-        let mut repeats = 0;
-        let mut evaluations = 0;
-        let whole = WholePath::new(full);
-        loop {
-            let thinned = self.search.of(problem);
-            let widest = SearchSettings { basins: IMPROVED * settings.basins, ..*settings };
-            let searched = match search_cell(&Planner::finer(&thinned), &widest, monitor) {
-                Ok(searched) => searched,
-                Err(_) if repeats > 0 && !monitor.should_stop() => return search_cell(full, settings, monitor),
-                Err(none) => return Err(infeasible(full, &none.placement, None, true, monitor)),
-            };
-            evaluations += searched.evaluations;
-            let (mut found, lookup_summary) = (searched.found, searched.lookup_summary);
-            if searched.table.is_none() {
-                evaluations += improve(&thinned, &mut found, monitor);
-            }
-            evaluations += self.search_on(problem, &wider, &mut found, monitor);
-            let nearest = found.best.basins[0].clone();
-            let mut deciding = Vec::new();
-            let mut is_refused = false;
-            for (sense, found) in found.iter_mut() {
-                let (is_first_refused, points) = self.promote(&whole, sense, found, settings.basins, monitor);
-                is_refused |= is_first_refused;
-                deciding.extend(points);
-            }
-            self.comparison.add_deciding(&deciding);
-            let is_larger = self.search.add(&deciding);
-            self.refinement.add(&deciding);
-            if is_refused && is_larger && repeats < REPEATS && !monitor.should_stop() {
-                repeats += 1;
-                continue;
-            }
-            let is_without =
-                |(sense, found): &(Sense, &mut SearchResult)| settings.seeks(*sense) && found.basins.is_empty();
-            for (sense, found) in found.iter_mut().filter(is_without) {
-                found.basins =
-                    search::distinct(&self.search.of(problem), &self.comparison.ranked(sense), settings.basins);
-            }
-            if !SearchResult::share_basins(&mut found, settings) {
-                return match monitor.should_stop() {
-                    false => search_cell(full, settings, monitor),
-                    true => Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor)),
-                };
-            }
-            self.measure(problem);
-            return Ok(Searched { found, table: None, lookup_summary, evaluations });
+        let thinned = self.search.of(problem);
+        let Searched { mut found, table, lookup_summary, mut evaluations } =
+            search_cell(&Planner::finer(&thinned), &widest(settings), monitor)
+                .map_err(|none| infeasible(full, &none.placement, None, true, monitor))?;
+        if table.is_none() {
+            evaluations += improve(&thinned, &mut found, monitor);
         }
+        let nearest = found.best.basins[0].clone();
+        let promotion = Promotion { whole: WholePath::new(full), basins: settings.basins, monitor };
+        let mut allowed = BySense::from_fn(|_| Vec::new());
+        let mut senses: Vec<Sense> = Sense::BOTH.into_iter().filter(|sense| settings.seeks(*sense)).collect();
+        for repeat in 0..=REPEATS {
+            let mut next = Vec::new();
+            let known = self.search.points().len();
+            for sense in senses {
+                evaluations += self.search_on(problem, settings, sense, &mut found[sense], monitor);
+                let basins = found[sense].basins.clone();
+                if self.promote(&promotion, sense, &mut found[sense], &mut allowed[sense]) {
+                    found[sense].basins = basins;
+                    next.push(sense);
+                }
+            }
+            if self.search.points().len() == known || repeat == REPEATS || monitor.should_stop() {
+                break;
+            }
+            let anew = SearchSettings { seed: settings.seed ^ (repeat as u64 + 1) << 32, ..widest(settings) };
+            for sense in &next {
+                evaluations += self.repeat(problem, &anew, *sense, &mut found[*sense], monitor);
+            }
+            senses = next;
+        }
+        for (sense, found) in found.iter_mut().filter(|(sense, _)| settings.seeks(*sense)) {
+            if allowed[sense].is_empty() {
+                allowed[sense] = self.comparison.ranked(sense);
+            }
+            found.basins = search::distinct(&self.search.of(problem), &allowed[sense], settings.basins);
+        }
+        if !SearchResult::share_basins(&mut found, settings) {
+            return match monitor.should_stop() {
+                false => search_cell(full, settings, monitor),
+                true => Err(infeasible(full, &nearest.placement, nearest.scheme.as_deref(), true, monitor)),
+            };
+        }
+        self.measure(problem);
+        Ok(Searched { found, table: None, lookup_summary, evaluations })
     }
 
     /// Goes on searching from the basins that a search found, by last generations on the subset for the refinement;
@@ -174,53 +179,76 @@ impl LongPath {
         &self,
         problem: &Problem,
         settings: &SearchSettings,
-        found: &mut BySense<SearchResult>,
+        sense: Sense,
+        found: &mut SearchResult,
         monitor: &Monitor,
     ) -> usize {
-        let thinned = self.refinement.of(problem);
-        let (planner, finer) = (Planner::new(&thinned), Planner::finer(&thinned));
-        let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
-        let settings =
-            SearchSettings { population: settings.population.div_ceil(SHARE).max(settings.basins), ..*settings };
-        let first = settings.generations - settings.generations / LAST_GENERATIONS;
-        let mut evaluations = 0;
-        for (sense, found) in found.iter_mut().filter(|(sense, _)| settings.seeks(*sense)) {
-            if monitor.should_stop() {
-                break;
-            }
-            let start = repaired(&evaluator, sense, std::mem::take(&mut found.basins), monitor);
-            let again = search::generations(&evaluator, &settings, sense, start, first..=settings.generations, monitor);
-            evaluations += again.evaluations;
-            found.basins = again.basins;
-            found.interrupted |= again.interrupted;
+        if monitor.should_stop() {
+            return 0;
         }
-        evaluations
+        let thinned = self.refinement.of(problem);
+        let planner = Planner::new(&thinned).with_finer(&Planner::finer(&thinned));
+        let evaluator = Evaluator::new(&planner, None);
+        let basins = PROMOTED * settings.basins;
+        let population = settings.population.div_ceil(SHARE).max(basins);
+        let settings = SearchSettings { basins, population, ..*settings };
+        let first = settings.generations - settings.generations / LAST_GENERATIONS;
+        let start = repaired(&evaluator, sense, std::mem::take(&mut found.basins), monitor);
+        let again = search::generations(&evaluator, &settings, sense, start, first..=settings.generations, monitor);
+        found.basins = again.basins;
+        found.interrupted |= again.interrupted;
+        again.evaluations
     }
 
-    /// Plans what a search found on the whole path, and keeps of those that have a plan there the best of distinct
-    /// basins, at most `basins`; returns whether the first has none, and the points that decided. Candidates for the
+    /// Continues a search from the basins found and from placements drawn anew, by the second half of the generations on
+    /// the subset for the search, which has got points since; returns how many placements were evaluated.
+    fn repeat(
+        &self,
+        problem: &Problem,
+        settings: &SearchSettings,
+        sense: Sense,
+        found: &mut SearchResult,
+        monitor: &Monitor,
+    ) -> usize {
+        let thinned = self.search.of(problem);
+        let planner = Planner::new(&thinned).with_finer(&Planner::finer(&thinned));
+        let evaluator = Evaluator::new(&planner, None);
+        let mut start = std::mem::take(&mut found.basins);
+        start.extend(search::initial(problem, settings, sense));
+        let half = settings.generations / 2;
+        let again = search::generations(&evaluator, settings, sense, start, half..=settings.generations, monitor);
+        found.interrupted |= again.interrupted;
+        let (improved, evaluations) = improved(&evaluator, sense, &again.basins, monitor);
+        found.basins = improved;
+        again.evaluations + evaluations
+    }
+
+    /// Plans what a search found on the whole path, and adds those that have a plan there to what is `allowed`; the
+    /// points that decide join the subsets. Returns whether the first has none though it would win. Candidates for the
     /// best placement that a subset judged better than the whole path does are improved on a subset that knows the
     /// points in their way, and planned again.
     fn promote(
         &mut self,
-        whole: &WholePath<'_, '_>,
+        promotion: &Promotion<'_, '_>,
         sense: Sense,
         found: &mut SearchResult,
-        basins: usize,
-        monitor: &Monitor,
-    ) -> (bool, Vec<usize>) {
-        let mut deciding = Vec::new();
+        allowed: &mut Vec<Candidate>,
+    ) -> bool {
+        let Promotion { whole, basins, monitor } = promotion;
         found.basins.truncate(PROMOTED * basins);
         let mut candidates = std::mem::take(&mut found.basins);
-        let mut allowed = Vec::new();
-        let mut is_refused = None;
+        let mut refused = None;
         for round in 0..=REPAIRS {
             let checked: Vec<_> = candidates.par_iter().map(|candidate| whole.check(candidate)).collect();
             self.levels.whole += checked.len();
-            is_refused.get_or_insert(checked.first().is_some_and(|(mean, _)| mean.is_none()));
+            if round == 0 && checked.first().is_some_and(|(mean, _)| mean.is_none()) {
+                refused = candidates.first().cloned();
+            }
             let mut misjudged = Vec::new();
             for (candidate, (mean, points)) in candidates.into_iter().zip(checked) {
-                deciding.extend(points);
+                self.comparison.add_deciding(&points);
+                self.search.add(&points);
+                self.refinement.add(&points);
                 if mean.is_some() && WholePath::is_misjudged(&candidate, mean) {
                     misjudged.push(candidate.clone());
                 }
@@ -229,7 +257,7 @@ impl LongPath {
             allowed.sort_by(|a, b| rank(sense, a.objective, b.objective));
             // What would not win even if the subset were right is left as it is.
             misjudged.retain(|candidate| {
-                allowed.get(basins).is_none_or(|last| rank(sense, candidate.objective, last.objective).is_lt())
+                allowed.get(*basins).is_none_or(|last| rank(sense, candidate.objective, last.objective).is_lt())
             });
             if sense == Sense::Max || misjudged.is_empty() || round == REPAIRS || monitor.should_stop() {
                 break;
@@ -242,8 +270,9 @@ impl LongPath {
             candidates = self.repaired(whole.problem(), sense, misjudged, monitor);
             found.evaluations += candidates.len();
         }
-        found.basins = search::distinct(&self.search.of(whole.problem()), &allowed, basins);
-        (is_refused.unwrap_or_default(), deciding)
+        refused.is_some_and(|refused| {
+            allowed.first().is_none_or(|best| rank(sense, refused.objective, best.objective).is_lt())
+        })
     }
 
     /// Candidates as the subset for the refinement has them; those of which it differs are improved there.
@@ -255,8 +284,8 @@ impl LongPath {
         monitor: &Monitor,
     ) -> Vec<Candidate> {
         let thinned = self.refinement.of(problem);
-        let (planner, finer) = (Planner::new(&thinned), Planner::finer(&thinned));
-        let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
+        let planner = Planner::new(&thinned).with_finer(&Planner::finer(&thinned));
+        let evaluator = Evaluator::new(&planner, None);
         repaired(&evaluator, sense, candidates, monitor)
     }
 }
@@ -285,27 +314,36 @@ fn repaired(evaluator: &Evaluator<'_>, sense: Sense, candidates: Vec<Candidate>,
     known.into_par_iter().map_init(|| evaluator.workspace(), repair).collect()
 }
 
+/// As many basins of a search as are improved by coordinate search.
+fn widest(settings: &SearchSettings) -> SearchSettings {
+    SearchSettings { basins: IMPROVED * settings.basins, ..*settings }
+}
+
 /// Improves the basins of both searches by coordinate search; returns how many placements were evaluated.
 fn improve(problem: &Problem, found: &mut BySense<SearchResult>, monitor: &Monitor) -> usize {
-    let (planner, finer) = (Planner::new(problem), Planner::finer(problem));
-    let evaluator = Evaluator::new(&planner, None).with_finer_planner(&finer);
-    let improved: Vec<_> = SearchResult::jobs(found)
-        .into_par_iter()
-        .map_init(
-            || evaluator.workspace(),
-            |workspace, (sense, _, start)| (sense, evaluator.improved(start, sense, monitor, workspace)),
-        )
-        .collect();
-    found.iter_mut().for_each(|(_, found)| found.basins.clear());
+    let planner = Planner::new(problem).with_finer(&Planner::finer(problem));
+    let evaluator = Evaluator::new(&planner, None);
     let mut evaluations = 0;
-    for (sense, (candidate, number)) in improved {
-        found[sense].basins.push(candidate);
+    for (sense, found) in found.iter_mut() {
+        let (basins, number) = improved(&evaluator, sense, &found.basins, monitor);
+        found.basins = basins;
         evaluations += number;
     }
-    for (sense, found) in found.iter_mut() {
-        found.basins.sort_by(|a, b| rank(sense, a.objective, b.objective));
-    }
     evaluations
+}
+
+/// Candidates improved by coordinate search, best first, and how many placements were evaluated.
+fn improved(
+    evaluator: &Evaluator<'_>,
+    sense: Sense,
+    basins: &[Candidate],
+    monitor: &Monitor,
+) -> (Vec<Candidate>, usize) {
+    let improve = |workspace: &mut evaluator::Workspace, start| evaluator.improved(start, sense, monitor, workspace);
+    let improved: Vec<(Candidate, usize)> = basins.par_iter().map_init(|| evaluator.workspace(), improve).collect();
+    let (mut candidates, numbers): (Vec<Candidate>, Vec<usize>) = improved.into_iter().unzip();
+    candidates.sort_by(|a, b| rank(sense, a.objective, b.objective));
+    (candidates, numbers.into_iter().sum())
 }
 
 /// A subset with the points that decide, doubled until its error is small enough or it is too large a part of the path,

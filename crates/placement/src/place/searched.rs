@@ -40,7 +40,7 @@ pub(super) fn search_cell<'a>(
             Objective::Infeasible { .. } => Err(infeasible(finer, &placement, None, false, monitor)),
         };
     }
-    let planner = Planner::new(problem);
+    let planner = Planner::new(problem).with_finer(finer);
     let table = match settings.tables {
         LookupUse::Auto | LookupUse::Always => Some(LookupTable::monitored(problem, monitor)),
         LookupUse::Never => None,
@@ -51,7 +51,7 @@ pub(super) fn search_cell<'a>(
     });
     let mut table = table.and_then(Result::ok);
     let search = |table: Option<&LookupTable<'_>>| {
-        let evaluator = Evaluator::new(&planner, table).with_finer_planner(finer);
+        let evaluator = Evaluator::new(&planner, table);
         of_sought(settings, |sense| search::search(&evaluator, settings, sense, monitor))
     };
     let mut found = search(table.as_ref());

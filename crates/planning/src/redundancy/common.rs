@@ -47,7 +47,7 @@ impl Planner<'_> {
                 break;
             }
             workspace.only_beta = Some(bound.beta);
-            let found = self.objective_of(request, workspace).mean();
+            let found = self.objective_on_grid(request, workspace).mean();
             best = best.into_iter().chain(found).min_by(|a, b| (a * sign).total_cmp(&(b * sign)));
         }
         workspace.only_beta = None;

@@ -11,8 +11,8 @@
 use super::between::{CyclicRow, Joining};
 use super::knots::{Knot, Place};
 use super::rate_limit::BetaChange;
-use super::record::{MAX_REACHED, Record};
-use super::transition::{Step, advance, advance_over, begin};
+use super::record::Record;
+use super::transition::{Step, advance, advance_costs, advance_over, begin, cheapest_shift};
 use super::{SegmentPlanner, Sense, Workspace};
 use std::ops::Range as Span;
 use stead_model::robot::{Posture, PostureClass};
@@ -121,7 +121,7 @@ impl SegmentPlanner<'_> {
         if !now.is_alive(class) {
             return false;
         }
-        now.wrap_around(class);
+        now.wrap_scores(class);
         let offsets = self.knots.offsets(end, middle, share);
         let row = CyclicRow { scores: now.scores(class), pad: now.pad() };
         run_costs.add(class, row, offsets, is_first, self.joining(pass));
@@ -143,6 +143,11 @@ impl SegmentPlanner<'_> {
     ) -> bool {
         let Workspace { before, now, record, run_costs, .. } = workspace;
         let step = self.step_over::<E>(point, knot.change, pass.is_by_knots, pass.sense);
+        if knot.points == 1 && record.keeps_reached && step.is_free(before, now, class) {
+            record.leave_way(knot.number, class);
+            return advance_costs(before, now, class, &step);
+        }
+        before.wrap_joints(class);
         let way = record.way(knot.number, class);
         if knot.points == 1 {
             return advance(before, now, class, &step, way);
@@ -185,9 +190,7 @@ impl SegmentPlanner<'_> {
         let rules = &self.problem.postures;
         let requested = PostureClass::ALL
             .map(|class| pass.only.is_none_or(|posture| posture.class() == class) && rules.allows_class(class));
-        workspace.record.costs.clear();
-        workspace.record.reached.clear();
-        let keeps_all = !count_only && self.knot_count(pass) * 4 * self.grid.beta_count <= MAX_REACHED;
+        workspace.record.begin(if count_only { None } else { Some(self.knot_count(pass)) });
         for point in pass.span.clone() {
             if self.unwanted.is_set() {
                 return forward_pass;
@@ -219,7 +222,7 @@ impl SegmentPlanner<'_> {
                 if record.begins(knot.number, self.knot_count(pass)) {
                     Record::keep(&mut record.costs, now);
                 }
-                if keeps_all {
+                if record.keeps_reached {
                     Record::keep(&mut record.reached, now);
                 }
                 std::mem::swap(&mut workspace.before, &mut workspace.now);
@@ -264,7 +267,7 @@ impl SegmentPlanner<'_> {
                 }
                 let is_reached = workspace.now.is_alive(class);
                 if is_reached {
-                    workspace.now.wrap_around(class);
+                    workspace.now.wrap_scores(class);
                 }
                 // Of a run that is not gone through, no more is known than that its first point may be out of reach.
                 (is_reached, if is_alive { point + 1 - knot.points } else { point })
@@ -290,11 +293,31 @@ impl SegmentPlanner<'_> {
             if !is_whole && (number == last || number.is_multiple_of(block)) {
                 self.repeat_block(pass, class, (number - 1) / block, workspace);
             }
-            let shift = workspace.record.way(number, class)[beta];
+            let shift = self.shift_to(pass, class, number, beta, workspace);
             beta = (beta as isize + isize::from(shift)).rem_euclid(count) as usize;
             betas[self.knot(pass, number - 1) - pass.span.start] = beta;
         }
         betas
+    }
+
+    /// The shift from a state of a knot to the one before on the way to it.
+    fn shift_to<E: KernelNumber>(
+        &self,
+        pass: Pass<'_>,
+        class: PostureClass,
+        number: usize,
+        beta: usize,
+        workspace: &mut Workspace<E>,
+    ) -> i16 {
+        let record = &mut workspace.record;
+        if record.has_way(number, class) {
+            return record.way(number, class)[beta];
+        }
+        let change = match self.place(pass, self.knot(pass, number)) {
+            Place::Knot(knot) => knot.change,
+            Place::Between { .. } => BetaChange::only(0),
+        };
+        record.reached(number - 1, class).map_or(0, |costs| cheapest_shift(change, costs, beta))
     }
 
     /// Finds the ways of one class in one block again.
@@ -325,7 +348,7 @@ impl SegmentPlanner<'_> {
                     self.reach(pass, point, knot, class, workspace);
                 }
             }
-            workspace.now.wrap_around(class);
+            workspace.now.wrap_scores(class);
             std::mem::swap(&mut workspace.before, &mut workspace.now);
         }
     }

@@ -34,6 +34,7 @@ mod knots;
 mod layered;
 
 pub mod motion;
+mod objective;
 mod obstruction;
 pub mod off_grid;
 mod rate_limit;
@@ -67,7 +68,7 @@ use segment_planner::{Request, Resolution, SegmentPlanner};
 use std::sync::Arc;
 use stead_model::robot::Posture;
 use stead_numerics::monitor::StopHandle;
-use stead_problem::candidate::{Objective, best_of};
+use stead_problem::candidate::Objective;
 use stead_problem::evaluate::batch::KernelNumber;
 use stead_problem::problem::{BetaPlan, Placement, Problem, Redundancy};
 pub use stead_problem::segment_plan::SegmentPlan;
@@ -117,6 +118,8 @@ pub struct Planner<'a> {
     problem: &'a Problem,
     segments: SegmentPlanner<'a>,
     spacing: Spacing,
+    /// On a finer grid, for objectives where this one does not get through.
+    finer: Option<Box<Planner<'a>>>,
 }
 
 impl<'a> Planner<'a> {
@@ -136,7 +139,7 @@ impl<'a> Planner<'a> {
     fn with_segments(segments: SegmentPlanner<'a>) -> Self {
         let (problem, grid) = (segments.problem, &segments.grid);
         let spacing = if problem.task.path().is_thinned() { Spacing::rough(grid) } else { Spacing::full(grid) };
-        Self { problem, segments, spacing }
+        Self { problem, segments, spacing, finer: None }
     }
 
     /// The same with beta narrowed down otherwise where a plan leaves the grid.
@@ -220,41 +223,6 @@ impl<'a> Planner<'a> {
         workspace: &mut Workspace<E>,
     ) -> Objective {
         E::objective(self, Request { placement, sense, scheme }, workspace)
-    }
-
-    fn objective_of<E: KernelNumber>(&self, request: Request<'_>, workspace: &mut Workspace<E>) -> Objective {
-        let schemes = self.problem.unchanging_schemes(request.scheme);
-        if !schemes.is_empty() {
-            let of = |scheme: Vec<Posture>| self.objective_of(Request { scheme: Some(&scheme), ..request }, workspace);
-            return best_of(request.sense, schemes.into_iter().map(of));
-        }
-        if self.chooses_common_beta(workspace) {
-            return self.common_objective(request, workspace);
-        }
-        if self.problem.scene.is_some() {
-            return self.free_objective(request, workspace);
-        }
-        let mut costs = Vec::with_capacity(self.problem.task.segments().len());
-        let (mut points, mut segments) = (0, 0);
-        for segment in 0..self.problem.task.segments().len() {
-            let sought = if points > 0 { Sought::Blocked } else { Sought::Cost };
-            let found = self.segments.segment(segment, request, workspace, sought);
-            points += found.blocked.len();
-            if points > 0 {
-                continue;
-            }
-            match found.choices.first() {
-                Some(choice) => costs.push(choice.cost),
-                None => segments += 1,
-            }
-        }
-        if points > 0 {
-            Objective::Infeasible { points, segments: 0 }
-        } else if segments > 0 {
-            Objective::Infeasible { points, segments }
-        } else {
-            Objective::Feasible(self.problem.objective(costs))
-        }
     }
 
     /// The best or worst plan on the grid of beta, one entry per segment.

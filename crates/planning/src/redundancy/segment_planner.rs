@@ -94,6 +94,15 @@ pub struct Workspace<E = f64> {
     pub(super) forbidden: StateSet,
     /// The number of beta that is planned with, where one for the whole path has been chosen.
     pub(super) only_beta: Option<usize>,
+    /// Space to plan on a finer grid.
+    pub(super) finer: Option<Box<Self>>,
+}
+
+impl<E: KernelNumber> Workspace<E> {
+    /// Space to plan on the grid of a finer planner.
+    pub(super) fn on_finer(&mut self, planner: &SegmentPlanner<'_>) -> &mut Self {
+        self.finer.get_or_insert_with(|| Box::new(planner.workspace()))
+    }
 }
 
 impl<'a> SegmentPlanner<'a> {
@@ -209,6 +218,7 @@ impl<'a> SegmentPlanner<'a> {
             run_costs: between::RunCosts::new(self.knots.most_changes(), stride, self.instructions),
             forbidden: StateSet::default(),
             only_beta: None,
+            finer: None,
         }
     }
 }

@@ -14,6 +14,7 @@ use stead_problem::testing::{
 mod calm;
 mod collisions;
 mod dense;
+mod finer;
 mod spindle_turn;
 
 fn published_optimum() -> Placement {

@@ -35,6 +35,82 @@ pub struct Step {
     pub instructions: Instructions,
 }
 
+impl Step {
+    /// Whether the joints can make all steps from the states of a point to those of the next in a class, and their
+    /// travel does not count: then the cheapest predecessor may be taken as it is.
+    pub(super) fn is_free<E: KernelNumber>(
+        &self,
+        before: &StateGrid<E>,
+        now: &StateGrid<E>,
+        class: PostureClass,
+    ) -> bool {
+        let may_be = |joint: &JointStep| match joint {
+            JointStep::Any => true,
+            JointStep::Chord(_) => false,
+            JointStep::Around { max, .. } => *max >= LONGEST && self.fold.is_none(),
+        };
+        let around = |j: usize| match self.joints[j] {
+            JointStep::Around { middle, .. } => {
+                self.instructions.run(Around { states: [before, now], class, joint: j, middle })
+            }
+            _ => true,
+        };
+        self.travel == 0.0 && self.joints.iter().all(may_be) && (0..6).all(around)
+    }
+}
+
+/// The longest chord, squared.
+const LONGEST: f64 = 4.0;
+
+/// Whether no step of a joint from a state of a point to one of the next leads past the gap outside its range: all are
+/// on one side of the middle of the range, or less than a quarter turn from it.
+struct Around<'s, E> {
+    states: [&'s StateGrid<E>; 2],
+    class: PostureClass,
+    joint: usize,
+    /// Sine and cosine.
+    middle: (f64, f64),
+}
+
+impl<E: KernelNumber> WithSimd for Around<'_, E> {
+    type Number = E;
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd<Number = E>>(self, simd: S) -> bool {
+        let Self { states, class, joint, middle: (sine, cosine) } = self;
+        let (zero, infinity) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, f64::INFINITY));
+        let numbers = Lanes::load(simd, &NUMBERS.map(E::of), 0);
+        let mut seen = [Mask::splat(simd, false); 3];
+        for states in states {
+            let (scores, [sines, cosines]) = (states.scores(class), states.directions(class, joint));
+            for start in (0..states.count()).step_by(Lanes::<S>::COUNT) {
+                let here = states.pad() + start;
+                let left = Lanes::splat(simd, (states.count() - start) as f64);
+                let open = Lanes::load(simd, scores, here).less(infinity) & numbers.less(left);
+                let (s, c) = (Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here));
+                let beside = s * cosine - c * sine;
+                seen[0] = seen[0] | (open & beside.less(zero));
+                seen[1] = seen[1] | (open & zero.less(beside));
+                seen[2] = seen[2] | (open & (c * cosine + s * sine).less(zero));
+            }
+        }
+        let [left, right, behind] = [seen[0].any(), seen[1].any(), seen[2].any()];
+        !(left && right && behind)
+    }
+}
+
+/// The shift to the predecessor that [`advance`] takes for a state of number `here`, from the costs of the point before
+/// over beta, where joints say nothing.
+pub(super) fn cheapest_shift<E: KernelNumber>(change: BetaChange, costs: &[E], here: usize) -> i16 {
+    let cost = |shift: isize| costs[(here as isize + shift).rem_euclid(costs.len() as isize) as usize].get();
+    let middle = change.middle_shift();
+    let (half, is_even) = ((change.count() - 1) / 2, change.count().is_multiple_of(2));
+    let beside = (1..=half as isize).flat_map(|far| [middle - far, middle + far]);
+    let last = is_even.then_some(middle - half as isize - 1);
+    beside.chain(last).fold(middle, |best, shift| if cost(shift) < cost(best) { shift } else { best }) as i16
+}
+
 /// Which steps of a joint are small enough, told from sines and cosines of its angles before and after: by the square
 /// of the chord between the two directions, `4 sin(step/2)^2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,6 +161,8 @@ impl JointStep {
             chord * chord
         };
         match self {
+            // No chord is longer than two radii.
+            Self::Chord(max) if rounding > 0.0 && wider(max) >= LONGEST => Self::Any,
             Self::Chord(max) if rounding > 0.0 => Self::Chord(wider(max)),
             Self::Around { max, min, middle } if rounding > 0.0 => Self::Around { max: wider(max), min, middle },
             step => step,
@@ -136,7 +214,17 @@ pub fn advance<E: KernelNumber>(
     step: &Step,
     way: &mut [i16],
 ) -> bool {
-    advance_by::<Right, E>(before, now, class, step, None, way)
+    advance_by::<Right, E>(before, now, class, step, None, Some(way))
+}
+
+/// The same for a free step ([`Step::is_free`]) without the steps back, which [`cheapest_shift`] finds again.
+pub(super) fn advance_costs<E: KernelNumber>(
+    before: &StateGrid<E>,
+    now: &mut StateGrid<E>,
+    class: PostureClass,
+    step: &Step,
+) -> bool {
+    advance_by::<Right, E>(before, now, class, step, None, None)
 }
 
 /// The same over a run of points, with what the points between cost.
@@ -148,7 +236,7 @@ pub(super) fn advance_over<E: KernelNumber>(
     between: Between<'_, E>,
     way: &mut [i16],
 ) -> bool {
-    advance_by::<Right, E>(before, now, class, step, Some(between), way)
+    advance_by::<Right, E>(before, now, class, step, Some(between), Some(way))
 }
 
 #[inline]
@@ -158,7 +246,7 @@ fn advance_by<R: Rules, E: KernelNumber>(
     class: PostureClass,
     step: &Step,
     between: Option<Between<'_, E>>,
-    way: &mut [i16],
+    way: Option<&mut [i16]>,
 ) -> bool {
     step.instructions.run(Advance::<R, E> { before, now, class, step, between, way, rules: PhantomData })
 }
@@ -190,7 +278,7 @@ struct Advance<'s, R, E> {
     class: PostureClass,
     step: &'s Step,
     between: Option<Between<'s, E>>,
-    way: &'s mut [i16],
+    way: Option<&'s mut [i16]>,
     rules: PhantomData<R>,
 }
 
@@ -201,7 +289,7 @@ impl<R: Rules, E: KernelNumber> WithSimd for Advance<'_, R, E> {
     #[inline(always)]
     #[expect(clippy::excessive_nesting, reason = "one loop over several dimensions, without calls between")]
     fn with_simd<S: Simd<Number = E>>(self, simd: S) -> bool {
-        let Self { before, now, class, step, between, way, .. } = self;
+        let Self { before, now, class, step, between, mut way, .. } = self;
         let (count, pad) = (now.count(), now.pad());
         let lanes = Lanes::<S>::COUNT;
         let infinity = Lanes::splat(simd, f64::INFINITY);
@@ -218,19 +306,20 @@ impl<R: Rules, E: KernelNumber> WithSimd for Advance<'_, R, E> {
         let (scores, now_joints) = now.scores_and_joints(class);
         let joints = Joints::<R, E>::new(before.all_joints(class), now_joints, stride, step);
         let mut reached = false;
-        for (start, way) in (0..count).step_by(lanes).zip(way.chunks_mut(lanes)) {
+        for start in (0..count).step_by(lanes) {
             let here = pad + start;
             let score = Lanes::load(simd, scores, here);
             let allowed = score.less(infinity) & numbers.less(Lanes::splat(simd, (count - start) as f64));
             if !allowed.any() {
                 continue;
             }
-            let (mut best, mut from) = match step.travel > 0.0 {
-                true => band.calmest(simd, here, &joints, step.travel),
-                false => band.cheapest(simd, here),
+            let (mut best, mut from) = match &way {
+                None => (band.least(simd, here), numbers),
+                Some(_) if step.travel > 0.0 => band.calmest(simd, here, &joints, step.travel),
+                Some(_) => band.cheapest(simd, here),
             };
             let mut known = allowed & best.less(infinity);
-            if R::STEPS_COUNT && step.travel == 0.0 && known.any() {
+            if R::STEPS_COUNT && step.travel == 0.0 && way.is_some() && known.any() {
                 let far = joints.too_far(simd, here, known, from);
                 if far.any() {
                     if R::LOOKS_AGAIN {
@@ -249,8 +338,10 @@ impl<R: Rules, E: KernelNumber> WithSimd for Advance<'_, R, E> {
                 (Aggregate::Max, Sense::Max) => best.min(own),
             };
             known.select(cost, infinity).store(scores, here);
-            for (way, from) in way.iter_mut().zip(from.to_whole()) {
-                *way = from + R::BESIDE;
+            if let Some(way) = &mut way {
+                for (way, from) in way[start..].iter_mut().zip(from.to_whole()).take(lanes) {
+                    *way = from + R::BESIDE;
+                }
             }
         }
         reached
@@ -321,6 +412,19 @@ impl<'s, R: Rules, E: KernelNumber> Band<'s, R, E> {
             from = better.select(down - 1.0, from);
         }
         (best, from)
+    }
+
+    /// The same cost alone.
+    #[inline(always)]
+    fn least<S: Simd<Number = E>>(&self, simd: S, here: usize) -> Lanes<S> {
+        let (middle, half) = (self.middle, self.half as isize);
+        let first = self.cost(simd, here, if self.is_even { middle - half - 1 } else { middle });
+        let (mut left, mut right) = (first, self.cost(simd, here, middle));
+        for far in 1..=half {
+            left = left.min(self.cost(simd, here, middle - far));
+            right = right.min(self.cost(simd, here, middle + far));
+        }
+        left.min(right)
     }
 
     /// The same among predecessors that are within every joint's step.
@@ -456,6 +560,9 @@ impl<'s, R: Rules, E: KernelNumber> Joints<'s, R, E> {
         let zero = Lanes::splat(simd, 0.0);
         let mut second = [[zero; 2]; 2];
         for (j, (old, new)) in rows.enumerate().take(6) {
+            if self.fold.is_none() && self.limits[j] == JointStep::Any {
+                continue;
+            }
             let ((old_sines, old_cosines), (sines, cosines)) = (old.split_at(stride), new.split_at(stride));
             let mut old = [Lanes::load(simd, old_sines, there), Lanes::load(simd, old_cosines, there)];
             let mut new = [Lanes::load(simd, sines, here), Lanes::load(simd, cosines, here)];

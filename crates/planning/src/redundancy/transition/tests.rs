@@ -127,7 +127,7 @@ impl Case {
         let before = self.states(0, wrap_around);
         let mut now = self.states(1, wrap_around);
         let mut way = vec![0; self.count];
-        let reached = advance_by::<R, f64>(&before, &mut now, CLASS, &step, None, &mut way);
+        let reached = advance_by::<R, f64>(&before, &mut now, CLASS, &step, None, Some(&mut way));
         let expected: Vec<f64> = (0..self.count).map(|here| self.expected(here)).collect();
         if reached != expected.iter().any(|cost| cost.is_finite()) {
             return Some(format!("reached: {reached}"));
@@ -192,6 +192,51 @@ fn joint_travel_counts_in_a_step() {
         }
     }
     assert!(others > 1000, "{others}");
+}
+
+#[test]
+fn of_a_free_step_the_way_is_found_again_from_the_costs() {
+    for seed in 0..CASES {
+        let case = Case::random(seed);
+        let (change, sense, aggregate) = (case.change, case.sense, case.aggregate);
+        for instructions in Instructions::all() {
+            let joints = [JointStep::Any; 6];
+            let step = Step { change, joints, fold: case.fold, sense, aggregate, travel: 0.0, instructions };
+            let before = case.states(0, wrap_around);
+            let [mut now, mut alone] = [(); 2].map(|()| case.states(1, wrap_around));
+            let mut way = vec![0; case.count];
+            let reached = advance(&before, &mut now, CLASS, &step, &mut way);
+            assert_eq!(advance_costs(&before, &mut alone, CLASS, &step), reached);
+            assert_eq!(alone.inner_scores(CLASS), now.inner_scores(CLASS));
+            for (here, shift) in
+                way.into_iter().enumerate().filter(|(here, _)| now.inner_scores(CLASS)[*here].is_finite())
+            {
+                assert_eq!(cheapest_shift(change, before.inner_scores(CLASS), here), shift);
+            }
+        }
+    }
+}
+
+#[test]
+fn where_a_step_is_free_every_joint_can_make_every_step() {
+    let mut seen = [0; 2];
+    for seed in 0..CASES {
+        let case = Case { limits: [PI; 6], ..Case::random(seed) };
+        let joints = std::array::from_fn(|j| JointStep::new(case.limits[j], case.ranges[j]));
+        let (change, sense, aggregate) = (case.change, case.sense, case.aggregate);
+        let [before, now] = [0, 1].map(|point| case.states(point, wrap_around));
+        let free = Instructions::all().into_iter().map(|instructions| {
+            let step = Step { change, joints, fold: case.fold, sense, aggregate, travel: 0.0, instructions };
+            step.is_free(&before, &now, CLASS)
+        });
+        let free: Vec<bool> = free.collect();
+        assert!(free.iter().all(|is_free| *is_free == free[0]));
+        let mut pairs =
+            case.points[0].iter().flatten().flat_map(|old| case.points[1].iter().flatten().map(move |new| (old, new)));
+        assert!(!free[0] || pairs.all(|((_, old), (_, new))| case.is_within(old, new)), "{seed}");
+        seen[usize::from(free[0])] += 1;
+    }
+    assert!(seen.iter().all(|number| *number > CASES / 20), "{seen:?}");
 }
 
 fn wrap_around(states: &mut StateGrid) {

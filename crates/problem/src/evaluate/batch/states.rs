@@ -1,5 +1,6 @@
 //! Where the evaluator writes and the planner reads.
 
+use std::ops::Range;
 use stead_model::robot::PostureClass;
 use stead_numerics::simd::{LaneNumber, Lanes, MAX_LANES, Simd};
 
@@ -172,8 +173,24 @@ impl<E: LaneNumber> StateGrid<E> {
 
     /// Continues the rows of a class cyclically after they were written.
     pub fn wrap_around(&mut self, class: PostureClass) {
-        let (count, pad, size) = (self.count, self.pad, self.rows * self.stride);
-        for row in self.data[class.index() * size..][..size].chunks_exact_mut(self.stride) {
+        self.wrap_scores(class);
+        self.wrap_joints(class);
+    }
+
+    /// The same with the scores alone.
+    pub fn wrap_scores(&mut self, class: PostureClass) {
+        self.wrap_rows(class, 0..1);
+    }
+
+    /// The same with the joint angles alone.
+    pub fn wrap_joints(&mut self, class: PostureClass) {
+        self.wrap_rows(class, 1..self.rows);
+    }
+
+    fn wrap_rows(&mut self, class: PostureClass, rows: Range<usize>) {
+        let (count, pad, stride) = (self.count, self.pad, self.stride);
+        let of_class = &mut self.data[class.index() * self.rows * stride..][..self.rows * stride];
+        for row in of_class[rows.start * stride..rows.end * stride].chunks_exact_mut(stride) {
             row.copy_within(count..count + pad, 0);
             row.copy_within(pad..2 * pad, count + pad);
         }
