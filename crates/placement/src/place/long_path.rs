@@ -200,8 +200,8 @@ impl LongPath {
         again.evaluations
     }
 
-    /// Continues a search from the basins found and from placements drawn anew, by the second half of the generations on
-    /// the subset for the search, which has got points since; returns how many placements were evaluated.
+    /// Continues a search from the basins found and from placements drawn anew, by the second half of the generations
+    /// on the subset for the search, which has got points since; returns how many placements were evaluated.
     fn repeat(
         &self,
         problem: &Problem,
