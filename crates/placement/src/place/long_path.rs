@@ -187,7 +187,7 @@ impl LongPath {
             return 0;
         }
         let thinned = self.refinement.of(problem);
-        let planner = Planner::new(&thinned).with_finer(&Planner::finer(&thinned));
+        let planner = comparing(&thinned);
         let evaluator = Evaluator::new(&planner, None);
         let basins = PROMOTED * settings.basins;
         let population = settings.population.div_ceil(SHARE).max(basins);
@@ -211,7 +211,7 @@ impl LongPath {
         monitor: &Monitor,
     ) -> usize {
         let thinned = self.search.of(problem);
-        let planner = Planner::new(&thinned).with_finer(&Planner::finer(&thinned));
+        let planner = comparing(&thinned);
         let evaluator = Evaluator::new(&planner, None);
         let mut start = std::mem::take(&mut found.basins);
         start.extend(search::initial(problem, settings, sense));
@@ -284,7 +284,7 @@ impl LongPath {
         monitor: &Monitor,
     ) -> Vec<Candidate> {
         let thinned = self.refinement.of(problem);
-        let planner = Planner::new(&thinned).with_finer(&Planner::finer(&thinned));
+        let planner = comparing(&thinned);
         let evaluator = Evaluator::new(&planner, None);
         repaired(&evaluator, sense, candidates, monitor)
     }
@@ -314,6 +314,11 @@ fn repaired(evaluator: &Evaluator<'_>, sense: Sense, candidates: Vec<Candidate>,
     known.into_par_iter().map_init(|| evaluator.workspace(), repair).collect()
 }
 
+/// The planner by which placements are compared on a subset.
+fn comparing(thinned: &Problem) -> Planner<'_> {
+    Planner::new(thinned).with_finer(&Planner::finer(thinned))
+}
+
 /// As many basins of a search as are improved by coordinate search.
 fn widest(settings: &SearchSettings) -> SearchSettings {
     SearchSettings { basins: IMPROVED * settings.basins, ..*settings }
@@ -321,7 +326,7 @@ fn widest(settings: &SearchSettings) -> SearchSettings {
 
 /// Improves the basins of both searches by coordinate search; returns how many placements were evaluated.
 fn improve(problem: &Problem, found: &mut BySense<SearchResult>, monitor: &Monitor) -> usize {
-    let planner = Planner::new(problem).with_finer(&Planner::finer(problem));
+    let planner = comparing(problem);
     let evaluator = Evaluator::new(&planner, None);
     let mut evaluations = 0;
     for (sense, found) in found.iter_mut() {

@@ -1,4 +1,4 @@
-//! The mean score of a placement on the grid, and on finer ones where the grid does not get through.
+//! The mean score of a placement on the grid, and on a finer one where the grid does not get through.
 
 use super::segment::Sought;
 use super::segment_planner::Request;
