@@ -42,6 +42,16 @@ impl<'a, 'p> WholePath<'a, 'p> {
         self.finer.problem()
     }
 
+    /// The planner on the finer grid.
+    pub fn finer(&self) -> &'a Planner<'p> {
+        self.finer
+    }
+
+    /// The objective of a placement on the coarse grid in single precision, by which neighbours can be distinguished. m
+    pub fn rough(&self, placement: &Placement, scheme: Option<&[Posture]>) -> Option<f64> {
+        self.coarse.objective(placement, Sense::Min, scheme, &mut self.coarse.workspace_of::<f32>()).mean()
+    }
+
     /// The objective of a placement that is `expected` to come to about so much (m), or points that decide against it.
     pub fn objective(
         &self,

@@ -23,7 +23,7 @@ const REPEATS: usize = 5;
 /// Halvings of the way back to the start of a refinement that the whole path does not allow.
 const HALVINGS: usize = 6;
 /// Basins whose estimated objectives are this near (relative) to the best are compared on the whole path.
-const CLOSE: f64 = 0.03;
+const CLOSE: f64 = 0.015;
 /// Of these, so many at the most that are this near (relative) to the best are refined on the whole path.
 const REFINED: usize = 2;
 /// See [`REFINED`].
@@ -33,8 +33,10 @@ const SAME: f64 = 0.05;
 /// How far around a refined placement its neighbours are planned, in the first steps of a coordinate search; the next
 /// only after a gain.
 const PROBES: [f64; 3] = [0.4, 0.4, 0.2];
-/// A neighbour is gone on from where its plan is better by more than this (relative).
+/// A neighbour is gone on from where its plan is better by more than this (relative),
 const WORTH: f64 = 1e-3;
+/// and planned where it is better by more than this on the coarse grid.
+const PROMISING: f64 = WORTH / 4.0;
 /// On paths longer than [`MAX_REFINED`].
 const CLOSE_LONG: f64 = 0.01;
 /// Longer paths than this are planned whole, but not refined whole: there the gain is far below what a minute is worth.
@@ -77,7 +79,7 @@ pub(super) fn refine_basins(
     let choose = |sense: Sense, mut estimates: Vec<Estimated<'_>>| {
         // A stable sort: of equals the one that the search ranked higher.
         estimates.sort_by(|a, b| sense.compare(a.objective, b.objective));
-        let chosen = compared(planner, sense, &mut estimates, monitor);
+        let chosen = compared(&whole, sense, &mut estimates, monitor);
         (chosen, estimates.into_iter().map(|estimate| estimate.report).collect::<Vec<_>>())
     };
     let [best, worst] = estimates;
@@ -144,8 +146,14 @@ fn estimated<'c>(
 
 /// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by
 /// their plans are refined on the whole path, and the best of all is taken.
-fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>], monitor: &Monitor) -> Vec<Planned> {
+fn compared(
+    whole: &WholePath<'_, '_>,
+    sense: Sense,
+    estimates: &mut [Estimated<'_>],
+    monitor: &Monitor,
+) -> Vec<Planned> {
     let Some(first) = estimates.first().map(|first| first.objective) else { return Vec::new() };
+    let planner = whole.finer();
     let is_long = planner.problem().task.points().len() > MAX_REFINED;
     let close = if is_long { CLOSE_LONG } else { CLOSE };
     let is_close = |estimate: &Estimated<'_>| (estimate.objective - first).abs() <= close * first;
@@ -154,15 +162,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
             return None;
         }
         let scheme = estimate.candidate.scheme.clone();
-        // What a subset gains may be lost on the whole path: the start may be the better one.
-        let ends = [estimate.placement, estimate.candidate.placement];
-        let solutions = ends
-            .par_iter()
-            .filter_map(|placement| planned(planner, placement, scheme.as_deref(), &mut planner.workspace()));
-        let solution = solutions
-            .collect::<Vec<_>>()
-            .into_iter()
-            .reduce(|end, start| if sense.compare(start.objective, end.objective).is_lt() { start } else { end })?;
+        let solution = planned_end(planner, sense, estimate)?;
         (estimate.report.end, estimate.report.end_mean) = (solution.placement, solution.objective);
         Some((rank, Planned::new(planner.problem(), solution, scheme)))
     };
@@ -174,7 +174,7 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
         planned.dedup_by(|later, earlier| is_same(planner.problem(), &later.1, &earlier.1));
         planned.truncate(REFINED);
         let refined = |(rank, mut basin): (usize, Planned)| {
-            let report = refine_whole(planner, &mut basin, estimates[rank].report.clone(), monitor);
+            let report = refine_whole(whole, &mut basin, estimates[rank].report.clone(), monitor);
             (rank, basin, report)
         };
         let refined: Vec<_> = planned.into_par_iter().map(refined).collect();
@@ -187,6 +187,25 @@ fn compared(planner: &Planner<'_>, sense: Sense, estimates: &mut [Estimated<'_>]
             .collect();
     }
     planned.into_iter().map(|(_, basin)| basin).collect()
+}
+
+/// The plan of a refined basin on the whole path, or where that is better of its start, since what a subset gains may be
+/// lost there. A start whose mean the coarse grid has below that of the end is no worst placement: plans on the finer
+/// grid are no worse.
+fn planned_end(planner: &Planner<'_>, sense: Sense, estimate: &Estimated<'_>) -> Option<Solution> {
+    let Estimated { candidate, placement, .. } = estimate;
+    let plan = |at: &Placement| planned(planner, at, candidate.scheme.as_deref(), &mut planner.workspace());
+    let is_below = |end: &Solution| candidate.objective.mean().is_some_and(|start| start < end.objective);
+    let (end, start) = match sense {
+        Sense::Min => rayon::join(|| plan(placement), || plan(&candidate.placement)),
+        Sense::Max => match plan(placement) {
+            Some(end) if is_below(&end) => (Some(end), None),
+            end => (end, plan(&candidate.placement)),
+        },
+    };
+    end.into_iter()
+        .chain(start)
+        .reduce(|end, start| if sense.compare(start.objective, end.objective).is_lt() { start } else { end })
 }
 
 /// Whether two basins have come to the same end: in the same postures to the same place, but for a turn about axis 1.
@@ -202,14 +221,21 @@ fn is_same(problem: &Problem, a: &Planned, b: &Planned) -> bool {
 /// among the plans that its start has, and where plans of neighbours go another way through the angles it does not see
 /// them. What comes out counts as the planner plans it, so that whoever asks for the placement alone gets the same.
 /// Returns the report, continued.
-fn refine_whole(planner: &Planner<'_>, best: &mut Planned, mut report: Refinement, monitor: &Monitor) -> Refinement {
-    let plan = |placement: &Placement| planned(planner, placement, best.scheme.as_deref(), &mut planner.workspace());
+fn refine_whole(
+    whole: &WholePath<'_, '_>,
+    best: &mut Planned,
+    mut report: Refinement,
+    monitor: &Monitor,
+) -> Refinement {
+    let (planner, scheme) = (whole.finer(), best.scheme.as_deref());
+    let plan = |placement: &Placement| planned(planner, placement, scheme, &mut planner.workspace());
     let refined = |from: &Solution, report: &mut Refinement| {
         let run = solver::run(planner.problem(), from, Ending::LOOSE, monitor);
         report.rounds += 1;
         report.iterations += run.iterations;
         report.statuses.push(run.status);
-        plan(&run.solution.placement).filter(|anew| anew.objective < from.objective)
+        let is_moved = run.solution.placement != from.placement;
+        is_moved.then(|| plan(&run.solution.placement)).flatten().filter(|anew| anew.objective < from.objective)
     };
     let mut solution = best.solution.clone();
     for share in PROBES {
@@ -220,7 +246,12 @@ fn refine_whole(planner: &Planner<'_>, best: &mut Planned, mut report: Refinemen
             solution = anew;
         }
         let around = neighbours(planner.problem(), &solution.placement, share);
-        let around: Vec<Solution> = around.par_iter().filter_map(plan).collect();
+        let here = whole.rough(&solution.placement, scheme);
+        let is_promising = |there: &&Placement| {
+            let promised = here.zip(whole.rough(there, scheme));
+            promised.is_none_or(|(here, there)| there < here * (1.0 - PROMISING))
+        };
+        let around: Vec<Solution> = around.par_iter().filter(is_promising).filter_map(plan).collect();
         let limit = solution.objective * (1.0 - WORTH);
         let better = around.into_iter().filter(|there| there.objective < limit);
         match better.min_by(|a, b| a.objective.total_cmp(&b.objective)) {

@@ -274,7 +274,7 @@ impl<'a> Planner<'a> {
         self.unchanging(scheme, sense, |scheme| {
             let request = Request { placement, sense, scheme };
             self.collision_free_plans(request, workspace, |workspace, requested| {
-                let choices = self.choices(request, workspace, requested, margin)?;
+                let choices = self.proposed_choices(request, workspace, requested, margin)?;
                 let choices = self.without_hitting_ways(placement, choices);
                 let refined = |(segment, classes): (&usize, Vec<joint_turns::SegmentChoice>)| {
                     if self.is_unwanted() {
@@ -333,16 +333,39 @@ impl<'a> Planner<'a> {
         requested: &[usize],
         margin: f64,
     ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
-        let mut failure = NoFeasiblePlan::empty();
-        let mut all = Vec::new();
         let of = |workspace: &mut Workspace<E>, index: &usize| {
             self.segments.segment(*index, request, workspace, Sought::Plans(margin))
         };
+        self.choices_by(workspace, requested, of)
+    }
+
+    /// The same as single precision proposes them, with what they cost in double precision: for plans that leave the
+    /// grid.
+    fn proposed_choices(
+        &self,
+        request: Request<'_>,
+        workspace: &mut Workspace,
+        requested: &[usize],
+        margin: f64,
+    ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
+        let of = |workspace: &mut Workspace, index: &usize| self.segments.proposed(*index, request, workspace, margin);
+        self.choices_by(workspace, requested, of)
+    }
+
+    /// What a way of planning a segment comes to for each segment requested.
+    fn choices_by<E: KernelNumber>(
+        &self,
+        workspace: &mut Workspace<E>,
+        requested: &[usize],
+        of: impl Fn(&mut Workspace<E>, &usize) -> segment::SegmentOptions + Sync,
+    ) -> Result<Vec<Vec<joint_turns::SegmentChoice>>, NoFeasiblePlan> {
+        let mut failure = NoFeasiblePlan::empty();
+        let mut all = Vec::new();
         let options: Vec<segment::SegmentOptions> = match self.is_parallel() {
             true => {
                 let (forbidden, only_beta) = (workspace.forbidden.clone(), workspace.only_beta);
                 let space = || Workspace { forbidden: forbidden.clone(), only_beta, ..self.segments.workspace() };
-                requested.par_iter().map_init(space, of).collect()
+                requested.par_iter().map_init(space, &of).collect()
             }
             false => requested.iter().map(|index| of(workspace, index)).collect(),
         };

@@ -199,6 +199,32 @@ impl SegmentPlanner<'_> {
         found
     }
 
+    /// The plans that cost at most `margin` (relative) more than the cheapest as single precision finds them, with their
+    /// costs in double precision; by this alone where one of them is not allowed in it, or none is found.
+    pub(super) fn proposed(
+        &self,
+        segment: usize,
+        request: Request<'_>,
+        workspace: &mut Workspace,
+        margin: f64,
+    ) -> SegmentOptions {
+        let (forbidden, only_beta) = (workspace.forbidden.clone(), workspace.only_beta);
+        let single = workspace.single.get_or_insert_with(|| Box::new(self.workspace()));
+        (single.forbidden, single.only_beta) = (forbidden, only_beta);
+        let sought = Sought::Plans(margin);
+        let found = self.segment(segment, request, single, sought);
+        let Request { placement, sense, .. } = request;
+        let exact = |choice| self.recosted(placement, sense, choice);
+        let choices: Option<Vec<SegmentChoice>> = found.choices.into_iter().map(exact).collect();
+        match choices.filter(|choices| !choices.is_empty()) {
+            Some(mut choices) => {
+                choices.sort_by(|a, b| sense.compare(a.cost, b.cost));
+                SegmentOptions { choices, ..found }
+            }
+            None => self.segment(segment, request, workspace, sought),
+        }
+    }
+
     /// The postures of a class that yield like the given one, itself among them.
     pub(super) fn equivalent_postures(&self, posture: Posture) -> Vec<Posture> {
         let evaluator = BatchEvaluator::of_posture(&self.evaluators, posture);

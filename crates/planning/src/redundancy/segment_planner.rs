@@ -96,6 +96,8 @@ pub struct Workspace<E = f64> {
     pub(super) only_beta: Option<usize>,
     /// Space to plan on a finer grid.
     pub(super) finer: Option<Box<Self>>,
+    /// Space in which single precision proposes plans.
+    pub(super) single: Option<Box<Workspace<f32>>>,
 }
 
 impl<E: KernelNumber> Workspace<E> {
@@ -219,6 +221,7 @@ impl<'a> SegmentPlanner<'a> {
             forbidden: StateSet::default(),
             only_beta: None,
             finer: None,
+            single: None,
         }
     }
 }
