@@ -10,11 +10,16 @@ use stead_numerics::monitor::Monitor;
 use stead_problem::candidate::{Objective, rank};
 use stead_problem::problem::{Placement, Problem};
 use stead_problem::sense::Sense;
+use stead_problem::symmetry::{apart_about_axis_1, is_free_about_axis_1};
 
 /// First steps: radius (m), height (m), yaw (rad), azimuth (rad).
 const FIRST: [f64; 4] = [0.03, 0.03, 0.06, 0.06];
-/// The search ends when every step is below this share of the first.
+/// The search ends when every step is below this share of the first,
 const LAST: f64 = 0.01;
+/// on a subset of a path, whose mean is off by more than that makes, below this.
+const LAST_ON_SUBSET: f64 = 0.1;
+/// Placements as near as this (m, rad) but for a turn about axis 1 are the same.
+const SAME: f64 = 1e-9;
 /// A step that brings nothing is divided by this.
 const SHRINK: f64 = 3.0;
 /// A step that brings something is multiplied by this.
@@ -46,12 +51,15 @@ pub fn coordinate_search(
     let mut objective = evaluate(start);
     let mut evaluations = 1;
     let mut steps = FIRST;
+    let last = if problem.task.path().is_thinned() { LAST_ON_SUBSET } else { LAST };
+    let is_symmetric = is_free_about_axis_1(problem);
     let may_go_on = |evaluations: usize| evaluations < MAX_EVALUATIONS * count && !monitor.should_stop();
-    while may_go_on(evaluations) && (0..count).any(|k| steps[k].abs() > LAST * FIRST[k]) {
+    while may_go_on(evaluations) && (0..count).any(|k| steps[k].abs() > last * FIRST[k]) {
         for k in 0..count {
             let found = [1.0, -1.0].into_iter().any(|side| {
                 let placement = moved(problem, &best, k, side * steps[k]);
-                if placement == best {
+                let is_like = || apart_about_axis_1(problem, &best, &placement).iter().all(|apart| *apart < SAME);
+                if placement == best || (is_symmetric && objective.mean().is_some() && is_like()) {
                     return false;
                 }
                 evaluations += 1;

@@ -52,7 +52,8 @@ pub struct Refinement {
     /// Convex subproblems solved.
     pub iterations: usize,
     /// Largest violation of the first-order optimality conditions at the end, in m of mean deflection per scaled unit
-    /// of the variables (see [`super::refine`]); `None` where the refinement was stopped before its end.
+    /// of the variables (see [`super::refine`]); `None` where the refinement was stopped before its end, and on long
+    /// paths for all but the one that was taken.
     pub kkt_residual: Option<f64>,
     /// How each round ended.
     pub statuses: Vec<RefinementStatus>,

@@ -270,6 +270,17 @@ pub fn is_axis_1_vertical(problem: &Problem) -> bool {
     is_vertical(&axis_1(problem))
 }
 
+/// Whether it changes nothing else in a whole cell: nothing stands in it that shapes could hit, no external axis and no
+/// compliant base has a direction of its own.
+pub fn is_free_about_axis_1(problem: &Problem) -> bool {
+    let is_stiff = |robot: &Robot| robot.base_compliance().is_none();
+    is_axis_1_vertical(problem)
+        && problem.external_axes.is_empty()
+        && problem.scene.is_none()
+        && is_stiff(&problem.robot)
+        && problem.scored_robots().iter().all(is_stiff)
+}
+
 /// The direction of axis 1 in the base frame.
 fn axis_1(problem: &Problem) -> Vector3<f64> {
     problem.robot.geometry().base_from_root * Vector3::z()

@@ -5,7 +5,7 @@ use super::long_path::LongPath;
 use super::long_refinement;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
-use crate::refine::{found_again, planned, refine};
+use crate::refine::{found_again, planned, refine, state_residual};
 use crate::search::SearchResult;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -148,7 +148,8 @@ fn refine_one(
         let planner = evaluator.planner();
         (planned(planner, placement, scheme, &mut planner.workspace())?, None)
     } else {
-        let (solution, report) = refine(evaluator, placement, sense, scheme, monitor)?;
+        let (solution, mut report) = refine(evaluator, placement, sense, scheme, monitor)?;
+        state_residual(evaluator.planner(), &solution, scheme, &mut report, monitor);
         (solution, Some(report))
     };
     Some((Planned::new(evaluator.planner().problem(), solution, candidate.scheme.clone()), report))

@@ -5,8 +5,9 @@ use super::long_path::LongPath;
 use crate::coordinate_search::neighbours;
 use crate::evaluator::Evaluator;
 use crate::outcome::Refinement;
+use crate::path_subset::PathSubset;
 use crate::refine::solver::{self, Ending};
-use crate::refine::{LENGTH_UNIT, Solution, planned, refine};
+use crate::refine::{LENGTH_UNIT, Solution, planned, refine, state_residual};
 use crate::search::SearchResult;
 use crate::whole_path::WholePath;
 use rayon::prelude::*;
@@ -50,6 +51,18 @@ struct Estimated<'c> {
     /// m
     objective: f64,
     report: Refinement,
+    /// The subset on which it ended, and how.
+    subset: PathSubset,
+    on_subset: Solution,
+}
+
+impl Estimated<'_> {
+    /// States the residual of what the refinement came to on its subset.
+    fn state_residual(&mut self, problem: &Problem, monitor: &Monitor) {
+        let thinned = self.subset.of(problem);
+        let planner = Planner::finer(&thinned);
+        state_residual(&planner, &self.on_subset, self.candidate.scheme.as_deref(), &mut self.report, monitor);
+    }
 }
 
 /// Refines the basins of both searches, on the problem of a planner, and returns those that can be the best of either
@@ -140,12 +153,12 @@ fn estimated<'c>(
             _ => on_whole.mean,
         };
         let report = Refinement { end, end_mean: objective, ..report };
-        return Some(Estimated { candidate, placement: end, objective, report });
+        return Some(Estimated { candidate, placement: end, objective, report, subset, on_subset: solution });
     }
 }
 
 /// Plans the best of refined basins on the whole path, and those near it; for the best placement the first of these by
-/// their plans are refined on the whole path, and the best of all is taken.
+/// their plans are refined on the whole path, and the best of all is taken. The residual is stated of that alone.
 fn compared(
     whole: &WholePath<'_, '_>,
     sense: Sense,
@@ -185,6 +198,9 @@ fn compared(
                 (rank, basin)
             })
             .collect();
+    }
+    if let Some((rank, _)) = planned.first() {
+        estimates[*rank].state_residual(planner.problem(), monitor);
     }
     planned.into_iter().map(|(_, basin)| basin).collect()
 }

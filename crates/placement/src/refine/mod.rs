@@ -58,8 +58,9 @@ const ROUNDS: usize = 12;
 /// A round that gains less than this share of the mean ends the refinement.
 const GAIN: f64 = 1e-5;
 
-/// Refines from one placement, with the posture scheme found anew in every round or kept as given. `None` when the
-/// placement has no plan to start from. Once the caller asks to stop, it ends with what it has.
+/// Refines from one placement, with the posture scheme found anew in every round or kept as given; the KKT residual is
+/// left open ([`state_residual`]). `None` when the placement has no plan to start from. Once the caller asks to stop, it
+/// ends with what it has.
 pub fn refine(
     evaluator: &Evaluator<'_>,
     start: &Placement,
@@ -109,13 +110,23 @@ pub fn refine(
             }
         }
     }
-    report.kkt_residual = kkt_residual(planner, &best, sense, scheme, monitor);
-    if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
-        report.statuses.push(RefinementStatus::Interrupted);
-    }
     report.end = best.placement;
     report.end_mean = best.objective;
     Some((best, report))
+}
+
+/// States the KKT residual of what a refinement came to.
+pub fn state_residual(
+    planner: &Planner<'_>,
+    solution: &Solution,
+    scheme: Option<&[Posture]>,
+    report: &mut Refinement,
+    monitor: &Monitor,
+) {
+    report.kkt_residual = kkt_residual(planner, solution, report.sense, scheme, monitor);
+    if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
+        report.statuses.push(RefinementStatus::Interrupted);
+    }
 }
 
 /// The report of a refinement at its start.

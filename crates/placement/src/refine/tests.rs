@@ -20,7 +20,9 @@ fn published_optimum() -> Placement {
 
 /// Refines from a start with the planner alone, the posture scheme being free.
 fn refined(planner: &Planner<'_>, start: &Placement, sense: Sense) -> Option<(Solution, Refinement)> {
-    refine(&Evaluator::new(planner, None), start, sense, None, &Monitor::silent())
+    let (solution, mut report) = refine(&Evaluator::new(planner, None), start, sense, None, &Monitor::silent())?;
+    state_residual(planner, &solution, None, &mut report, &Monitor::silent());
+    Some((solution, report))
 }
 
 /// Every point of a solution is allowed, with joints and betas within their steps.
