@@ -17,7 +17,7 @@ const FIRST: [f64; 4] = [0.03, 0.03, 0.06, 0.06];
 /// The search ends when every step is below this share of the first,
 const LAST: f64 = 0.01;
 /// on a subset of a path, whose mean is off by more than that makes, below this.
-const LAST_ON_SUBSET: f64 = 0.1;
+const LAST_ON_SUBSET: f64 = 0.03;
 /// Placements as near as this (m, rad) but for a turn about axis 1 are the same.
 const SAME: f64 = 1e-9;
 /// A step that brings nothing is divided by this.

@@ -55,6 +55,8 @@ use stead_problem::sense::Sense;
 
 /// Rounds of refining and planning anew, at the most.
 const ROUNDS: usize = 12;
+/// The same on a subset of a path, whose mean is off by more than later ones gain.
+const ROUNDS_ON_SUBSET: usize = 6;
 /// A round that gains less than this share of the mean ends the refinement.
 const GAIN: f64 = 1e-5;
 
@@ -76,13 +78,17 @@ pub fn refine(
     if is_cancelled(&best) {
         report.statuses.push(RefinementStatus::Cancelled);
     }
-    while report.rounds < ROUNDS && !is_cancelled(&best) && !monitor.should_stop() {
+    let (rounds, ending) = match problem.task.path().is_thinned() {
+        true => (ROUNDS_ON_SUBSET, solver::Ending::LOOSE),
+        false => (ROUNDS, solver::Ending::TIGHT),
+    };
+    while report.rounds < rounds && !is_cancelled(&best) && !monitor.should_stop() {
         report.rounds += 1;
         let (before, signature) = (best.objective, signature(&best));
         let (status, iterations);
         (best, status, iterations) = match sense {
             Sense::Min => {
-                let run = solver::run(problem, &best, solver::Ending::TIGHT, monitor);
+                let run = solver::run(problem, &best, ending, monitor);
                 (run.solution, run.status, run.iterations)
             }
             Sense::Max => {
