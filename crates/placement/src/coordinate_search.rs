@@ -112,3 +112,41 @@ fn moved(problem: &Problem, placement: &Placement, direction: usize, step: f64) 
     let turned = azimuth(inside.x, inside.y) - azimuth(placement.x, placement.y);
     cell.clamp(&Placement { yaw: inside.yaw + turned, ..inside })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix6, Vector3};
+    use stead_model::robot::BaseCompliance;
+    use stead_problem::testing::five_segments;
+
+    /// How many placements a search for a height, which begins at a place inside the cell, evaluates that a turn about
+    /// axis 1 brings to one before.
+    fn turned_about_axis_1(problem: &Problem) -> usize {
+        let middle = |k: usize| problem.cell.position[k].min + 0.5 * problem.cell.position[k].width();
+        let start = Placement { x: middle(0), y: middle(1), z: middle(2), yaw: 2.0 };
+        let mut seen: Vec<Placement> = Vec::new();
+        let mut turned = 0;
+        let evaluate = |placement: &Placement| {
+            let is_like = |known: &Placement| {
+                known != placement && apart_about_axis_1(problem, known, placement).iter().all(|apart| *apart < SAME)
+            };
+            turned += usize::from(seen.iter().any(is_like));
+            seen.push(*placement);
+            Objective::Feasible(1.0 + (placement.z - middle(2) - 0.02).abs())
+        };
+        let found = coordinate_search(problem, &start, Sense::Min, Directions::All, evaluate, &Monitor::silent());
+        assert!((found.0.z - middle(2) - 0.02).abs() < 1e-3, "{found:?}");
+        turned
+    }
+
+    #[test]
+    fn turns_about_axis_1_are_evaluated_where_they_change_something() {
+        let problem = five_segments();
+        assert_eq!(turned_about_axis_1(&problem), 0);
+        let base = BaseCompliance::new(Vector3::new(0.0, 0.0, -0.5), Matrix6::from_diagonal_element(1e-8));
+        let mut soft = problem.clone();
+        soft.robot = soft.robot.clone().with_base_compliance(base.ok());
+        assert!(turned_about_axis_1(&soft) > 2);
+    }
+}

@@ -15,6 +15,7 @@ mod calm;
 mod collisions;
 mod dense;
 mod finer;
+mod proposed;
 mod spindle_turn;
 
 fn published_optimum() -> Placement {

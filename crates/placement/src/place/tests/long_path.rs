@@ -63,6 +63,18 @@ fn placed(problem: &Problem, settings: &SearchSettings) -> Outcome {
     place(problem, settings, &TransferSettings::default(), &Monitor::silent()).unwrap()
 }
 
+/// The residual costs as much as many plans: it is stated of what was taken.
+#[test]
+fn residuals_are_stated_of_what_was_taken_alone() {
+    let outcome = placed(&dense(), &SearchSettings { basins: 3, ..settings() });
+    for case in outcome.cases.optima() {
+        let of_sense = outcome.refinements.iter().filter(|refinement| refinement.sense == case.placement_sense);
+        let known: Vec<_> = of_sense.filter(|refinement| refinement.kkt_residual.is_some()).collect();
+        assert_eq!(known.len(), 1, "{:?}", outcome.refinements);
+        assert!((known[0].end_mean / case.plan.objective - 1.0).abs() < 1e-3, "{known:?}");
+    }
+}
+
 /// Every case covers all points, and the placement alone is scored as case 1.
 fn assert_whole(problem: &Problem, outcome: &Outcome) {
     let points = problem.task.points().len();

@@ -2,7 +2,7 @@ use super::super::UNITS;
 use super::*;
 use crate::evaluator::Evaluator;
 use crate::refine::active::{active_bounds, active_walls};
-use crate::refine::{Refinement, Solution, refine};
+use crate::refine::{Refinement, Solution, refine, state_residual};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -36,7 +36,10 @@ fn wall(y: f64) -> Shape {
 
 fn refined(problem: &Problem, start: &Placement, sense: Sense) -> (Solution, Refinement) {
     let planner = Planner::finer(problem);
-    refine(&Evaluator::new(&planner, None), start, sense, None, &Monitor::silent()).unwrap()
+    let (solution, mut report) =
+        refine(&Evaluator::new(&planner, None), start, sense, None, &Monitor::silent()).unwrap();
+    state_residual(&planner, &solution, None, &mut report, &Monitor::silent());
+    (solution, report)
 }
 
 #[test]
