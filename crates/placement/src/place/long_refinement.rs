@@ -205,9 +205,9 @@ fn compared(
     planned.into_iter().map(|(_, basin)| basin).collect()
 }
 
-/// The plan of a refined basin on the whole path, or where that is better of its start, since what a subset gains may be
-/// lost there. A start whose mean the coarse grid has below that of the end is no worst placement: plans on the finer
-/// grid are no worse.
+/// The plan of a refined basin on the whole path, or where that is better of its start, since what a subset gains may
+/// be lost there. A start whose mean the coarse grid has below that of the end is no worst placement: plans on the
+/// finer grid are no worse.
 fn planned_end(planner: &Planner<'_>, sense: Sense, estimate: &Estimated<'_>) -> Option<Solution> {
     let Estimated { candidate, placement, .. } = estimate;
     let plan = |at: &Placement| planned(planner, at, candidate.scheme.as_deref(), &mut planner.workspace());

@@ -61,8 +61,8 @@ const ROUNDS_ON_SUBSET: usize = 6;
 const GAIN: f64 = 1e-5;
 
 /// Refines from one placement, with the posture scheme found anew in every round or kept as given; the KKT residual is
-/// left open ([`state_residual`]). `None` when the placement has no plan to start from. Once the caller asks to stop, it
-/// ends with what it has.
+/// left open ([`state_residual`]). `None` when the placement has no plan to start from. Once the caller asks to stop,
+/// it ends with what it has.
 pub fn refine(
     evaluator: &Evaluator<'_>,
     start: &Placement,

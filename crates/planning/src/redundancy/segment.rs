@@ -199,8 +199,8 @@ impl SegmentPlanner<'_> {
         found
     }
 
-    /// The plans that cost at most `margin` (relative) more than the cheapest as single precision finds them, with their
-    /// costs in double precision; by this alone where one of them is not allowed in it, or none is found.
+    /// The plans that cost at most `margin` (relative) more than the cheapest as single precision finds them, with
+    /// their costs in double precision; by this alone where one of them is not allowed in it, or none is found.
     pub(super) fn proposed(
         &self,
         segment: usize,
