@@ -34,10 +34,13 @@ const SAME: f64 = 0.05;
 /// How far around a refined placement its neighbours are planned, in the first steps of a coordinate search; the next
 /// only after a gain.
 const PROBES: [f64; 3] = [0.4, 0.4, 0.2];
-/// A neighbour is gone on from where its plan is better by more than this (relative),
+/// A neighbour is gone on from where its plan is better by more than this (relative).
 const WORTH: f64 = 1e-3;
-/// and planned where it is better by more than this on the coarse grid.
-const PROMISING: f64 = WORTH / 4.0;
+/// It is planned where the coarse grid has it worse by no more than this part of what that grid is off here, and where
+/// it differs at all (relative).
+const DOUBT: f64 = 0.2;
+/// See [`DOUBT`].
+const DIFFERENT: f64 = 1e-6;
 /// On paths longer than [`MAX_REFINED`].
 const CLOSE_LONG: f64 = 0.01;
 /// Longer paths than this are planned whole, but not refined whole: there the gain is far below what a minute is worth.
@@ -265,7 +268,11 @@ fn refine_whole(
         let here = whole.rough(&solution.placement, scheme);
         let is_promising = |there: &&Placement| {
             let promised = here.zip(whole.rough(there, scheme));
-            promised.is_none_or(|(here, there)| there < here * (1.0 - PROMISING))
+            promised.is_none_or(|(here, there)| {
+                let doubt = DOUBT * (solution.objective / here - 1.0).abs();
+                let more = there / here - 1.0;
+                more < doubt && more.abs() > DIFFERENT
+            })
         };
         let around: Vec<Solution> = around.par_iter().filter(is_promising).filter_map(plan).collect();
         let limit = solution.objective * (1.0 - WORTH);
