@@ -118,7 +118,17 @@ pub fn refine(
     }
     report.end = best.placement;
     report.end_mean = best.objective;
+    if monitor.should_stop() {
+        state_interrupted(&mut report);
+    }
     Some((best, report))
+}
+
+/// States that a refinement was stopped before its end.
+fn state_interrupted(report: &mut Refinement) {
+    if report.statuses.last() != Some(&RefinementStatus::Interrupted) {
+        report.statuses.push(RefinementStatus::Interrupted);
+    }
 }
 
 /// States the KKT residual of what a refinement came to.
@@ -130,8 +140,8 @@ pub fn state_residual(
     monitor: &Monitor,
 ) {
     report.kkt_residual = kkt_residual(planner, solution, report.sense, scheme, monitor);
-    if report.kkt_residual.is_none() && report.statuses.last() != Some(&RefinementStatus::Interrupted) {
-        report.statuses.push(RefinementStatus::Interrupted);
+    if report.kkt_residual.is_none() {
+        state_interrupted(report);
     }
 }
 
