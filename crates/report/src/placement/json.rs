@@ -272,8 +272,8 @@ records! {
         rounds: usize = refinement.rounds,
         /// Convex subproblems solved.
         iterations: usize = refinement.iterations,
-        /// Largest violation of the first-order optimality conditions at the end; null where it was stopped before, and on
-        /// long paths for all but the one that was taken.
+        /// Largest violation of the first-order optimality conditions at the end; null where it was stopped before,
+        /// and on long paths for all but the one that was taken.
         kkt_residual_mm: Option<ResidualMm> = some(refinement.kkt_residual),
         /// How each round ended.
         status: String = names::statuses(&refinement.statuses),
