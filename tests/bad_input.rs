@@ -418,3 +418,56 @@ fn files_of_the_user_are_not_replaced_by_those_of_a_result() {
         assert_eq!(bench.read(&format!("out/{own}")), "the user's own\n");
     }
 }
+
+/// Editors of Windows end lines otherwise, put a mark before the text, or save it as UTF-16.
+#[test]
+fn files_of_other_editors_are_read_or_refused_in_one_line() {
+    let bench = Bench::new();
+    assert_eq!(bench.stead(&["place", RUN, "--out", "out"]).code, Some(0));
+    let files = [RUN, "configs/robots/kuka-kr270-2.toml", "tasks/five-segments.csv"];
+    let texts = files.map(|file| bench.read(file));
+    for (file, text) in files.iter().zip(&texts) {
+        bench.write(file, &format!("\u{feff}{}", text.replace('\n', "\r\n")));
+    }
+    assert_eq!(bench.stead(&["place", RUN, "--out", "marked"]).code, Some(0));
+    assert_eq!(bench.read("out/best.csv"), bench.read("marked/best.csv"));
+    for (file, text) in files.iter().zip(&texts) {
+        let wide: Vec<u8> = "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+        let before = std::fs::read(bench.path(file)).unwrap();
+        std::fs::write(bench.path(file), wide).unwrap();
+        let ended = bench.stead(&["place", RUN]);
+        assert_eq!((ended.code, ended.stderr.lines().count()), (Some(2), 1), "{}", ended.stderr);
+        ended.assert_says(&["it is text in UTF-16, which some editors call Unicode: save it as UTF-8"]);
+        std::fs::write(bench.path(file), before).unwrap();
+    }
+}
+
+/// A report of a fault states all of this.
+#[test]
+fn the_environment_is_stated() {
+    let bench = Bench::new();
+    let ended = bench.stead(&["check", "--environment"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for part in ["(commit ", "program ", "none beside the program", std::env::consts::OS, "can be written to, locks work"] {
+        assert!(ended.stdout.contains(part), "{part} is not in {}", ended.stdout);
+    }
+    assert_eq!(bench.names(""), Bench::new().names(""));
+    let [mistaken, alone] = [&["check", RUN, "--environment"][..], &["check"]].map(|arguments| bench.stead(arguments).code);
+    assert_eq!((mistaken, alone), (Some(2), Some(2)));
+}
+
+/// Where there is no such file, that beside the program is taken, and that is said.
+#[test]
+fn files_that_came_with_the_program_are_found_from_any_folder() {
+    let [bench, elsewhere] = [Bench::new(), Bench::new()];
+    bench.copy("configs/caro-2013.toml", "configs/shipped.toml");
+    let run = |arguments: &[&str]| {
+        let mut command = elsewhere.command(arguments);
+        Ended::from(command.env("STEAD_SHIPPED", bench.path("")).output().unwrap())
+    };
+    let ended = run(&["check", "configs/shipped.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.assert_says(&["note: there is no such file here: ", "shipped.toml came with the program"]);
+    assert!(!run(&["check", RUN]).stderr.contains("came with the program"));
+    assert_eq!(run(&["check", "configs/other.toml"]).code, Some(2));
+}

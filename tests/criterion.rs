@@ -82,7 +82,7 @@ fn a_posture_that_no_segment_can_take_is_refused_by_its_number() {
     ]);
     assert_eq!(bench.tree(""), before);
     let (_, said) = refused.stderr.split_once("allowed: ").unwrap();
-    let possible: Vec<u8> = said.trim().split(", ").map(|number| number.parse().unwrap()).collect();
+    let possible: Vec<u8> = said.trim().split(", ").map(|number| number.parse::<u8>().unwrap()).collect();
     assert!(possible.len() == 4 && possible.iter().filter(|number| [3, 4].contains(*number)).count() == 1, "{said}");
 }
 

@@ -5,14 +5,14 @@
 use super::live;
 use super::manuals::STEAD;
 use super::{
-    assess, check, circularity, compensate, completions, explain, export, forces, identify, import, init, man, page,
-    place, pose, robots, schema, score, simulate, stability, study,
+    VERSION, assess, check, circularity, compensate, completions, explain, export, forces, identify, import, init, man,
+    page, place, pose, robots, schema, score, simulate, stability, study,
 };
 use clap::{Parser, Subcommand};
 
 /// Workpiece placement optimiser for robotic machining.
 #[derive(Debug, Parser)]
-#[command(name = "stead", version, about, arg_required_else_help = true, after_help = STEAD)]
+#[command(name = "stead", version = VERSION, about, arg_required_else_help = true, after_help = STEAD)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Command,

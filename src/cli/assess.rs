@@ -4,7 +4,7 @@ use super::Failure;
 use super::manual::{Manual, STOPPED};
 use super::output::{out_folder, say_notes};
 use super::progress::Terminal;
-use super::values::{positive, threads};
+use super::values::{input_file, positive, threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::AssessmentRun;
@@ -12,6 +12,7 @@ use stead::AssessmentRun;
 #[derive(Debug, Args)]
 pub(super) struct AssessOptions {
     /// Assessment file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Folder for the results [default: results/<name of the assessment file>]
     #[arg(long, value_name = "DIR")]

@@ -1,9 +1,11 @@
 //! `stead check`: what was understood of a file, and what looks wrong.
 
 use super::Failure;
+use super::environment::environment;
 use super::manual::Manual;
-use super::output::{files_written, say_all, show};
+use super::output::{files_written, print, say_all, show};
 use super::progress::Terminal;
+use super::values::input_file;
 use clap::Args;
 use std::path::PathBuf;
 use stead::Checked;
@@ -12,7 +14,11 @@ use stead_report::output::Folder;
 #[derive(Debug, Args)]
 pub(super) struct CheckOptions {
     /// Run file or robot file (TOML), or a shipped arm as name:kuka-kr270-2
-    file: PathBuf,
+    #[arg(value_parser = input_file(), required_unless_present = "environment")]
+    file: Option<PathBuf>,
+    /// Say in place of it what a report of a fault has to state: version, commit, system, folders
+    #[arg(long, conflicts_with_all = ["file", "out", "json"])]
+    environment: bool,
     /// Folder for check.svg: the arm as it was understood, with cell and tool path
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -27,6 +33,7 @@ pub(super) const MANUAL: Manual = Manual {
         "stead check my/run.toml",
         "stead check my/run.toml --out results/check",
         "stead check my/kr210.toml --json",
+        "stead check --environment",
     ],
     written: "with --out",
     files: "check.svg: the arm from its rows, from the side and from above, with cell and tool path",
@@ -37,7 +44,8 @@ pub(super) const MANUAL: Manual = Manual {
 };
 
 pub(super) fn run(options: &CheckOptions) -> Result<(), Failure> {
-    let checked = Terminal::start(None).during(|monitor| Checked::read_with(&options.file, monitor))?;
+    let Some(file) = &options.file else { return print(environment().as_bytes()) };
+    let checked = Terminal::start(None).during(|monitor| Checked::read_with(file, monitor))?;
     say_all(checked.notes(), checked.warnings());
     if let Some(out) = &options.out {
         let folder = Folder::create(out)?;

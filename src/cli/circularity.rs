@@ -3,7 +3,7 @@
 use super::Failure;
 use super::manual::Manual;
 use super::output::{files_written, print, print_json, results_in, say_warnings};
-use super::values::sector;
+use super::values::{input_file, sector};
 use clap::Args;
 use std::path::PathBuf;
 use stead::circularity::Profile;
@@ -13,6 +13,7 @@ use stead_report::output::Folder;
 #[derive(Debug, Args)]
 pub(super) struct CircularityOptions {
     /// Measured points (CSV with x_mm,y_mm or x_mm,y_mm,z_mm)
+    #[arg(value_parser = input_file())]
     pub points: PathBuf,
     /// Exclude points from angle A to B in degrees about the least-squares centre; may be repeated
     #[arg(long, value_name = "A:B", value_parser = sector, allow_hyphen_values = true)]

@@ -4,6 +4,7 @@ use super::Failure;
 use super::manual::{Manual, STOPPED};
 use super::output::{out_folder, print_json, say_all, say_notes, say_warnings};
 use super::progress::Terminal;
+use super::values::input_file;
 use clap::Args;
 use std::path::PathBuf;
 use stead::{CompensationRun, Error};
@@ -11,6 +12,7 @@ use stead::{CompensationRun, Error};
 #[derive(Debug, Args)]
 pub(super) struct CompensateOptions {
     /// Compensation file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Robot file (TOML) of the same geometry on which the corrected path is evaluated, instead of the file's `reality`
     #[arg(long, value_name = "ROBOT")]

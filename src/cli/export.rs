@@ -5,7 +5,7 @@ use super::given::Force;
 use super::manual::{Manual, STOPPED};
 use super::output::{print, print_json, say_all, say_notes, say_warnings, show};
 use super::progress::Terminal;
-use super::values::finite;
+use super::values::{finite, input_file};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
@@ -15,6 +15,7 @@ use stead::{Error, Run};
 #[derive(Debug, Args)]
 pub(super) struct ExportCommand {
     /// Run file (TOML) of the plan
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Plan that `stead place` wrote for it, as results/<run>/best.csv
     pub plan: PathBuf,

@@ -5,7 +5,7 @@ use super::given::Force;
 use super::manual::{Manual, STOPPED};
 use super::output::{print, print_json, say_notes, say_warnings};
 use super::progress::Terminal;
-use super::values::threads;
+use super::values::{input_file, threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::forces::ForcesRun;
@@ -13,6 +13,7 @@ use stead::forces::ForcesRun;
 #[derive(Debug, Args)]
 pub(super) struct ForcesOptions {
     /// Forces file (TOML): path, stock, cutter
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Task file (CSV) to write; the other files go beside it
     #[arg(long, value_name = "FILE")]

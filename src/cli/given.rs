@@ -3,7 +3,7 @@
 
 use super::Failure;
 use super::progress::Terminal;
-use super::values::{case, damping_scale, field, finite, quaternion, rpm, variant};
+use super::values::{case, damping_scale, field, finite, input_file, quaternion, rpm, variant};
 use clap::Args;
 use std::path::PathBuf;
 use stead::{Error, Run};
@@ -18,6 +18,7 @@ use stead_simulation::arm::Variant;
 #[group(skip)]
 pub(super) struct GivenRun {
     /// Run file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Value in place of that of the run file, or of a file that it names, as cell.z_mm=[-300,0]; may be repeated
     #[arg(long, value_name = "PATH=VALUE", value_parser = field)]

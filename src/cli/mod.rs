@@ -10,6 +10,7 @@ mod check;
 mod circularity;
 mod compensate;
 mod completions;
+mod environment;
 mod explain;
 mod export;
 mod forces;
@@ -43,6 +44,18 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 use stead_report::output::ReportError;
+
+/// Version, commit, target and profile.
+const VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    " (commit ",
+    env!("STEAD_COMMIT"),
+    ", ",
+    env!("STEAD_TARGET"),
+    ", ",
+    env!("STEAD_PROFILE"),
+    ")"
+);
 
 /// Why a command ends without its result.
 #[derive(Debug, thiserror::Error)]

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::manual::Manual;
 use super::output::{say_notes, show};
-use super::values::six;
+use super::values::{input_file, six};
 use clap::Args;
 use std::path::PathBuf;
 use stead::robot::Arm;
@@ -11,6 +11,7 @@ use stead::robot::Arm;
 #[derive(Debug, Args)]
 pub(super) struct PoseOptions {
     /// Robot file (TOML), or a shipped arm as name:kuka-kr270-2
+    #[arg(value_parser = input_file())]
     robot: PathBuf,
     #[command(flatten)]
     angles: Angles,

@@ -61,6 +61,8 @@ impl Terminal {
             let word = "interrupted: ending with what there is; Ctrl-C again ends at once";
             locked(&bar).suspend(|| say(word));
         });
+        #[cfg(all(windows, feature = "live"))]
+        stop_at_closing(terminal.stop.clone());
         terminal
     }
 
@@ -119,6 +121,20 @@ impl Terminal {
         };
         Shown { monitor: monitor.with_stop(self.stop.clone()), bar, _lines: lines }
     }
+}
+
+/// Stops the jobs where the window is closed or the computer shut down, as the first Ctrl-C does. Windows ends the
+/// process some seconds later, whatever it does.
+#[cfg(all(windows, feature = "live"))]
+fn stop_at_closing(stop: StopHandle) {
+    use tokio::signal::windows::{ctrl_close, ctrl_shutdown};
+    // The other handler of signals would let the process end at once; this one does not return.
+    let (Ok(mut close), Ok(mut shutdown)) = (ctrl_close(), ctrl_shutdown()) else { return };
+    let Ok(runtime) = tokio::runtime::Builder::new_current_thread().build() else { return };
+    std::thread::spawn(move || {
+        runtime.block_on(async { tokio::select! { _ = close.recv() => (), _ = shutdown.recv() => () } });
+        stop.stop();
+    });
 }
 
 /// A thread that says every now and then how far a job is, until this is dropped.

@@ -5,6 +5,7 @@ use super::given::ModelArguments;
 use super::manual::{Manual, STOPPED};
 use super::output::{out_folder, results_in, say_all};
 use super::progress::Terminal;
+use super::values::input_file;
 use clap::Args;
 use std::path::PathBuf;
 use stead::SimulationRun;
@@ -13,6 +14,7 @@ use stead::simulation::Overrides;
 #[derive(Debug, Args)]
 pub(super) struct SimulateOptions {
     /// Simulation file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     #[command(flatten)]
     pub model: ModelArguments,

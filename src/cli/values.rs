@@ -1,6 +1,9 @@
 //! The values of options: how each is read from its text, and what is allowed.
 
+use super::output::say;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use std::fmt::Display;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use stead::MAX_THREADS;
 use stead_assessment::roundness::Sector;
@@ -11,6 +14,28 @@ use stead_problem::settings::CertificateSettings;
 use stead_run_files::{GAPS_ALLOWED, MAX_DAMPING_SCALE};
 use stead_simulation::arm::Variant;
 use stead_study::cases::Shard;
+
+/// A file that is read. Where there is none of this name, that of the files which came with the program, beside it.
+pub(super) fn input_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().map(|file| {
+        let shipped = if file.exists() { None } else { beside_the_program(&file) };
+        shipped.map_or(file, |shipped| {
+            say(&format!("note: there is no such file here: {} came with the program", shipped.display()));
+            shipped
+        })
+    })
+}
+
+/// What came with the program, by its path there.
+pub(super) fn beside_the_program(path: &Path) -> Option<PathBuf> {
+    // The command of the Python package has an interpreter as its program.
+    let folder = match std::env::var_os("STEAD_SHIPPED") {
+        Some(folder) => PathBuf::from(folder),
+        None => std::env::current_exe().ok()?.parent()?.to_owned(),
+    };
+    let beside = folder.join(path);
+    (path.is_relative() && beside.exists()).then_some(beside)
+}
 
 /// A number that is as it should be.
 pub(super) fn parsed<T: FromStr>(

@@ -2,6 +2,7 @@
 //!
 //! | question | page |
 //! |---|---|
+//! | How do I get it to run, on Windows too? | [`install`] |
 //! | How do I begin with my own cell? | [`your_cell`], [`starting`] |
 //! | How do I get a tool path from my CAM system? | [`import_path`] |
 //! | How large are the forces of the cut, from the path and the stock? | [`forces`] |
@@ -44,7 +45,7 @@ macro_rules! pages {
 pages! {
     assess, assessment_file, cell_setup, certify, circularity, columns, compensate, compensation_file,
     conventions, explain, export, files, forces, forces_file, glossary, identification_file, identify,
-    import_path, import_robot, lean, library, live, method, objective, page, place, python, release, robot_file,
+    import_path, import_robot, install, lean, library, live, method, objective, page, place, python, release, robot_file,
     robots, run_file, score, simulate, simulation_file, stability, starting, studies, study, study_file,
     surroundings, tables, troubleshooting, validation, whole_arm, your_cell
 }

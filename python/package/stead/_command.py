@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -10,6 +11,7 @@ import sys
 import sysconfig
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
+from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 from . import _stead
@@ -20,6 +22,8 @@ def main() -> NoReturn:
     """Runs the command line and leaves with its exit code."""
     # Ctrl-C is handled by the command itself.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # What came with the package, where `stead` looks for files that are not there.
+    os.environ.setdefault("STEAD_SHIPPED", str(Path(__file__).with_name("shipped")))
     sys.exit(_stead.run_command(sys.argv))
 
 

@@ -5,6 +5,7 @@ pub(super) mod plan;
 use super::Failure;
 use super::output::{out_folder, results_in, say_notes};
 use super::progress::Terminal;
+use super::values::input_file;
 use crate::cli::manual::{Manual, STOPPED};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -21,6 +22,7 @@ pub(super) enum IdentifyCommand {
 #[derive(Debug, Args)]
 pub(super) struct IdentifyFitOptions {
     /// Identification file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Folder for the results [default: results/<name of the identification file>]
     #[arg(long, value_name = "DIR")]

@@ -4,7 +4,7 @@ use super::super::Failure;
 use super::super::output::{out_folder, say_notes};
 use super::super::progress::Terminal;
 use crate::cli::manual::{Manual, STOPPED};
-use crate::cli::values::{seed, threads};
+use crate::cli::values::{input_file, seed, threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::DesignRun;
@@ -13,6 +13,7 @@ use stead_report::identification::plan::SHEET;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct IdentifyPlanOptions {
     /// Identification file (TOML) with a table [plan]
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Folder for the results [default: results/<name of the identification file>]
     #[arg(long, value_name = "DIR")]

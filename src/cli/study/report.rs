@@ -5,7 +5,7 @@ use crate::cli::Failure;
 use crate::cli::manual::Manual;
 use crate::cli::output::{files_written, print, print_json, results_in};
 use crate::cli::progress::Terminal;
-use crate::cli::values::noise;
+use crate::cli::values::{input_file, noise};
 use clap::Args;
 use std::path::PathBuf;
 use stead::study::StudyQuestion;
@@ -14,6 +14,7 @@ use stead_report::output::Folder;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct StudyReportOptions {
     /// Study file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Folder of the results, which the report goes to too [default: results/<name of the study file>]
     #[arg(long, value_name = "DIR")]

@@ -5,7 +5,7 @@ use crate::cli::Failure;
 use crate::cli::manual::Manual;
 use crate::cli::output::{print, say};
 use crate::cli::progress::Terminal;
-use crate::cli::values::{shard, threads};
+use crate::cli::values::{input_file, shard, threads};
 use clap::Args;
 use std::path::PathBuf;
 use stead::study::Shard;
@@ -13,6 +13,7 @@ use stead::study::Shard;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct StudyRunOptions {
     /// Study file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Do part I of N: the cases I, I + N, and so on [default: all]
     #[arg(long, value_name = "I/N", value_parser = shard)]

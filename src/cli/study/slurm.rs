@@ -5,7 +5,7 @@ use crate::cli::Failure;
 use crate::cli::manual::Manual;
 use crate::cli::output::print;
 use crate::cli::progress::Terminal;
-use crate::cli::values::{shards, threads};
+use crate::cli::values::{input_file, shards, threads};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stead::study::slurm_script;
@@ -13,6 +13,7 @@ use stead::study::slurm_script;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct StudySlurmOptions {
     /// Study file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Elements of the array, each with one shard of the study
     #[arg(long, value_name = "N", value_parser = shards, allow_negative_numbers = true)]

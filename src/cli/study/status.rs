@@ -1,5 +1,6 @@
 //! `stead study status`: how far a study is.
 
+use super::super::values::input_file;
 use super::read::{folder, read, say_stale};
 use crate::cli::Failure;
 use crate::cli::manual::Manual;
@@ -12,6 +13,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct StudyStatusOptions {
     /// Study file (TOML)
+    #[arg(value_parser = input_file())]
     pub config: PathBuf,
     /// Folder of the results [default: results/<name of the study file>]
     #[arg(long, value_name = "DIR")]

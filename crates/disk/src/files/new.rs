@@ -1,7 +1,7 @@
 //! Files that a command makes beside those of the user: they must not be there yet, or are replaced with `--force`.
 
 use super::staged::{Aside, PREFIX, Staged, remove_abandoned, sync};
-use super::{is_of_disk, read};
+use super::{check_name, is_of_disk, read};
 use crate::input::{InputError, InputFile, sha256};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -140,6 +140,7 @@ fn cannot(file: &Path, cause: &std::io::Error) -> InputError {
 
 /// Refuses a file that is there, where it is to be kept, is no plain file, or is one that the new ones are made from.
 fn check(file: &Path, existing: Existing, inputs: &[InputFile]) -> Result<(), InputError> {
+    check_name(file).map_err(|cause| cannot(file, &cause))?;
     match (file.symlink_metadata(), existing) {
         (Err(_), _) => Ok(()),
         (Ok(found), Existing::Replaced) if found.is_file() && is_input(file, inputs) => {

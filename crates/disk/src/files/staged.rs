@@ -1,10 +1,10 @@
 //! Files written whole under temporary names, to be renamed when all of them are there.
 
-use super::lock::{Lock, TryLock};
-use super::options::options;
+use super::lock::{Lock, TryLock, mark, marked};
 use std::fs::File;
-use std::io::{ErrorKind, Result, Write};
+use std::io::{Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::{Builder, NamedTempFile};
 
 /// How the names of temporary files begin, unless the code that removes them knows its own by another name.
@@ -13,6 +13,24 @@ pub const PREFIX: &str = ".stead-";
 const SUFFIX: &str = ".tmp";
 /// Random characters between the two.
 const RANDOM: usize = 6;
+
+/// On Windows, where what somebody has open is not replaced: how long to wait for a scanner of viruses, or a program
+/// that synchronises files, to let go of a file.
+const PAUSES_MS: [u64; 5] = [10, 40, 150, 300, 500];
+
+/// Whether a file cannot be replaced since another program has it open.
+fn is_in_use(cause: &Error) -> bool {
+    // `ERROR_ACCESS_DENIED`, `ERROR_SHARING_VIOLATION`, `ERROR_LOCK_VIOLATION`, `ERROR_USER_MAPPED_FILE`.
+    cfg!(windows) && matches!(cause.raw_os_error(), Some(5 | 32 | 33 | 1224))
+}
+
+/// What a program has done with a file, or why not, for people.
+fn told(cause: Error) -> Error {
+    if !is_in_use(&cause) {
+        return cause;
+    }
+    Error::new(cause.kind(), format!("another program has it open, such as a spreadsheet, or it is read-only: {cause}"))
+}
 
 /// A file with its content on disk under a temporary name. Gone again when it is dropped.
 #[derive(Debug)]
@@ -27,8 +45,7 @@ impl Staged {
         let mut builder = builder(prefix);
         readable(&mut builder);
         let mut file = builder.tempfile_in(named(folder))?;
-        // As long as it is open, it is that of a process that is alive; a file system without locks does not say so.
-        let _ = file.as_file().try_lock();
+        mark(file.as_file());
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
         Ok(Self(file))
@@ -39,7 +56,16 @@ impl Staged {
     /// # Errors
     /// What the system says.
     pub fn put(self, path: &Path) -> Result<()> {
-        self.0.persist(path).map(drop).map_err(|error| error.error)
+        let mut staged = self.0;
+        for pause in PAUSES_MS.map(Duration::from_millis) {
+            match staged.persist(path) {
+                Ok(_) => return Ok(()),
+                Err(error) if is_in_use(&error.error) => staged = error.file,
+                Err(error) => return Err(error.error),
+            }
+            std::thread::sleep(pause);
+        }
+        staged.persist(path).map(drop).map_err(|error| told(error.error))
     }
 
     /// Gives it its name, unless there is a file of that name.
@@ -81,7 +107,7 @@ impl Aside {
     /// # Errors
     /// What the system says; the file is then where it was.
     pub fn take(file: &Path) -> Result<Self> {
-        let lock = options().read(true).open(file).ok().filter(|open| open.try_lock().is_ok());
+        let lock = marked(file);
         let folder = named(file.parent().unwrap_or(Path::new("")));
         let taken = builder(PREFIX).make_in(folder, |temporary| std::fs::rename(file, temporary))?;
         let temporary = taken.into_temp_path().keep().map_err(|error| error.error)?;

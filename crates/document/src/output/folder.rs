@@ -33,6 +33,7 @@ impl Folder {
     /// `manifest.json` that is none of stead.
     pub fn create(path: &Path) -> Result<Self, ReportError> {
         let fail = |cause| ReportError::Folder { path: path.to_owned(), cause };
+        files::check_name(path).map_err(fail)?;
         if path.exists() && !path.is_dir() {
             return Err(fail(std::io::Error::new(std::io::ErrorKind::NotADirectory, "a file of that name is there")));
         }

@@ -38,7 +38,7 @@ impl Lock {
     /// file cannot be made.
     pub fn take(path: &Path) -> Result<Self, LockError> {
         for _ in 0..ATTEMPTS {
-            let mut lock = match files::Lock::attempt(path)? {
+            let mut lock = match files::Lock::attempt_passing(path)? {
                 TryLock::Taken(lock) => lock,
                 TryLock::Held(mut file) => return Err(LockError::Held { process: holder(&mut file) }),
             };
@@ -66,8 +66,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // While it is locked still, and not where whoever waits could not tell that it has gone. One that stays keeps
-        // nobody out.
+        // While it is locked still. One that stays keeps nobody out. Windows does it itself, when it is closed.
         if cfg!(unix) && self.lock.is_locked && is_at(&self.lock.file, &self.path) {
             let _ = std::fs::remove_file(&self.path);
         }
@@ -92,7 +91,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Where lock files are never removed, their names stay theirs.
+/// Where the system removes a lock file, nobody can lock one that has no name.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
@@ -115,7 +114,7 @@ mod tests {
             other => panic!("{other:?}"),
         }
         drop(lock);
-        assert!(!cfg!(unix) || !path.exists());
+        assert!(!path.exists());
         Lock::take(&path).unwrap();
         assert!(matches!(Lock::take(&path.join("below")), Err(LockError::System(_))));
     }

@@ -11,6 +11,7 @@ use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
+use stead_disk::files::without_mark;
 use stead_disk::input::InputError;
 use stead_disk::quote::shorten;
 
@@ -20,8 +21,8 @@ const MOST_NODES: usize = 20_000;
 const KIND: &str = "a COLLADA file: well-formed XML with the root <COLLADA>";
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
-    let text =
-        str::from_utf8(bytes).map_err(|_| InputError::new(file, "is not UTF-8 text").allowed("a DAE file in UTF-8"))?;
+    let text = str::from_utf8(without_mark(bytes))
+        .map_err(|_| InputError::new(file, "is not UTF-8 text").allowed("a DAE file in UTF-8"))?;
     let document = Document::parse(text).map_err(|error| {
         let problem = format!("is no XML: {}", one_line(&error.to_string()));
         InputError::new(file, problem).at_line(error.pos().row as usize).allowed(KIND)

@@ -5,6 +5,7 @@ use super::stl::number_of;
 use super::{MAX_TRIANGLES, THINNER, Triangles};
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_disk::files::without_mark;
 use stead_disk::input::InputError;
 use stead_disk::quote::shorten;
 
@@ -14,7 +15,7 @@ const WITHOUT_SURFACE: &str = "vt vn vp g o s mg usemtl mtllib usemap maplib p l
                                shadow_obj trace_obj ctech stech end";
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
-    let text = String::from_utf8_lossy(bytes);
+    let text = String::from_utf8_lossy(without_mark(bytes));
     let mut read = Triangles::default();
     // The largest vertex number that a face names, with its line.
     let mut largest = (0, 0);

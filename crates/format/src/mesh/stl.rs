@@ -6,6 +6,7 @@
 use super::{MAX_TRIANGLES, THINNER, Triangles};
 use nalgebra::Vector3;
 use std::path::Path;
+use stead_disk::files::without_mark;
 use stead_disk::input::InputError;
 use stead_disk::quote::shorten;
 
@@ -15,12 +16,13 @@ const HEADER: usize = 84;
 const RECORD: usize = 50;
 
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Triangles, InputError> {
-    let begins_as_text = bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let begins_as_text =
+        without_mark(bytes).trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let count =
         bytes.get(HEADER - 4..HEADER).map(|count| u32::from_le_bytes(count.try_into().unwrap_or_default()) as usize);
     let is_binary = count.is_some_and(|count| bytes.len() == HEADER + RECORD * count);
     if !is_binary && begins_as_text && !bytes.contains(&0) {
-        return ascii(file, &String::from_utf8_lossy(bytes));
+        return ascii(file, &String::from_utf8_lossy(without_mark(bytes)));
     }
     let Some(count) = count else {
         return Err(InputError::new(file, "is too short for a mesh")

@@ -122,7 +122,7 @@ impl Journal {
     /// [`StudyError::File`] where it cannot be written.
     pub fn open(path: &Path, whole: u64) -> Result<Self, StudyError> {
         let fail = |cause| StudyError::write(path, cause);
-        let mut file = files::options().create(true).truncate(false).write(true).open(path).map_err(fail)?;
+        let mut file = files::open_own(File::options().create(true).truncate(false).write(true), path).map_err(fail)?;
         file.set_len(whole).map_err(fail)?;
         file.seek(std::io::SeekFrom::End(0)).map_err(fail)?;
         Ok(Self { path: path.to_owned(), file })
