@@ -448,11 +448,14 @@ fn the_environment_is_stated() {
     let bench = Bench::new();
     let ended = bench.stead(&["check", "--environment"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    for part in ["(commit ", "program ", "none beside the program", std::env::consts::OS, "can be written to, locks work"] {
+    for part in
+        ["(commit ", "program ", "none beside the program", std::env::consts::OS, "can be written to, locks work"]
+    {
         assert!(ended.stdout.contains(part), "{part} is not in {}", ended.stdout);
     }
     assert_eq!(bench.names(""), Bench::new().names(""));
-    let [mistaken, alone] = [&["check", RUN, "--environment"][..], &["check"]].map(|arguments| bench.stead(arguments).code);
+    let [mistaken, alone] =
+        [&["check", RUN, "--environment"][..], &["check"]].map(|arguments| bench.stead(arguments).code);
     assert_eq!((mistaken, alone), (Some(2), Some(2)));
 }
 

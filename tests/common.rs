@@ -136,11 +136,12 @@ impl Bench {
 
 impl From<std::process::Output> for Ended {
     fn from(output: std::process::Output) -> Self {
-        Self {
-            code: output.status.code(),
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-        }
+        // Names of files with slashes, whatever the system writes between folders.
+        let text = |bytes| {
+            let text = String::from_utf8(bytes).unwrap();
+            if cfg!(windows) && !text.starts_with('{') { text.replace('\\', "/") } else { text }
+        };
+        Self { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
     }
 }
 

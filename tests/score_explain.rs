@@ -202,7 +202,11 @@ fn help_and_version_are_no_failures() {
     let bench = Bench::new();
     let version = bench.stead(&["--version"]);
     assert_eq!(version.code, Some(0));
-    assert!(version.stdout.starts_with(concat!("stead ", env!("CARGO_PKG_VERSION"), " (commit ")), "{}", version.stdout);
+    assert!(
+        version.stdout.starts_with(concat!("stead ", env!("CARGO_PKG_VERSION"), " (commit ")),
+        "{}",
+        version.stdout
+    );
     assert!(version.stdout.contains(std::env::consts::ARCH) && version.stdout.ends_with(")\n"), "{}", version.stdout);
     let help = bench.stead(&["--help"]);
     assert_eq!(help.code, Some(0));

@@ -12,7 +12,7 @@ use clap::{Parser, Subcommand};
 
 /// Workpiece placement optimiser for robotic machining.
 #[derive(Debug, Parser)]
-#[command(name = "stead", version = VERSION, about, arg_required_else_help = true, after_help = STEAD)]
+#[command(name = "stead", bin_name = "stead", version = VERSION, about, arg_required_else_help = true, after_help = STEAD)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Command,

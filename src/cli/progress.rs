@@ -132,7 +132,9 @@ fn stop_at_closing(stop: StopHandle) {
     let (Ok(mut close), Ok(mut shutdown)) = (ctrl_close(), ctrl_shutdown()) else { return };
     let Ok(runtime) = tokio::runtime::Builder::new_current_thread().build() else { return };
     std::thread::spawn(move || {
-        runtime.block_on(async { tokio::select! { _ = close.recv() => (), _ = shutdown.recv() => () } });
+        runtime.block_on(async {
+            tokio::select! { _ = close.recv() => (), _ = shutdown.recv() => () }
+        });
         stop.stop();
     });
 }

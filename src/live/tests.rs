@@ -16,11 +16,11 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let here = std::env::current_dir().unwrap();
+        let here = std::env::current_dir().unwrap().display().to_string().replace('\\', "/");
         let text = std::fs::read_to_string("configs/caro-2013.toml").unwrap();
         let text = text
-            .replace("\"robots/", &format!("\"{}/configs/robots/", here.display()))
-            .replace("\"../tasks/", &format!("\"{}/tasks/", here.display()))
+            .replace("\"robots/", &format!("\"{here}/configs/robots/"))
+            .replace("\"../tasks/", &format!("\"{here}/tasks/"))
             .replace("beta_step_deg = 3.0", "beta_step_deg = 12.0")
             .replace("population = 120\ngenerations = 51", "population = 12\ngenerations = 1\nbasins = 1");
         std::fs::write(folder.path().join("run.toml"), text).unwrap();

@@ -38,6 +38,7 @@ use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stead_cell::TriangleMesh;
+use stead_disk::files;
 use stead_disk::input::{InputError, InputFile, input_file};
 use stead_disk::manifest::{self, Unlisted};
 use stead_disk::quote::shorten;
@@ -183,7 +184,7 @@ impl Place<'_> {
     pub(crate) fn path_of(&self, name: &str) -> PathBuf {
         let set = self.value.and_then(|value| self.file.override_at(value.span().start));
         match set.and_then(FieldOverride::folder).or(self.file.file().parent()) {
-            Some(folder) => folder.join(name),
+            Some(folder) => files::below(folder, name),
             None => PathBuf::from(name),
         }
     }

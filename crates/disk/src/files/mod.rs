@@ -11,7 +11,7 @@ mod options;
 mod staged;
 
 pub use lock::{Lock, TryLock};
-pub use name::check_name;
+pub use name::{below, check_name};
 pub use options::open_own;
 pub use staged::{PREFIX, Staged, remove, remove_abandoned, remove_stale, sync};
 

@@ -1,7 +1,7 @@
 //! Names that Windows gives to something else than a file.
 
 use std::io::{Error, ErrorKind, Result};
-use std::path::{Component, Path, Prefix};
+use std::path::{Component, Path, PathBuf, Prefix};
 
 /// Names of devices, with any ending; those with a number behind them are `COM1` to `LPT9`.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
@@ -24,6 +24,24 @@ pub fn check_name(path: &Path) -> Result<()> {
         _ => None,
     });
     problem.map_or(Ok(()), |problem| Err(Error::new(ErrorKind::InvalidInput, problem)))
+}
+
+/// Where a file lies that is named relative to a folder. A slash is between them on every system, as files write it, so
+/// that notes of results say the same everywhere.
+pub fn below(folder: &Path, name: &str) -> PathBuf {
+    let mut joined = folder.as_os_str().to_owned();
+    // Paths that Windows is to take as they are have no slashes.
+    if !cfg!(windows)
+        || joined.is_empty()
+        || Path::new(name).has_root()
+        || name.contains(':')
+        || folder.starts_with(r"\\?\")
+    {
+        return folder.join(name);
+    }
+    joined.push("/");
+    joined.push(name);
+    PathBuf::from(joined)
 }
 
 /// What is wrong with a name on Windows.
@@ -58,6 +76,15 @@ mod tests {
         for name in ["console", "nullpunkt.toml", "com", "com10", "lpt0", ".stead.lock", "a b.csv", "Fr\u{e4}steil.csv"]
         {
             assert_eq!(problem_of(name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn names_of_files_are_relative_to_their_folder() {
+        for (folder, name, expected) in
+            [("configs", "../a.csv", "configs/../a.csv"), ("", "a.csv", "a.csv"), ("a", "/b", "/b")]
+        {
+            assert_eq!(below(Path::new(folder), name).display().to_string(), expected);
         }
     }
 

@@ -230,6 +230,23 @@ mod tests {
         remove_stale(Path::new("nowhere"), PREFIX);
     }
 
+    /// As a spreadsheet opens one: others may read it.
+    #[cfg(windows)]
+    #[test]
+    fn a_file_that_another_program_has_open_stays_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("best.csv");
+        std::fs::write(&path, "old").unwrap();
+        let open = std::os::windows::fs::OpenOptionsExt::share_mode(File::options().read(true), 1).open(&path).unwrap();
+        let put = || Staged::write(folder.path(), PREFIX, b"new").unwrap().put(&path);
+        assert!(put().unwrap_err().to_string().starts_with("another program has it open, such as a spreadsheet"));
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        drop(open);
+        put().unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+    }
+
     #[test]
     fn a_new_file_takes_the_place_of_none() {
         let folder = tempfile::tempdir().unwrap();

@@ -237,6 +237,10 @@ mod tests {
         assert!(error.to_string().contains(&best), "{error}");
         assert_eq!(names(folder.path()), [LOCK, "best.csv"]);
 
+        // Windows lets nobody remove a folder with a file that is open.
+        if cfg!(windows) {
+            return;
+        }
         std::fs::remove_dir_all(folder.path()).unwrap();
         assert!(matches!(folder.write("best.csv", b"1"), Err(ReportError::File { .. })));
         assert!(matches!(folder.results("place", &[]).write(&[("best.csv", vec![])]), Err(ReportError::File { .. })));
