@@ -162,6 +162,6 @@ mod tests {
         let file = folder.path().join("file");
         std::fs::write(&file, "mine").unwrap();
         let message = init(StarterSet::Assess, &file.join("below"), Existing::Kept).unwrap_err().to_string();
-        assert!(message.contains("below/assess.toml: cannot be written: "), "{message}");
+        assert!(message.replace('\\', "/").contains("below/assess.toml: cannot be written: "), "{message}");
     }
 }

@@ -23,8 +23,9 @@ fn with_all(name: &str, changes: &[(&str, &str)]) -> (tempfile::TempDir, std::pa
         assert!(text.contains(from), "{from} in {name}");
         text = text.replace(from, to);
     }
-    let text = text.replace("\"robots/", &format!("\"{}/robots/", configs.display()));
-    let text = text.replace("\"../tasks/", &format!("\"{}/tasks/", root().display()));
+    let root = root().display().to_string().replace('\\', "/");
+    let text = text.replace("\"robots/", &format!("\"{root}/configs/robots/"));
+    let text = text.replace("\"../tasks/", &format!("\"{root}/tasks/"));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join(name);
     std::fs::write(&file, text).unwrap();

@@ -13,8 +13,9 @@ fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
     assert!(text.contains(from), "{from}");
     let text =
         text.replace("step_mm = 25.0", "step_mm = 100.0").replace("points = 72", "points = 24").replace(from, to);
-    let text = text.replace("\"robots/", &format!("\"{}/robots/", configs.display()));
-    let text = text.replace("\"reference/", &format!("\"{}/reference/", configs.display()));
+    let configs = configs.display().to_string().replace('\\', "/");
+    let text = text.replace("\"robots/", &format!("\"{configs}/robots/"));
+    let text = text.replace("\"reference/", &format!("\"{configs}/reference/"));
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("study.toml");
     std::fs::write(&file, text).unwrap();
