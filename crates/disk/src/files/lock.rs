@@ -54,6 +54,9 @@ impl Lock {
     }
 }
 
+/// Opens a file so that it is seen to be that of a process that is alive.
+pub(super) use system::marked;
+
 /// Marks a temporary file that is open for writing as that of a process that is alive, as long as it is open. A file
 /// system without locks does not say so.
 pub(super) fn mark(file: &File) {
@@ -61,11 +64,6 @@ pub(super) fn mark(file: &File) {
     if cfg!(unix) {
         let _ = file.try_lock();
     }
-}
-
-/// Opens a file so that it is seen to be that of a process that is alive.
-pub(super) fn marked(path: &Path) -> Option<File> {
-    system::marked(path)
 }
 
 /// Locks of files by `flock`.
@@ -146,7 +144,7 @@ mod system {
         match open_own(&mut options, path) {
             Ok(file) => Ok(TryLock::Taken(Lock { file, is_locked: true })),
             // It may have gone by now.
-            Err(cause) if cause.raw_os_error() == Some(IN_USE) => match reading(path) {
+            Err(cause) if cause.raw_os_error() == Some(IN_USE) => match open_own(File::options().read(true), path) {
                 Ok(file) => Ok(TryLock::Held(file)),
                 Err(_) => Err(cause),
             },
@@ -171,10 +169,6 @@ mod system {
 
     pub fn marked(path: &Path) -> Option<File> {
         open_own(File::options().read(true).share_mode(OTHERS_READ_OR_RENAME), path).ok()
-    }
-
-    fn reading(path: &Path) -> Result<File> {
-        open_own(File::options().read(true), path)
     }
 }
 
