@@ -171,7 +171,8 @@ impl Ended {
     /// Asserts that standard error has each of some parts.
     pub fn assert_says(&self, parts: &[&str]) {
         for part in parts {
-            assert!(self.stderr.contains(part), "{part} is not in {}", self.stderr);
+            let part = if cfg!(windows) { part.replace('\\', "/") } else { (*part).to_owned() };
+            assert!(self.stderr.contains(&part), "{part} is not in {}", self.stderr);
         }
     }
 }

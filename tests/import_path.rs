@@ -293,18 +293,19 @@ fn what_is_imported_is_taken_into_the_run_and_placed() {
     assert!(!bench.read("my/arm-cell.toml").contains("name = \"table\""));
     // Another cutter has other forces, and other points where they are not straight between two.
     run(&place);
-    let export = ["export", "my/run.toml", "out/best.csv", "--format", "csv", "--approach-mm", "0", "--out", "my/PART"];
+    let export =
+        ["export", "my/run.toml", "out/best.csv", "--format", "csv", "--approach-mm", "0", "--out", "my/PROGRAM"];
     run(&export);
     let again = bench.stead(&export);
     assert_eq!(again.code, Some(2));
-    again.assert_says(&["PART.csv: is there already", "--force replaces it"]);
-    bench.write("my/PART.csv", "mine");
+    again.assert_says(&["PROGRAM.csv: is there already", "--force replaces it"]);
+    bench.write("my/PROGRAM.csv", "mine");
     let foreign = bench.stead(&[&export[..], &["--force"]].concat());
-    assert_eq!((foreign.code, bench.read("my/PART.csv").as_str()), (Some(2), "mine"));
-    foreign.assert_says(&["PART.csv: was not written by this command, and is not replaced"]);
-    bench.write("my/PART.csv", "");
+    assert_eq!((foreign.code, bench.read("my/PROGRAM.csv").as_str()), (Some(2), "mine"));
+    foreign.assert_says(&["PROGRAM.csv: was not written by this command, and is not replaced"]);
+    bench.write("my/PROGRAM.csv", "");
     run(&[&export[..], &["--force"]].concat());
-    assert!(bench.read("my/PART.csv").lines().count() > 10);
+    assert!(bench.read("my/PROGRAM.csv").lines().count() > 10);
 }
 
 #[test]

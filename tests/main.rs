@@ -1,6 +1,7 @@
 //! Everything that is tested from outside: the command line, and independent oracles.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout, reason = "a test may panic, in its helpers too")]
+#![cfg_attr(not(unix), allow(unused_imports, dead_code, reason = "what tests of links, pipes and signals use"))]
 #![allow(clippy::too_many_lines, clippy::excessive_nesting, reason = "tests are as long as what they try")]
 
 mod assess;

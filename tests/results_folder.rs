@@ -156,7 +156,6 @@ fn a_manifest_of_something_else_is_left_alone() {
     assert_eq!(bench.tree(""), before);
 }
 
-#[cfg(unix)]
 mod killed {
     use super::*;
     use crate::common::Ended;
@@ -336,6 +335,7 @@ mod killed {
     }
 
     /// A limit on the size of files stands for the end of the disk: what was there stays, whole.
+    #[cfg(unix)]
     #[test]
     fn a_disk_that_fills_up_leaves_what_was_there() {
         let bench = quick();

@@ -22,7 +22,6 @@ def run(command: list[str], *arguments: str | Path) -> subprocess.CompletedProce
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["--version"],
         ["place", "--help"],
         ["robots"],
         ["place", "configs/no-such-file.toml"],
@@ -34,6 +33,11 @@ def test_does_and_says_the_same(command: list[str], arguments: list[str]) -> Non
     installed, built = run([str(INSTALLED)], *arguments), run(command, *arguments)
     assert (installed.returncode, installed.stdout) == (built.returncode, built.stdout)
     assert installed.stderr == built.stderr
+
+
+def test_both_are_of_one_version(command: list[str]) -> None:
+    said = [run(of, "--version").stdout.decode().split(" (commit ")[0] for of in ([str(INSTALLED)], command)]
+    assert said == [f"stead {stead.__version__}"] * 2
 
 
 def test_a_script_for_slurm_names_the_installed_command() -> None:

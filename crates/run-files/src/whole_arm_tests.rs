@@ -23,7 +23,7 @@ fn with_all(name: &str, changes: &[(&str, &str)]) -> (tempfile::TempDir, std::pa
         assert!(text.contains(from), "{from} in {name}");
         text = text.replace(from, to);
     }
-    let root = root().display().to_string().replace('\\', "/");
+    let root = std::path::absolute(root()).unwrap().display().to_string().replace('\\', "/");
     let text = text.replace("\"robots/", &format!("\"{root}/configs/robots/"));
     let text = text.replace("\"../tasks/", &format!("\"{root}/tasks/"));
     let folder = tempfile::tempdir().unwrap();

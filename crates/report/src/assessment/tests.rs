@@ -13,7 +13,7 @@ fn comparison(from: &str, to: &str) -> (Comparison, AssessmentContext) {
     assert!(text.contains(from), "{from}");
     let text =
         text.replace("step_mm = 25.0", "step_mm = 100.0").replace("points = 72", "points = 24").replace(from, to);
-    let configs = configs.display().to_string().replace('\\', "/");
+    let configs = std::path::absolute(configs).unwrap().display().to_string().replace('\\', "/");
     let text = text.replace("\"robots/", &format!("\"{configs}/robots/"));
     let text = text.replace("\"reference/", &format!("\"{configs}/reference/"));
     let folder = tempfile::tempdir().unwrap();

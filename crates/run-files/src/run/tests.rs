@@ -187,8 +187,10 @@ fn stability_along_the_path_is_that_of_the_arm_with_the_stiffness_lent_to_it() {
         text("robots/staubli-tx200.toml").lines().filter(is_kept).map(|line| format!("{line}\n")).collect();
     std::fs::write(at("arm.toml"), bare).unwrap();
     let task = root().join("tasks/five-segments.csv");
-    let run = text("tx200-stability.toml")
-        .replace("../tasks/five-segments.csv", &task.display().to_string().replace('\\', "/"));
+    let run = text("tx200-stability.toml").replace(
+        "../tasks/five-segments.csv",
+        &std::path::absolute(task).unwrap().display().to_string().replace('\\', "/"),
+    );
     let read = |arm: &str, like: &str| {
         let robot = format!("robot = '{arm}'\n{like}");
         std::fs::write(at("run.toml"), run.replace("robot = \"robots/staubli-tx200.toml\"", &robot)).unwrap();

@@ -123,10 +123,8 @@ impl Store {
             allowed: "a folder of this study, or a new one".to_owned(),
         };
         match files::read(&path) {
+            Err(_) if path.ancestors().skip(1).any(Path::is_file) => Err(folder("is below a file".to_owned())),
             Err(cause) if cause.kind() == std::io::ErrorKind::NotFound => Ok(()),
-            Err(cause) if cause.kind() == std::io::ErrorKind::NotADirectory => {
-                Err(folder("is below a file".to_owned()))
-            }
             Err(cause) => Err(StudyError::read(&path, cause)),
             Ok(bytes) => {
                 let header: Header = serde_json::from_slice(&bytes)
