@@ -341,8 +341,8 @@ fn shards_out_of_range_other_studies_and_locks_are_refused() {
         &["run.toml/out/study.json: is below a file; allowed: a folder of this"],
     );
 
-    let lock = std::fs::File::options().write(true).open(bench.path("out/shards/0001-of-0001.lock")).unwrap();
-    lock.try_lock().unwrap();
+    let lock = stead_disk::files::Lock::attempt(&bench.path("out/shards/0001-of-0001.lock")).unwrap();
+    assert!(matches!(lock, stead_disk::files::TryLock::Taken(_)));
     let before = results(&bench, "out");
     let ended = bench.stead(&["study", "run", STUDY, "--out", "out"]);
     assert_eq!((ended.code, ended.stderr.lines().count()), (Some(1), 1), "{}", ended.stderr);

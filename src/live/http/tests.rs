@@ -118,7 +118,12 @@ fn raw_bytes_never_stop_the_server() {
         let _ = stream.write_all(&bytes);
         drop(stream);
     }
-    assert!(sent(&server, &good).ends_with("/a hello"));
+    // A system that is busy with them refuses connections for a while.
+    let mut attempts = std::iter::repeat_with(|| sent(&server, &good)).take(50);
+    assert!(attempts.any(|answer| answer.ends_with("/a hello") || {
+        std::thread::sleep(Duration::from_millis(50));
+        false
+    }));
     server.listener.close(Duration::ZERO);
 }
 
