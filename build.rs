@@ -26,7 +26,13 @@ fn commit(profile: &str) -> Option<String> {
     if let Ok(packaged) = std::fs::read_to_string(".cargo_vcs_info.json") {
         return packaged.split('"').find(|word| word.len() == 40).map(|commit| commit[..12].to_owned());
     }
-    println!("cargo::rerun-if-changed=.git/logs/HEAD");
+    // Where it is no clone of its own, a repository above is somebody else's.
+    if !Path::new(".git").exists() {
+        return None;
+    }
+    if Path::new(".git/logs/HEAD").exists() {
+        println!("cargo::rerun-if-changed=.git/logs/HEAD");
+    }
     let output = |arguments: &[&str]| {
         let run = Command::new("git").args(arguments).output().ok().filter(|run| run.status.success());
         run.and_then(|run| String::from_utf8(run.stdout).ok())
