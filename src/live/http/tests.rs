@@ -118,8 +118,8 @@ fn raw_bytes_never_stop_the_server() {
         let _ = stream.write_all(&bytes);
         drop(stream);
     }
-    // A system that is busy with them refuses connections for a while.
-    let mut attempts = std::iter::repeat_with(|| sent(&server, &good)).take(50);
+    // Windows refuses connections for a while where it is busy with them.
+    let mut attempts = std::iter::repeat_with(|| sent(&server, &good)).take(if cfg!(windows) { 50 } else { 1 });
     assert!(attempts.any(|answer| answer.ends_with("/a hello") || {
         std::thread::sleep(Duration::from_millis(50));
         false

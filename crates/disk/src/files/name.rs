@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf, Prefix};
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
 const NUMBERED: [&str; 2] = ["com", "lpt"];
 
-/// Refuses, on Windows, a path with a name that stands for a device or that the system would change, and one that
+/// Refuses, on Windows, a path with a name that is that of a device or that the system would change, and one that
 /// depends on the folder that a drive was left in, such as `C:part.csv`.
 ///
 /// # Errors
