@@ -4,13 +4,16 @@ use super::active_cells::ActiveCells;
 use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts, halves, widest};
 use super::cell::whole;
 use super::coarse_bounds::CoarseBounds;
-use super::keeps_open::KeepsOpen;
+use super::cost::Without;
+use super::keeps_open::{KeepsOpen, some_points};
 use super::leaning;
 use super::model::Model;
 use super::region::Region;
 use super::requirements::Leaf;
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 use stead_numerics::monitor::{Monitor, Stop};
 use stead_problem::problem::Problem;
 use stead_problem::sense::Sense;
@@ -26,7 +29,7 @@ pub(super) fn bound_of(leaf: &Leaf, value: f64, settings: &CertificateSettings, 
 
 /// The same of an upright tool.
 fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monitor: &Monitor) -> Bound {
-    let CertificateSettings { gap, memory, .. } = *settings;
+    let (CertificateSettings { gap, memory, .. }, start) = (*settings, Instant::now());
     let (model, whole) = (Model::new(problem), whole(problem));
     let Model { keeps, objective, .. } = model;
     let search = BranchAndBound { sense: Sense::Min, value, gap, keeps, objective, memory };
@@ -44,20 +47,57 @@ fn upright(problem: &Problem, value: f64, settings: &CertificateSettings, monito
     let full = Arc::new(ActiveCells::full(model.points.len(), model.table.headings(0)));
     // Parts of finer tables are for many boxes each: for a few the cells of heading take less time.
     let at_once = left.len() < MANY || with_cells_at_once(&model, &coarse, &left, ceiling, monitor);
+    let spent = Spent::default();
+    // All threads made the tables.
+    (0..rayon::current_num_threads()).for_each(|_| spent.add(false, start));
     let known = at_once.then(|| Arc::clone(&full));
     let start = left.into_iter().map(|(bound, region)| Open { bound, region, known: known.clone() }).collect();
     let all = Parts {
         start,
         nodes,
-        of: |open: &Open<Known>| parts(&model, &coarse, open, ceiling, monitor),
+        of: |open: &Open<Known>| {
+            let begun = Instant::now();
+            let parts = parts(&model, &coarse, open, ceiling, monitor);
+            spent.add(open.known.is_some(), begun);
+            parts
+        },
         used: || model.used() + coarse.used(),
         bytes: |active: &Known| active.as_ref().map_or(0, |active| active.bytes()),
-        points: model.points.len(),
-        count: |counted: &mut KeepsOpen, region: &Region, active: &Known, point: usize| {
-            counted.add_point(&model, region, active.as_deref().unwrap_or(&full), point);
+        count: |counted: &mut KeepsOpen, region: &Region, known: &Known| {
+            let active = known.as_deref().unwrap_or(&full);
+            some_points(model.points.len()).for_each(|point| counted.add_point(&model, region, active, point));
+            let open = Open { bound: 0.0, region: *region, known: None };
+            let own = known.clone().or_else(|| with_cells(&model, &open, f64::INFINITY, &Monitor::silent()).known);
+            counted.add_sums(own.and_then(|active| sums(&model, region, &active, value)));
+            counted.seconds = Some(spent.seconds());
         },
     };
     search.explore(all, monitor, |_| None)
+}
+
+/// What the points come to at least in a box, in terms of the value: as its bound has it, without what models leave
+/// out, and without the width of cells of heading too.
+fn sums(model: &Model, region: &Region, active: &ActiveCells, value: f64) -> Option<[f64; 3]> {
+    let sums = [Without::Nothing, Without::Remainders, Without::Headings].map(|without| {
+        let found = model.lower_bound_without(without, region, active, f64::INFINITY, &Monitor::silent());
+        model.objective.value(found.sum) / value
+    });
+    sums.iter().all(|sum| sum.is_finite()).then_some(sums)
+}
+
+/// The time of all threads: that of coarse tables with their finer levels, and that of cells of heading.
+#[derive(Default)]
+struct Spent([AtomicU64; 2]);
+
+impl Spent {
+    fn add(&self, is_cells: bool, begun: Instant) {
+        self.0[usize::from(is_cells)].fetch_add(begun.elapsed().as_nanos() as u64, Ordering::Relaxed);
+    }
+
+    /// s
+    fn seconds(&self) -> [f64; 2] {
+        self.0.each_ref().map(|nanoseconds| nanoseconds.load(Ordering::Relaxed) as f64 * 1e-9)
+    }
 }
 
 /// The boxes that the coarse tables leave open, each with its bound, and how many were bounded.

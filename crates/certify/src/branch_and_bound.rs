@@ -132,9 +132,7 @@ pub(super) struct Parts<T, P, U, B, C> {
     pub used: U,
     /// What is known of a box takes. Bytes
     pub bytes: B,
-    /// The number of path points.
-    pub points: usize,
-    /// Counts what is known of the states of one of them in a box.
+    /// Counts what is known of the states of a box, and what takes its bound down.
     pub count: C,
 }
 
@@ -231,7 +229,7 @@ impl BranchAndBound {
             impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
             impl Fn() -> u64 + Sync,
             impl Fn(&T) -> u64 + Sync,
-            impl Fn(&mut KeepsOpen, &Region, &T, usize) + Sync,
+            impl Fn(&mut KeepsOpen, &Region, &T) + Sync,
         >,
         monitor: &Monitor,
         mut improve: impl FnMut(&[Region]) -> Option<(f64, Placement)>,
@@ -262,7 +260,9 @@ impl BranchAndBound {
         let mut found = self.found(met, bound, nodes, status, open);
         if !matches!(status, Status::Reached | Status::Interrupted) {
             let known: Vec<T> = left.into_iter().map(|queued| queued.open.known).collect();
-            found.keeps_open = KeepsOpen::of(&found.open, &known, parts.points, parts.count);
+            let seconds = |kept: KeepsOpen| kept.seconds.filter(|_| status == Status::TimeLimit);
+            let kept = KeepsOpen::of(&found.open, &known, parts.count);
+            found.keeps_open = kept.map(|kept| KeepsOpen { seconds: seconds(kept), ..kept });
         }
         found
     }
@@ -281,7 +281,7 @@ impl BranchAndBound {
             impl Fn(&Open<T>) -> Option<Vec<Open<T>>> + Sync,
             impl Fn() -> u64 + Sync,
             impl Fn(&T) -> u64 + Sync,
-            impl Fn(&mut KeepsOpen, &Region, &T, usize) + Sync,
+            impl Fn(&mut KeepsOpen, &Region, &T) + Sync,
         >,
     ) -> Result<(), Status> {
         let ceiling = self.sign() * self.ceiling();

@@ -5,7 +5,7 @@ use super::cell::Extent;
 use super::compliance_table::{ComplianceTable, Steps};
 use super::cost::{CORNERS, Direction, joined_sets};
 use super::kind::{Kind, kinds};
-use super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, minorant, rounded};
+use super::minorant::{Affine, Around, EMPTY, ModelledRegion, OfKind, ZERO, rounded};
 use super::model::Model;
 use super::region::{Point, PolarModel, Region};
 use super::sliding_min::joined;
@@ -377,7 +377,6 @@ fn part_of_set(
     let half = half_of(table, level);
     let mut out = vec![EMPTY; some.len() * kinds.len() * 4];
     let directions: Vec<Direction> = some.map(|k| Direction::new(half[2] * k as f64)).collect();
-    let mut space = Vec::new();
     for class in PostureClass::ALL {
         let mut found: Vec<ModelledRegion> = Vec::new();
         let mut unknown = false;
@@ -386,8 +385,9 @@ fn part_of_set(
             unknown |= !around.collect(level, at, cell, &mut found);
         }
         for (number, kind) in kinds.iter().enumerate() {
+            let mut of_kind = OfKind::new(&found, kind);
             for (k, direction) in directions.iter().enumerate() {
-                let below = if unknown { ZERO } else { minorant(&found, kind, direction, half, &mut space) };
+                let below = if unknown { ZERO } else { of_kind.minorant(direction, half) };
                 out[(k * kinds.len() + number) * 4 + class.index()] = below;
             }
         }

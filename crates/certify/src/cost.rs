@@ -17,6 +17,15 @@ pub(super) type Known<'a> = (&'a AffineModel, Option<&'a MomentModel>);
 /// The corners of a box.
 pub(super) const CORNERS: usize = 8;
 
+/// What of its uncertainty a bound leaves out: as it is, to see what that takes away, without what models leave out, and
+/// without the width of cells of heading too. Only the first is a bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Without {
+    Nothing,
+    Remainders,
+    Headings,
+}
+
 /// One path point over one box: everything that does not change from cell to cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PointCost<'a> {
@@ -28,6 +37,7 @@ pub(super) struct PointCost<'a> {
     direction: Direction,
     /// The tangent, where it is the same at every state.
     fixed: Option<Turned>,
+    without: Without,
 }
 
 /// Sine and cosine of an angle chi, and of twice that.
@@ -138,11 +148,16 @@ impl<'a> PointCost<'a> {
         Self::of(&point.load, placed, first)
     }
 
+    /// The same with less of its uncertainty.
+    pub fn without(self, without: Without) -> Self {
+        Self { without, ..self }
+    }
+
     fn of(load: &'a Load, placed: PolarModel, first: f64) -> Self {
         let direction = Direction::new(placed.chi + load.turn);
         let half = [placed.reach[0], placed.reach[2]];
         let fixed = load.is_linear().then(|| direction.turned(&load.of_first(), load, placed.r, half, first));
-        Self { placed, load, first, direction, fixed }
+        Self { placed, load, first, direction, fixed, without: Without::Nothing }
     }
 
     /// What a node says of a tangent, in a cell of heading of that half width (rad): `off` is where the point is from
@@ -161,12 +176,14 @@ impl<'a> PointCost<'a> {
         let (mut by_r, mut by_z, mut by_heading) = (by(1) + j_r, by(2), by(3));
         let mut by_chi = 2.0 * (x * d2 - y * d1) + j_chi;
         let length = turned.lengths[0];
-        let remainder_d = f64::from(known.remainder[1]);
+        // Of the node, only what is between it and the box counts.
+        let within = [off[0].abs() + h_r, off[1].abs() + h_z, half_cell];
+        let rest = known.remainder.within(within);
         // How far (d1, d2) moves, at most: the sum of magnitudes is not below the length.
         let gradient = |k: usize| get(1, k).abs() + get(2, k).abs();
-        let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * remainder_d;
-        let mut remainder = f64::from(known.remainder[0]) * plane.abs()
-            + remainder_d * length
+        let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * rest[1];
+        let mut remainder = rest[0] * plane.abs()
+            + rest[1] * length
             + 2.0 * length * h_chi * (moved + h_chi * (d1.abs() + d2.abs() + moved))
             + j_rest;
         if turned.is_vertical() {
@@ -176,11 +193,9 @@ impl<'a> PointCost<'a> {
             (by_r, by_z, by_heading) = (by_r + by(1), by_z + by(2), by_heading + by(3));
             by_chi += g * ct - h * cr;
             let gradient = |k: usize| get(3, k).abs() + get(4, k).abs();
-            let remainder_v = f64::from(known.remainder[2]);
-            let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * remainder_v;
-            remainder += turned.lengths[1]
-                * (remainder_v + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)))
-                + axial.abs() * f64::from(known.remainder[3]);
+            let moved = gradient(1) * h_r + gradient(2) * h_z + gradient(3) * half_cell + 2.0 * rest[2];
+            remainder += turned.lengths[1] * (rest[2] + h_chi * (moved + 0.5 * h_chi * (cr.abs() + ct.abs() + moved)))
+                + axial.abs() * rest[3];
         }
         if let (Some(turned), Some(known)) = (&turned.moment, moments) {
             let part = turned.part(known, off, p.reach, half_cell);
@@ -191,12 +206,18 @@ impl<'a> PointCost<'a> {
         remainder += by_r.abs() * p.remainder_r + by_chi.abs() * p.remainder_chi;
         let slope =
             [by_r * p.slope_r[0] + by_chi * p.slope_chi[0], by_z, by_r * p.slope_r[1] + by_chi * p.slope_chi[1]];
+        if self.without >= Without::Remainders {
+            remainder = 0.0;
+        }
+        if self.without == Without::Headings {
+            by_heading = 0.0;
+        }
         Linear { value, by_heading, slope, remainder }
     }
 
     /// The same point with another compliance of joint 1 (rad/(N m)).
     pub fn with_first(&self, first: f64) -> Self {
-        Self::of(self.load, self.placed, first)
+        Self { without: self.without, ..Self::of(self.load, self.placed, first) }
     }
 
     /// An affine function of the placement below the score, in a cell of heading of that half width (rad): `off` is

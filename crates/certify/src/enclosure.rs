@@ -154,10 +154,8 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
     /// Sine and cosine of four headings, the last variable, each within its half width. rad
     #[inline(always)]
     pub fn heading(angles: [f64; WIDTH], half: [f64; V]) -> (Self, Self) {
-        let ends = angles.map(|angle| sine_cosine_over(angle - half[V - 1], angle + half[V - 1]));
+        let (sine, cosine) = sine_cosine(angles, half[V - 1]);
         let middle = angles.map(libm::sincos);
-        let sine = Interval::between(Lanes(ends.map(|e| e.0.0)), Lanes(ends.map(|e| e.0.1)));
-        let cosine = Interval::between(Lanes(ends.map(|e| e.1.0)), Lanes(ends.map(|e| e.1.1)));
         let negative = |i: Interval| Interval { middle: -i.middle, radius: i.radius };
         let (mut s, mut c) = (Self::fixed(0.0, half), Self::fixed(0.0, half));
         (s.value, s.gradient[V - 1], s.second[V - 1]) = (sine, cosine, negative(sine));
@@ -183,9 +181,13 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
         Self { value: Interval::point(middle.value), gradient: [zero; V], second: [zero; P], middle, half }
     }
 
-    /// With each interval cut down to what the middle and the next derivatives leave of it.
-    #[inline]
-    fn tightened(mut self) -> Self {
+    /// Cuts each interval down to what the middle and the next derivatives leave of it.
+    // In place: it is large to copy.
+    #[inline(never)]
+    fn tighten(&mut self) {
+        if V == 0 {
+            return;
+        }
         let h = self.half;
         let max_second = self.second.map(Interval::magnitude);
         for k in 0..V {
@@ -204,13 +206,12 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
             radius = radius + max_second[p] * (if i == j { 0.5 } else { 1.0 } * h[*i] * h[*j]);
         }
         self.value = self.value.cut(Interval { middle: self.middle.value, radius });
-        self
     }
 
     /// A function of it, from intervals that hold its value and first two derivatives, and these in the middle.
     #[inline(never)]
     fn through(self, middle: Slope<V>, value: Interval, first: Interval, second: Interval) -> Self {
-        Self {
+        let mut out = Self {
             value,
             gradient: self.gradient.map(|g| g.mul(first)),
             second: std::array::from_fn(|p| {
@@ -220,32 +221,125 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
             }),
             middle,
             half: self.half,
-        }
-        .tightened()
+        };
+        out.tighten();
+        out
     }
 }
 
-/// See [`super::compliance_table::AffineModel::remainder`]: of m, d1, d2, c_rz, c_tz and c_zz; with what is lost by
-/// writing values with fewer digits.
-pub(super) fn remainders<const V: usize, const P: usize>(
+/// An interval for the value alone.
+pub(super) type Range = Enclosure<0, 0>;
+
+impl Range {
+    /// All numbers of an interval.
+    #[inline(always)]
+    pub fn over(value: Interval) -> Self {
+        Self { value, middle: Slope { value: value.middle, gradient: [] }, ..Self::fixed(0.0, []) }
+    }
+
+    /// Sine and cosine of four angles, each within its half width. rad
+    pub fn turning(angles: [f64; WIDTH], half: f64) -> (Self, Self) {
+        let (sine, cosine) = sine_cosine(angles, half);
+        (Self::over(sine), Self::over(cosine))
+    }
+}
+
+/// What an affine model of N things leaves out of each, in the region whose second derivatives it knows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Remainder<const N: usize> {
+    /// Their largest second derivatives by pair of variables, in the order of [`pairs`].
+    bends: [[f32; N]; PAIRS],
+    /// What is lost by writing the model with fewer digits.
+    digits: [f32; N],
+    /// What is left out in all of the region at most: of two functions together that is less than what the pairs of
+    /// variables make of both.
+    most: [f32; N],
+}
+
+impl<const N: usize> Remainder<N> {
+    /// Rounded up; `None` where it is not finite. `most` is what is left out in all of the region, but for digits.
+    pub fn new(bends: [[f64; N]; PAIRS], digits: [f64; N], most: [f64; N]) -> Option<Self> {
+        let up = |x: f64| (x * (1.0 + 1e-6)) as f32;
+        let most = std::array::from_fn(|f| up(most[f] + digits[f]));
+        let made = Self { bends: bends.map(|of| of.map(up)), digits: digits.map(up), most };
+        let is_fine = |x: &f32| *x < 1e30;
+        (made.digits.iter().all(is_fine) && made.bends.iter().flatten().all(is_fine)).then_some(made)
+    }
+
+    /// Within those distances of the middle of the region in each variable, which are no more than its half widths: the
+    /// second derivatives are not known beyond.
+    #[inline(always)]
+    pub fn within(&self, h: [f64; VARIABLES]) -> [f64; N] {
+        let mut out = self.digits.map(f64::from);
+        for (bends, factor) in self.bends.iter().zip(<Enclosure>::pair_factors(h)) {
+            (0..N).for_each(|f| out[f] += factor * f64::from(bends[f]));
+        }
+        (0..N).for_each(|f| out[f] = out[f].min(f64::from(self.most[f])));
+        out
+    }
+
+    /// What says within some distances what this says within others.
+    #[cfg(test)]
+    pub fn in_place_of(self, h: [f64; VARIABLES], other: [f64; VARIABLES]) -> Self {
+        let factors = [h, other].map(<Enclosure>::pair_factors);
+        let of = |p: usize| self.bends[p].map(|bend| bend * (factors[1][p] / factors[0][p]) as f32);
+        Self { bends: std::array::from_fn(of), ..self }
+    }
+
+    /// So many times as much of each.
+    #[cfg(test)]
+    pub fn times(self, factors: [f32; N]) -> Self {
+        let times = |of: [f32; N]| std::array::from_fn(|f| factors[f] * of[f]);
+        Self { bends: self.bends.map(times), digits: times(self.digits), most: times(self.most) }
+    }
+}
+
+/// Of functions one by one: that of m, the length of those of d1 and d2, that of those of c_rz and c_tz, and that of
+/// c_zz.
+fn grouped(of: impl Fn(usize) -> f64) -> [f64; REMAINDERS] {
+    [of(0), libm::hypot(of(1), of(2)), libm::hypot(of(3), of(4)), of(5)]
+}
+
+/// The largest second derivatives of functions by pair of variables: of m, of the length of (d1, d2), of that of (c_rz,
+/// c_tz), and of c_zz.
+pub(super) fn bends<const V: usize, const P: usize>(
+    functions: &[&Enclosure<V, P>; FUNCTIONS],
+    lane: usize,
+) -> [[f64; REMAINDERS]; P] {
+    std::array::from_fn(|p| grouped(|f| functions[f].second[p].magnitude().0[lane]))
+}
+
+/// What affine models of the same leave out in all of the region.
+pub(super) fn left_out<const V: usize, const P: usize>(
     functions: &[&Enclosure<V, P>; FUNCTIONS],
     lane: usize,
     half: [f64; V],
 ) -> [f64; REMAINDERS] {
-    let second = |f: usize, p: usize| functions[f].second[p].magnitude().0[lane];
-    let mut remainder = [0.0; REMAINDERS];
-    for (p, factor) in Enclosure::<V, P>::pair_factors(half).into_iter().enumerate() {
-        remainder[0] += second(0, p) * factor;
-        remainder[1] += libm::hypot(second(1, p), second(2, p)) * factor;
-        remainder[2] += libm::hypot(second(3, p), second(4, p)) * factor;
-        remainder[3] += second(5, p) * factor;
-    }
+    let factors = Enclosure::<V, P>::pair_factors(half);
+    grouped(|f| (0..P).map(|p| functions[f].second[p].magnitude().0[lane] * factors[p]).sum())
+}
+
+/// What is lost of the same by writing values and gradients with fewer digits.
+pub(super) fn digits<const V: usize, const P: usize>(
+    functions: &[&Enclosure<V, P>; FUNCTIONS],
+    lane: usize,
+    half: [f64; V],
+) -> [f64; REMAINDERS] {
     let size = |f: usize| {
         let middle = functions[f].middle();
         middle.value.0[lane].abs() + (0..V).map(|k| middle.gradient[k].0[lane].abs() * half[k]).sum::<f64>()
     };
-    let lost = [size(0), size(1) + size(2), size(3) + size(4), size(5)];
-    std::array::from_fn(|f| remainder[f] + 1e-7 * lost[f])
+    [size(0), size(1) + size(2), size(3) + size(4), size(5)].map(|size| 1e-7 * size)
+}
+
+/// Sine and cosine of four angles, each within its half width. rad
+fn sine_cosine(angles: [f64; WIDTH], half: f64) -> (Interval, Interval) {
+    let ends = angles.map(|angle| sine_cosine_over(angle - half, angle + half));
+    let between = |of: &dyn Fn(&((f64, f64), (f64, f64))) -> (f64, f64)| {
+        let ends = ends.each_ref().map(of);
+        Interval::between(Lanes(ends.map(|e| e.0)), Lanes(ends.map(|e| e.1)))
+    };
+    (between(&|e| e.0), between(&|e| e.1))
 }
 
 /// Least and largest sine and cosine between two angles less than a turn apart. rad

@@ -13,7 +13,7 @@
 //! and e are the maximisers there, and need not be for the bound to hold. With one scored direction and no errors of
 //! the force, u is +1 or -1 and S the same at every state.
 
-use stead_problem::criterion::Aggregate;
+use stead_problem::criterion::{Aggregate, Weights};
 use stead_problem::problem::Problem;
 
 /// What acts on a path point and what of its deflection is scored, in the frame of the load: axis 1 is its third axis,
@@ -71,6 +71,8 @@ impl Objective {
     }
 }
 
+/// Scored directions of the whole deflection.
+const WHOLE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// Rounds of the ascent to the worst error of the force.
 const ROUNDS: usize = 3;
 /// What keeps a unit vector from being longer than that by rounding.
@@ -101,6 +103,10 @@ impl Load {
         let mut directions = [[0.0; 3]; 3];
         for (direction, vector) in directions.iter_mut().zip(scored.vectors()) {
             *direction = seen(vector);
+        }
+        // Of the whole deflection the length counts, in whatever frame.
+        if problem.criterion.weights == Weights::TOTAL {
+            directions = WHOLE;
         }
         let factor = objective.factor(problem.point_weight(point));
         let force = &problem.task.loads()[point].wrench.force;
@@ -172,7 +178,8 @@ impl Load {
         self.error == 0.0 && self.is_single()
     }
 
-    fn is_single(&self) -> bool {
+    /// Whether one direction is scored.
+    pub fn is_single(&self) -> bool {
         self.directions[1..].iter().all(|direction| *direction == [0.0; 3])
     }
 
@@ -224,9 +231,22 @@ impl Load {
         (Tangent::new(self.along(moved), force), None)
     }
 
+    /// A tangent that is nearly sharp there, in a fraction of the time: u along the deflection without an error, and the
+    /// error that adds most to that.
+    #[inline(always)]
+    pub fn near_tangent(&self, at: &Yielding, by_moment: [f64; 3]) -> Tangent {
+        let along = self.along(added(at.times(self.force), by_moment));
+        let response = at.times(along);
+        let error = scaled(response, self.error * NO_LONGER / norm(response).max(f64::MIN_POSITIVE));
+        Tangent::new(along, added(self.force, error))
+    }
+
     /// W^T W times a deflection.
     #[inline(always)]
     fn parts_back(&self, moved: [f64; 3]) -> [f64; 3] {
+        if self.directions == WHOLE {
+            return moved;
+        }
         let parts = self.directions.map(|direction| dot(direction, moved));
         std::array::from_fn(|k| (0..3).map(|row| self.directions[row][k] * parts[row]).sum::<f64>())
     }
@@ -240,8 +260,8 @@ impl Load {
     /// W^T u with u along the parts of a deflection.
     #[inline]
     fn along(&self, moved: [f64; 3]) -> [f64; 3] {
-        let size = norm(self.directions.map(|direction| dot(direction, moved)));
-        scaled(self.parts_back(moved), NO_LONGER / size.max(f64::MIN_POSITIVE))
+        let parts = if self.directions == WHOLE { moved } else { self.directions.map(|row| dot(row, moved)) };
+        scaled(self.parts_back(moved), NO_LONGER / norm(parts).max(f64::MIN_POSITIVE))
     }
 
     /// The score under a compliance, that of the part included, by the ascent of [`Self::tangents`]: what the first
@@ -298,7 +318,7 @@ impl Yielding {
         let columns = [[m + d[0], d[1], v[0]], [d[1], m - d[0], v[1]], [v[0], v[1], *zz]];
         let longest = columns.into_iter().fold(columns[0], |a, b| if dot(b, b) > dot(a, a) { b } else { a });
         let size = 1.0 / norm(longest).max(f64::MIN_POSITIVE);
-        let next = self.times(self.times(self.times(scaled(longest, size))));
+        let next = self.times(self.times(scaled(longest, size)));
         scaled(next, 1.0 / norm(next).max(f64::MIN_POSITIVE))
     }
 

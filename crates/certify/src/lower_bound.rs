@@ -7,7 +7,7 @@
 
 use super::active_cells::ActiveCells;
 use super::compliance_table::{Node, NodesAt};
-use super::cost::{CORNERS, NOTHING, PointCost, cost_at_corners, joined_sets};
+use super::cost::{CORNERS, NOTHING, PointCost, Without, cost_at_corners, joined_sets};
 use super::model::{Model, OtherSet};
 use super::region::Region;
 use super::sliding_min::{INFINITE, SlidingMin, joined, min_into};
@@ -38,12 +38,24 @@ impl Model {
     ///
     /// Once the caller asks to stop, what is returned is no bound.
     pub fn lower_bound(&self, region: &Region, active: &ActiveCells, ceiling: f64, monitor: &Monitor) -> LowerBound {
+        self.lower_bound_without(Without::Nothing, region, active, ceiling, monitor)
+    }
+
+    /// The same with less of its uncertainty, which is no bound.
+    pub fn lower_bound_without(
+        &self,
+        without: Without,
+        region: &Region,
+        active: &ActiveCells,
+        ceiling: f64,
+        monitor: &Monitor,
+    ) -> LowerBound {
         let (count, aggregate) = (active.count(), self.objective.aggregate);
         let mut pass = Pass {
             model: self,
             monitor,
             region,
-            points: self.point_costs(region),
+            points: self.point_costs(region, without),
             active,
             neighbours: SlidingMin::default(),
             targets: Vec::new(),

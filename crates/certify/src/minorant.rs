@@ -2,7 +2,7 @@
 
 use super::arm::Arm;
 use super::compliance_table::{AffineModel, ComplianceTable, Node};
-use super::cost::{Direction, Known, of_joint1};
+use super::cost::{Direction, Known, NOTHING, of_joint1};
 use super::enclosure::{FUNCTIONS, REMAINDERS};
 use super::kind::Kind;
 use super::load::{Load, Tangent, Yielding};
@@ -36,8 +36,8 @@ const COARSE: f64 = 0.3;
 const COARSE_LEVELS: usize = 4;
 
 /// What the model of a node leaves out, in the plan or of what is vertical.
-fn coarseness(known: &AffineModel) -> f32 {
-    let [m, d, v, zz] = known.remainder;
+fn coarseness(known: &AffineModel, half: [f64; 3]) -> f64 {
+    let [m, d, v, zz] = known.remainder.within(half);
     (m + d).max(v + zz)
 }
 
@@ -55,14 +55,15 @@ impl Around<'_> {
     pub fn collect(&self, level: usize, at: [usize; 2], cell: usize, out: &mut Vec<ModelledRegion>) -> bool {
         let Self { arm, table, class, node } = *self;
         let finest = level + 1 == COARSE_LEVELS.min(table.depth());
+        let half = table.half(level);
         let (node_at, moments) = table.nodes_at(arm, level, at).known(cell, class);
         match node_at {
             Node::Empty => return true,
             Node::Unknown if finest => return false,
-            Node::Known(known) if finest || f64::from(coarseness(known)) <= COARSE * arm.typical_compliance() => {
+            Node::Known(known) if finest || coarseness(known, half) <= COARSE * arm.typical_compliance() => {
                 let [r, z] = table.place(level, at);
                 let off = [r - node[0], z - node[1]];
-                out.push(ModelledRegion::new((known, moments), table.half(level), [r, arm.joint1], off));
+                out.push(ModelledRegion::new((known, moments), half, [r, arm.joint1], off));
                 return true;
             }
             _ => {}
@@ -105,7 +106,7 @@ impl ModelledRegion {
     pub fn new(known: Known<'_>, half: [f64; 3], of: [f64; 2], off: [f64; 2]) -> Self {
         let ((known, moments), [r, first]) = (known, of);
         let values = known.values.map(|v| v.map(f64::from));
-        let remainder = known.remainder.map(f64::from);
+        let remainder = known.remainder.within(half);
         // Slopes change by at most what twice the second-order sum says.
         let of = |a: usize, b: usize, remainder: f64| {
             let moved = (0..3).map(|k| libm::hypot(values[a][k + 1], values[b][k + 1]) * half[k]).sum::<f64>()
@@ -210,14 +211,17 @@ impl ModelledRegion {
         kind.load.most_scored() * (c * kind.force_spread + d * kind.moment_spread + by_part)
     }
 
-    /// The same below the score.
+    /// The same below the score: by the sharp tangents at the middle, or by one that is nearly sharp.
     #[inline(always)]
-    fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64) -> (f64, [f64; 3]) {
+    fn least_score(&self, load: &Load, direction: &Direction, h_chi: f64, is_sharp: bool) -> (f64, [f64; 3]) {
         let seen = direction.seen(self.values.map(|value| value[0]), load, self.r, self.first);
         let by_moment = self.moments.map_or([0.0; 3], |known| {
             direction.moved(known.values.map(|value| f64::from(value[0])), load, self.r, self.first)
         });
         let least = |tangent: &Tangent| self.least(tangent, load, direction, h_chi);
+        if !is_sharp {
+            return least(&load.near_tangent(&seen, by_moment));
+        }
         if load.is_linear() {
             let tangent = load.of_first();
             // With the sign that the value has.
@@ -244,68 +248,111 @@ struct AroundRegion {
     remainder: f64,
 }
 
-/// What `of` says of each region, into `space`, and the lowest of it; `None` once that is not above zero.
-// Out of line: each use is a loop that fits into the registers.
-#[inline(never)]
-fn each_least(
-    found: &[ModelledRegion],
-    space: &mut Vec<(f64, [f64; 3])>,
-    of: impl Fn(&ModelledRegion) -> (f64, [f64; 3]),
-) -> Option<(f64, [f64; 3])> {
-    space.clear();
-    let mut lowest = (f64::INFINITY, [0.0; 3]);
-    for region in found {
-        let least = of(region);
-        if least.0 < lowest.0 {
-            lowest = least;
-            if least.0 <= 0.0 {
-                return None;
-            }
-        }
-        space.push(least);
-    }
-    Some(lowest)
+/// What a kind of load costs at least in each of some regions.
+pub(super) struct OfKind<'a> {
+    found: &'a [ModelledRegion],
+    kind: &'a Kind,
+    /// By how much the scores of the loads of the kind can differ from that of its own, region by region. m
+    spreads: Vec<f64>,
+    /// At the middle of each region (m), and slopes.
+    least: Vec<(f64, [f64; 3])>,
 }
 
-/// Below what all of the states cost, for a kind of load and its direction within `half` of the node.
-/// `space` is for work.
-pub(super) fn minorant(
-    found: &[ModelledRegion],
-    kind: &Kind,
-    direction: &Direction,
-    half: [f64; 3],
-    space: &mut Vec<(f64, [f64; 3])>,
-) -> Affine {
-    if found.is_empty() {
-        return EMPTY;
+/// Regions looked at once more by sharp tangents, at most.
+const SHARPENED: usize = 8;
+
+impl<'a> OfKind<'a> {
+    pub fn new(found: &'a [ModelledRegion], kind: &'a Kind) -> Self {
+        let is_spread = kind.force_spread != 0.0 || kind.moment_spread != 0.0 || kind.part_spread != 0.0;
+        let of = |region: &ModelledRegion| if is_spread { region.spread(kind) } else { 0.0 };
+        Self { found, kind, spreads: found.iter().map(of).collect(), least: Vec::with_capacity(found.len()) }
     }
-    let h_chi = half[2];
-    let first_tangent = kind.load.of_first();
-    let (turned, of_part) = (direction.factors(&first_tangent), kind.load.of_part(&first_tangent));
-    let is_spread = kind.force_spread != 0.0 || kind.moment_spread != 0.0 || kind.part_spread != 0.0;
-    let lowest = if !kind.load.is_linear() || kind.load.has_moment() {
-        each_least(found, space, |region| {
-            let (least, slopes) = region.least_score(&kind.load, direction, h_chi);
-            (least - if is_spread { region.spread(kind) } else { 0.0 }, slopes)
-        })
-    } else if turned.1[1] != 0.0 || turned.0[5] != 0.0 {
-        each_least(found, space, |region| {
-            let (least, slopes) = region.least_absolute(&turned, of_part, true, h_chi);
-            (least - if is_spread { region.spread(kind) } else { 0.0 }, slopes)
-        })
-    } else {
-        each_least(found, space, |region| {
-            let (least, slopes) = region.least_absolute(&turned, of_part, false, h_chi);
-            (least - if is_spread { region.spread(kind) } else { 0.0 }, slopes)
-        })
-    };
-    let Some(lowest) = lowest else { return ZERO };
-    let slope = lowest.1;
-    let mut value = f64::INFINITY;
-    for (s, (least, slopes)) in found.iter().zip(&*space) {
-        let spread = [s.half[0], s.half[1], h_chi];
-        let shifted = slope[0] * s.off[0] + slope[1] * s.off[1];
-        value = value.min(least - shifted - (0..3).map(|k| (slopes[k] - slope[k]).abs() * spread[k]).sum::<f64>());
+
+    /// Below what all of the states cost, for directions of the load within `half` of one.
+    pub fn minorant(&mut self, direction: &Direction, half: [f64; 3]) -> Affine {
+        if self.found.is_empty() {
+            return EMPTY;
+        }
+        let (load, h_chi) = (&self.kind.load, half[2]);
+        let first = load.of_first();
+        let (turned, of_part) = (direction.factors(&first), load.of_part(&first));
+        let score = |region: &ModelledRegion, is_sharp| region.least_score(load, direction, h_chi, is_sharp);
+        let sharp = |region: &ModelledRegion| score(region, true);
+        let is_above_zero = if !load.is_single() {
+            let is_above_zero = self.each(|region| score(region, false), sharp);
+            if is_above_zero {
+                self.sharpen(h_chi, sharp);
+            }
+            is_above_zero
+        } else if !load.is_linear() || load.has_moment() {
+            self.each(sharp, |_| NOTHING)
+        } else if turned.1[1] != 0.0 || turned.0[5] != 0.0 {
+            self.each(|region| region.least_absolute(&turned, of_part, true, h_chi), |_| NOTHING)
+        } else {
+            self.each(|region| region.least_absolute(&turned, of_part, false, h_chi), |_| NOTHING)
+        };
+        if !is_above_zero {
+            return ZERO;
+        }
+        let (value, slope, _) = self.below(h_chi);
+        rounded(value, slope, half)
     }
-    rounded(value, slope, half)
+
+    /// What `of` says of each region, and where that is not above zero `otherwise`; false once neither is.
+    // Out of line: each use is a loop that fits into the registers.
+    #[inline(never)]
+    fn each(
+        &mut self,
+        of: impl Fn(&ModelledRegion) -> (f64, [f64; 3]),
+        otherwise: impl Fn(&ModelledRegion) -> (f64, [f64; 3]),
+    ) -> bool {
+        self.least.clear();
+        for (region, spread) in self.found.iter().zip(&self.spreads) {
+            let mut least = of(region);
+            if least.0 <= *spread {
+                least = otherwise(region);
+            }
+            if least.0 <= *spread {
+                return false;
+            }
+            self.least.push((least.0 - spread, least.1));
+        }
+        true
+    }
+
+    /// With `of`, sharper, in the regions that keep the bound low.
+    #[inline(never)]
+    fn sharpen(&mut self, h_chi: f64, of: impl Fn(&ModelledRegion) -> (f64, [f64; 3])) {
+        let mut sharpened = [usize::MAX; SHARPENED];
+        for number in 0..SHARPENED {
+            let (_, _, keeping) = self.below(h_chi);
+            let Some(region) = keeping.into_iter().find(|region| !sharpened[..number].contains(region)) else { break };
+            let (value, slopes) = of(&self.found[region]);
+            self.least[region] = (value - self.spreads[region], slopes);
+            sharpened[number] = region;
+        }
+    }
+
+    /// An affine function below all of the regions: its value at the node (m), slopes, and the regions that slopes and
+    /// value are of.
+    #[inline(always)]
+    fn below(&self, h_chi: f64) -> (f64, [f64; 3], [usize; 2]) {
+        let mut lowest = 0;
+        for (number, least) in self.least.iter().enumerate() {
+            if least.0 < self.least[lowest].0 {
+                lowest = number;
+            }
+        }
+        let slope = self.least[lowest].1;
+        let (mut value, mut limiting) = (f64::INFINITY, lowest);
+        for (number, (s, (least, slopes))) in self.found.iter().zip(&self.least).enumerate() {
+            let spread = [s.half[0], s.half[1], h_chi];
+            let shifted = slope[0] * s.off[0] + slope[1] * s.off[1];
+            let here = least - shifted - (0..3).map(|k| (slopes[k] - slope[k]).abs() * spread[k]).sum::<f64>();
+            if here < value {
+                (value, limiting) = (here, number);
+            }
+        }
+        (value, slope, [lowest, limiting])
+    }
 }

@@ -3,7 +3,7 @@
 use super::arm::Arm;
 use super::cell::{Yaws, extent, points_of};
 use super::compliance_table::{ComplianceTable, Steps};
-use super::cost::PointCost;
+use super::cost::{PointCost, Without};
 use super::load::Objective;
 use super::region::{Point, PolarModel, Region};
 use std::ops::Range;
@@ -127,8 +127,9 @@ impl Model {
     }
 
     /// Every point over a box, where something is known of it.
-    pub fn point_costs(&self, region: &Region) -> Vec<Option<PointCost<'_>>> {
+    pub fn point_costs(&self, region: &Region, without: Without) -> Vec<Option<PointCost<'_>>> {
         let placed = (0..self.points.len()).map(|point| self.placed(point, region));
-        placed.zip(&self.points).map(|(placed, p)| Some(PointCost::new(p, placed?, self.arm.joint1))).collect()
+        let of = |(placed, p)| Some(PointCost::new(p, placed?, self.arm.joint1).without(without));
+        placed.zip(&self.points).map(of).collect()
     }
 }

@@ -4,7 +4,8 @@
 //! `<D, W^T u m^T>`. D is not symmetric: in the plan it has a mean P, an antisymmetric part A and a pair that turns
 //! twice as fast as the frame; its columns and rows along axis 1 are two pairs that turn with the frame.
 
-use super::number::VARIABLES;
+use super::enclosure::{Enclosure, Remainder};
+use super::number::{PAIRS, VARIABLES};
 
 /// Functions modelled: P, A, (D_rr - D_tt) / 2, (D_rt + D_tr) / 2, D_rz, D_tz, D_zr, D_zt and D_zz.
 pub(super) const MOMENTS: usize = 9;
@@ -18,28 +19,23 @@ pub(super) struct MomentModel {
     /// Value and gradient of each function at the node.
     pub values: [[f32; 4]; MOMENTS],
     /// What these leave out of each group.
-    pub remainder: [f32; GROUPS.len()],
+    pub remainder: Remainder<{ GROUPS.len() }>,
 }
 
 impl MomentModel {
-    /// Of values and gradients at a node, second derivatives by pairs of variables (function, pair) and what the pairs
-    /// are multiplied by; `None` where they are not finite.
-    pub fn new(
-        values: [[f64; 4]; MOMENTS],
-        half: [f64; 3],
-        of_pair: impl Fn(usize, usize) -> f64,
-        by: [f64; 6],
-    ) -> Option<Self> {
-        let remainder = GROUPS.map(|(first, count, _)| {
-            let all = first..first + count;
-            let second = |pair: usize| all.clone().map(|f| of_pair(f, pair).powi(2)).sum::<f64>().sqrt();
-            let left_out: f64 = (0..6).map(|pair| second(pair) * by[pair]).sum();
-            // And what is lost by writing the values with fewer digits.
-            let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
-            ((left_out + 1e-7 * all.clone().map(size).sum::<f64>()) * (1.0 + 1e-6)) as f32
-        });
-        let model = Self { values: values.map(|v| v.map(|x| x as f32)), remainder };
-        remainder.iter().all(|r| *r < 1e30).then_some(model)
+    /// Of values and gradients at a node, and second derivatives by pairs of variables (function, pair); `None` where
+    /// they are not finite.
+    pub fn new(values: [[f64; 4]; MOMENTS], half: [f64; 3], of_pair: impl Fn(usize, usize) -> f64) -> Option<Self> {
+        let grouped = |of: &dyn Fn(usize) -> f64| {
+            GROUPS.map(|(first, count, _)| (first..first + count).map(|f| of(f).powi(2)).sum::<f64>().sqrt())
+        };
+        let bends = std::array::from_fn(|pair| grouped(&|f| of_pair(f, pair)));
+        let factors = <Enclosure>::pair_factors(half);
+        let most = grouped(&|f| (0..PAIRS).map(|pair| of_pair(f, pair) * factors[pair]).sum());
+        let size = |f: usize| values[f][0].abs() + (0..3).map(|k| values[f][k + 1].abs() * half[k]).sum::<f64>();
+        let digits = GROUPS.map(|(first, count, _)| 1e-7 * (first..first + count).map(size).sum::<f64>());
+        let remainder = Remainder::new(bends, digits, most)?;
+        Some(Self { values: values.map(|v| v.map(|x| x as f32)), remainder })
     }
 }
 
@@ -51,7 +47,7 @@ impl MomentModel {
             value.abs() + (0..3).map(|k| slopes[k].abs() * half[k]).sum::<f64>()
         };
         // Each function is in two entries at most.
-        2.0 * (self.values.iter().map(up).sum::<f64>() + self.remainder.iter().copied().map(f64::from).sum::<f64>())
+        2.0 * (self.values.iter().map(up).sum::<f64>() + self.remainder.within(half).iter().sum::<f64>())
     }
 }
 
@@ -117,9 +113,10 @@ impl TurnedMoment {
     pub fn part(&self, known: &MomentModel, off: [f64; 2], reach: [f64; 3], half_cell: f64) -> MomentPart {
         let [h_r, h_z, h_chi] = reach;
         let [value, by_r, by_chi, remainder] = self.joint1;
+        let rest = known.remainder.within([off[0].abs() + h_r, off[1].abs() + h_z, half_cell]);
         let mut part = MomentPart { value, by: [by_r, 0.0, 0.0], by_chi, remainder };
         for (group, (first, count, order)) in GROUPS.into_iter().enumerate() {
-            let (length, remainder) = (self.lengths[group], f64::from(known.remainder[group]));
+            let (length, remainder) = (self.lengths[group], rest[group]);
             if length == 0.0 {
                 continue;
             }

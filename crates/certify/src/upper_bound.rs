@@ -13,7 +13,7 @@
 
 use super::branch_and_bound::Open;
 use super::compliance_table::Node;
-use super::cost::{CORNERS, PointCost};
+use super::cost::{CORNERS, PointCost, Without};
 use super::model::Model;
 use super::region::Region;
 use super::sliding_min::plus;
@@ -101,7 +101,7 @@ impl<'a> BoxBounds<'a> {
     /// `None` for one too large for the tables.
     pub fn new(model: &'a Model, region: &'a Region, monitor: &'a Monitor) -> Option<Self> {
         let level = model.level(region)?;
-        Some(Self { model, region, monitor, points: model.point_costs(region), level })
+        Some(Self { model, region, monitor, points: model.point_costs(region, Without::Nothing), level })
     }
 
     /// Bounds cells of one point and class: the best of those surely allowed, and the greatest costs of all that may

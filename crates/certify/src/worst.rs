@@ -65,8 +65,7 @@ pub fn worst(
         of: |open: &WorstBox| parts(&model, open, ceiling, monitor),
         used: || model.used(),
         bytes: |seen: &Option<Arc<Inherited>>| seen.as_ref().map_or(0, |seen| seen.bytes()),
-        points: 0,
-        count: |_: &mut KeepsOpen, _: &Region, _: &Option<Arc<Inherited>>, _: usize| {},
+        count: |_: &mut KeepsOpen, _: &Region, _: &Option<Arc<Inherited>>| {},
     };
     let mut known = value;
     Ok(search.explore(all, monitor, |regions| {

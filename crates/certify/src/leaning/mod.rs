@@ -15,7 +15,7 @@ use super::arm::Arm;
 use super::branch_and_bound::{Bound, BranchAndBound, Open, Parts};
 use super::cell::{SAME, Yaws, axes_of, extent, seen, side, whole};
 use super::cost::{CORNERS, cost_at_corners};
-use super::keeps_open::KeepsOpen;
+use super::keeps_open::{KeepsOpen, some_points};
 use super::kind::kinds_of;
 use super::load::{Load, Objective};
 use super::minorant::Affine;
@@ -85,9 +85,8 @@ pub(super) fn best(problem: &Problem, value: f64, settings: &CertificateSettings
         of: |open: &Open<Classes>| model.parts(open, ceiling, monitor),
         used: || model.axes.iter().map(Cells::used).sum(),
         bytes: |known: &Classes| known.as_ref().map_or(0, |known| known.len() as u64),
-        points: model.points.len(),
-        count: |counted: &mut KeepsOpen, region: &Box3, known: &Classes, point: usize| {
-            model.count(counted, region, known, point);
+        count: |counted: &mut KeepsOpen, region: &Box3, known: &Classes| {
+            some_points(model.points.len()).for_each(|point| model.count(counted, region, known, point));
         },
     };
     let mut bound = search.explore(all, monitor, |_| None);

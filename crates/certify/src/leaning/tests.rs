@@ -317,7 +317,7 @@ fn what_keeps_boxes_open_is_counted() {
     let until = std::time::Instant::now() + std::time::Duration::from_secs(4);
     let bound = best(&problem, 1e-4, &CertificateSettings::new(0.001), &Monitor::silent().with_deadline(Some(until)));
     assert_eq!(bound.status, Status::TimeLimit);
-    let KeepsOpen { states, unknown, undecided, by } = bound.keeps_open.unwrap();
+    let KeepsOpen { states, unknown, undecided, by, .. } = bound.keeps_open.unwrap();
     assert!(undecided > 0 && unknown + undecided <= states, "{:?}", bound.keeps_open);
     // The wrist's share of conditioning, or conditioning itself.
     assert!(by[1] + by[2] > 0 && by.into_iter().all(|count| count <= undecided), "{by:?}");

@@ -90,10 +90,12 @@ pub struct Mutation {
     placed: fn(&mut PolarModel),
     joint1: f64,
     cell: f64,
+    /// Whether remainders count how far the point is from the node.
+    with_off: bool,
 }
 
 pub const SOUND: Mutation =
-    Mutation { name: "sound", known: |_| {}, moments: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0 };
+    Mutation { name: "sound", known: |_| {}, moments: |_| {}, placed: |_| {}, joint1: 1.0, cell: 1.0, with_off: true };
 
 /// Size of a box, half width of the node in radius and height, half width of its cell of heading.
 const SIZES: [[f64; 3]; 5] =
@@ -122,6 +124,10 @@ pub fn violations(setting: &Setting, mutation: &Mutation) -> [usize; 2] {
         (mutation.known)(&mut known);
         moments.iter_mut().for_each(mutation.moments);
         (mutation.placed)(&mut placed);
+        if !mutation.with_off {
+            let [r, z, _] = placed.reach;
+            known.remainder = known.remainder.in_place_of([off[0].abs() + r, off[1].abs() + z, cell], [r, z, cell]);
+        }
         let one = PointCost::new(&setting.model.points[point], placed, setting.model.arm.joint1 * mutation.joint1);
         let min = one.min_cost(
             (&known, moments.as_ref()),
@@ -157,12 +163,17 @@ fn points_cost_at_least_what_is_said_anywhere_in_the_box() {
 #[test]
 fn broken_costs_are_seen() {
     let mutations = [
-        Mutation { name: "remainders zero", known: |known| known.remainder = [0.0; REMAINDERS], ..SOUND },
         Mutation {
-            name: "remainders times 0.3",
-            known: |known| known.remainder = known.remainder.map(|r| 0.3 * r),
+            name: "remainders zero",
+            known: |known| known.remainder = known.remainder.times([0.0; REMAINDERS]),
             ..SOUND
         },
+        Mutation {
+            name: "remainders halved",
+            known: |known| known.remainder = known.remainder.times([0.5; REMAINDERS]),
+            ..SOUND
+        },
+        Mutation { name: "remainders without the distance from the node", with_off: false, ..SOUND },
         Mutation { name: "heading cell half as wide", cell: 0.5, ..SOUND },
         Mutation { name: "joint 1 term missing", joint1: 0.0, ..SOUND },
         Mutation { name: "sign of d2", known: |known| known.values[2] = known.values[2].map(|v| -v), ..SOUND },
@@ -188,7 +199,11 @@ fn broken_costs_are_seen() {
         assert!(violations(&setting, mutation)[0] > 0, "{} is not seen in the whole deflection", mutation.name);
     }
     let of_moments = [
-        Mutation { name: "remainders of moments zero", moments: |known| known.remainder = [0.0; 6], ..SOUND },
+        Mutation {
+            name: "remainders of moments zero",
+            moments: |known| known.remainder = known.remainder.times([0.0; 6]),
+            ..SOUND
+        },
         Mutation {
             name: "antisymmetric part",
             moments: |known| known.values[1] = known.values[1].map(|v| -v),

@@ -105,7 +105,9 @@ fn a_stricter_arm_is_seen_to_lose_allowed_states() {
 }
 
 /// What is wrong with a node: an allowed state in an empty one, or one outside its model.
-fn is_wrong(node: &Node, truth: &Truth, off: [f64; 3], count: usize) -> bool {
+/// It is held against what the model leaves out within that distance, no further than the half widths that it was made
+/// for.
+fn is_wrong(node: &Node, truth: &Truth, (off, made_for): ([f64; 3], [f64; 3]), count: usize) -> bool {
     let known = match node {
         Node::Empty => return true,
         Node::Unknown => return false,
@@ -115,7 +117,7 @@ fn is_wrong(node: &Node, truth: &Truth, off: [f64; 3], count: usize) -> bool {
         let [value, r, z, heading] = known.values[f].map(f64::from);
         truth.values[f] - value - r * off[0] - z * off[1] - heading * off[2]
     });
-    let remainder = known.remainder.map(f64::from);
+    let remainder = known.remainder.within(std::array::from_fn(|k| off[k].abs().min(made_for[k])));
     errors[0].abs() > remainder[0]
         || libm::hypot(errors[1], errors[2]) > remainder[1]
         || count > 3 && libm::hypot(errors[3], errors[4]) > remainder[2]
@@ -154,7 +156,7 @@ pub fn violations(
             let moved = [place[0] + off[0], place[1] + off[1], at[2]];
             let Some(truth) = setting.truth(point, moved, place[2] + off[2], class) else { continue };
             states += 1;
-            wrong += usize::from(is_wrong(&node, &truth, off, count));
+            wrong += usize::from(is_wrong(&node, &truth, (off, judged(half)), count));
         }
     }
     [wrong, known, states]
@@ -216,14 +218,18 @@ fn states_at_the_limit_of_conditioning_are_kept_and_stricter_limits_are_seen() {
 fn broken_nodes_are_seen() {
     fn none(_: &mut AffineModel) {}
     let mutations: [Mutation; 8] = [
-        ("remainders zero", |half| half, |known| known.remainder = [0.0; REMAINDERS]),
-        ("remainders times 0.3", |half| half, |known| known.remainder = known.remainder.map(|r| 0.3 * r)),
+        ("remainders zero", |half| half, |known| known.remainder = known.remainder.times([0.0; REMAINDERS])),
+        ("remainders halved", |half| half, |known| known.remainder = known.remainder.times([0.5; REMAINDERS])),
         ("feasibility judged at the centre only", |half| half.map(|h| 1e-9 * h), none),
         ("heading cell half as wide", |[r, z, heading]| [r, z, 0.5 * heading], none),
         ("radius half as wide", |[r, z, heading]| [0.5 * r, z, heading], none),
         ("slope by the heading left out", |half| half, |known| known.values.iter_mut().for_each(|v| v[3] = 0.0)),
         ("sign of d2", |half| half, |known| known.values[2] = known.values[2].map(|v| -v)),
-        ("remainder of (d1, d2) left out", |half| half, |known| known.remainder[1] = 0.0),
+        (
+            "remainder of (d1, d2) left out",
+            |half| half,
+            |known| known.remainder = known.remainder.times([1.0, 0.0, 1.0, 1.0]),
+        ),
     ];
     let setting = Setting::new(five_segments());
     for (name, judged, change) in mutations {
@@ -258,17 +264,18 @@ fn nodes_of_the_table_are_those_regions() {
         let Some((class, heading)) = setting.random_state(&mut random, point, at) else { continue };
         for level in 0..table.depth() {
             let (node, off) = table.nearest(level, at[0], at[1]).unwrap();
+            let half = table.half(level);
             assert!(off.iter().all(|o| o.abs() <= 0.5 * table.length(level) * (1.0 + 1e-9)));
             let cell = (heading / TAU * table.headings(level) as f64) as usize;
             let turned = heading - table.heading(level, cell);
             assert!(turned.abs() <= PI / table.headings(level) as f64 * (1.0 + 1e-9));
             let truth = setting.truth(point, at, heading, class).unwrap();
             let known = table.nodes_at(&setting.model.arm, level, node).known(cell, class).0;
-            assert!(!is_wrong(known, &truth, [off[0], off[1], turned], 3));
+            assert!(!is_wrong(known, &truth, ([off[0], off[1], turned], half), 3));
             // Its neighbours across the turn are another node: a cell of heading off is seen where models are close.
             let other =
                 table.nodes_at(&setting.model.arm, level, node).known((cell + 7) % table.headings(level), class).0;
-            seen += usize::from(is_wrong(other, &truth, [off[0], off[1], turned], 3));
+            seen += usize::from(is_wrong(other, &truth, ([off[0], off[1], turned], half), 3));
         }
     }
     assert!(seen > 20, "a wrong cell of heading is not seen: {seen}");

@@ -6,7 +6,7 @@ use super::super::compliance_table::{AffineModel, ComplianceTable, Node, Steps};
 use super::super::cost::Direction;
 use super::super::kind::{Kind, kinds};
 use super::super::load::Load;
-use super::super::minorant::{Affine, Around, EMPTY, ModelledRegion, ZERO, minorant};
+use super::super::minorant::{Affine, Around, EMPTY, ModelledRegion, OfKind, ZERO};
 use super::*;
 use stead_model::testing::some;
 use stead_numerics::monitor::Monitor;
@@ -110,7 +110,7 @@ pub fn violations(setting: &Setting, steps: Steps, mutation: &Mutation) -> [usiz
         let direction = Direction::new(place[2] + load.turn);
         // The load of another point stands for it, as coarse tables have kinds of load.
         let (kind, size) = kind_of(&model, point, mutation.spread);
-        let mut e = minorant(&found, &kind, &direction, half, &mut Vec::new());
+        let mut e = OfKind::new(&found, &kind).minorant(&direction, half);
         e.value *= size;
         e.slope = e.slope.map(|slope| slope * size);
         if e == ZERO {
@@ -225,7 +225,7 @@ fn regions_cut_up_are_below_the_cost_too() {
         let load = &model.points[point].load;
         let direction = Direction::new(place[2] + load.turn);
         let kind = Kind { load: *load, force_spread: 0.0, moment_spread: 0.0, part_spread: 0.0 };
-        let e = minorant(&found, &kind, &direction, half, &mut Vec::new());
+        let e = OfKind::new(&found, &kind).minorant(&direction, half);
         for _ in 0..6 {
             let s = shares(&mut random);
             let off = [s[0] * COARSE.length, s[1] * COARSE.length, s[2] * turn];

@@ -1,7 +1,7 @@
 //! Steps of beta, least values of neighbours, and the sum along the path.
 
 use super::super::active_cells::ActiveCells;
-use super::super::cost::{CORNERS, PointCost};
+use super::super::cost::{CORNERS, PointCost, Without};
 use super::super::sliding_min::{INFINITE, SlidingMin, min_into};
 use super::minorants::local;
 use super::*;
@@ -279,6 +279,27 @@ fn a_broken_criterion_is_seen() {
         assert!(bound > truth, "{name} is not seen: {bound} {truth}");
         last = Some(setting);
     }
+}
+
+/// Without remainders, and without the width of cells of heading, a box comes to more, and a small one to no more than
+/// it is worth.
+#[test]
+fn what_takes_a_bound_down_is_told_apart() {
+    let setting = Setting::new(slanted());
+    let model = &setting.model;
+    let at = good(&setting);
+    let sums = |half: [f64; 3]| {
+        let region = Region { middle: at, half };
+        let level = model.level(&region).unwrap();
+        let mut active = ActiveCells::full(model.points.len(), model.table.headings(0));
+        (0..level).for_each(|_| active = active.halved());
+        [Without::Nothing, Without::Remainders, Without::Headings]
+            .map(|without| model.lower_bound_without(without, &region, &active, f64::INFINITY, &Monitor::silent()).sum)
+    };
+    let [bound, models, headings] = sums([0.002, 0.002, 0.004]);
+    assert!(1.001 * bound < models && 1.001 * models < headings, "{bound} {models} {headings}");
+    let [bound, models, headings] = sums([1e-5; 3]);
+    assert!(bound < models && models < headings && headings < 1.02 * bound, "{bound} {models} {headings}");
 }
 
 #[test]

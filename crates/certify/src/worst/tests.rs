@@ -91,7 +91,7 @@ fn cells_cost_no_more_than_is_said() {
 
 #[test]
 fn tampered_cells_are_noticed() {
-    assert!(violations(|known| known.remainder = [0.0; 4]).1 > 0);
+    assert!(violations(|known| known.remainder = known.remainder.times([0.0; 4])).1 > 0);
     assert!(violations(|known| known.sure = true).1 > 0);
 }
 
