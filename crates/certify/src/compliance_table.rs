@@ -7,7 +7,7 @@
 
 use super::arm::{Arm, ArmCompliance};
 use super::cell::Extent;
-use super::enclosure::{Enclosure, FUNCTIONS, Interval, REMAINDERS, Range, Remainder, bends, digits, left_out};
+use super::enclosure::{Enclosure, FUNCTIONS, Interval, REMAINDERS, Remainder, ValueRange, bends, digits, left_out};
 use super::interval_simd::{Lanes, WIDTH};
 use super::moment::{MOMENTS, MomentModel};
 use super::region::PolarModel;
@@ -17,6 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use stead_model::robot::PostureClass;
 
 /// What is known of the states around a node.
+#[expect(clippy::large_enum_variant, reason = "sixteen at a time, in one allocation")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Node {
     /// None of them is allowed.
@@ -299,8 +300,9 @@ pub(super) fn known_over(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], c
 /// In which of four regions (radius, height, heading) no state is allowed, as far as intervals for values alone tell: in
 /// a tenth of the time, of most of those that are empty.
 fn are_empty(arm: &Arm, place: &[[f64; 3]; WIDTH], half: [f64; 3], class: PostureClass) -> [bool; WIDTH] {
-    let (sine, cosine) = Range::turning(place.map(|p| p[2]), half[2]);
-    let side = |k: usize| Range::over(Interval { middle: Lanes(place.map(|p| p[k])), radius: Lanes::splat(half[k]) });
+    let (sine, cosine) = ValueRange::turning(place.map(|p| p[2]), half[2]);
+    let side =
+        |k: usize| ValueRange::over(Interval { middle: Lanes(place.map(|p| p[k])), radius: Lanes::splat(half[k]) });
     match arm.evaluate(side(0), side(1), sine, cosine, class) {
         None => [true; WIDTH],
         Some(y) => std::array::from_fn(|lane| y.violated.lane(lane)),

@@ -228,9 +228,9 @@ impl<const V: usize, const P: usize> Enclosure<V, P> {
 }
 
 /// An interval for the value alone.
-pub(super) type Range = Enclosure<0, 0>;
+pub(super) type ValueRange = Enclosure<0, 0>;
 
-impl Range {
+impl ValueRange {
     /// All numbers of an interval.
     #[inline(always)]
     pub fn over(value: Interval) -> Self {
@@ -335,11 +335,8 @@ pub(super) fn digits<const V: usize, const P: usize>(
 /// Sine and cosine of four angles, each within its half width. rad
 fn sine_cosine(angles: [f64; WIDTH], half: f64) -> (Interval, Interval) {
     let ends = angles.map(|angle| sine_cosine_over(angle - half, angle + half));
-    let between = |of: &dyn Fn(&((f64, f64), (f64, f64))) -> (f64, f64)| {
-        let ends = ends.each_ref().map(of);
-        Interval::between(Lanes(ends.map(|e| e.0)), Lanes(ends.map(|e| e.1)))
-    };
-    (between(&|e| e.0), between(&|e| e.1))
+    let between = |low: [f64; WIDTH], high: [f64; WIDTH]| Interval::between(Lanes(low), Lanes(high));
+    (between(ends.map(|e| e.0.0), ends.map(|e| e.0.1)), between(ends.map(|e| e.1.0), ends.map(|e| e.1.1)))
 }
 
 /// Least and largest sine and cosine between two angles less than a turn apart. rad
